@@ -8,13 +8,13 @@ use identify::{Identifier, output_error};
 use kempf_tests::logs::{self, File, Outcome, voyage};
 use rayon::prelude::*;
 use trial::reader::read_bytes;
-use trial::{Log, Quantity, ReadError, Reading};
+use trial::{Log, Quantity, ReadError, ReadRecord};
 
 /// Deviations, in standard deviations of the difference, within which two answers are one.
 const SAME: f64 = 2.0;
 
 /// K and T of output error.
-fn answer(reading: &Reading) -> [Quantity; 2] {
+fn answer(reading: &ReadRecord) -> [Quantity; 2] {
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let trials = std::slice::from_ref(&reading.trial);
     let estimate = method.identify(trials).unwrap_or_else(|error| panic!("{}: {error}", reading.trial.name()));
@@ -22,7 +22,7 @@ fn answer(reading: &Reading) -> [Quantity; 2] {
 }
 
 /// Reads a log from memory, one of two files from the folder.
-fn read(file: &File) -> Result<Reading, ReadError> {
+fn read(file: &File) -> Result<ReadRecord, ReadError> {
     match file.beside {
         None => read_bytes(Path::new(file.name), file.bytes.as_slice(), None, None),
         Some(beside) => {

@@ -13,7 +13,7 @@ use crate::rows::PredictedFigure;
 pub struct PredictionCheck<'a> {
     asked: &'a Predictions,
     /// Figures by name, `None` where the ship does not come to the end of a manoeuvre.
-    true_manoeuvres: Vec<Option<Vec<figures::Figure>>>,
+    true_manoeuvres: Vec<Option<figures::Figures>>,
     facts: RecordFacts<'a>,
 }
 
@@ -47,8 +47,7 @@ impl<'a> PredictionCheck<'a> {
             let Some(truths) = truths else { continue };
             let Ok(prediction) = mixture.predict(kind, self.asked.draws, false) else { continue };
             for (name, figure) in prediction.figures {
-                let truth = truths.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value);
-                let Some(truth) = truth else { continue };
+                let Some(truth) = truths.get(name.as_str()).copied().flatten() else { continue };
                 let (median, ci90) = (figure.interval.median, figure.interval.ci90);
                 all.push(PredictedFigure { name: format!("{kind} {name}").into(), truth, median, ci90 });
             }

@@ -13,7 +13,7 @@
 //! then that of the means.
 //!
 //! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series
-//! by generalised cross-validation (Golub, Heath and Wahba 1979) or AICc (Hurvich and Tsai 1989).
+//! by generalised cross-validation (Golub, Heath and Wahba 1979).
 
 use serde::{Deserialize, Serialize};
 use ship::Shown;
@@ -31,7 +31,7 @@ use crate::fourier::{self, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUS
 use crate::gaps::{longest_gap, pieces};
 use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::samples::Samples;
-use crate::settings::{SettingsError, check_condition_limit};
+use crate::settings::SettingsError;
 
 /// Fewest observed rows of a trial.
 const FEWEST_ROWS: usize = 20;
@@ -42,6 +42,9 @@ const MOST_ROWS: usize = 50_000;
 /// Frequency, in units of the zig-zag frequency, that the series has to reach: a zig-zag has no harmonic between the
 /// first and the third.
 const LEAST_REACH: f64 = 3.0;
+
+/// Share of the record without equations at each end, where the series is poor.
+const TRIM_SHARE: f64 = 0.05;
 
 /// Harmonics with which w is searched where the order follows later.
 const SEARCH_HARMONICS: usize = 8;
@@ -60,11 +63,6 @@ pub enum Order {
         /// Frequency of the highest harmonic allowed, in units of the zig-zag frequency.
         reach: f64,
     },
-    /// The least AICc, n ln(RSS/n) + 2 q n/(n − q − 1), q = 2N + 2.
-    Aicc {
-        /// Frequency of the highest harmonic allowed, in units of the zig-zag frequency.
-        reach: f64,
-    },
 }
 
 /// The rudder that enters the equations.
@@ -76,17 +74,6 @@ pub enum Rudder {
     Projected,
     /// As recorded: shows what the projection mends.
     Recorded,
-}
-
-/// The part of the record that is fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Window {
-    /// All of it.
-    #[default]
-    Record,
-    /// As many whole zig-zag periods as there are, from the end backwards.
-    WholePeriods,
 }
 
 /// Settings of [`FourierProjected`].
@@ -101,14 +88,6 @@ pub struct Settings {
     pub rudder: Rudder,
     /// The left side of the regression.
     pub response: Response,
-    /// The part of the record that is fitted.
-    pub window: Window,
-    /// Time left out at the beginning of every trial, s.
-    pub skip_s: f64,
-    /// Share of the window without equations at each end, where the series is poor.
-    pub trim_share: f64,
-    /// Largest condition number of the basis and of the equations.
-    pub condition_limit: f64,
 }
 
 impl Default for Settings {
@@ -118,10 +97,6 @@ impl Default for Settings {
             harmonics: Order::Gcv { reach: 4.0 },
             rudder: Rudder::Projected,
             response: Response::YawAcceleration,
-            window: Window::Record,
-            skip_s: 0.0,
-            trim_share: 0.05,
-            condition_limit: TRUSTED_CONDITION,
         }
     }
 }
@@ -133,18 +108,11 @@ impl Settings {
             Order::Fixed(harmonics) if harmonics == 0 || harmonics > MOST_HARMONICS => {
                 return Err(SettingsError::new("harmonics.fixed", harmonics, "1 to 64"));
             }
-            Order::Gcv { reach } | Order::Aicc { reach } if !(1.5..=50.0).contains(&reach) => {
+            Order::Gcv { reach } if !(1.5..=50.0).contains(&reach) => {
                 return Err(SettingsError::new("harmonics.reach", Shown(reach), "1.5 to 50"));
             }
             _ => {}
         }
-        if !(self.skip_s >= 0.0 && self.skip_s.is_finite()) {
-            return Err(SettingsError::new("skip-s", Shown(self.skip_s), "0 s or more"));
-        }
-        if !(self.trim_share >= 0.0 && self.trim_share < 0.5) {
-            return Err(SettingsError::new("trim-share", Shown(self.trim_share), "0 to below 0.5"));
-        }
-        check_condition_limit(self.condition_limit)?;
         self.fundamental.check()?;
         Ok(FourierProjected { settings: self, most_rows: MOST_ROWS })
     }
@@ -153,7 +121,7 @@ impl Settings {
 /// The mended Fourier method.
 ///
 /// Fails with [`IdentifyError::TooFewPoints`] when a record holds more zig-zags than the highest series can follow,
-/// some twenty, with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] when
+/// some twenty, with [`IdentifyError::Singular`] when the basis or the equations are ill-conditioned, and with [`IdentifyError::NotAShip`] when
 /// K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FourierProjected {
@@ -169,11 +137,11 @@ pub struct Curves {
     pub heading: Fitted,
     /// The rudder; [`FourierFit::heading`] of it gives the projected rudder angle, rad.
     pub rudder: FourierFit,
-    /// Beginning and end of the window, s from the first observed row.
+    /// Beginning and end, s from the first observed row.
     pub window: [f64; 2],
 }
 
-/// The rows of a trial within the window.
+/// The rows of a trial.
 struct Part {
     time: Vec<f64>,
     heading: Vec<f64>,
@@ -181,6 +149,11 @@ struct Part {
 }
 
 impl Part {
+    fn of(samples: Samples) -> Self {
+        let Samples { time, heading, rudder, .. } = samples;
+        Self { time, heading, rudder }
+    }
+
     /// No more than about `most` rows: means of neighbours, but not across gaps.
     fn averaged(self, most: usize) -> Self {
         let group = self.time.len().div_ceil(most);
@@ -211,47 +184,18 @@ impl FourierProjected {
     ///
     /// Fails as [`Identifier::identify`] does for a record that cannot be fitted.
     pub fn curves(&self, trial: &Trial) -> Result<Curves, IdentifyError> {
-        let part = self.window(&Samples::new(trial, FEWEST_ROWS)?)?;
+        let part = Part::of(Samples::new(trial, FEWEST_ROWS)?).averaged(self.most_rows);
         let heading = self.fit(&part)?;
         let rudder = heading.basis.curve(&heading.basis.project(&part.rudder));
         Ok(Curves { heading, rudder, window: [part.time[0], part.time[part.time.len() - 1]] })
     }
 
-    fn window(&self, samples: &Samples) -> Result<Part, IdentifyError> {
-        let rows = samples.len();
-        let mut first = samples.time.partition_point(|&t| t < self.settings.skip_s);
-        let enough = |first: usize| {
-            let (needed, found) = (FEWEST_ROWS, rows - first);
-            let what = "headings in the window";
-            if found < needed { Err(IdentifyError::TooFewPoints { what, needed, found }) } else { Ok(()) }
-        };
-        enough(first)?;
-        if self.settings.window == Window::WholePeriods {
-            let (time, heading) = (&samples.time[first..], &samples.heading[first..]);
-            let period = zero_crossing_period(time, heading)?;
-            let end = time[time.len() - 1];
-            // A step more than the span: rows stand for the time up to the next.
-            let step = (end - time[0]) / (time.len() - 1) as f64;
-            let periods = ((end + step - time[0]) / period).floor();
-            if periods < 1.0 {
-                let what = "whole zig-zag periods";
-                return Err(IdentifyError::TooFewPoints { what, needed: 1, found: 0 });
-            }
-            first += time.partition_point(|&t| t < end + 0.5 * step - periods * period);
-            enough(first)?;
-        }
-        let of = |values: &[f64]| values[first..].to_vec();
-        let part = Part { time: of(&samples.time), heading: of(&samples.heading), rudder: of(&samples.rudder) };
-        Ok(part.averaged(self.most_rows))
-    }
-
     fn fit(&self, part: &Part) -> Result<Fitted, IdentifyError> {
         let Part { time, heading, .. } = part;
         let fundamental = &self.settings.fundamental;
-        let (reach, score): (f64, fn(f64, f64, f64) -> f64) = match self.settings.harmonics {
-            Order::Fixed(harmonics) => return self.accept(fourier::fit(time, heading, harmonics, fundamental)?),
-            Order::Gcv { reach } => (reach, gcv),
-            Order::Aicc { reach } => (reach, aicc),
+        let reach = match self.settings.harmonics {
+            Order::Fixed(harmonics) => return accept(fourier::fit(time, heading, harmonics, fundamental)?),
+            Order::Gcv { reach } => reach,
         };
         let searched = SEARCH_HARMONICS.min((time.len() - 2) / 2);
         let choice = fundamental.choose(time, heading, searched)?;
@@ -271,18 +215,12 @@ impl FourierProjected {
         let rows = time.len() as f64;
         let rss = series.rss(heading);
         let harmonics = (least.min(most)..=most)
-            .min_by(|&p, &q| score(rows, rss[p], p as f64).total_cmp(&score(rows, rss[q], q as f64)))
+            .min_by(|&p, &q| gcv(rows, rss[p], p as f64).total_cmp(&gcv(rows, rss[q], q as f64)))
             .expect("the range holds at least its end");
         let basis = series.basis(harmonics);
         let projection = basis.project(heading);
         let curve = basis.curve(&projection);
-        self.accept(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations + 1 })
-    }
-
-    /// Refuses a basis whose coefficients cancel each other.
-    fn accept(&self, fitted: Fitted) -> Result<Fitted, IdentifyError> {
-        let (condition, limit) = (fitted.curve.condition, self.settings.condition_limit);
-        if condition <= limit { Ok(fitted) } else { Err(IdentifyError::Singular { condition, limit }) }
+        accept(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations + 1 })
     }
 
     /// Adds the equations of one trial and returns what its residual says of the noise.
@@ -293,7 +231,7 @@ impl FourierProjected {
         let squares: f64 = residual.iter().map(|e| e * e).sum();
         let noise =
             Noise { white: white_variance(time, residual), residual: squares / (heading.len() - coefficients) as f64 };
-        let trim = self.settings.trim_share * (time[time.len() - 1] - time[0]);
+        let trim = TRIM_SHARE * (time[time.len() - 1] - time[0]);
         let from = time.partition_point(|&t| t < time[0] + trim);
         let to = time.partition_point(|&t| t <= time[time.len() - 1] - trim);
         let rudder = match self.settings.rudder {
@@ -318,13 +256,13 @@ impl Identifier for FourierProjected {
         let mut equations = Equations::default();
         let (mut fits, mut noises, mut freedom) = (Vec::new(), Vec::new(), 0.0);
         for samples in Samples::of_all(trials, FEWEST_ROWS)? {
-            let part = self.window(&samples)?;
+            let part = Part::of(samples).averaged(self.most_rows);
             let fitted = self.fit(&part)?;
             noises.push(self.add(&part, &fitted, &mut equations));
             freedom += part.time.len() as f64 - (2 * fitted.basis.harmonics() + 1) as f64;
             fits.push(fitted);
         }
-        let solution = equations.solve(self.settings.response, self.settings.condition_limit)?;
+        let solution = equations.solve(self.settings.response, TRUSTED_CONDITION)?;
         let mut diagnostics = fourier::diagnostics(&fits);
         let worst =
             |of: fn(&Noise) -> f64| to_deg(noises.iter().fold(0.0f64, |most, noise| most.max(of(noise))).sqrt());
@@ -372,10 +310,10 @@ fn gcv(rows: f64, rss: f64, harmonics: f64) -> f64 {
     rows * rss / (rows - 2.0 * harmonics - 1.0).powi(2)
 }
 
-/// Corrected Akaike criterion, the variance counted as a parameter.
-fn aicc(rows: f64, rss: f64, harmonics: f64) -> f64 {
-    let parameters = 2.0 * harmonics + 2.0;
-    rows * (rss / rows).ln() + 2.0 * parameters * rows / (rows - parameters - 1.0)
+/// Refuses a basis whose coefficients cancel each other.
+fn accept(fitted: Fitted) -> Result<Fitted, IdentifyError> {
+    let (condition, limit) = (fitted.curve.condition, TRUSTED_CONDITION);
+    if condition <= limit { Ok(fitted) } else { Err(IdentifyError::Singular { condition, limit }) }
 }
 
 #[cfg(test)]

@@ -23,10 +23,17 @@ use trial::Trial;
 use crate::error::IdentifyError;
 use crate::estimate::{Estimate, StopReason, Uncertainty};
 use crate::fourier::triples::{self, Answer, Drawn, Instant, MOST_TRIPLES, Selection};
-use crate::fourier::{self, Fitted, Fundamental, MOST_HARMONICS, StartPoint};
+use crate::fourier::{self, Fitted, Fundamental, MOST_HARMONICS};
 use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::samples::Samples;
 use crate::settings::SettingsError;
+
+/// Central share of the record that well-conditioned triples are taken from.
+const INTERIOR_SHARE: f64 = 0.9;
+
+/// The rudder is at rest where it moves by less than so many degrees in so many seconds before and after.
+const RUDDER_REST_DEG: f64 = 0.5;
+const RUDDER_REST_S: f64 = 2.0;
 
 /// How the answers of the triples become one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -59,10 +66,9 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        use StartPoint::{FftPeak, RecordLength, TwiceRecordLength};
         Self {
             harmonics: 8,
-            fundamental: Fundamental::Starts(vec![FftPeak, RecordLength, TwiceRecordLength]),
+            fundamental: Fundamental::Starts,
             triples: 10,
             selection: Selection::default(),
             aggregation: Aggregation::Mean,
@@ -81,7 +87,6 @@ impl Settings {
             return Err(SettingsError::new("triples", self.triples, "1 to 10000"));
         }
         self.fundamental.check()?;
-        self.selection.check()?;
         Ok(FourierPublished { settings: self })
     }
 }
@@ -105,7 +110,7 @@ impl FourierPublished {
     }
 
     /// The instants of one trial that triples are drawn from.
-    fn instants(&self, number: usize, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<Instant> {
+    fn instants(&self, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<Instant> {
         let first = trial.observed_rows().next().expect("samples hold at least one observed row");
         let start = trial.time()[first];
         let length = samples.time[samples.len() - 1];
@@ -115,16 +120,14 @@ impl FourierPublished {
         let mut rudder_range = RudderRange::new(trial.rudder_signal());
         (0..samples.len())
             .filter(|&row| match self.settings.selection {
-                Selection::Uniform | Selection::Separated { .. } => true,
-                Selection::WellConditioned(rule) => {
+                Selection::Uniform => true,
+                Selection::WellConditioned => {
                     let t = samples.time[row];
-                    (t - 0.5 * length).abs() <= 0.5 * rule.interior_share * length
-                        && rudder_range.at(start + t, rule.rudder_rest_s) < from_deg(rule.rudder_rest_deg)
+                    (t - 0.5 * length).abs() <= 0.5 * INTERIOR_SHARE * length
+                        && rudder_range.at(start + t, RUDDER_REST_S) < from_deg(RUDDER_REST_DEG)
                 }
             })
             .map(|row| Instant {
-                trial: number,
-                time: samples.time[row],
                 rudder: samples.rudder[row],
                 yaw_rate: yaw_rate[row],
                 yaw_acceleration: yaw_acceleration[row],
@@ -179,13 +182,13 @@ impl Identifier for FourierPublished {
         let samples = Samples::of_all(trials, 2 * self.settings.harmonics + 2)?;
         let mut fits = Vec::with_capacity(trials.len());
         let mut instants = Vec::new();
-        for (number, (trial, samples)) in trials.iter().zip(&samples).enumerate() {
+        for (trial, samples) in trials.iter().zip(&samples) {
             let fitted = self.fit(samples)?;
-            instants.extend(self.instants(number, trial, samples, &fitted));
+            instants.extend(self.instants(trial, samples, &fitted));
             fits.push(fitted);
         }
         let settings = &self.settings;
-        let drawn = triples::draw(&instants, &settings.selection, settings.triples, settings.seed)?;
+        let drawn = triples::draw(&instants, settings.selection, settings.triples, settings.seed)?;
         let answers = &drawn.answers;
         let (gain, time_constant) = (self.aggregate(answers, |a| a.K), self.aggregate(answers, |a| a.T));
         let response = FirstOrder::from_indices(gain, time_constant, self.aggregate(answers, |a| a.rudder_bias));
@@ -228,7 +231,6 @@ fn diagnostics(fits: &[Fitted], instants: usize, drawn: &Drawn) -> Vec<(&'static
         ("triples_accepted", drawn.answers.len() as f64),
         ("triples_singular", drawn.singular as f64),
         ("triples_ill_conditioned", drawn.ill_conditioned as f64),
-        ("triples_too_close", drawn.too_close as f64),
         ("triples_negative_index", drawn.negative as f64),
         ("triples_K_interquartile_range_per_s", spread(|answer| answer.K)),
         ("triples_T_interquartile_range_s", spread(|answer| answer.T)),

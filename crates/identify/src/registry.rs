@@ -64,8 +64,6 @@ methods! {
 
 #[cfg(test)]
 mod tests {
-    use crate::fourier::Fundamental;
-    use crate::fourier::fundamental::StartPoint::FftPeak;
     use crate::savitzky_golay::SavitzkyGolay;
     use crate::{external, fourier_published, least_squares, output_error, srivc};
 
@@ -75,7 +73,6 @@ mod tests {
     #[test]
     fn settings_that_cannot_end_are_refused() {
         let published = |settings: fourier_published::Settings| Of::FourierPublished(settings);
-        let series = |fundamental| published(fourier_published::Settings { fundamental, ..Default::default() });
         let triples = |triples| published(fourier_published::Settings { triples, ..Default::default() });
         let error = |settings| Of::OutputError(settings);
         let default = output_error::Settings::default;
@@ -83,8 +80,6 @@ mod tests {
         for (settings, key, found) in [
             (triples(usize::MAX), "triples", "18446744073709551615"),
             (triples(10_001), "triples", "10001"),
-            (series(Fundamental::FixedRadS(1e300)), "fundamental.fixed-rad-s", "1e300"),
-            (series(Fundamental::Starts(vec![FftPeak; 4])), "fundamental.starts", "a list of 4 starts"),
             (
                 Of::LeastSquares(least_squares::Settings { smoothing, ..Default::default() }),
                 "window-samples",

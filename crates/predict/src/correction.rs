@@ -24,8 +24,8 @@ use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::passage::SimulatedManoeuvre;
 use crate::prediction::{drawn, enough};
 use crate::replay::{file_of, thinned};
-use crate::steered::{DrawResult, Steered};
-use crate::turn::{self, Turn};
+use crate::steered::{DrawResult, SteeredZigZag};
+use crate::turn::{self, HeldTurn};
 
 /// Half width of the 90 % interval of F/B, as a share of its median, above which R says little more than F.
 const WIDE: f64 = 0.2;
@@ -68,7 +68,7 @@ pub struct Correction {
     /// The file as the user named it.
     pub file: String,
     /// Name of the record.
-    #[serde(skip)]
+    #[serde(default)]
     pub name: String,
     /// Models at full load, where these have names.
     pub full: Vec<String>,
@@ -121,7 +121,7 @@ pub fn different(what: &str, full: &str, trial: &str) -> String {
 type Draws = Vec<Option<DrawResult>>;
 
 /// A manoeuvre of a record made by both ships.
-struct Made {
+struct ManoeuvreOfBoth {
     /// Largest rudder, rad.
     rudder: f64,
     full: Draws,
@@ -161,14 +161,13 @@ pub fn correct(
         None => turned(full, ballast, record, draws)?,
     };
     let Some(made) = made else { return Ok(Correction::default()) };
-    for (own, what) in [(&made.full, "full load"), (&made.trial, "the condition of the trial")] {
-        enough(format!("{} ({what})", record.name()), own.iter().flatten().count(), draws)?;
-    }
     for (ship, own, condition) in
-        [(full, &made.full, "at full load"), (ballast, &made.trial, "in the condition of the trial")]
+        [(full, &made.full, "full load"), (ballast, &made.trial, "the condition of the trial")]
     {
-        if ship.is_unseen(made.rudder, own.iter().flatten().map(|sailed| sailed.largest_rate)) {
-            warnings.push(format!("the model {condition} is extrapolated beyond its records"));
+        enough(format!("{} ({condition})", record.name()), own.iter().flatten().count(), draws)?;
+        if ship.is_unseen(made.rudder, own.iter().flatten().map(|result| result.largest_rate)) {
+            let at = if condition == "full load" { "at" } else { "in" };
+            warnings.push(format!("the model {at} {condition} is extrapolated beyond its records"));
         }
     }
     let readings: Vec<f64> = drawn(draws, |replicate| {
@@ -183,12 +182,18 @@ pub fn correct(
 }
 
 /// A zig-zag steered anew; `None` where the record begins within the trial.
-fn zig_zag(full: &ShipMixture, ballast: &ShipMixture, record: &Trial, zigzag: &Measured, draws: usize) -> Option<Made> {
-    let steered = Steered::of(zigzag, ballast.first().approach_yaw_rate_rad_s)?;
+fn zig_zag(
+    full: &ShipMixture,
+    ballast: &ShipMixture,
+    record: &Trial,
+    zigzag: &Measured,
+    draws: usize,
+) -> Option<ManoeuvreOfBoth> {
+    let steered = SteeredZigZag::of(zigzag, ballast.first().approach_yaw_rate_rad_s)?;
     let [full, trial] = [full, ballast].map(|ship| steered.draws(ship, draws));
-    let names = trial.iter().flatten().next().into_iter().flat_map(|sailed| &sailed.figures);
-    let shown = names.filter_map(|(name, _)| Some((*name, ballast.shown(record, zigzag, name)?))).collect();
-    Some(Made { rudder: steered.kind.rudder, full, trial, shown })
+    let names = trial.iter().flatten().next().into_iter().flat_map(|result| result.figures.keys());
+    let shown = names.filter_map(|name| Some((*name, ballast.shown(record, zigzag, name)?))).collect();
+    Some(ManoeuvreOfBoth { rudder: steered.kind.rudder, full, trial, shown })
 }
 
 /// A turn; `None` for a record that is none.
@@ -197,20 +202,14 @@ fn turned(
     ballast: &ShipMixture,
     record: &Trial,
     draws: usize,
-) -> Result<Option<Made>, PredictError> {
-    let signal = record.rudder_signal();
+) -> Result<Option<ManoeuvreOfBoth>, PredictError> {
     let length = record.particulars().or(ballast.particulars()).map(|own| own.length);
-    let Some(turn) = Turn::of(signal) else { return Ok(None) };
-    let Some(passage) = turn::recorded(record, ballast.timescale(), length) else { return Ok(None) };
-    let Some(rudder) = turn.held_on(signal) else { return Ok(None) };
+    let turn = HeldTurn::of(record).zip(turn::recorded(record, ballast.timescale(), length));
+    let Some((turn, passage)) = turn.filter(|_| record.duration() > ballast.timescale()) else { return Ok(None) };
+    let measured = turn.figures(&passage).into_iter();
+    let shown: Vec<_> = measured.filter_map(|(name, value)| Some((name, Quantity::bare(value?)))).collect();
+    let Some(rudder) = turn.held_on(record.rudder_signal()).filter(|_| !shown.is_empty()) else { return Ok(None) };
     let Some([_, rate]) = ballast.beginning(record)? else { return Ok(None) };
-    let start = record.time()[0];
-    let measured = turn.figures(&passage.until(turn.until - start), start);
-    let shown: Vec<(&'static str, Quantity)> =
-        measured.into_iter().filter_map(|(name, value)| Some((name, Quantity::bare(value?)))).collect();
-    if record.duration() <= ballast.timescale() || shown.is_empty() {
-        return Ok(None);
-    }
     let manoeuvre = Manoeuvre::Replay(thinned(&rudder));
     let sail = |mixture: &ShipMixture, number| {
         let mut ship = mixture.draw(number, &UncertaintySource::ALL);
@@ -219,18 +218,13 @@ fn turned(
         let of_rate: f64 = key.rng(Purpose::Heading).sample(StandardNormal);
         ship.yaw_rate = rate.0 + rate.1 * of_rate;
         let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
-        let mut figures = turn.figures(&passage, start);
+        let mut figures = turn.whole_figures(&passage);
         // Of what is read at the end both ships have had as much time as that of the record.
-        let cut = turn.figures(&passage.until(turn.until - start), start);
-        for (figure, (name, value)) in figures.iter_mut().zip(cut) {
-            if AT_THE_END.contains(&name) {
-                figure.1 = value;
-            }
-        }
+        figures.extend(turn.figures(&passage).into_iter().filter(|(name, _)| AT_THE_END.contains(name)));
         Some(DrawResult { figures, largest_rate: passage.largest_rate() })
     };
     let [full, trial] = [full, ballast].map(|mixture| drawn(draws, |number| sail(mixture, number)));
-    Ok(Some(Made { rudder: turn.rudder.abs(), full, trial, shown }))
+    Ok(Some(ManoeuvreOfBoth { rudder: turn.rudder.abs(), full, trial, shown }))
 }
 
 /// Four digits, as far as they are behind the point.
@@ -241,7 +235,7 @@ fn short(value: f64) -> String {
 
 /// R = T F/B of one figure; `None` where hardly a pair of ships has it.
 fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<Corrected> {
-    let value = |draw: &Option<DrawResult>| draw.as_ref()?.figures.iter().find(|(own, _)| *own == name)?.1;
+    let value = |draw: &Option<DrawResult>| draw.as_ref()?.figures.get(name).copied()?;
     let sd = measured.sd.unwrap_or(0.0);
     let mut columns: [Vec<f64>; 4] = Default::default();
     for ((of_full, of_trial), reading) in full.iter().zip(trial).zip(readings) {
@@ -283,14 +277,14 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
 mod tests {
     use super::*;
     use crate::kind::Kind;
-    use crate::made_up;
+    use crate::testing;
     use ship::angle::from_deg;
     use simulate::{Simulation, Vessel};
 
     /// The made-up ship, and the same at full load: heavier, and less stable on her course.
     fn ships() -> [IdentifiedShip; 2] {
-        let ballast = made_up::known();
-        let mut full = made_up::known();
+        let ballast = testing::known();
+        let mut full = testing::known();
         let parameters = &mut full.members[0].parameters;
         (parameters[0], parameters[1]) = (0.3 * parameters[0], 0.75 * parameters[1]);
         for row in &mut full.members[0].covariance {
@@ -334,7 +328,7 @@ mod tests {
             let truth = crate::figures::of(&kind, &passage, full.particulars());
             for name in names {
                 let Some(figure) = found.figures.get(name) else { continue };
-                let truth = truth.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value).expect("whole");
+                let truth = truth[name].expect("whole");
                 held += usize::from(figure.result.holds90(truth));
                 all += 1;
             }
@@ -421,7 +415,7 @@ mod tests {
         for row in &mut ballast.members[0].covariance {
             row.iter_mut().for_each(|entry| *entry *= 200.0);
         }
-        let [full, vague, exact] = [full, ballast, made_up::known()].map(mixture);
+        let [full, vague, exact] = [full, ballast, testing::known()].map(mixture);
         let trial = record(&exact, "zig-zag:20/20", 0, from_deg(0.1));
         let found = correct(&full, &vague, &trial, 200).expect("most sail");
         let first = &found.figures["first_overshoot_deg"];

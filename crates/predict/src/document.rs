@@ -1,4 +1,5 @@
-//! The document of a prediction: what `predict.json` holds, what pages and tables are made from, what Python gets.
+//! The document of a prediction and the curves beside it: what files hold, pages and figures are made from, and Python
+//! gets.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,10 +8,12 @@ use crate::correction::Correction;
 use crate::form::FormEntry;
 use crate::imo::PredictedCriterion;
 use crate::known::ValidityRange;
-use crate::prediction::Prediction;
+use crate::passage::SimulatedManoeuvre;
+use crate::prediction::{Bands, Prediction};
 use crate::replay::RecordReplay;
+use crate::steady::SteadyCurve;
 
-/// `predict.json`. Curves, and what stands as `skip` here, are beside the document and not in it.
+/// `predict.json`. Its curves, which stand as `skip` where they are of use, are in a file beside it: [`PredictCurves`].
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictDocument {
     /// `predict/1`.
@@ -42,13 +45,13 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form_remarks: Option<Vec<String>>,
     /// Models in the condition of the records, which the replays are of; empty where there are none.
-    #[serde(skip)]
+    #[serde(default)]
     pub ballast: Vec<String>,
     /// Whether a hull takes the place of the yaw response.
-    #[serde(skip)]
+    #[serde(default)]
     pub hull: bool,
     /// Where the ship was seen.
-    #[serde(skip)]
+    #[serde(default)]
     pub seen: ValidityRange,
 }
 
@@ -61,7 +64,51 @@ pub struct ModelWeight {
     pub weight: f64,
 }
 
+/// The curves of a prediction, in a file beside the document; angles in rad.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct PredictCurves {
+    /// Of every manoeuvre, in the order of the document.
+    pub manoeuvres: Vec<ManoeuvreCurves>,
+    /// Of every replayed record: rudder over time, heading with its band, and measured headings.
+    pub replays: Vec<([Vec<f64>; 2], Bands, Vec<f64>)>,
+}
+
+/// The curves of a manoeuvre; as in [`Prediction`].
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ManoeuvreCurves {
+    heading: Bands,
+    most_probable: Option<SimulatedManoeuvre>,
+    tracks: Vec<Vec<[f64; 2]>>,
+    curves: Vec<SteadyCurve>,
+}
+
 impl PredictDocument {
+    /// The curves, which [`with_curves`](Self::with_curves) puts back.
+    pub fn curves(&self) -> PredictCurves {
+        let of_manoeuvre = |own: &Prediction| {
+            let Prediction { heading, most_probable, tracks, curves, .. } = own.clone();
+            ManoeuvreCurves { heading, most_probable, tracks, curves }
+        };
+        let of_replay = |own: &RecordReplay| (own.rudder.clone(), own.heading.clone(), own.measured.clone());
+        PredictCurves {
+            manoeuvres: self.manoeuvres.iter().map(of_manoeuvre).collect(),
+            replays: self.replays.iter().map(of_replay).collect(),
+        }
+    }
+
+    /// The document that was read from its file, with the curves from theirs.
+    pub fn with_curves(mut self, curves: PredictCurves) -> Self {
+        for (own, ManoeuvreCurves { heading, most_probable, tracks, curves }) in
+            self.manoeuvres.iter_mut().zip(curves.manoeuvres)
+        {
+            *own = Prediction { heading, most_probable, tracks, curves, ..own.clone() };
+        }
+        for (own, curves) in self.replays.iter_mut().zip(curves.replays) {
+            (own.rudder, own.heading, own.measured) = curves;
+        }
+        self
+    }
+
     /// The files of the models, one after the other.
     pub fn model_files(&self) -> String {
         self.models.iter().map(|model| model.file.as_str()).collect::<Vec<_>>().join(", ")
@@ -71,13 +118,13 @@ impl PredictDocument {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up;
     use crate::mixture::ShipMixture;
+    use crate::testing;
     use crate::{form, imo};
 
     #[test]
     fn what_is_written_is_read_again() {
-        let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
+        let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
         let manoeuvres: Vec<Prediction> =
             form::manoeuvres().iter().map(|kind| mixture.predict(kind, 20, true).expect("sails")).collect();
         let particulars = mixture.particulars();
@@ -93,7 +140,10 @@ mod tests {
             ..PredictDocument::default()
         };
         let text = serde_json::to_string(&document).expect("plain data");
+        let curves = serde_json::to_string(&document.curves()).expect("plain data");
         let again: PredictDocument = serde_json::from_str(&text).expect("the same");
+        let again = again.with_curves(serde_json::from_str(&curves).expect("the same"));
+        assert_eq!(serde_json::to_string(&again.curves()).expect("plain data"), curves);
         assert_eq!(serde_json::to_string(&again).expect("plain data"), text);
         assert_eq!(again.manoeuvres[0].kind, document.manoeuvres[0].kind);
         assert!(again.imo.len() > 5 && again.form == document.form && again.model_files() == "fit.json");

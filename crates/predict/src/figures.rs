@@ -1,13 +1,17 @@
 //! Figures of merit of a manoeuvre; the unit is in the name. `None` where the ship did not come that far.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use indexmap::IndexMap;
 use ship::Particulars;
 use ship::angle::to_deg;
 
 use crate::kind::{EXECUTES, INITIAL_TURN, Kind, Pattern};
-use crate::passage::SimulatedManoeuvre;
+use crate::motion::turning_circle;
+use crate::passage::{PlanarMotion, SimulatedManoeuvre};
 
-/// A figure of merit with its value.
-pub type Figure = (&'static str, Option<f64>);
+/// Figures of merit by name.
+pub type Figures = IndexMap<&'static str, Option<f64>>;
 
 pub(crate) const OVERSHOOTS: [&str; EXECUTES - 2] =
     ["first_overshoot_deg", "second_overshoot_deg", "third_overshoot_deg", "fourth_overshoot_deg"];
@@ -18,74 +22,70 @@ pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
 /// The figures of a manoeuvre; lengths in ship lengths where length and speed are known.
 ///
 /// The way of the initial turning is V times its time where nothing is known of the speed.
-pub fn of(kind: &Kind, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Vec<Figure> {
-    let mut figures = Vec::new();
+pub fn of(kind: &Kind, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Figures {
     let side = kind.side.sign();
+    let last = passage.heading.last().copied();
     match kind.pattern {
         Pattern::ZigZag { heading } => {
-            let turning = passage.reached(heading, side);
-            figures.push(("initial_turning_time_s", turning));
-            figures.extend(lengths(passage, turning, particulars));
+            let mut figures = initial_turning(passage, passage.reached(heading, side), particulars);
             zig_zag(passage, &mut figures);
+            figures
         }
         Pattern::InitialTurning => {
-            let turning = passage.reached(INITIAL_TURN - 1e-9, side).or(Some(end(passage)));
-            figures.push(("initial_turning_time_s", turning));
-            figures.extend(lengths(passage, turning, particulars));
+            let end = passage.time(passage.heading.len().saturating_sub(1));
+            initial_turning(passage, passage.reached(INITIAL_TURN - 1e-9, side).or(Some(end)), particulars)
         }
         Pattern::TurningCircle => {
-            turn(passage, side, &mut figures);
-            circle(passage, 0.0, &mut figures);
+            let mut figures = turn(passage, side);
+            figures.extend(circle(passage, 0.0));
+            figures
         }
-        Pattern::PullOut => {
-            let middle = passage.heading.len() / 2;
-            figures.push(("rate_before_deg_s", mean_rate(passage, middle, side)));
-            figures.push(("residual_rate_deg_s", mean_rate(passage, passage.heading.len(), side)));
-        }
-        Pattern::Williamson => {
-            let last = passage.heading.last().copied();
-            // She comes back from the other side: the opposite course is 180° to it.
-            figures.push(("second_execute_s", passage.executes.get(1).map(|execute| execute.time)));
-            figures.push(("third_execute_s", passage.executes.get(2).map(|execute| execute.time)));
-            let error = |heading: f64| to_deg(-side * heading - std::f64::consts::PI);
-            figures.push(("course_error_deg", last.map(error)));
-        }
-        Pattern::Spiral => {}
+        Pattern::PullOut => Figures::from([
+            ("rate_before_deg_s", mean_rate(passage, passage.heading.len() / 2, side)),
+            ("residual_rate_deg_s", mean_rate(passage, passage.heading.len(), side)),
+        ]),
+        // She comes back from the other side: the opposite course is 180° to it.
+        Pattern::Williamson => Figures::from([
+            ("second_execute_s", passage.executes.get(1).map(|execute| execute.time)),
+            ("third_execute_s", passage.executes.get(2).map(|execute| execute.time)),
+            ("course_error_deg", last.map(|heading| to_deg(-side * heading - PI))),
+        ]),
+        Pattern::Spiral => Figures::default(),
     }
-    figures
 }
 
-/// The way of the initial turning in ship lengths.
-fn lengths(passage: &SimulatedManoeuvre, turning: Option<f64>, particulars: Option<Particulars>) -> Option<Figure> {
-    let Particulars { length, speed } = particulars?;
-    let way = turning.map(|time| passage.distance(time).unwrap_or(speed * time) / length);
-    Some(("initial_turning_lengths", way))
+/// Time of the initial turning, and its way in ship lengths.
+fn initial_turning(passage: &SimulatedManoeuvre, turning: Option<f64>, particulars: Option<Particulars>) -> Figures {
+    let lengths = particulars.map(|Particulars { length, speed }| {
+        turning.map(|time| passage.distance(time).unwrap_or(speed * time) / length)
+    });
+    let lengths = lengths.map(|lengths| ("initial_turning_lengths", lengths));
+    [("initial_turning_time_s", turning)].into_iter().chain(lengths).collect()
 }
 
 /// Figures of the track of a turn that was begun at `execute` s, where there is one.
-pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64, figures: &mut Vec<Figure>) {
-    let (Some(circle), Some(way)) = (passage.circle(execute), &passage.way) else { return };
-    figures.extend([
-        ("advance_m", circle.advance),
-        ("advance_lengths", circle.advance.map(|advance| advance / way.length)),
-        ("transfer_m", circle.transfer),
-        ("tactical_diameter_m", circle.tactical_diameter),
-        ("tactical_diameter_lengths", circle.tactical_diameter.map(|diameter| diameter / way.length)),
-        ("speed_loss_share", circle.speed_ratio.map(|ratio| 1.0 - ratio)),
-        ("drift_angle_deg", circle.drift_angle.map(|angle| to_deg(angle.abs()))),
-        ("pivot_ahead_lengths", circle.pivot_ahead.map(|ahead| ahead / way.length)),
-    ]);
-}
-
-fn end(passage: &SimulatedManoeuvre) -> f64 {
-    passage.time(passage.heading.len().saturating_sub(1))
+pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Figures {
+    let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Figures::default() };
+    let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
+    let found = turning_circle([&time, &passage.heading, &passage.yaw_rate], [track, velocity], execute);
+    let lengths = |metres: Option<f64>| metres.map(|metres| metres / length);
+    Figures::from([
+        ("advance_m", found.advance),
+        ("advance_lengths", lengths(found.advance)),
+        ("transfer_m", found.transfer),
+        ("tactical_diameter_m", found.tactical_diameter),
+        ("tactical_diameter_lengths", lengths(found.tactical_diameter)),
+        ("speed_loss_share", found.speed_ratio.map(|ratio| 1.0 - ratio)),
+        ("drift_angle_deg", found.drift_angle.map(|angle| to_deg(angle.abs()))),
+        ("pivot_ahead_lengths", lengths(found.pivot_ahead)),
+    ])
 }
 
 /// Overshoots, executes and period of a zig-zag.
 ///
 /// An overshoot is counted from the heading at its execute. The period is the mean time between executes to the same
 /// side from the third on, when the transient of the start is over.
-fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Vec<Figure>) {
+fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Figures) {
     let executes = &passage.executes;
     for (number, name) in OVERSHOOTS.into_iter().enumerate() {
         let overshoot = || {
@@ -93,29 +93,29 @@ fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Vec<Figure>) {
             let side = before.order.signum();
             Some(to_deg(passage.peak(side, now.time, next.time)? - side * now.heading))
         };
-        figures.push((name, overshoot()));
+        figures.insert(name, overshoot());
     }
     for (number, name) in EXECUTE_TIMES.into_iter().enumerate() {
-        figures.push((name, executes.get(number + 1).map(|execute| execute.time)));
+        figures.insert(name, executes.get(number + 1).map(|execute| execute.time));
     }
     let cycles: Vec<f64> =
         executes.iter().skip(2).zip(executes.iter().skip(4)).map(|(one, next)| next.time - one.time).collect();
     let period = (!cycles.is_empty()).then(|| cycles.iter().sum::<f64>() / cycles.len() as f64);
-    figures.push(("period_s", period));
+    figures.insert("period_s", period);
 }
 
-/// Times and steady rate of a turn to one side (±1).
-pub(crate) fn turn(passage: &SimulatedManoeuvre, side: f64, figures: &mut Vec<Figure>) {
-    use std::f64::consts::{FRAC_PI_2, PI};
-    figures.push(("time_to_90_s", passage.reached(FRAC_PI_2, side)));
-    figures.push(("time_to_180_s", passage.reached(PI, side)));
-    // The last half turn.
+/// Times and steady rate, over the last half turn, of a turn to one side (±1).
+pub(crate) fn turn(passage: &SimulatedManoeuvre, side: f64) -> Figures {
     let last = passage.heading.last().map_or(0.0, |heading| side * heading);
     let steady = || {
         let from = passage.reached(last - PI, side).filter(|_| last > 1.5 * PI)?;
         Some(to_deg(PI / (passage.reached(last, side)? - from)))
     };
-    figures.push(("steady_rate_deg_s", steady()));
+    Figures::from([
+        ("time_to_90_s", passage.reached(FRAC_PI_2, side)),
+        ("time_to_180_s", passage.reached(PI, side)),
+        ("steady_rate_deg_s", steady()),
+    ])
 }
 
 /// Mean yaw rate to a side (±1) over the last tenth of the rows before `until`, deg/s.
@@ -146,8 +146,8 @@ mod tests {
         SimulatedManoeuvre::sail(&ship, &kind.manoeuvre(12.8).expect("steered"), 12.8).expect("a manoeuvre")
     }
 
-    fn value(figures: &[Figure], name: &str) -> f64 {
-        figures.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value).unwrap_or(f64::NAN)
+    fn value(figures: &Figures, name: &str) -> f64 {
+        figures.get(name).copied().flatten().unwrap_or(f64::NAN)
     }
 
     /// YUKUN with a rudder of 2.5 deg/s: overshoots of 6.35 and 8.07 deg (10/10), 18.8 deg (20/20), computed apart with

@@ -6,22 +6,24 @@
 //!
 //! Source: MSC/Circ.1053 (2002), appendix 6; limits of MSC.137(76), 5.3.
 
+mod record;
+mod remarks;
+
+pub use record::FormRecord;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use ship::Particulars;
 use trial::imo::Unit;
-use trial::{Conditions, Loading, Trial};
+use trial::{Conditions, Loading};
 
-use crate::correction::Correction;
-use crate::form_record::{self, Tested};
-use crate::form_remarks;
 use crate::imo::{LIMITS, Limit};
 use crate::interval::PredictionInterval;
 use crate::kind::Kind;
 use crate::prediction::Prediction;
 use crate::replay::file_of;
-use crate::turn::Current;
+use record::TestedManoeuvre;
 
 /// Longest track reach of the stopping trial, ship lengths. Source: MSC.137(76), 5.3.4.
 pub const TRACK_REACH_LENGTHS: f64 = 15.0;
@@ -74,24 +76,6 @@ pub struct Form {
     pub entries: Vec<FormEntry>,
     /// Conditions that are not met or not known, and what else is to be said.
     pub remarks: Vec<String>,
-}
-
-/// A record with what corrects it to full load.
-#[derive(Debug, Clone, Copy)]
-pub struct FormRecord<'a> {
-    /// The record.
-    pub trial: &'a Trial,
-    /// Its correction, where a model of its condition was given.
-    pub correction: Option<&'a Correction>,
-    /// The current that was taken out of its positions.
-    pub current: Option<Current>,
-}
-
-impl FormRecord<'_> {
-    /// How the ship was loaded; a record that is to be corrected was at partial load whatever else is known.
-    pub(crate) fn loading(&self) -> Option<Loading> {
-        self.correction.map(|_| Loading::Partial).or_else(|| self.trial.conditions().loading())
-    }
 }
 
 /// The manoeuvres of the form, to both sides.
@@ -158,21 +142,20 @@ fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: S
 /// `particulars` are the scale of the predictions, whose L/V decides the limits of the 10/10 zig-zag; `models` is what
 /// their source is called. What is declared of the ship is that of the first record that says it; `declared` are such
 /// words without a record, from a file.
-pub fn fill(
+pub fn fill<'a>(
     predictions: &[Prediction],
     particulars: Option<Particulars>,
     models: &str,
-    records: &[FormRecord],
-    declared: Option<(&str, &Conditions)>,
+    records: &[FormRecord<'a>],
+    declared: Option<(&'a str, &'a Conditions)>,
 ) -> Form {
-    let tested: Vec<Tested> = records.iter().map(form_record::of).collect();
-    let files =
-        records.iter().map(|FormRecord { trial, .. }| (file_of(trial), trial.conditions(), trial.particulars()));
-    let said = files.chain(declared.map(|(file, form)| (file, form, None))).map(|(file, form, own)| {
-        let length = form.particulars.or(own).map(|own| own.length);
-        Declared { file, form, length }
-    });
-    let said: Vec<Declared> = said.collect();
+    let tested: Vec<TestedManoeuvre> = records.iter().map(TestedManoeuvre::of).collect();
+    let of_record = |FormRecord { trial, .. }: &FormRecord<'a>| {
+        let own = trial.conditions().particulars.or(trial.particulars());
+        Declared { file: file_of(trial), form: trial.conditions(), length: own.map(|own| own.length) }
+    };
+    let of_file = declared.map(|(file, form)| Declared { file, form, length: form.particulars.map(|own| own.length) });
+    let said: Vec<Declared> = records.iter().map(of_record).chain(of_file).collect();
     let field = |&(section, name, unit, of): &Field| {
         let found = said.iter().find_map(|own| Some((format!("declared with {}", own.file), of(own)?)));
         let scale = particulars.filter(|_| name == SCALE).map(|own| Value::from(own.length / own.speed));
@@ -180,11 +163,11 @@ pub fn fill(
         entry(section, name, unit, value, source.unwrap_or_default())
     };
     let mut entries: Vec<FormEntry> = FIELDS.iter().map(field).collect();
-    entries.push(loading(records, &tested));
+    entries.push(loading(&tested));
     // The order of the form.
     for limit in [4, 5, 1, 2, 3, 0].map(|place: usize| &LIMITS[place]) {
         for side in ["port", "starboard"] {
-            let found = measured(limit, side, records, &tested);
+            let found = measured(limit, side, &tested);
             entries.push(FormEntry {
                 section: limit.section.into(),
                 field: limit.field.into(),
@@ -200,15 +183,24 @@ pub fn fill(
         source: "never predicted: no model of this program goes astern; stop the ship and measure".into(),
         ..entry(STOPPING, "track reach", "ship lengths", None, String::new())
     });
-    let remarks = form_remarks::remarks(&entries, records, &tested, declared, particulars);
+    let mut remarks = remarks::remarks(&tested, declared, particulars);
+    if entries.iter().any(|entry| entry.extrapolated.is_some()) {
+        remarks.push(String::from(
+            "predicted entries hold for the loading, the water depth and the weather of the records that the models were \
+             fitted to, which a model does not say; they are no trial",
+        ));
+    }
+    if entries.iter().any(|entry| entry.extrapolated == Some(true)) {
+        remarks.push(String::from("extrapolated entries are beyond the rudder or the yaw rate of those records"));
+    }
     Form { entries, remarks }
 }
 
 /// Value and source of a figure that a record shows: what needs no correction, or has one, goes before what was made at
 /// partial load.
-fn measured(limit: &Limit, side: &str, records: &[FormRecord], tested: &[Tested]) -> Option<FormEntry> {
-    let show = |(record, tested): (&FormRecord, &Tested)| {
-        let quantity = tested.figure(limit.manoeuvre, side, limit.figure)?;
+fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<FormEntry> {
+    let show = |tested: &TestedManoeuvre| {
+        let (record, quantity) = (tested.record, tested.figure(limit.figure)?);
         let file = file_of(record.trial);
         let corrected = record.correction.and_then(|own| Some((own, own.figures.get(limit.figure)?)));
         if let Some((correction, figure)) = corrected {
@@ -220,7 +212,7 @@ fn measured(limit: &Limit, side: &str, records: &[FormRecord], tested: &[Tested]
                 range(&figure.factor),
                 range(&figure.result),
             );
-            return Some((false, FormEntry { source, ..of_interval(&figure.result) }));
+            return Some((false, of_interval(&figure.result, source)));
         }
         let is_partial = record.loading() == Some(Loading::Partial);
         let load = if is_partial { ", at partial load, not corrected" } else { "" };
@@ -228,8 +220,8 @@ fn measured(limit: &Limit, side: &str, records: &[FormRecord], tested: &[Tested]
         let source = format!("measured, {file}{sd}{load}");
         Some((is_partial, FormEntry { value: number(quantity.value), sd: quantity.sd, source, ..FormEntry::default() }))
     };
-    let found: Vec<(bool, FormEntry)> = records.iter().zip(tested).filter_map(show).collect();
-    found.into_iter().min_by_key(|(is_partial, _)| *is_partial).map(|(_, entry)| entry)
+    let found = tested.iter().filter(|tested| tested.is(limit.manoeuvre, side)).filter_map(show);
+    found.min_by_key(|(is_partial, _)| *is_partial).map(|(_, entry)| entry)
 }
 
 /// Value and source of a figure that is predicted.
@@ -252,16 +244,16 @@ fn predicted(
     let passing = (limit.of)(particulars).map(|limit| figure.share_within(limit));
     let beyond = if figure.extrapolated { ", extrapolated" } else { "" };
     let pass = passing.map_or_else(String::new, |share| format!("; {:.0} % pass", 100.0 * share));
+    let source = format!("predicted from {models}, 90 % {}{beyond}{pass}", range(&figure.interval));
     FormEntry {
         extrapolated: Some(figure.extrapolated),
         probability_of_passing: passing,
-        source: format!("predicted from {models}, 90 % {}{beyond}{pass}", range(&figure.interval)),
-        ..of_interval(&figure.interval)
+        ..of_interval(&figure.interval, source)
     }
 }
 
-fn of_interval(interval: &PredictionInterval) -> FormEntry {
-    FormEntry { median: Some(interval.median), ci90: Some(interval.ci90), ..FormEntry::default() }
+fn of_interval(interval: &PredictionInterval, source: String) -> FormEntry {
+    FormEntry { median: Some(interval.median), ci90: Some(interval.ci90), source, ..FormEntry::default() }
 }
 
 /// Decimals of an entry.
@@ -291,15 +283,14 @@ fn range(interval: &PredictionInterval) -> String {
 }
 
 /// How the ship was loaded when she was tested.
-fn loading(records: &[FormRecord], tested: &[Tested]) -> FormEntry {
-    let used: Vec<&FormRecord> =
-        records.iter().zip(tested).filter(|(_, tested)| tested.is_used()).map(|(record, _)| record).collect();
-    let any = |is: &dyn Fn(&FormRecord) -> bool| used.iter().any(|record| is(record));
-    let is_partial = |record: &FormRecord| record.loading() == Some(Loading::Partial);
+fn loading(tested: &[TestedManoeuvre]) -> FormEntry {
+    let used: Vec<FormRecord> = tested.iter().filter(|one| one.what.is_some()).map(|one| one.record).collect();
+    let any = |is: fn(&FormRecord) -> bool| used.iter().any(is);
+    let is_partial = |record: &FormRecord| record.correction.is_none() && record.loading() == Some(Loading::Partial);
     let found = [
-        (any(&|record| record.loading() == Some(Loading::Full)), "tested at full load"),
-        (any(&|record| record.correction.is_some()), "tested at partial load and corrected"),
-        (any(&|record| record.correction.is_none() && is_partial(record)), "tested at partial load, not corrected"),
+        (any(|record| record.loading() == Some(Loading::Full)), "tested at full load"),
+        (any(|record| record.correction.is_some()), "tested at partial load and corrected"),
+        (any(is_partial), "tested at partial load, not corrected"),
         (used.is_empty(), "not tested: every result is predicted"),
     ];
     let words: Vec<&str> = found.into_iter().filter(|(is, _)| *is).map(|(_, words)| words).collect();
@@ -312,14 +303,14 @@ mod tests {
     use super::*;
     use crate::correction;
     use crate::known::IdentifiedShip;
-    use crate::made_up;
     use crate::mixture::ShipMixture;
+    use crate::testing;
     use ship::angle::from_deg;
     use simulate::{Simulation, StreamKey, Vessel};
     use trial::Trial;
 
     fn mixture() -> ShipMixture {
-        ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up")
+        ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up")
     }
 
     fn record(mixture: &ShipMixture, kind: &str, conditions: Conditions) -> Trial {
@@ -406,7 +397,7 @@ mod tests {
 
     #[test]
     fn a_trial_at_partial_load_is_corrected_or_said_to_be_so() {
-        let [full, ballast]: [IdentifiedShip; 2] = std::array::from_fn(|_| made_up::known());
+        let [full, ballast]: [IdentifiedShip; 2] = std::array::from_fn(|_| testing::known());
         let [full, ballast] = [(full, 0.9), (ballast, 1.0)].map(|(mut known, gain)| {
             known.members[0].parameters[1] *= gain;
             ShipMixture::new(vec![(known, 1.0)]).expect("made up")

@@ -23,8 +23,8 @@ pub struct PredictedCriterion {
     pub unit: String,
     /// Predicted value.
     pub median: f64,
-    /// The interval of half of the draws; no part of the document.
-    #[serde(skip)]
+    /// The interval of half of the draws.
+    #[serde(default)]
     pub ci50: [f64; 2],
     /// The interval of nine tenths of the draws.
     pub ci90: [f64; 2],
@@ -161,12 +161,12 @@ pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<Pre
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up;
     use crate::mixture::ShipMixture;
+    use crate::testing;
 
     #[test]
     fn probabilities_are_shares_of_the_draws() {
-        let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
+        let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
         let predictions: Vec<Prediction> =
             Kind::of_imo().iter().map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre")).collect();
         let found = criteria(&predictions, mixture.particulars().expect("made up"));

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::motion::{IdentifiedHull, Planar};
 use serde::{Deserialize, Serialize};
-use ship::effects::{self, Effect, Parameter};
-use ship::{Response, ResponseModel};
+use ship::ResponseModel;
+use ship::effects::{self, Effect};
 pub use trial::noise_model::Moment;
 
 use crate::error::PredictError;
@@ -100,28 +100,9 @@ pub struct IdentifiedShip {
     pub hull: Option<IdentifiedHull>,
 }
 
-/// Structure and values of a member as the equations take them.
-#[derive(Debug, Clone)]
-pub(crate) struct Equations {
-    pub model: ResponseModel,
-    pub values: Vec<f64>,
-}
-
-impl Equations {
-    /// The ship of some values.
-    pub fn with(&self, values: Vec<f64>) -> Response {
-        self.model.clone().with(values)
-    }
-
-    /// Description of every parameter.
-    pub fn parameters(&self) -> Vec<&'static Parameter> {
-        self.model.parameters().collect()
-    }
-}
-
 impl WeightedStructure {
-    /// The equations; fails for an effect that is not known and for numbers that do not fit it.
-    pub(crate) fn equations(&self) -> Result<Equations, PredictError> {
+    /// The model; fails for an effect that is not known and for numbers that do not fit it.
+    pub(crate) fn model(&self) -> Result<ResponseModel, PredictError> {
         let effect = |written: &StoredEffect| -> Result<Arc<dyn Effect>, PredictError> {
             effects::named(&written.id, &written.form, &written.constants)
                 .ok_or_else(|| PredictError::Effect { id: written.id.clone(), form: written.form.clone() })
@@ -137,17 +118,17 @@ impl WeightedStructure {
             }
         }
         let count = self.fitted.len();
-        let rows = if self.covariance.is_empty() { count } else { self.covariance.len() };
-        if rows != count {
-            return Err(PredictError::Count { what: "rows of the covariance", expected: count, found: rows });
+        let wrong = |what, expected, found| Err(PredictError::Count { what, expected, found });
+        if !self.covariance.is_empty() && self.covariance.len() != count {
+            return wrong("rows of the covariance", count, self.covariance.len());
         }
         if let Some(row) = self.covariance.iter().find(|row| row.len() != count) {
-            return Err(PredictError::Count { what: "columns of the covariance", expected: count, found: row.len() });
+            return wrong("columns of the covariance", count, row.len());
         }
         if let Some(place) = self.fitted.iter().find(|place| **place >= expected) {
-            return Err(PredictError::Count { what: "the parameters `fitted` counts", expected, found: place + 1 });
+            return wrong("the parameters `fitted` counts", expected, place + 1);
         }
-        Ok(Equations { model, values: self.parameters.clone() })
+        Ok(model)
     }
 }
 
@@ -175,9 +156,8 @@ impl IdentifiedShip {
         let factor = |[seconds, metres]: [i32; 2]| second.powi(seconds) * metre.powi(metres);
         let mut scaled = self.clone();
         for member in &mut scaled.members {
-            let equations = member.equations()?;
-            let factors: Vec<f64> =
-                equations.parameters().iter().map(|parameter| factor(parameter.dimension())).collect();
+            let model = member.model()?;
+            let factors: Vec<f64> = model.parameters().map(|parameter| factor(parameter.dimension())).collect();
             for (value, factor) in member.parameters.iter_mut().zip(&factors) {
                 *value *= factor;
             }
@@ -186,7 +166,7 @@ impl IdentifiedShip {
                     *entry *= factors[*place] * factors[*other];
                 }
             }
-            for (effect, written) in equations.model.effects().iter().zip(&mut member.effects) {
+            for (effect, written) in model.effects().iter().zip(&mut member.effects) {
                 let by = match effect.needs() {
                     Some(ship::Regressor::Speed) => metre / second,
                     Some(ship::Regressor::Propeller) => 1.0 / second,
@@ -221,24 +201,25 @@ impl IdentifiedShip {
             hull.moment.deviation = 0.0;
         }
         for member in &mut calm.members {
-            let equations = member.equations()?;
+            let model = member.model()?;
             let mut first = ship::response::BASE_PARAMETERS;
-            for effect in equations.model.effects() {
-                if effect.sees_heading() {
-                    for (k, parameter) in effect.parameters().iter().enumerate() {
-                        member.parameters[first + k] = parameter.neutral;
-                    }
-                    let kept: Vec<usize> = (0..member.fitted.len())
-                        .filter(|&row| !(first..first + effect.parameters().len()).contains(&member.fitted[row]))
-                        .collect();
-                    member.covariance = kept
-                        .iter()
-                        .filter_map(|&row| member.covariance.get(row))
-                        .map(|row| kept.iter().map(|&column| row[column]).collect())
-                        .collect();
-                    member.fitted = kept.iter().map(|&row| member.fitted[row]).collect();
+            for effect in model.effects() {
+                let own = first..first + effect.parameters().len();
+                first = own.end;
+                if !effect.sees_heading() {
+                    continue;
                 }
-                first += effect.parameters().len();
+                for (place, parameter) in own.clone().zip(effect.parameters()) {
+                    member.parameters[place] = parameter.neutral;
+                }
+                let kept: Vec<bool> = member.fitted.iter().map(|place| !own.contains(place)).collect();
+                let mut row = kept.iter();
+                member.covariance.retain(|_| *row.next().unwrap_or(&true));
+                for covariance in &mut member.covariance {
+                    let mut column = kept.iter();
+                    covariance.retain(|_| *column.next().unwrap_or(&true));
+                }
+                member.fitted.retain(|place| !own.contains(place));
             }
         }
         Ok(calm)
@@ -279,12 +260,12 @@ impl IdentifiedShip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up;
+    use crate::testing;
 
     /// There and back is where one was, and K′ = K L/U does not change on the way.
     #[test]
     fn another_scale_keeps_what_has_no_dimension() {
-        let known = made_up::known();
+        let known = testing::known();
         let ship = known.scaled_to(25.0 * known.length_m.expect("made up"), None).expect("particulars");
         let prime = |known: &IdentifiedShip| {
             let [a, b] = [known.members[0].parameters[0], known.members[0].parameters[1]];
@@ -301,7 +282,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again() {
-        let known = made_up::known();
+        let known = testing::known();
         let text = serde_json::to_string(&known).expect("plain data");
         assert_eq!(serde_json::from_str::<IdentifiedShip>(&text).expect("the same"), known);
     }
@@ -309,9 +290,9 @@ mod tests {
     #[test]
     fn numbers_that_do_not_fit_are_refused() {
         let refused = |change: fn(&mut WeightedStructure)| {
-            let mut member = made_up::known().members.remove(0);
+            let mut member = testing::known().members.remove(0);
             change(&mut member);
-            member.equations().expect_err("refused").to_string()
+            member.model().expect_err("refused").to_string()
         };
         assert!(refused(|member| member.effects[0].id = "magic".into()).contains("magic"));
         assert!(refused(|member| member.parameters.push(1.0)).contains("parameters"));

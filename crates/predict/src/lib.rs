@@ -28,14 +28,11 @@ pub mod document;
 pub mod error;
 pub mod figures;
 pub mod form;
-mod form_record;
-mod form_remarks;
 pub mod imo;
 pub mod interval;
 pub mod kind;
 pub mod known;
-#[cfg(test)]
-mod made_up;
+mod line;
 pub mod mixture;
 pub mod motion;
 pub mod passage;
@@ -43,6 +40,8 @@ pub mod prediction;
 pub mod replay;
 pub mod steady;
 mod steered;
+#[cfg(test)]
+mod testing;
 pub mod turn;
 
 pub use document::PredictDocument;

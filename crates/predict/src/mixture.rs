@@ -5,12 +5,12 @@ use crate::motion::{IdentifiedHull, Planar};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
-use ship::{Regressor, Response};
+use ship::{Regressor, Response, ResponseModel};
 use simulate::disturbance::GaussMarkov;
 use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
 
 use crate::error::PredictError;
-use crate::known::{Equations, IdentifiedShip, KnownNoise, Moment};
+use crate::known::{IdentifiedShip, KnownNoise, Moment, WeightedStructure};
 
 /// Where an interval comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -55,10 +55,9 @@ const WHITE: f64 = 0.05;
 struct DrawableStructure {
     /// Probability among all.
     weight: f64,
-    equations: Equations,
-    fitted: Vec<usize>,
+    model: ResponseModel,
+    known: WeightedStructure,
     root: DMatrix<f64>,
-    degrees_of_freedom: Option<f64>,
     /// The file it is from.
     file: usize,
 }
@@ -100,6 +99,9 @@ fn root_of(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
     if count == 0 {
         return Ok(DMatrix::zeros(0, 0));
     }
+    if covariance.iter().any(|row| row.len() != count) {
+        return Err(PredictError::Covariance);
+    }
     let matrix = DMatrix::from_fn(count, count, |i, j| covariance[i][j]);
     // Parameters have units of their own: what counts are correlations.
     let sd: Vec<f64> = (0..count).map(|k| matrix[(k, k)].max(0.0).sqrt()).collect();
@@ -130,24 +132,18 @@ impl ShipMixture {
                 if !(weight.is_finite() && weight >= 0.0) {
                     return Err(PredictError::Value { key: "weight", value: member.weight });
                 }
-                let equations = member.equations()?;
+                let model = member.model()?;
                 let has_motion = known.hull.is_some() || known.motion.is_some();
                 for (regressor, channel, option) in
                     [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
                 {
-                    let needs = equations.model.effects().iter().any(|effect| effect.needs() == Some(regressor));
+                    let needs = model.effects().iter().any(|effect| effect.needs() == Some(regressor));
                     if needs && !has_motion {
                         return Err(PredictError::Needs { channel, option });
                     }
                 }
-                parts.push(DrawableStructure {
-                    weight,
-                    equations,
-                    fitted: member.fitted.clone(),
-                    root: root_of(&member.covariance)?,
-                    degrees_of_freedom: member.degrees_of_freedom,
-                    file,
-                });
+                let root = root_of(&member.covariance)?;
+                parts.push(DrawableStructure { weight, model, known: member.clone(), root, file });
             }
         }
         let motion = |(known, _): &(IdentifiedShip, f64)| match (&known.hull, &known.motion) {
@@ -194,7 +190,7 @@ impl ShipMixture {
         let mut rng = key.rng(Purpose::Specification);
         let values = match has(UncertaintySource::Parameters) {
             true => part.drawn(&mut rng),
-            false => part.equations.values.clone(),
+            false => part.known.parameters.clone(),
         };
         let mut other = key.indexed(Purpose::Specification, 1);
         let [of_gear, of_rate]: [f64; 2] = std::array::from_fn(|_| other.sample(StandardNormal));
@@ -202,20 +198,16 @@ impl ShipMixture {
             let doubt = if has(UncertaintySource::SteeringGear) { of_gear * gear.sd_rad_s } else { 0.0 };
             SteeringGear::with_rate((gear.rate_rad_s + doubt).max(0.1 * gear.rate_rad_s))
         });
-        let step = has(UncertaintySource::Parameters).then(|| self.step(part.file, &key));
-        let hull = known.hull.as_ref().map(|hull| match &step {
-            Some(step) => hull.with_coefficients(&plus(hull.coefficients(), step)).unwrap_or_else(|_| hull.clone()),
-            None => hull.clone(),
-        });
-        let planar = known.motion.as_ref().map(|planar| match &step {
-            Some(step) => {
-                planar.with_coefficients(&plus(planar.coefficients(), step)).unwrap_or_else(|_| planar.clone())
-            }
-            None => planar.clone(),
-        });
+        // By the covariance of the coefficients of the hull, or of speed and drift.
+        let mut rng = key.indexed(Purpose::Specification, 2);
+        let root = &self.motions[part.file];
+        let step = root * DVector::from_fn(root.ncols(), |_, _| rng.sample::<f64, _>(StandardNormal));
+        let step = if has(UncertaintySource::Parameters) { step.as_slice() } else { &[] };
+        let hull = known.hull.as_ref().map(|hull| hull.stepped(step));
+        let planar = known.motion.as_ref().map(|planar| planar.stepped(step));
         let noise = if has(UncertaintySource::ProcessNoise) { known.process_noise() } else { KnownNoise::default() };
         DrawnShip {
-            response: part.equations.with(values),
+            response: part.model.clone().with(values),
             planar: hull.as_ref().map(|hull| hull.planar.clone()).or(planar),
             hull,
             gear,
@@ -223,13 +215,6 @@ impl ShipMixture {
             yaw_rate: if has(UncertaintySource::InitialState) { of_rate * known.approach_yaw_rate_rad_s } else { 0.0 },
             key,
         }
-    }
-
-    /// A step by the covariance of the coefficients of the hull, or of speed and drift.
-    fn step(&self, file: usize, key: &StreamKey) -> DVector<f64> {
-        let mut rng = key.indexed(Purpose::Specification, 2);
-        let root = &self.motions[file];
-        root * DVector::from_fn(root.ncols(), |_, _| rng.sample::<f64, _>(StandardNormal))
     }
 
     fn disturbances(&self, noise: &KnownNoise) -> Disturbances {
@@ -271,34 +256,25 @@ impl ShipMixture {
     }
 }
 
-fn plus(mut values: Vec<f64>, step: &DVector<f64>) -> Vec<f64> {
-    values.iter_mut().zip(step.iter()).for_each(|(value, step)| *value += step);
-    values
-}
-
 impl DrawableStructure {
     /// Parameters by their covariance, inside the ranges of the effects: normal, or Student's t.
     fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
-        let described = self.equations.parameters();
-        let mut values = self.equations.values.clone();
+        let WeightedStructure { parameters: known, fitted, degrees_of_freedom, .. } = &self.known;
+        let mut values = known.clone();
         if self.root.is_empty() {
             return values;
         }
+        let described: Vec<_> = self.model.parameters().collect();
         for attempt in 0..=MOST_TRIES {
-            let normal = DVector::from_fn(self.fitted.len(), |_, _| rng.sample::<f64, _>(StandardNormal));
-            let wide = match self.degrees_of_freedom.and_then(|freedom| Some((freedom, ChiSquared::new(freedom).ok()?)))
-            {
-                Some((freedom, law)) => (freedom / law.sample(rng)).sqrt(),
-                None => 1.0,
-            };
+            let normal = DVector::from_fn(fitted.len(), |_, _| rng.sample::<f64, _>(StandardNormal));
+            let freedom = degrees_of_freedom.and_then(|freedom| Some((freedom, ChiSquared::new(freedom).ok()?)));
+            let wide = freedom.map_or(1.0, |(freedom, law)| (freedom / law.sample(rng)).sqrt());
             let step = &self.root * normal * wide;
-            for (&place, step) in self.fitted.iter().zip(step.iter()) {
-                let value = self.equations.values[place] + step;
-                values[place] = if attempt == MOST_TRIES {
-                    value.clamp(described[place].lowest, described[place].highest)
-                } else {
-                    value
-                };
+            for (&place, step) in fitted.iter().zip(step.iter()) {
+                values[place] = known[place] + step;
+                if attempt == MOST_TRIES {
+                    values[place] = values[place].clamp(described[place].lowest, described[place].highest);
+                }
             }
             if values.iter().zip(&described).all(|(value, parameter)| parameter.holds(*value)) {
                 break;
@@ -311,10 +287,10 @@ impl DrawableStructure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up;
+    use crate::testing;
 
     fn mixture() -> ShipMixture {
-        ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up")
+        ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up")
     }
 
     /// Mean and covariance of the draws are those that are known.
@@ -339,7 +315,7 @@ mod tests {
 
     #[test]
     fn structures_are_drawn_by_their_probability() {
-        let mut known = made_up::known();
+        let mut known = testing::known();
         let mut simple = known.members[0].clone();
         simple.effects.clear();
         simple.parameters.truncate(3);
@@ -367,7 +343,7 @@ mod tests {
     /// A term in the measured sway says nothing where there is no sway.
     #[test]
     fn a_model_that_needs_what_is_not_there_is_refused() {
-        let mut known = made_up::known();
+        let mut known = testing::known();
         let sway = ship::effects::SwayCouplingMeasured { approach_speed: 1.0 };
         known.members[0].effects[0].id = ship::effects::Effect::id(&sway).into();
         known.members[0].effects[0].form = ship::effects::Effect::form(&sway).into();
@@ -378,7 +354,7 @@ mod tests {
 
     #[test]
     fn what_is_no_covariance_is_refused() {
-        let mut known = made_up::known();
+        let mut known = testing::known();
         known.members[0].covariance[0][1] = 10.0;
         known.members[0].covariance[1][0] = 10.0;
         assert_eq!(ShipMixture::new(vec![(known, 1.0)]).err(), Some(PredictError::Covariance));

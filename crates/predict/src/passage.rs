@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::motion::{Planar, PlanarShip, Turn, TurningCircleFigures};
+use crate::motion::{self, Planar, PlanarShip};
+use serde::{Deserialize, Serialize};
 use ship::Regressor;
 use simulate::helm::Execute;
 use simulate::simulation::Truth;
 use simulate::vessel::Solver;
-use simulate::{Disturbances, Manoeuvre, Recording, SimulateError, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};
 
 use crate::mixture::DrawnShip;
 
@@ -25,7 +26,7 @@ const SHORTEST_STEP: f64 = 1e-3;
 const LONGEST_WAIT: f64 = 500.0;
 
 /// What a ship did; time in s from the first execute, angles in rad.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedManoeuvre {
     /// Time between rows, s.
     pub period: f64,
@@ -35,21 +36,20 @@ pub struct SimulatedManoeuvre {
     pub yaw_rate: Vec<f64>,
     /// Rudder.
     pub rudder: Vec<f64>,
-    /// Orders of the helm.
+    /// Orders of the helm; not written to a file.
+    #[serde(skip)]
     pub executes: Vec<Execute>,
     /// The way over ground; none where nothing is known of speed and drift.
-    pub way: Option<Way>,
+    pub way: Option<PlanarMotion>,
 }
 
-/// Speed, drift and track of a passage.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Way {
+/// Speed, drift and track of a manoeuvre.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlanarMotion {
     /// Length of the ship, m.
     pub length: f64,
-    /// Surge velocity, m/s.
-    pub surge: Vec<f64>,
-    /// Sway velocity to starboard, m/s.
-    pub sway: Vec<f64>,
+    /// Surge, and sway to starboard, m/s.
+    pub velocity: Vec<[f64; 2]>,
     /// North and east, m, 0 at the first execute; north is the course of the approach.
     pub track: Vec<[f64; 2]>,
 }
@@ -63,12 +63,6 @@ pub(crate) fn period(timescale: f64) -> f64 {
 /// process.
 const LONGEST_CELL: f64 = 60.0;
 const SHARE_OF_CORRELATION: f64 = 0.5;
-
-/// Width of the cells of the weather, s: as fine as the rows, because a ship does not answer to what is quicker.
-fn weather_grid(disturbances: &Disturbances, timescale: f64) -> f64 {
-    let correlation = disturbances.gusts.map_or(f64::INFINITY, |gusts| gusts.correlation_time);
-    period(timescale).min(SHARE_OF_CORRELATION * correlation).min(LONGEST_CELL)
-}
 
 /// What is steered: with speed and drift where effects of the response ask for them.
 fn vessel(ship: &DrawnShip) -> Vessel {
@@ -84,23 +78,7 @@ fn vessel(ship: &DrawnShip) -> Vessel {
     }
 }
 
-/// Speed, drift and track of a ship that turned and steered like this, from her approach speed on.
-fn way(planar: &Planar, truth: &Truth) -> Way {
-    let velocities = planar.drive(&truth.time, &truth.yaw_rate, &truth.rudder, [planar.approach_speed, 0.0]);
-    let (surge, sway): (Vec<f64>, Vec<f64>) = velocities.into_iter().map(|[u, v]| (u, v)).unzip();
-    let track = crate::motion::track(&truth.time, &truth.heading, &surge, &sway);
-    Way { length: planar.length, surge, sway, track }
-}
-
 impl SimulatedManoeuvre {
-    /// Figures of a turning circle that was begun at `execute` s; `None` where nothing is known of speed and drift.
-    pub fn circle(&self, execute: f64) -> Option<TurningCircleFigures> {
-        let Way { surge, sway, track, .. } = self.way.as_ref()?;
-        let time: Vec<f64> = (0..self.heading.len()).map(|row| self.time(row)).collect();
-        let turn = Turn { time: &time, heading: &self.heading, track, surge, sway, yaw_rate: &self.yaw_rate };
-        Some(crate::motion::turning_circle(&turn, execute))
-    }
-
     /// A series on the rows of the passage at a time, s.
     pub(crate) fn at(&self, values: &[f64], time: f64) -> f64 {
         let place = (time / self.period).clamp(0.0, (values.len() - 1) as f64);
@@ -111,10 +89,9 @@ impl SimulatedManoeuvre {
 
     /// Way through the water until `time` s, m; `None` where nothing is known of the speed.
     pub fn distance(&self, time: f64) -> Option<f64> {
-        let Way { surge, sway, .. } = self.way.as_ref()?;
-        let speed = |row: usize| surge[row].hypot(sway[row]);
-        let last = surge.len().checked_sub(1)?;
-        let rows = ((time / self.period) as usize).min(last);
+        let velocity = &self.way.as_ref()?.velocity;
+        let speed = |row: usize| velocity[row][0].hypot(velocity[row][1]);
+        let rows = ((time / self.period) as usize).min(velocity.len().checked_sub(1)?);
         let whole: f64 = (0..rows).map(|row| 0.5 * self.period * (speed(row) + speed(row + 1))).sum();
         Some(whole + (time - self.time(rows)) * speed(rows))
     }
@@ -124,13 +101,14 @@ impl SimulatedManoeuvre {
     /// Fails where the ship does not reach a heading that the helm waits for, or turns for ever.
     pub fn sail(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
-        simulation.gear = match manoeuvre {
-            Manoeuvre::Replay(_) => SteeringGear::default(),
-            _ => ship.gear,
-        };
+        if !matches!(manoeuvre, Manoeuvre::Replay(_)) {
+            simulation.gear = ship.gear;
+        }
         simulation.approach.yaw_rate = ship.yaw_rate;
         simulation.disturbances = ship.disturbances;
-        simulation.weather_grid = weather_grid(&ship.disturbances, timescale);
+        // As fine as the rows, because a ship does not answer to what is quicker.
+        let correlation = ship.disturbances.gusts.map_or(f64::INFINITY, |gusts| gusts.correlation_time);
+        simulation.weather_grid = period(timescale).min(SHARE_OF_CORRELATION * correlation).min(LONGEST_CELL);
         let shortest = match &ship.hull {
             Some(_) => Some(timescale),
             None => (!ship.response.model().effects().is_empty()).then(|| ship.response.shortest_time()),
@@ -155,8 +133,13 @@ impl SimulatedManoeuvre {
         simulation.recording = Recording { period: period(timescale), ..Recording::default() };
         simulation.longest_wait = LONGEST_WAIT * timescale;
         let truth = Arc::unwrap_or_clone(simulation.run(key)?.truth);
-        let way = planar.map(|planar| way(planar, &truth));
-        let Truth { heading, yaw_rate, rudder, executes, .. } = truth;
+        let Truth { time, heading, yaw_rate, rudder, executes, .. } = truth;
+        let way = planar.map(|planar| {
+            // From her approach speed on.
+            let velocity = planar.drive(&time, &yaw_rate, &rudder, [planar.approach_speed, 0.0]);
+            let track = motion::track(&time, &heading, &velocity);
+            PlanarMotion { length: planar.length, velocity, track }
+        });
         Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })
     }
 
@@ -172,22 +155,14 @@ impl SimulatedManoeuvre {
 
     /// The same without what comes after `time` s.
     pub fn until(&self, time: f64) -> Self {
-        let rows = ((time / self.period).floor() as usize + 1).min(self.heading.len());
-        let cut = |values: &[f64]| values[..rows.min(values.len())].to_vec();
-        let way = |way: &Way| Way {
-            length: way.length,
-            surge: cut(&way.surge),
-            sway: cut(&way.sway),
-            track: way.track[..rows.min(way.track.len())].to_vec(),
-        };
-        Self {
-            period: self.period,
-            heading: cut(&self.heading),
-            yaw_rate: cut(&self.yaw_rate),
-            rudder: cut(&self.rudder),
-            executes: self.executes.clone(),
-            way: self.way.as_ref().map(way),
+        let rows = (time / self.period).floor() as usize + 1;
+        let mut cut = self.clone();
+        [&mut cut.heading, &mut cut.yaw_rate, &mut cut.rudder].into_iter().for_each(|column| column.truncate(rows));
+        if let Some(way) = &mut cut.way {
+            way.velocity.truncate(rows);
+            way.track.truncate(rows);
         }
+        cut
     }
 
     /// Largest size of the yaw rate, rad/s.

@@ -4,11 +4,11 @@ use estimation::statistics::median;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use ship::Particulars;
 
 use crate::error::PredictError;
-use crate::figures::{self, Figure};
+use crate::figures::{self, Figures};
 use crate::interval::{PredictionInterval, band};
 use crate::kind::Kind;
 use crate::known::ValidityRange;
@@ -52,17 +52,24 @@ impl Predicted {
 }
 
 /// A curve over time with its bands; angles in rad.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bands {
     /// Time from the first execute, s.
     pub time: Vec<f64>,
     /// The most probable ship without chance, as far as it goes; NaN beyond.
+    #[serde(deserialize_with = "with_gaps")]
     pub most_probable: Vec<f64>,
     /// Quantiles of 5, 25, 50, 75 and 95 % of the draws.
     pub quantiles: Vec<[f64; 5]>,
 }
 
-/// A manoeuvre predicted; its curves are no part of the document.
+/// Numbers of a list in JSON, which has no word for NaN.
+fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
+    let numbers = Vec::<Option<f64>>::deserialize(list)?;
+    Ok(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
+}
+
+/// A manoeuvre predicted; its curves are beside the document ([`PredictCurves`](crate::document::PredictCurves)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.
@@ -92,23 +99,17 @@ impl Prediction {
     }
 }
 
-/// One draw of a manoeuvre.
-struct Draw {
-    figures: Vec<Figure>,
-    heading: Vec<f64>,
-    largest_rate: f64,
-    track: Option<Vec<[f64; 2]>>,
-}
-
 /// Draws whose tracks are kept.
 const TRACKS: u64 = 40;
 
+/// What is refused because too few drawn ships come to the end of it.
+pub(crate) fn lost(what: impl ToString, made: usize, draws: usize) -> PredictError {
+    PredictError::Lost { kind: what.to_string(), made, draws }
+}
+
 /// Refuses what less than half of the drawn ships come to the end of.
 pub(crate) fn enough(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
-    if made == 0 || (made as f64) < FEWEST * draws as f64 {
-        return Err(PredictError::Lost { kind: what.to_string(), made, draws });
-    }
-    Ok(())
+    if made == 0 || (made as f64) < FEWEST * draws as f64 { Err(lost(what, made, draws)) } else { Ok(()) }
 }
 
 impl ShipMixture {
@@ -127,27 +128,29 @@ impl ShipMixture {
             let passage = SimulatedManoeuvre::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::of(kind, &passage, self.particulars()), passage))
         };
-        let all: Vec<Option<Draw>> = drawn(draws, |number| {
-            let (figures, passage) = sail(number, &UncertaintySource::ALL)?;
+        let without_series = |number: u64, passage: SimulatedManoeuvre| {
             let largest_rate = passage.largest_rate();
             let track = passage.way.filter(|_| number < TRACKS).map(|way| way.track);
-            Some(Draw { figures, heading: passage.heading, largest_rate, track })
+            (passage.heading, largest_rate, track)
+        };
+        let all = drawn(draws, |number| {
+            let (figures, passage) = sail(number, &UncertaintySource::ALL)?;
+            Some((figures, without_series(number, passage)))
         });
-        let made: Vec<&Draw> = all.iter().flatten().collect();
+        let (values, series): (Vec<Option<Figures>>, Vec<_>) = all.into_iter().map(Option::unzip).unzip();
+        let made: Vec<(Vec<f64>, f64, Option<_>)> = series.into_iter().flatten().collect();
         enough(kind, made.len(), draws)?;
-        let values: Vec<Option<&[Figure]>> =
-            all.iter().map(|draw| draw.as_ref().map(|draw| draw.figures.as_slice())).collect();
-        let extrapolated = self.is_unseen(kind.rudder, made.iter().map(|draw| draw.largest_rate));
-        let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(sail(number, &[source])?.0));
+        let extrapolated = self.is_unseen(kind.rudder, made.iter().map(|(_, rate, _)| *rate));
         let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
+        let headings: Vec<&[f64]> = made.iter().map(|(heading, ..)| heading.as_slice()).collect();
         Ok(Prediction {
             kind: *kind,
-            figures: predicted(&values, extrapolated, sources, alone),
-            heading: bands(&made, most_probable.as_ref(), passage::period(self.timescale())),
+            figures: predicted(&values, extrapolated, sources, |number, sources| Some(sail(number, sources)?.0)),
+            heading: bands(&headings, most_probable.as_ref(), passage::period(self.timescale())),
             lost: draws - made.len(),
             most_probable,
-            tracks: made.iter().filter_map(|draw| draw.track.clone()).collect(),
+            tracks: made.into_iter().filter_map(|(.., track)| track).collect(),
             curves: Vec::new(),
         })
     }
@@ -158,13 +161,11 @@ impl ShipMixture {
             SteadyCurve::of(&self.draw(number, sources), kind.rudder, self.timescale())
         };
         let all: Vec<SteadyCurve> = drawn(draws, |number| curve(number, &UncertaintySource::ALL));
-        let own: Vec<Vec<Figure>> = all.iter().map(|curve| curve.figures(kind.rudder)).collect();
-        let values: Vec<Option<&[Figure]>> = own.iter().map(|figures| Some(figures.as_slice())).collect();
-        let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(curve(number, &[source]).figures(kind.rudder)));
-        let sources: &[UncertaintySource] =
-            if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
+        let values: Vec<Option<Figures>> = all.iter().map(|curve| Some(curve.figures(kind.rudder))).collect();
+        let sources: &[_] = if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
         let rates = std::iter::once(most_probable.yaw_rate.iter().fold(0.0, |most: f64, rate| most.max(rate.abs())));
+        let alone = |number, sources: &[UncertaintySource]| Some(curve(number, sources).figures(kind.rudder));
         Prediction {
             kind: *kind,
             figures: predicted(&values, self.is_unseen(kind.rudder, rates), sources, alone),
@@ -192,21 +193,22 @@ pub(crate) fn drawn<T: Send>(draws: usize, one: impl Fn(u64) -> T + Sync + Send)
 
 /// Figures from the draws, with the shares of sources that are drawn alone.
 fn predicted(
-    draws: &[Option<&[Figure]>],
+    draws: &[Option<Figures>],
     extrapolated: bool,
     sources: &[UncertaintySource],
-    alone: impl Fn(UncertaintySource) -> Vec<Option<Vec<Figure>>>,
+    draw: impl Fn(u64, &[UncertaintySource]) -> Option<Figures> + Sync + Send,
 ) -> IndexMap<String, Predicted> {
-    let Some(names) = draws.iter().flatten().next() else { return IndexMap::new() };
-    let alone: Vec<_> = sources.iter().map(|source| (source.as_str(), alone(*source))).collect();
-    let figure = |(place, &(name, _)): (usize, &Figure)| {
-        let of_draws: Vec<Option<f64>> = draws.iter().map(|draw| draw.and_then(|figures| figures[place].1)).collect();
+    let alone = |source: &UncertaintySource| drawn(draws.len().div_ceil(ALONE), |number| draw(number, &[*source]));
+    let alone: Vec<(&str, Vec<_>)> = sources.iter().map(|source| (source.as_str(), alone(source))).collect();
+    let figure = |&name: &&'static str| {
+        let of = |draw: &Option<Figures>| draw.as_ref().and_then(|figures| figures[name]);
+        let of_draws: Vec<Option<f64>> = draws.iter().map(of).collect();
         let mut values: Vec<f64> = of_draws.iter().copied().flatten().collect();
         let defined = values.len() as f64 / draws.len() as f64;
         let interval = PredictionInterval::of(&mut values)?;
-        let spread = |few: &[Option<Vec<Figure>>]| {
-            let mut values: Vec<f64> = few.iter().flatten().filter_map(|figures| figures[place].1).collect();
-            PredictionInterval::of(&mut values).map_or(0.0, |interval| (interval.ci90[1] - interval.ci90[0]).powi(2))
+        let spread = |few: &[Option<Figures>]| {
+            let interval = PredictionInterval::of(&mut few.iter().filter_map(of).collect::<Vec<f64>>());
+            interval.map_or(0.0, |interval| (interval.ci90[1] - interval.ci90[0]).powi(2))
         };
         let spreads: Vec<(&str, f64)> = alone.iter().map(|(source, few)| (*source, spread(few))).collect();
         let sum: f64 = spreads.iter().map(|(_, spread)| spread).sum();
@@ -214,16 +216,16 @@ fn predicted(
         let shares = shares.map(|(source, spread)| (source.to_owned(), spread / sum)).collect();
         Some((name.to_owned(), Predicted { interval, extrapolated, defined, shares, draws: of_draws }))
     };
-    names.iter().enumerate().filter_map(figure).collect()
+    draws.iter().flatten().next().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
 }
 
 /// Quantiles row by row, as long as nine tenths of the draws go on.
-fn bands(draws: &[&Draw], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> Bands {
+fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> Bands {
     let mut bands = Bands::default();
     let mut values = Vec::with_capacity(draws.len());
     for row in 0.. {
         values.clear();
-        values.extend(draws.iter().filter_map(|draw| draw.heading.get(row)));
+        values.extend(draws.iter().filter_map(|heading| heading.get(row)));
         if (values.len() as f64) < 0.9 * draws.len() as f64 || values.is_empty() {
             break;
         }
@@ -239,10 +241,10 @@ fn bands(draws: &[&Draw], most_probable: Option<&SimulatedManoeuvre>, period: f6
 mod tests {
     use super::*;
     use crate::known::Moment;
-    use crate::made_up;
+    use crate::testing;
 
     fn mixture(change: impl Fn(&mut crate::known::IdentifiedShip)) -> ShipMixture {
-        let mut known = made_up::known();
+        let mut known = testing::known();
         change(&mut known);
         ShipMixture::new(vec![(known, 1.0)]).expect("made up")
     }

@@ -12,13 +12,14 @@ use simulate::{Manoeuvre, Purpose};
 use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::figures::Figure;
+use crate::figures::Figures;
 use crate::interval::{PredictionInterval, band};
+use crate::line::StraightLine;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::passage::SimulatedManoeuvre;
-use crate::prediction::{Bands, drawn, enough};
-use crate::steered::{self, Steered};
-use crate::turn::{self, Turn};
+use crate::prediction::{Bands, drawn, enough, lost};
+use crate::steered::{self, SteeredZigZag};
+use crate::turn::{self, HeldTurn};
 
 /// Beginning of a record from which its first heading and yaw rate are read, in times of the ship.
 const BEGINNING: f64 = 1.0;
@@ -38,7 +39,7 @@ pub struct Compared {
     pub inside90: bool,
 }
 
-/// A record with its prediction; its curves are no part of the document.
+/// A record with its prediction; its curves are beside the document ([`PredictCurves`](crate::document::PredictCurves)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RecordReplay {
     /// The file as the user named it.
@@ -52,7 +53,7 @@ pub struct RecordReplay {
     /// Figures that the record shows, by name.
     pub figures: IndexMap<String, Compared>,
     /// Name of the record.
-    #[serde(skip)]
+    #[serde(default)]
     pub name: String,
     /// Time from the first row, s, and rudder, rad.
     #[serde(skip)]
@@ -71,30 +72,6 @@ pub fn file_of(trial: &Trial) -> &str {
         Origin::Measured { file, .. } => file,
         Origin::Simulated { .. } => trial.name(),
     }
-}
-
-/// First heading (rad) and yaw rate (rad/s) of a record with their standard deviations: a straight line through what
-/// the readings of its beginning are away from a ship that begins on heading 0 without a yaw rate.
-fn beginning(trial: &Trial, at_rest: &SimulatedManoeuvre, timescale: f64) -> Option<[(f64, f64); 2]> {
-    let start = trial.time()[0];
-    let read = |row: usize| {
-        let time = trial.time()[row] - start;
-        (time, trial.heading()[row] - at_rest.at(&at_rest.heading, time))
-    };
-    let rows: Vec<(f64, f64)> = trial.observed_rows().map(read).collect();
-    let count = rows.iter().take_while(|(time, _)| *time <= BEGINNING * timescale).count();
-    let rows = &rows[..count.max(FEWEST.min(rows.len()))];
-    let n = rows.len() as f64;
-    let [time, heading] = [0, 1].map(|k| rows.iter().map(|row| [row.0, row.1][k]).sum::<f64>() / n);
-    let spread: f64 = rows.iter().map(|row| (row.0 - time).powi(2)).sum();
-    if rows.len() < 3 || spread <= 0.0 {
-        return None;
-    }
-    let rate = rows.iter().map(|row| (row.0 - time) * (row.1 - heading)).sum::<f64>() / spread;
-    let residual: f64 = rows.iter().map(|row| (row.1 - heading - rate * (row.0 - time)).powi(2)).sum();
-    let variance = residual / (n - 2.0);
-    let first = (heading - rate * time, (variance / n + variance * time * time / spread).sqrt());
-    Some([first, (rate, (variance / spread).sqrt())])
 }
 
 /// Difference up to which a rudder is straight between two readings, rad: a hundredth of a degree.
@@ -135,7 +112,6 @@ impl ShipMixture {
     ) -> Result<Option<RecordReplay>, PredictError> {
         let start = trial.time()[0];
         let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
-        let lost = |made: usize| PredictError::Lost { kind: trial.name().to_owned(), made, draws };
         let Some([first, rate]) = self.beginning(trial)? else { return Ok(None) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
             let mut ship = self.draw(number, sources);
@@ -144,13 +120,13 @@ impl ShipMixture {
             let doubt = if sources.is_empty() { 0.0 } else { 1.0 };
             ship.yaw_rate = rate.0 + doubt * rate.1 * of_rate;
             let mut passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, self.timescale()).ok()?;
-            let offset = first.0 + doubt * first.1 * of_heading;
-            passage.turn_about(offset);
+            passage.turn_about(first.0 + doubt * first.1 * of_heading);
             Some((passage, rng))
         };
         let rows: Vec<usize> = trial.observed_rows().collect();
+        let time: Vec<f64> = rows.iter().map(|&row| trial.time()[row] - start).collect();
         let at_rows = |passage: &SimulatedManoeuvre| -> Vec<f64> {
-            rows.iter().map(|&row| passage.at(&passage.heading, trial.time()[row] - start)).collect()
+            time.iter().map(|time| passage.at(&passage.heading, *time)).collect()
         };
         let of_draw = |number| {
             let (passage, mut rng) = sail(number, &UncertaintySource::ALL)?;
@@ -159,22 +135,18 @@ impl ShipMixture {
             headings.iter_mut().for_each(|heading| *heading += noise * rng.sample::<f64, _>(StandardNormal));
             Some((passage, headings))
         };
-        let made: Vec<(SimulatedManoeuvre, Vec<f64>)> = drawn(draws, of_draw).into_iter().flatten().collect();
-        let most_probable = sail(0, &[]).map(|(passage, _)| passage);
+        let (made, headings): (Vec<SimulatedManoeuvre>, Vec<Vec<f64>>) =
+            drawn(draws, of_draw).into_iter().flatten().unzip();
         enough(trial.name(), made.len(), draws)?;
-        let Some(most_probable) = most_probable else { return Err(lost(made.len())) };
+        let (most_probable, _) = sail(0, &[]).ok_or_else(|| lost(trial.name(), made.len(), draws))?;
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
-        let mut heading = Bands {
-            time: rows.iter().map(|&row| trial.time()[row] - start).collect(),
-            most_probable: at_rows(&most_probable),
-            quantiles: Vec::with_capacity(rows.len()),
-        };
         let mut values = Vec::with_capacity(made.len());
-        for row in 0..rows.len() {
+        let quantiles = (0..rows.len()).map(|row| {
             values.clear();
-            values.extend(made.iter().map(|(_, headings)| headings[row]));
-            heading.quantiles.push(band(&mut values));
-        }
+            values.extend(headings.iter().map(|own| own[row]));
+            band(&mut values)
+        });
+        let heading = Bands { quantiles: quantiles.collect(), most_probable: at_rows(&most_probable), time };
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let square: f64 = measured.iter().zip(&heading.most_probable).map(|(one, other)| (one - other).powi(2)).sum();
@@ -197,11 +169,11 @@ impl ShipMixture {
 
     /// Overshoots, times and period of a measured zig-zag, steered anew.
     fn zig_zag(&self, trial: &Trial, measured: &Measured, draws: usize) -> Result<ByName, PredictError> {
-        let Some(steered) = Steered::of(measured, self.first().approach_yaw_rate_rad_s) else {
+        let Some(steered) = SteeredZigZag::of(measured, self.first().approach_yaw_rate_rad_s) else {
             return Ok(ByName::new());
         };
-        let drawn: Vec<Vec<Figure>> =
-            steered.draws(self, draws).into_iter().flatten().map(|sailed| sailed.figures).collect();
+        let drawn = steered.draws(self, draws).into_iter().flatten();
+        let drawn: Vec<Figures> = drawn.map(|result| result.figures).collect();
         enough(steered.kind, drawn.len(), draws)?;
         Ok(compared(&drawn, |name| Some(self.shown(trial, measured, name)?.value)))
     }
@@ -215,13 +187,21 @@ impl ShipMixture {
         steered::shown(trial, measured, name, own.map(|own| own.length), stand_in)
     }
 
-    /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, as this ship explains them;
-    /// `None` where the record has too few headings at its beginning.
+    /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, as this ship explains them: a
+    /// straight line through what the readings of the beginning are away from her, when she begins on heading 0 without
+    /// a yaw rate. `None` where the record has too few headings at its beginning.
     pub(crate) fn beginning(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
-        let lost = |_| PredictError::Lost { kind: trial.name().to_owned(), made: 0, draws: 1 };
         let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
-        let at_rest = SimulatedManoeuvre::sail(&self.most_probable(), &manoeuvre, self.timescale()).map_err(lost)?;
-        Ok(beginning(trial, &at_rest, self.timescale()))
+        let at_rest = SimulatedManoeuvre::sail(&self.most_probable(), &manoeuvre, self.timescale());
+        let at_rest = at_rest.map_err(|_| lost(trial.name(), 0, 1))?;
+        let read = |row: usize| {
+            let time = trial.time()[row] - trial.time()[0];
+            (time, trial.heading()[row] - at_rest.at(&at_rest.heading, time))
+        };
+        let rows: Vec<(f64, f64)> = trial.observed_rows().map(read).collect();
+        let count = rows.iter().take_while(|(time, _)| *time <= BEGINNING * self.timescale()).count();
+        let line = StraightLine::through(rows.into_iter().take(count.max(FEWEST)));
+        Ok(line.map(|line| [line.at_zero(), (line.slope, line.slope_sd())]))
     }
 }
 
@@ -229,44 +209,37 @@ impl ShipMixture {
 type ByName = IndexMap<String, Compared>;
 
 /// Figures that were measured, beside their draws.
-fn compared(drawn: &[Vec<Figure>], shown: impl Fn(&str) -> Option<f64>) -> ByName {
-    let Some(names) = drawn.first() else { return ByName::new() };
-    let figure = |(place, &(name, _)): (usize, &Figure)| {
+fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<f64>) -> ByName {
+    let figure = |&name: &&'static str| {
         let measured = shown(name)?;
-        let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[place].1).collect();
+        let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[name]).collect();
         let interval = PredictionInterval::of(&mut values)?;
         Some((name.to_owned(), Compared { measured, interval, inside90: interval.holds90(measured) }))
     };
-    names.iter().enumerate().filter_map(figure).collect()
+    drawn.first().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
 }
 
 /// Figures of a record that is a turn.
 ///
 /// The doubt about a current that was taken out of its track is one of the prediction.
-fn turns(trial: &Trial, made: &[(SimulatedManoeuvre, Vec<f64>)], timescale: f64, current: Option<Current>) -> ByName {
-    let (Some(turn), Some((sample, _))) = (Turn::of(trial.rudder_signal()), made.first()) else { return ByName::new() };
-    let length = sample.way.as_ref().map(|way| way.length);
-    let Some(record) = turn::recorded(trial, timescale, length) else { return ByName::new() };
-    let start = trial.time()[0];
-    let figures = |passage: &SimulatedManoeuvre| turn.figures(&passage.until(turn.until - start), start);
-    let measured = figures(&record);
-    let is_turn = trial.duration() > timescale && measured.iter().any(|(_, value)| value.is_some());
-    if !is_turn {
-        return ByName::new();
-    }
-    let doubtful = |(number, (passage, _)): (usize, &(SimulatedManoeuvre, Vec<f64>))| match current {
-        None => figures(passage),
-        Some(current) => figures(&turn::in_doubt(passage, &current, number as u64)),
+fn turns(trial: &Trial, made: &[SimulatedManoeuvre], timescale: f64, current: Option<Current>) -> ByName {
+    let length = made.first().and_then(|first| Some(first.way.as_ref()?.length));
+    let turn = HeldTurn::of(trial).zip(turn::recorded(trial, timescale, length));
+    let Some((turn, record)) = turn.filter(|_| trial.duration() > timescale) else { return ByName::new() };
+    let measured = turn.figures(&record);
+    let doubtful = |(number, passage): (usize, &SimulatedManoeuvre)| match current {
+        None => turn.figures(passage),
+        Some(current) => turn.figures(&turn::in_doubt(passage, &current, number as u64)),
     };
-    let drawn: Vec<Vec<Figure>> = made.iter().enumerate().map(doubtful).collect();
-    compared(&drawn, |name| measured.iter().find(|(own, _)| *own == name)?.1)
+    let drawn: Vec<Figures> = made.iter().enumerate().map(doubtful).collect();
+    compared(&drawn, |name| measured.get(name).copied().flatten())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::kind::Kind;
-    use crate::made_up;
+    use crate::testing;
     use ship::angle::from_deg;
     use simulate::{Simulation, StreamKey, Vessel};
 
@@ -285,7 +258,7 @@ mod tests {
     /// Records of ships that are drawn as the prediction draws them lie in its intervals nine times out of ten.
     #[test]
     fn intervals_hold_the_records_of_such_ships() {
-        let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
+        let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
         let kind: Kind = "zig-zag:20/20".parse().expect("known");
         let manoeuvre = kind.manoeuvre(mixture.timescale()).expect("steered");
         let (mut inside, mut all, mut band) = (0, 0, 0.0);
@@ -315,7 +288,7 @@ mod tests {
 
     #[test]
     fn a_circle_has_the_figures_of_a_turn() {
-        let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
+        let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
         let kind: Kind = "turning-circle:-15".parse().expect("known");
         let trial = record(&mixture, kind.manoeuvre(mixture.timescale()).expect("steered"), 3);
         let replayed = mixture.replay(&trial, 50, None).expect("it sails").expect("it begins");

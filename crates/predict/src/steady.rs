@@ -1,9 +1,10 @@
 //! Steady turns: the yaw rate that belongs to every rudder, on stable and unstable branches, and the loop of a ship
 //! that is not stable on a straight course.
 
+use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
-use crate::figures::Figure;
+use crate::figures::Figures;
 use crate::mixture::DrawnShip;
 
 /// Points to either side of a straight course.
@@ -13,7 +14,7 @@ const POINTS: usize = 24;
 const DOUBLINGS: usize = 12;
 
 /// Rudder (rad) over yaw rate (rad/s) of steady turns, in the order of the yaw rate.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SteadyCurve {
     /// Yaw rates, rad/s.
     pub yaw_rate: Vec<f64>,
@@ -70,47 +71,43 @@ impl SteadyCurve {
         curve
     }
 
+    /// Yaw rates at which the curve crosses a rudder (rad) upwards, in their order, rad/s.
+    fn rates_at(&self, rudder: f64) -> impl DoubleEndedIterator<Item = f64> {
+        let pieces = self.rudder.windows(2).zip(self.yaw_rate.windows(2));
+        pieces.filter_map(move |(rudders, rates)| {
+            let [below, above] = [rudders[0] - rudder, rudders[1] - rudder];
+            let crosses = below <= 0.0 && above >= 0.0 && below < above;
+            crosses.then(|| rates[0] - below * (rates[1] - rates[0]) / (above - below))
+        })
+    }
+
     /// Yaw rate at a rudder (rad) on the outer branch of its side, rad/s.
     pub fn outer(&self, rudder: f64) -> Option<f64> {
-        let pairs = |k: usize| (self.rudder[k] - rudder, self.rudder[k + 1] - rudder);
-        let crosses = |k: &usize| {
-            let (one, next) = pairs(*k);
-            one <= 0.0 && next >= 0.0 && one < next
-        };
-        let last = self.rudder.len().checked_sub(1)?;
-        let at = if rudder < 0.0 { (0..last).find(crosses) } else { (0..last).rev().find(crosses) }?;
-        let (one, next) = pairs(at);
-        Some(self.yaw_rate[at] - one * (self.yaw_rate[at + 1] - self.yaw_rate[at]) / (next - one))
+        let mut rates = self.rates_at(rudder);
+        if rudder < 0.0 { rates.next() } else { rates.next_back() }
     }
 
     /// The loop, where there is one.
     pub fn instability(&self) -> Option<Loop> {
-        let falls = |k: &usize| self.rudder[*k + 1] < self.rudder[*k];
-        let last = self.rudder.len().checked_sub(1)?;
-        let (from, until) = ((0..last).find(falls)?, (0..last).rev().find(falls)? + 1);
+        let falls = |pair: &[f64]| pair[1] < pair[0];
+        let from = self.rudder.windows(2).position(falls)?;
+        let until = self.rudder.windows(2).rposition(falls)? + 1;
         let (high, low) = (self.rudder[from], self.rudder[until]);
-        let middle = 0.5 * (high + low);
-        let crossings: Vec<f64> = (0..last)
-            .filter(|&k| self.rudder[k] <= middle && self.rudder[k + 1] > middle)
-            .map(|k| {
-                let share = (middle - self.rudder[k]) / (self.rudder[k + 1] - self.rudder[k]);
-                self.yaw_rate[k] + share * (self.yaw_rate[k + 1] - self.yaw_rate[k])
-            })
-            .collect();
-        let (first, last) = (crossings.first()?, crossings.last()?);
-        Some(Loop { width: high - low, height: last - first })
+        let mut rates = self.rates_at(0.5 * (high + low));
+        let first = rates.next()?;
+        Some(Loop { width: high - low, height: rates.next_back().unwrap_or(first) - first })
     }
 
     /// Figures of a spiral up to this rudder, rad.
-    pub(crate) fn figures(&self, rudder: f64) -> Vec<Figure> {
+    pub(crate) fn figures(&self, rudder: f64) -> Figures {
         let instability = self.instability();
         let of_loop = |value: fn(Loop) -> f64| Some(to_deg(instability.map_or(0.0, value)));
-        vec![
+        Figures::from([
             ("rate_starboard_deg_s", self.outer(rudder).map(to_deg)),
             ("rate_port_deg_s", self.outer(-rudder).map(to_deg)),
             ("loop_width_deg", of_loop(|found| found.width)),
             ("loop_height_deg_s", of_loop(|found| found.height)),
-        ]
+        ])
     }
 }
 

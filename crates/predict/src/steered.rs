@@ -6,7 +6,7 @@ use ship::angle::to_deg;
 use simulate::Side;
 use trial::{Quantity, Trial, ZigZag as Measured};
 
-use crate::figures::{self, EXECUTE_TIMES, Figure, OVERSHOOTS};
+use crate::figures::{self, EXECUTE_TIMES, Figures, OVERSHOOTS};
 use crate::kind::{Kind, Pattern};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::passage::SimulatedManoeuvre;
@@ -18,13 +18,13 @@ const NOMINAL: f64 = 0.05;
 /// What one drawn ship did.
 pub(crate) struct DrawResult {
     /// Figures of merit; their names are the same for every draw.
-    pub figures: Vec<Figure>,
+    pub figures: Figures,
     /// Largest |yaw rate|, rad/s.
     pub largest_rate: f64,
 }
 
 /// A measured zig-zag as a helm steers it.
-pub(crate) struct Steered {
+pub(crate) struct SteeredZigZag {
     pub kind: Kind,
     /// Yaw rate at the first execute, rad/s.
     yaw_rate: f64,
@@ -32,7 +32,7 @@ pub(crate) struct Steered {
     rudder_rate: Option<f64>,
 }
 
-impl Steered {
+impl SteeredZigZag {
     /// The zig-zag of a record; `approach` is the root mean square of the yaw rate with which records of the ship
     /// begin, rad/s. `None` where the record begins within the trial, or has a single execute.
     pub fn of(measured: &Measured, approach: f64) -> Option<Self> {
@@ -55,11 +55,8 @@ impl Steered {
         // An approach is nearly straight, and a slope that is read off a few headings is not known well.
         let yaw_rate = executes[0].yaw_rate.map_or(0.0, |rate| {
             let doubt = rate.sd.unwrap_or(0.0);
-            if approach + doubt > 0.0 {
-                rate.value * approach.powi(2) / (approach.powi(2) + doubt.powi(2))
-            } else {
-                0.0
-            }
+            let known = approach.powi(2) + doubt.powi(2);
+            if known > 0.0 { rate.value * approach.powi(2) / known } else { 0.0 }
         });
         let kind = Kind { pattern: Pattern::ZigZag { heading }, rudder, side };
         Some(Self { kind, yaw_rate, rudder_rate: measured.rudder_rate })
@@ -71,9 +68,7 @@ impl Steered {
         drawn(draws, |number| {
             let mut ship = mixture.draw(number, &UncertaintySource::ALL);
             ship.yaw_rate = self.yaw_rate;
-            if let Some(rate) = self.rudder_rate {
-                ship.gear.rate = rate;
-            }
+            ship.gear.rate = self.rudder_rate.unwrap_or(ship.gear.rate);
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
             let figures = figures::of(&self.kind, &passage, mixture.particulars());
             Some(DrawResult { figures, largest_rate: passage.largest_rate() })

@@ -8,8 +8,8 @@ use ship::Polyline;
 use simulate::{Purpose, StreamKey};
 use trial::{Channel, Trial};
 
-use crate::figures::{self, Figure};
-use crate::passage::{self, SimulatedManoeuvre, Way};
+use crate::figures::{self, Figures};
+use crate::passage::{self, PlanarMotion, SimulatedManoeuvre};
 
 /// Share of the largest angle above which a rudder is held.
 const HELD: f64 = 0.8;
@@ -19,10 +19,10 @@ const LONGER: f64 = 2.0;
 
 /// The uniform current that a circle of 720° or more shows; `None` for any other record, and without positions.
 pub fn current_of(trial: &Trial) -> Option<Current> {
-    let Turn { execute, until, .. } = Turn::of(trial.rudder_signal())?;
+    let turn = HeldTurn::of(trial)?;
     let (north, east) = (trial.channel(Channel::North)?, trial.channel(Channel::East)?);
     let is_there = |row: &usize| north[*row].is_finite() && east[*row].is_finite();
-    let is_turning = |row: &usize| (execute..=until).contains(&trial.time()[*row]);
+    let is_turning = |row: &usize| (turn.execute..=turn.until).contains(&trial.time()[*row]);
     let rows: Vec<usize> = trial.observed_rows().filter(is_there).filter(is_turning).collect();
     let of = |values: &[f64]| -> Vec<f64> { rows.iter().map(|&row| values[row]).collect() };
     let track: Vec<[f64; 2]> = rows.iter().map(|&row| [north[row], east[row]]).collect();
@@ -38,7 +38,7 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
     }
 }
 
-/// A drawn passage with what is not known of a current, from its execute on.
+/// A drawn ship with what is not known of a current, from her execute on.
 pub(crate) fn in_doubt(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
     let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed(Purpose::Specification, 3);
     let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
@@ -50,11 +50,13 @@ pub(crate) fn in_doubt(passage: &SimulatedManoeuvre, current: &Current, number: 
     passage
 }
 
-/// A rudder that is put over and held.
-pub(crate) struct Turn {
-    /// Time at which it leaves its beginning, s.
+/// A rudder that is put over and held; times on the clock of the record, s.
+pub(crate) struct HeldTurn {
+    /// First row of the record.
+    start: f64,
+    /// When it leaves its beginning.
     pub execute: f64,
-    /// Time until which it is held, s.
+    /// Until when it is held.
     pub until: f64,
     /// Side it is put to, ±1.
     pub side: f64,
@@ -64,40 +66,48 @@ pub(crate) struct Turn {
     pub before: f64,
 }
 
-impl Turn {
+impl HeldTurn {
     /// The turn with the largest rudder; `None` for a rudder that never moves.
-    pub fn of(signal: &Polyline) -> Option<Self> {
-        let (times, values) = (signal.times(), signal.values());
+    pub fn of(trial: &Trial) -> Option<Self> {
+        let (times, values) = (trial.rudder_signal().times(), trial.rudder_signal().values());
         let away = |value: f64| value - values[0];
         let largest = values.iter().copied().map(away).max_by(|one, other| one.abs().total_cmp(&other.abs()))?;
         let side = largest.signum();
         let share = |row: usize| away(values[row]) * side / largest.abs();
-        let mut start = (0..values.len()).find(|&row| share(row) > HELD)?;
-        let until = (start..values.len()).find(|&row| share(row) < HELD).map_or(values.len() - 1, |row| row - 1);
+        let mut first = (0..values.len()).find(|&row| share(row) > HELD)?;
+        let until = (first..values.len()).find(|&row| share(row) < HELD).map_or(values.len() - 1, |row| row - 1);
         // Back along the ramp.
-        while start > 0 && share(start - 1) > 0.01 {
-            start -= 1;
+        while first > 0 && share(first - 1) > 0.01 {
+            first -= 1;
         }
-        let rudder = (largest + values[0]) * side;
-        Some(Self { execute: times[start.saturating_sub(1)], until: times[until], side, rudder, before: values[0] })
+        Some(Self {
+            start: trial.time()[0],
+            execute: times[first.saturating_sub(1)],
+            until: times[until],
+            side,
+            rudder: (largest + values[0]) * side,
+            before: values[0],
+        })
     }
 
-    /// Figures of a turn of which a passage holds this much; its clock begins with that of the record at `start`, s.
-    pub fn figures(&self, passage: &SimulatedManoeuvre, start: f64) -> Vec<Figure> {
-        let execute = self.execute - start;
-        let first = (execute / passage.period).round() as usize;
-        let begin = passage.at(&passage.heading, execute);
-        let after = SimulatedManoeuvre {
-            heading: passage.heading.iter().skip(first).map(|heading| heading - begin).collect(),
-            yaw_rate: Vec::new(),
-            rudder: Vec::new(),
-            executes: Vec::new(),
-            way: None,
-            period: passage.period,
-        };
-        let mut figures = Vec::new();
-        figures::turn(&after, self.side, &mut figures);
-        figures::circle(passage, execute, &mut figures);
+    /// From the first row to the execute, s.
+    pub fn approach(&self) -> f64 {
+        self.execute - self.start
+    }
+
+    /// Figures of a turn that goes on as long as that of the record.
+    pub fn figures(&self, passage: &SimulatedManoeuvre) -> Figures {
+        self.whole_figures(&passage.until(self.until - self.start))
+    }
+
+    /// Figures of a turn that goes on to the end; its clock begins with the record.
+    pub fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Figures {
+        let first = (self.approach() / passage.period).round() as usize;
+        let begin = passage.at(&passage.heading, self.approach());
+        let heading = passage.heading.iter().skip(first).map(|heading| heading - begin).collect();
+        let after = SimulatedManoeuvre { heading, period: passage.period, ..SimulatedManoeuvre::default() };
+        let mut figures = figures::turn(&after, self.side);
+        figures.extend(figures::circle(passage, self.approach()));
         figures
     }
 
@@ -111,32 +121,31 @@ impl Turn {
     }
 }
 
-/// The passage of a record on rows of a time of the ship, s; with its way where it has a track and the length is known,
-/// m. `None` without headings.
+/// A record on rows of a time of the ship, s; with its way where it has a track and the length is known, m. `None`
+/// without headings.
 pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<SimulatedManoeuvre> {
     let period = passage::period(timescale);
     let count = (trial.duration() / period) as usize + 1;
-    let rows: Vec<usize> = trial.observed_rows().collect();
-    let on_rows = |rows: &[usize], values: &[f64]| -> Option<Vec<f64>> {
-        let rows: Vec<usize> = rows.iter().copied().filter(|&row| values[row].is_finite()).collect();
-        let times: Vec<f64> = rows.iter().map(|&row| trial.time()[row] - trial.time()[0]).collect();
-        let signal = Polyline::new(times, rows.iter().map(|&row| values[row]).collect()).ok()?;
+    let on_rows = |rows: &mut dyn Iterator<Item = usize>, values: &[f64]| -> Option<Vec<f64>> {
+        let read =
+            rows.filter(|&row| values[row].is_finite()).map(|row| (trial.time()[row] - trial.time()[0], values[row]));
+        let (times, values) = read.unzip();
+        let signal = Polyline::new(times, values).ok()?;
         Some((0..count).map(|row| signal.at(row as f64 * period)).collect())
     };
-    let heading = on_rows(&rows, trial.heading())?;
-    let all: Vec<usize> = (0..trial.len()).collect();
-    let channel = |channel: Channel| on_rows(&all, trial.channel(channel)?);
+    let heading = on_rows(&mut trial.observed_rows(), trial.heading())?;
+    let channel = |channel: Channel| on_rows(&mut (0..trial.len()), trial.channel(channel)?);
+    let pairs = |one: Vec<f64>, other: Vec<f64>| one.into_iter().zip(other).map(|(a, b)| [a, b]).collect();
     let way = || {
-        let length = length?;
-        let [north, east] = [channel(Channel::North)?, channel(Channel::East)?];
-        let rest = |channel: Option<Vec<f64>>| channel.unwrap_or_else(|| vec![f64::NAN; heading.len()]);
-        let [surge, sway] = [Channel::Surge, Channel::Sway].map(|own| rest(channel(own)));
-        Some(Way { length, surge, sway, track: north.into_iter().zip(east).map(|(n, e)| [n, e]).collect() })
+        let (length, track) = (length?, pairs(channel(Channel::North)?, channel(Channel::East)?));
+        let [surge, sway] =
+            [Channel::Surge, Channel::Sway].map(|own| channel(own).unwrap_or_else(|| vec![f64::NAN; count]));
+        Some(PlanarMotion { length, velocity: pairs(surge, sway), track })
     };
     let slope = |row: usize| match count {
         0 | 1 => 0.0,
         _ => (heading[row + 1] - heading[row]) / period,
     };
     let yaw_rate = (0..count).map(|row| slope(row.min(count.saturating_sub(2)))).collect();
-    Some(SimulatedManoeuvre { period, yaw_rate, rudder: Vec::new(), executes: Vec::new(), way: way(), heading })
+    Some(SimulatedManoeuvre { period, yaw_rate, way: way(), heading, ..SimulatedManoeuvre::default() })
 }

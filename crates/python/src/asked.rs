@@ -5,7 +5,7 @@ use scenario::failure::Failure;
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]
-struct Words<R: Args> {
+struct OptionWords<R: Args> {
     #[command(flatten)]
     request: R,
 }
@@ -14,7 +14,7 @@ struct Words<R: Args> {
 ///
 /// Fails as the command line does.
 pub fn request<R: Args>(words: Vec<String>) -> Result<R, Failure> {
-    Words::try_parse_from(words).map(|words| words.request).map_err(|usage| {
+    OptionWords::try_parse_from(words).map(|words| words.request).map_err(|usage| {
         let said = usage.to_string();
         let (said, _) = said.split_once("\n\nUsage:").unwrap_or((&said, ""));
         let (said, _) = said.split_once("\n\nFor more information").unwrap_or((said, ""));

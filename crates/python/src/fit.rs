@@ -9,13 +9,13 @@ use study::records::warn_of_repetition;
 use study::work;
 use trial::Trial;
 
-use crate::curve::{Curve, curve};
-use crate::record::{Record, trials};
+use crate::curve::{ReplayArrays, curve};
+use crate::record::{PyRecord, trials};
 use crate::wait::patiently;
 
 /// What came out, with what its figures are made from.
-#[pyclass(frozen, module = "kempf._kempf")]
-pub struct Fit {
+#[pyclass(frozen, name = "Fit", module = "kempf._kempf")]
+pub struct PyFit {
     #[pyo3(get)]
     text: String,
     #[pyo3(get)]
@@ -26,14 +26,14 @@ pub struct Fit {
 }
 
 #[pymethods]
-impl Fit {
+impl PyFit {
     /// A record as it was fitted: at the scale of the first.
-    fn record(&self, place: usize) -> Option<Record> {
-        self.trials.get(place).cloned().map(Record::plain)
+    fn record(&self, place: usize) -> Option<PyRecord> {
+        self.trials.get(place).cloned().map(PyRecord::plain)
     }
 
     /// The rudder of a record replayed through the answer of a method; `None` where it has none.
-    fn replay<'py>(&self, py: Python<'py>, place: usize, method: &str) -> Option<Curve<'py>> {
+    fn replay<'py>(&self, py: Python<'py>, place: usize, method: &str) -> Option<ReplayArrays<'py>> {
         let (_, estimate) = self.answers.iter().find(|(id, _)| id == method)?;
         Some(curve(py, &replay(self.trials.get(place)?, &estimate.as_ref()?.response)?))
     }
@@ -43,11 +43,11 @@ impl Fit {
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,
-    records: Vec<Py<Record>>,
-    validate: Vec<Py<Record>>,
+    records: Vec<Py<PyRecord>>,
+    validate: Vec<Py<PyRecord>>,
     methods: Vec<String>,
     seed: Option<u64>,
-) -> PyResult<Fit> {
+) -> PyResult<PyFit> {
     let (records, others) = (trials(&records), trials(&validate));
     patiently(py, move || {
         let methods = work::fit::methods(&methods, &[], seed)?;
@@ -57,7 +57,7 @@ pub fn fit(
         for entry in &done.file.methods {
             warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
         }
-        Ok(Fit {
+        Ok(PyFit {
             text: document::text(&done.file).map_err(Failure::work)?,
             warnings,
             trials: [done.together.trials, done.together.others].concat(),

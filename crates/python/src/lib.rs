@@ -31,9 +31,9 @@ fn _kempf(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("KempfError", py.get_type::<raise::KempfError>())?;
     module.add("WorkError", py.get_type::<raise::WorkError>())?;
     module.add("KempfWarning", py.get_type::<raise::KempfWarning>())?;
-    module.add_class::<record::Record>()?;
-    module.add_class::<fit::Fit>()?;
-    module.add_class::<trace::Trace>()?;
+    module.add_class::<record::PyRecord>()?;
+    module.add_class::<fit::PyFit>()?;
+    module.add_class::<trace::PyTrace>()?;
     module.add_function(wrap_pyfunction!(record::read, module)?)?;
     module.add_function(wrap_pyfunction!(record::record_of, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;

@@ -6,10 +6,10 @@ use pyo3::prelude::*;
 use scenario::failure::Failure;
 use study::options::PredictRequest;
 use study::views::document;
-use study::work::predict::{Asked, Model, asked_scale, manoeuvres};
+use study::work::predict::{self as work, Model, PredictInput};
 
 use crate::asked::request;
-use crate::record::{Record, trials};
+use crate::record::{PyRecord, trials};
 use crate::wait::patiently;
 
 /// The document of a prediction and the warnings. `models` are names of files, with the text of those that are none;
@@ -18,7 +18,7 @@ use crate::wait::patiently;
 pub fn predict(
     py: Python<'_>,
     models: Vec<(String, Option<String>)>,
-    replay: Vec<Py<Record>>,
+    replay: Vec<Py<PyRecord>>,
     words: Vec<String>,
 ) -> PyResult<(String, Vec<String>)> {
     let records = trials(&replay);
@@ -32,22 +32,8 @@ pub fn predict(
             None => Model::of_file(Path::new(name), &asked, &mut warnings),
         };
         let models: Vec<Model> = models.iter().map(read).collect::<Result<_, _>>()?;
-        let predicted = study::work::predict::predict(
-            Asked {
-                models: &models,
-                ballast: &[],
-                records,
-                current: None,
-                manoeuvres: manoeuvres(&asked),
-                draws: asked.draws as usize,
-                calm: asked.calm,
-                scale: asked_scale(&asked.reading),
-                form: false,
-                declared: None,
-            },
-            true,
-            &mut warnings,
-        )?;
+        let input = PredictInput { models: &models, ballast: &[], records, current: None, declared: None };
+        let predicted = work::predict(&asked, input, true, &mut warnings)?;
         Ok((document::text(&predicted).map_err(Failure::work)?, warnings))
     })
 }

@@ -16,15 +16,15 @@ use crate::raise::raised;
 use crate::wait::patiently;
 
 /// A record as the methods see it.
-#[pyclass(frozen, module = "kempf._kempf")]
-pub struct Record {
+#[pyclass(frozen, name = "Record", module = "kempf._kempf")]
+pub struct PyRecord {
     /// The record.
     pub trial: Trial,
     #[pyo3(get)]
     warnings: Vec<String>,
 }
 
-impl Record {
+impl PyRecord {
     /// A record of which there is nothing to say.
     pub fn plain(trial: Trial) -> Self {
         Self { trial, warnings: Vec::new() }
@@ -32,12 +32,12 @@ impl Record {
 }
 
 /// The records that Python handed in.
-pub fn trials(records: &[Py<Record>]) -> Vec<Trial> {
+pub fn trials(records: &[Py<PyRecord>]) -> Vec<Trial> {
     records.iter().map(|record| record.get().trial.clone()).collect()
 }
 
 #[pymethods]
-impl Record {
+impl PyRecord {
     fn __len__(&self) -> usize {
         self.trial.len()
     }
@@ -108,13 +108,13 @@ impl Record {
 
 /// Reads a record, or all records of a folder; `words` are options of the command line.
 #[pyfunction]
-pub fn read(py: Python<'_>, path: PathBuf, words: Vec<String>) -> PyResult<Vec<Record>> {
+pub fn read(py: Python<'_>, path: PathBuf, words: Vec<String>) -> PyResult<Vec<PyRecord>> {
     patiently(py, move || {
         let options: ReadingOptions = request(words)?;
         let one = |file: PathBuf| {
             let mut warnings = Vec::new();
             let mut trials = read_all(std::slice::from_ref(&file), &options, &mut warnings)?;
-            Ok(Record { trial: trials.remove(0), warnings })
+            Ok(PyRecord { trial: trials.remove(0), warnings })
         };
         expand(std::slice::from_ref(&path))?.into_iter().map(one).collect()
     })
@@ -122,7 +122,7 @@ pub fn read(py: Python<'_>, path: PathBuf, words: Vec<String>) -> PyResult<Vec<R
 
 /// A column of a table that is no file.
 #[derive(FromPyObject)]
-pub enum Column<'py> {
+pub enum PyColumn<'py> {
     /// Numbers; NaN where there is none.
     Numbers(PyReadonlyArray1<'py, f64>),
     /// Anything else, such as stamps of date and time.
@@ -134,15 +134,20 @@ pub enum Column<'py> {
 pub fn record_of(
     py: Python<'_>,
     name: String,
-    columns: Vec<(String, Column<'_>)>,
+    columns: Vec<(String, PyColumn<'_>)>,
     words: Vec<String>,
-) -> PyResult<Record> {
+) -> PyResult<PyRecord> {
     let table = table(&columns).map_err(raised)?;
     patiently(py, move || of_table(&name, &table, &request(words)?, None))
 }
 
 /// The record that the text of a table holds, called `name`, as that of its sidecar describes it.
-pub fn of_table(name: &str, table: &[u8], options: &ReadingOptions, sidecar: Option<&str>) -> Result<Record, Failure> {
+pub fn of_table(
+    name: &str,
+    table: &[u8],
+    options: &ReadingOptions,
+    sidecar: Option<&str>,
+) -> Result<PyRecord, Failure> {
     let path = PathBuf::from(format!("{name}.csv"));
     name::of_file(&path)?;
     let sidecar = sidecar.map(|text| Sidecar::parse(text, &Sidecar::beside(&path))).transpose();
@@ -151,11 +156,11 @@ pub fn of_table(name: &str, table: &[u8], options: &ReadingOptions, sidecar: Opt
     let shown = |warning: String| format!("{}: {warning}", path.display());
     let mut warnings: Vec<String> = std::mem::take(&mut log.warnings).into_iter().map(shown).collect();
     let trial = of_log(log, &path, options, &mut warnings)?;
-    Ok(Record { trial, warnings })
+    Ok(PyRecord { trial, warnings })
 }
 
 /// Columns as the text of a table, with as many digits as a number needs.
-fn table(columns: &[(String, Column)]) -> Result<Vec<u8>, Failure> {
+fn table(columns: &[(String, PyColumn)]) -> Result<Vec<u8>, Failure> {
     let lengths: Vec<usize> = columns.iter().map(|(_, column)| column.len()).collect();
     let rows = lengths.first().copied().unwrap_or_default();
     if let Some(other) = lengths.iter().position(|length| *length != rows) {
@@ -179,7 +184,7 @@ fn table(columns: &[(String, Column)]) -> Result<Vec<u8>, Failure> {
     table.into_inner().map_err(Failure::work)
 }
 
-impl Column<'_> {
+impl PyColumn<'_> {
     fn len(&self) -> usize {
         match self {
             Self::Numbers(values) => values.as_array().len(),

@@ -13,11 +13,11 @@ use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use scenario::failure::Failure;
-use study::options::{FigureChoice, MOST_THREADS, Style};
+use study::options::{FigureChoice, FigureOptions, MOST_THREADS};
 use study::views::publish;
 
 use crate::raise::raised;
-use crate::scene::Scene;
+use crate::scene::ScenarioInput;
 use crate::wait::Underway;
 
 /// Who watches a study that Python waits for.
@@ -26,19 +26,19 @@ struct Watch {
     is_asked: AtomicBool,
     most: AtomicU64,
     done: AtomicU64,
-    said: Mutex<Said>,
+    said: Mutex<StudyMessages>,
     threads: Option<ThreadPool>,
 }
 
 /// What a study had to say.
 #[derive(Default)]
-struct Said {
+struct StudyMessages {
     notes: Vec<String>,
     warnings: Vec<String>,
 }
 
 impl Watch {
-    fn said(&self, add: impl FnOnce(&mut Said)) {
+    fn said(&self, add: impl FnOnce(&mut StudyMessages)) {
         add(&mut self.said.lock().unwrap_or_else(PoisonError::into_inner));
     }
 }
@@ -81,14 +81,14 @@ fn pool(count: i64) -> Result<ThreadPool, Failure> {
 
 /// Runs what is missing and publishes what is stored; returns the document of the study.
 fn study(
-    scene: &Scene,
+    scene: &ScenarioInput,
     out: Option<PathBuf>,
     seed: Option<u64>,
     restart: bool,
     watch: &Watch,
 ) -> Result<String, Failure> {
     let scenario = scene.read(seed)?;
-    let theme = Style { paper: None, dpi: 600.0, style: None }.theme()?;
+    let theme = FigureOptions { paper: None, dpi: 600.0, style: None }.theme()?;
     let folder = ResultFolder::hold(&out.unwrap_or_else(|| default_folder(&scenario.name, Shard::WHOLE)))?;
     let stored = collect(&scenario, Shard::WHOLE, &folder, restart, watch)?;
     let publish = || publish::put(&stored, &folder, (&theme, FigureChoice::Named));
@@ -105,7 +105,7 @@ fn study(
 #[pyo3(signature = (scene, out, threads, seed, restart, progress))]
 pub fn run(
     py: Python<'_>,
-    scene: Scene,
+    scene: ScenarioInput,
     out: Option<PathBuf>,
     threads: Option<i64>,
     seed: Option<u64>,

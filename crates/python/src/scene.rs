@@ -11,7 +11,7 @@ use crate::raise::raised;
 
 /// A scenario as Python hands it in.
 #[derive(FromPyObject)]
-pub struct Scene {
+pub struct ScenarioInput {
     /// The file, or what messages call the text.
     #[pyo3(item)]
     path: PathBuf,
@@ -20,7 +20,7 @@ pub struct Scene {
     text: Option<String>,
 }
 
-impl Scene {
+impl ScenarioInput {
     /// Reads it. Fails as the command line does.
     pub fn read(&self, seed: Option<u64>) -> Result<Scenario, Failure> {
         let Some(text) = &self.text else { return Scenario::read(&self.path, seed) };

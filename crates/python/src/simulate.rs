@@ -5,35 +5,35 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use scenario::failure::Failure;
 use study::options::{Replicates, SimulateRequest};
-use study::work::simulate::{Made, records, tasks};
+use study::work::simulate::{RecordFiles, records, tasks};
 
 use crate::asked::request;
-use crate::record::{Record, of_table};
-use crate::scene::Scene;
+use crate::record::{PyRecord, of_table};
+use crate::scene::ScenarioInput;
 use crate::wait::patiently;
 
 /// The trials that are asked for, each with its truth as JSON. A record is what the command line writes, read again.
 #[pyfunction]
 pub fn simulate(
     py: Python<'_>,
-    scene: Scene,
+    scene: ScenarioInput,
     cell: Option<String>,
     replicate: Option<u64>,
     seed: Option<u64>,
-) -> PyResult<Vec<(Record, String)>> {
+) -> PyResult<Vec<(PyRecord, String)>> {
     patiently(py, move || {
         let scenario = scene.read(seed)?;
         let replicate = replicate.map_or(Replicates::All, Replicates::One);
         let asked = SimulateRequest { scenario: scene.path().to_owned(), cell, replicate };
         let whole = request(Vec::new())?;
-        let read = |Made { name, table, sidecar, truth }: Made| {
+        let read = |RecordFiles { name, table, sidecar, truth }: RecordFiles| {
             Ok((of_table(&name, &table, &whole, sidecar.as_deref())?, truth))
         };
         let trials = tasks(&scenario, &asked)?
             .into_par_iter()
             .map(|task| records(&scenario, task, &record_name(&scenario, task))?.into_iter().map(read).collect());
         // The first failure in the order of the trials, whichever came first.
-        let trials: Vec<Result<Vec<(Record, String)>, Failure>> = trials.collect();
+        let trials: Vec<Result<Vec<(PyRecord, String)>, Failure>> = trials.collect();
         Ok(trials.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     })
 }

@@ -9,13 +9,13 @@ use study::records::warn_of_repetition;
 use study::work;
 
 use crate::asked::request;
-use crate::curve::{Curve, curve};
-use crate::record::{Record, trials};
+use crate::curve::{ReplayArrays, curve};
+use crate::record::{PyRecord, trials};
 use crate::wait::patiently;
 
 /// What came out, with what its figures are made from.
-#[pyclass(frozen, module = "kempf._kempf")]
-pub struct Trace {
+#[pyclass(frozen, name = "Trace", module = "kempf._kempf")]
+pub struct PyTrace {
     #[pyo3(get)]
     text: String,
     #[pyo3(get)]
@@ -25,14 +25,14 @@ pub struct Trace {
 }
 
 #[pymethods]
-impl Trace {
+impl PyTrace {
     /// A record as it was fitted: at the scale of the first.
-    fn record(&self, place: usize) -> Option<Record> {
-        self.records.get(place).map(|one| Record::plain(one.trial.clone()))
+    fn record(&self, place: usize) -> Option<PyRecord> {
+        self.records.get(place).map(|one| PyRecord::plain(one.trial.clone()))
     }
 
     /// The rudder of a record replayed through the base, and through the average of the structures.
-    fn replays<'py>(&self, py: Python<'py>, place: usize) -> Option<[Curve<'py>; 2]> {
+    fn replays<'py>(&self, py: Python<'py>, place: usize) -> Option<[ReplayArrays<'py>; 2]> {
         Some(self.records.get(place)?.replays.each_ref().map(|replay| curve(py, replay)))
     }
 }
@@ -41,10 +41,10 @@ impl Trace {
 #[pyfunction]
 pub fn trace(
     py: Python<'_>,
-    records: Vec<Py<Record>>,
-    validate: Vec<Py<Record>>,
+    records: Vec<Py<PyRecord>>,
+    validate: Vec<Py<PyRecord>>,
     words: Vec<String>,
-) -> PyResult<Trace> {
+) -> PyResult<PyTrace> {
     let (records, others) = (trials(&records), trials(&validate));
     patiently(py, move || {
         // The records are here already; the command line asks for the name of one.
@@ -55,6 +55,6 @@ pub fn trace(
         let traced = work::trace::trace(&records, &others, &work::trace::settings(&asked), true, &mut warnings)?;
         let text = document::text(&traced.document).map_err(Failure::work)?;
         let records = traced.curves()?.records;
-        Ok(Trace { text, warnings, records })
+        Ok(PyTrace { text, warnings, records })
     })
 }

@@ -6,7 +6,7 @@ use campaign::benchmark::BenchTask;
 use clap::Args;
 use scenario::problem::suggestion;
 
-use crate::options::Style;
+use crate::options::FigureOptions;
 use crate::outside::NamedCommand;
 
 /// What `study bench` is asked to do.
@@ -32,7 +32,7 @@ pub struct BenchRequest {
     pub sets: Vec<String>,
     /// How figures are drawn
     #[command(flatten)]
-    pub style: Style,
+    pub style: FigureOptions,
 }
 
 fn task(name: &str) -> Result<BenchTask, String> {

@@ -10,13 +10,9 @@ use crate::commands::{
     bench, check, doctor, find, fit, list, merge, overview, predict, report, run, schema, score, shell, sidecar,
     simulate, trace,
 };
-use crate::options::{
-    Common, Described, FindRequest, FitRequest, Listed, PredictRequest, RunRequest, SimulateRequest, StudyStyle,
-    TraceRequest,
-};
+use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
 use crate::{screen, threads};
-use clap::{CommandFactory, Parser, Subcommand};
-use clap_complete::Shell;
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use scenario::failure::{Blame, Failure};
 use scenario::problem::suggestion;
 
@@ -38,142 +34,65 @@ struct Cli {
     common: Common,
 }
 
+/// What is asked of a command, and what may be asked of all.
+#[derive(Debug, Args)]
+struct With<R: Args> {
+    #[command(flatten)]
+    request: R,
+    #[command(flatten)]
+    common: Common,
+}
+
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Identify a record with every (or the named) method: table, plot, fit.json
-    Fit {
-        #[command(flatten)]
-        request: FitRequest,
-        #[command(flatten)]
-        common: Common,
-    },
+    Fit(With<FitRequest>),
     /// Close the loop on records: fit, look at what is left, name the effect the model lacks, add it: trace.json,
     /// report, plots
-    Trace {
-        #[command(flatten)]
-        request: TraceRequest,
-        #[command(flatten)]
-        common: Common,
-    },
+    Trace(With<TraceRequest>),
     /// Predict manoeuvres that were not made from fit.json or trace.json, with intervals: predict.json, report, plots
-    Predict {
-        #[command(flatten)]
-        request: PredictRequest,
-        #[command(flatten)]
-        common: Common,
-    },
+    Predict(With<PredictRequest>),
     /// List the manoeuvres inside long logs: zig-zags, turning circles, pull-outs, spirals, straight pieces
-    Find {
-        #[command(flatten)]
-        request: FindRequest,
-        #[command(flatten)]
-        common: Common,
-    },
+    Find(With<FindRequest>),
     /// Write a first description of the columns of a table, NAME.trial.toml beside it, for a person to check
-    Sidecar {
-        /// The table
-        #[arg(value_name = "LOG")]
-        log: PathBuf,
-        #[command(flatten)]
-        common: Common,
-    },
+    Sidecar(With<sidecar::SidecarRequest>),
     /// Write simulated trials in the format `study fit` reads, the truth beside them
-    Simulate {
-        #[command(flatten)]
-        request: SimulateRequest,
-        #[command(flatten)]
-        common: Common,
-    },
+    Simulate(With<SimulateRequest>),
     /// Score answers to simulated trials that another program found, beside the methods of the scenario
-    Score {
-        #[command(flatten)]
-        request: score::ScoreRequest,
-        #[command(flatten)]
-        common: Common,
-    },
+    Score(With<score::ScoreRequest>),
     /// Run the benchmark on measured and simulated trials: leaderboards, bench.json, report, plots
-    Bench {
-        #[command(flatten)]
-        request: BenchRequest,
-        #[command(flatten)]
-        common: Common,
-    },
+    Bench(With<BenchRequest>),
     /// Resolve scenario files and run nothing
-    Check {
-        /// Scenario files
-        #[arg(required = true, value_name = "SCENARIO.toml")]
-        scenarios: Vec<PathBuf>,
-        /// Print every scenario with nothing left out, as TOML; defaults are marked
-        #[arg(long)]
-        resolved: bool,
-        #[command(flatten)]
-        common: Common,
-    },
+    Check(With<check::CheckRequest>),
     /// List what scenario files can name
-    List {
-        /// What to list
-        what: Listed,
-        #[command(flatten)]
-        common: Common,
-    },
+    List(With<list::ListRequest>),
     /// Rebuild tables and plots of a study or a trace from what is stored; nothing is simulated or fitted
-    Report {
-        /// Folder of a finished study or of a trace; with --open also that of a fit or a prediction
-        #[arg(value_name = "DIR")]
-        folder: PathBuf,
-        /// Show report.html in a browser; of a fit or a prediction as it is
-        #[arg(long)]
-        open: bool,
-        #[command(flatten)]
-        style: StudyStyle,
-        #[command(flatten)]
-        common: Common,
-    },
+    Report(With<report::ReportRequest>),
     /// Write one page over all published studies of a folder
-    Overview {
-        /// Folder that holds the folders of studies
-        #[arg(value_name = "DIR")]
-        folder: PathBuf,
-        #[command(flatten)]
-        common: Common,
-    },
+    Overview(With<overview::OverviewRequest>),
     /// Look at the machine and the terminal: versions, threads, instruction sets, whether files can be written
-    Doctor {
-        #[command(flatten)]
-        common: Common,
-    },
+    Doctor(Common),
     /// Print the JSON schema of a file, for editors and programs
-    Schema {
-        /// Which file
-        what: Described,
-        #[command(flatten)]
-        common: Common,
-    },
+    Schema(With<schema::SchemaRequest>),
     /// Print what a shell has to read to complete commands and options
-    Completions {
-        /// The shell
-        shell: Shell,
-        #[command(flatten)]
-        common: Common,
-    },
+    Completions(With<shell::CompletionsRequest>),
     /// Write manual pages, one for every command
-    Man {
-        /// Folder for the pages, such as ~/.local/share/man/man1
-        #[arg(value_name = "DIR")]
-        folder: PathBuf,
-        #[command(flatten)]
-        common: Common,
-    },
+    Man(With<shell::ManRequest>),
     /// Join the shards of one study
-    Merge {
-        /// Folders written with --shard, all of them, in any order
-        #[arg(required = true, value_name = "DIR")]
-        folders: Vec<PathBuf>,
-        #[command(flatten)]
-        style: StudyStyle,
-        #[command(flatten)]
-        common: Common,
-    },
+    Merge(With<merge::MergeRequest>),
+}
+
+impl<R: Args> With<R> {
+    /// Runs a command that works on one thread.
+    fn answer(&self, run: impl FnOnce(&R, &Common) -> Result<(), Failure>) -> Result<(), Failure> {
+        run(&self.request, &self.common)
+    }
+
+    /// Runs a command that works on several.
+    fn work(&self, run: impl FnOnce(&R, &Common) -> Result<(), Failure>) -> Result<(), Failure> {
+        threads::start(&self.common)?;
+        run(&self.request, &self.common)
+    }
 }
 
 /// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong.
@@ -212,52 +131,29 @@ fn mistaken_command(first: Option<OsString>) -> Option<String> {
 }
 
 fn answer(cli: Cli) -> Result<(), Failure> {
-    match (cli.command, cli.scenario) {
-        (None, Some(scenario)) => {
-            threads::start(&cli.common)?;
-            run::run(&scenario, &cli.request, &cli.common)
-        }
-        (None, None) => Err(Failure::input("no scenario is named; try `study scenarios/yukun.toml` or `study --help`")),
-        (Some(Command::Fit { request, common }), _) => {
-            threads::start(&common)?;
-            fit::run(&request, &common)
-        }
-        (Some(Command::Trace { request, common }), _) => {
-            threads::start(&common)?;
-            trace::run(&request, &common)
-        }
-        (Some(Command::Predict { request, common }), _) => {
-            threads::start(&common)?;
-            predict::run(&request, &common)
-        }
-        (Some(Command::Sidecar { log, common }), _) => sidecar::run(&log, &common),
-        (Some(Command::Find { request, common }), _) => find::run(&request, &common),
-        (Some(Command::Simulate { request, common }), _) => {
-            threads::start(&common)?;
-            simulate::run(&request, &common)
-        }
-        (Some(Command::Score { request, common }), _) => {
-            threads::start(&common)?;
-            score::run(&request, &common)
-        }
-        (Some(Command::Bench { request, common }), _) => {
-            threads::start(&common)?;
-            bench::run(&request, &common)
-        }
-        (Some(Command::Check { scenarios, resolved, common }), _) => check::run(&scenarios, resolved, &common),
-        (Some(Command::List { what, common }), _) => list::run(what, &common),
-        (Some(Command::Report { folder, open, style, common }), _) => {
-            threads::start(&common)?;
-            report::run(&folder, open, &style, &common)
-        }
-        (Some(Command::Doctor { common }), _) => doctor::run(&common),
-        (Some(Command::Schema { what, common }), _) => schema::run(what, &common),
-        (Some(Command::Completions { shell, common }), _) => shell::completions(shell, Cli::command(), &common),
-        (Some(Command::Man { folder, common }), _) => shell::man(&folder, Cli::command(), &common),
-        (Some(Command::Overview { folder, common }), _) => overview::run(&folder, &common),
-        (Some(Command::Merge { folders, style, common }), _) => {
-            threads::start(&common)?;
-            merge::run(&folders, &style, &common)
-        }
+    let Some(command) = cli.command else {
+        let none = "no scenario is named; try `study scenarios/yukun.toml` or `study --help`";
+        let scenario = cli.scenario.ok_or_else(|| Failure::input(none))?;
+        threads::start(&cli.common)?;
+        return run::run(&scenario, &cli.request, &cli.common);
+    };
+    match command {
+        Command::Fit(own) => own.work(fit::run),
+        Command::Trace(own) => own.work(trace::run),
+        Command::Predict(own) => own.work(predict::run),
+        Command::Simulate(own) => own.work(simulate::run),
+        Command::Score(own) => own.work(score::run),
+        Command::Bench(own) => own.work(bench::run),
+        Command::Report(own) => own.work(report::run),
+        Command::Merge(own) => own.work(merge::run),
+        Command::Find(own) => own.answer(find::run),
+        Command::Sidecar(own) => own.answer(sidecar::run),
+        Command::Check(own) => own.answer(check::run),
+        Command::List(own) => own.answer(list::run),
+        Command::Overview(own) => own.answer(overview::run),
+        Command::Schema(own) => own.answer(schema::run),
+        Command::Completions(own) => own.answer(|own, common| shell::completions(own, Cli::command(), common)),
+        Command::Man(own) => own.answer(|own, common| shell::man(own, Cli::command(), common)),
+        Command::Doctor(common) => doctor::run(&common),
     }
 }

@@ -41,9 +41,9 @@ pub fn install() {
 }
 
 /// While this lives, an interruption is a request.
-pub struct Listener(());
+pub struct StopListener(());
 
-impl Listener {
+impl StopListener {
     /// Listens from now on.
     pub fn new() -> Self {
         install();

@@ -15,7 +15,7 @@ pub mod cli;
 pub mod commands;
 pub mod documents;
 #[cfg(test)]
-mod faults;
+mod fault_tests;
 mod interrupt;
 pub mod options;
 pub mod outside;

@@ -5,13 +5,14 @@ use std::str::FromStr;
 
 use crate::outside::NamedCommand;
 use crate::style_options::within;
-pub use crate::style_options::{FigureChoice, StudyStyle, Style};
+pub use crate::style_options::{FigureChoice, FigureOptions, StudyFigureOptions};
 use ::trace::{EffectId, Rule, Selection};
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};
 use predict::Kind;
 use report::Table;
 use scenario::problem::suggestion;
+use ship::angle::KNOT;
 use trial::clock::Stamp;
 
 /// How a scenario is run.
@@ -25,7 +26,7 @@ pub struct RunRequest {
     pub restart: bool,
     /// How figures are drawn, and which
     #[command(flatten)]
-    pub style: StudyStyle,
+    pub style: StudyFigureOptions,
 }
 
 /// Most threads that can be asked for; no machine has more cores, and the system refuses many more.
@@ -112,6 +113,13 @@ pub struct ReadingOptions {
     pub speed_kn: Option<f64>,
 }
 
+impl ReadingOptions {
+    /// The approach speed that is given, m/s.
+    pub fn speed(&self) -> Option<f64> {
+        self.speed_m_s.or(self.speed_kn.map(|speed| speed * KNOT))
+    }
+}
+
 /// A time in a record.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Moment {
@@ -169,7 +177,7 @@ pub struct FitRequest {
     pub reading: ReadingOptions,
     /// How the figures are drawn
     #[command(flatten)]
-    pub style: Style,
+    pub style: FigureOptions,
 }
 
 /// What `study simulate` is asked to do.
@@ -235,7 +243,7 @@ pub struct TraceRequest {
     pub rule: Rule,
     /// How figures are drawn
     #[command(flatten)]
-    pub style: Style,
+    pub style: FigureOptions,
 }
 
 impl TraceRequest {
@@ -315,7 +323,7 @@ pub struct PredictRequest {
     pub reading: ReadingOptions,
     /// How figures are drawn
     #[command(flatten)]
-    pub style: Style,
+    pub style: FigureOptions,
 }
 
 /// Files that have a schema.

@@ -7,7 +7,7 @@ use ship::Particulars;
 use ship::angle::KNOT;
 use trial::file::{STDIN, called};
 use trial::find::{Kind, Manoeuvre};
-use trial::{Channel, Log, Origin, Reading, Sidecar, Trial};
+use trial::{Channel, Log, Origin, ReadRecord, Sidecar, Trial};
 
 use crate::options::{Moment, ReadingOptions};
 use campaign::answers::TRIALS;
@@ -136,7 +136,7 @@ pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Ve
         chosen(log, path, options.trial, warnings)?
     };
     let ship = ship(&log, path, options, warnings)?;
-    let Reading { trial, warnings: found } = log.into_trial(ship).map_err(Failure::input)?;
+    let ReadRecord { trial, warnings: found } = log.into_trial(ship).map_err(Failure::input)?;
     warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
     Ok(trial)
 }
@@ -251,7 +251,7 @@ fn ship(
     warnings: &mut Vec<String>,
 ) -> Result<Option<Particulars>, Failure> {
     let Some(length) = options.length_m else { return Ok(None) };
-    if let Some(speed) = options.speed_m_s.or(options.speed_kn.map(|speed| speed * KNOT)) {
+    if let Some(speed) = options.speed() {
         return Ok(Some(Particulars { length, speed }));
     }
     let file = path.display();

@@ -89,8 +89,13 @@ pub fn tell(common: &Common, told: &Told, warnings: &[String]) -> Result<(), Fai
             warn(notes.trim_start());
         }
     }
-    warnings.iter().for_each(|warning| warn(&format!("warning: {warning}")));
+    warn_of(warnings);
     Ok(())
+}
+
+/// Writes warnings to standard error, one a line.
+pub fn warn_of(warnings: &[String]) {
+    warnings.iter().for_each(|warning| warn(&format!("warning: {warning}")));
 }
 
 /// Writes a document to standard output as it is: JSON shows by itself what could act on the terminal.

@@ -10,7 +10,7 @@ use scenario::failure::{Failure, OnPath};
 
 /// How figures are drawn.
 #[derive(Debug, Clone, Args)]
-pub struct Style {
+pub struct FigureOptions {
     /// Draw figures for print, MM millimetres wide [default: for a screen]
     #[arg(long, value_name = "MM", value_parser = within(WIDTH_MM), allow_hyphen_values = true)]
     pub paper: Option<f64>,
@@ -24,10 +24,10 @@ pub struct Style {
 
 /// How the figures of a study are drawn, and which.
 #[derive(Debug, Clone, Args)]
-pub struct StudyStyle {
+pub struct StudyFigureOptions {
     /// How they are drawn
     #[command(flatten)]
-    pub style: Style,
+    pub style: FigureOptions,
     /// Which figures are made
     #[arg(long, value_enum, value_name = "WHICH", default_value_t = FigureChoice::Named)]
     pub figures: FigureChoice,
@@ -53,7 +53,7 @@ pub(crate) fn within([least, most]: [f64; 2]) -> impl Fn(&str) -> Result<f64, St
     }
 }
 
-impl Style {
+impl FigureOptions {
     /// The theme of the figures; what the command line says goes before the file. Fails when no page carries it, and
     /// when the file cannot be read.
     pub fn theme(&self) -> Result<Theme, Failure> {
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     fn theme(file: &Path) -> Result<Theme, Failure> {
-        Style { paper: None, dpi: 600.0, style: Some(file.to_owned()) }.theme()
+        FigureOptions { paper: None, dpi: 600.0, style: Some(file.to_owned()) }.theme()
     }
 
     #[test]

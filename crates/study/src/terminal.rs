@@ -6,13 +6,13 @@ use campaign::Observer;
 use indicatif::ProgressBar;
 use scenario::failure::Failure;
 
-use crate::interrupt::{self, Listener};
+use crate::interrupt::{self, StopListener};
 use crate::{progress, screen};
 
 /// The terminal of a person who waits.
 pub struct Terminal {
     quiet: bool,
-    bar: OnceLock<(ProgressBar, Listener)>,
+    bar: OnceLock<(ProgressBar, StopListener)>,
 }
 
 impl Terminal {
@@ -24,7 +24,7 @@ impl Terminal {
 
 impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
-        self.bar.get_or_init(|| (progress::bar(most, done, self.quiet), Listener::new()));
+        self.bar.get_or_init(|| (progress::bar(most, done, self.quiet), StopListener::new()));
     }
 
     fn advance(&self) {

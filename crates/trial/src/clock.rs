@@ -1,8 +1,10 @@
 //! Stamps of date and time as loggers and spreadsheets write them, and the seconds between them. It knows the notations
 //! and the calendar; what is a time column and what becomes of the seconds is decided in [`crate::reader`].
 //!
-//! No library of dates does it: jiff reads ISO 8601 and one given notation at a time, no decimal commas, no 60th second
-//! and no date of which the file has yet to show the month.
+//! The calendar is that of `chrono`. No library reads the notations: jiff and chrono read ISO 8601 and one given notation
+//! at a time, no decimal commas, and no date of which the file has yet to show the month.
+
+use chrono::NaiveDate;
 
 /// Seconds of a day.
 pub const DAY: f64 = 86_400.0;
@@ -40,31 +42,13 @@ pub struct Stamp {
 }
 
 /// Days from 1970-01-01 to a date of the Gregorian calendar; `None` where there is no such date.
-///
-/// Counted in eras of 400 years from 1 March of year 0, so that the leap day is the last of its year.
 pub fn days(year: i32, month: u32, day: u32) -> Option<i64> {
-    const LENGTHS: [u32; 12] = [31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
-    let leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
-    let longest = LENGTHS.get(month.checked_sub(1)? as usize)? + u32::from(leap && month == 2);
-    if day == 0 || day > longest {
-        return None;
-    }
-    let year = i64::from(year) - i64::from(month <= 2);
-    let (era, of_era) = (year.div_euclid(400), year.rem_euclid(400));
-    let of_year = (153 * i64::from((month + 9) % 12) + 2) / 5 + i64::from(day) - 1;
-    Some(era * 146_097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719_468)
+    NaiveDate::from_ymd_opt(year, month, day).map(|date| i64::from(date.to_epoch_days()))
 }
 
-/// Year, month and day of a day since 1970-01-01.
-pub fn date(day: i64) -> (i64, i64, i64) {
-    let day = day + 719_468;
-    let (era, of_era) = (day.div_euclid(146_097), day.rem_euclid(146_097));
-    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year + year / 4 - year / 100);
-    let month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * month + 2) / 5 + 1;
-    let month = if month < 10 { month + 3 } else { month - 9 };
-    (era * 400 + year + i64::from(month <= 2), month, day)
+/// The date of a day since 1970-01-01: `2026-11-20`. Damaged days may lie beyond all calendars; theirs is the last.
+pub fn date(day: i64) -> impl std::fmt::Display {
+    i32::try_from(day).ok().and_then(NaiveDate::from_epoch_days).unwrap_or(NaiveDate::MAX)
 }
 
 /// Reads through the characters of a stamp.
@@ -116,7 +100,8 @@ impl Scan<'_> {
     }
 }
 
-fn full_year(year: u32, digits: usize) -> Option<i32> {
+/// The year of four digits or two.
+pub(crate) fn full_year(year: u32, digits: usize) -> Option<i32> {
     match digits {
         4 => Some(year as i32),
         2 => Some(if year < 70 { 2000 } else { 1900 } + year as i32),
@@ -185,6 +170,13 @@ fn read_time(scan: &mut Scan) -> Option<(f64, bool)> {
     // A leap second is the 60th.
     let valid = hour < 24 && minute < 60 && second <= 60;
     valid.then(|| (f64::from(hour * 3600 + minute * 60 + second) + fraction, fraction > 0.0))
+}
+
+/// Second of the day from `hhmmss.ss`.
+pub(crate) fn second_of_day(digits: &[u8]) -> Option<f64> {
+    let mut scan = Scan { rest: digits.strip_suffix(b".").unwrap_or(digits) };
+    let (second, _) = read_time(&mut scan).filter(|_| digits.iter().take(6).all(u8::is_ascii_digit))?;
+    scan.rest.is_empty().then_some(second)
 }
 
 /// Minutes ahead of UTC, as `Z`, `UTC`, `+01:00`, `+0100` or `+01`.
@@ -277,8 +269,7 @@ impl Clock {
 
     /// The date at time `t` (s) of the record: `2026-11-20`.
     pub fn date_at(&self, t: f64) -> Option<String> {
-        let (year, month, day) = date(self.day? + ((self.second + t) / DAY).floor() as i64);
-        Some(format!("{year:04}-{month:02}-{day:02}"))
+        Some(date(self.day? + ((self.second + t) / DAY).floor() as i64).to_string())
     }
 
     /// The time (s) of the record at a stamp; a time of day alone is the first one at or after time 0.

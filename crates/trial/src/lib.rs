@@ -47,7 +47,7 @@ pub use channel::Channel;
 pub use conditions::{Conditions, Loading};
 pub use file::FileError;
 pub use quantity::Quantity;
-pub use reader::{Log, ReadError, Reading, read, read_with};
+pub use reader::{Log, ReadError, ReadRecord, read, read_with};
 pub use record::{Columns, Corner, Noise, Origin, RejectedReading, Trial, TrialError};
 pub use scale::{ScaleError, Scales, Scaling};
 pub use sidecar::{Sidecar, SidecarError};

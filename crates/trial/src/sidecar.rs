@@ -4,7 +4,7 @@
 //! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is found by itself; any other sidecar has to be named.
 //! [`keys`] lists what it may say; none of it is required.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
 use ship::Particulars;
@@ -12,16 +12,14 @@ use ship::angle::{KNOT, from_deg};
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-use crate::cells::Separator;
 use crate::conditions::Conditions;
-use crate::encoding::Encoding;
 use crate::file::{Kind, read_text};
 use crate::names::{ColumnMeaning, contract};
 use crate::record::Noise;
 use crate::sidecar_error::Fault;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
+use crate::sidecar_keys::{CheckKeys, ColumnKeys, PartKeys, ShipKeys, SidecarKeys, TableKeys};
 pub use crate::sidecar_keys::{Key, keys, schema};
-use crate::sidecar_keys::{Wire, WireColumn, WireShip};
 use crate::words::shortened;
 
 /// A sidecar; the longest in use has a hundred lines.
@@ -38,7 +36,7 @@ pub(crate) enum Which {
 
 /// One `[[column]]`, checked.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Described {
+pub(crate) struct DescribedColumn {
     pub(crate) line: usize,
     pub(crate) which: Which,
     pub(crate) meaning: Option<ColumnMeaning>,
@@ -46,23 +44,18 @@ pub(crate) struct Described {
     pub(crate) ignore: bool,
 }
 
-/// A sidecar that was read and checked as far as it can be without its table.
-#[derive(Debug, Clone, PartialEq)]
+/// A sidecar that was read and checked as far as it can be without its table; the empty one is that of a table which
+/// needs none.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sidecar {
     pub(crate) file: PathBuf,
-    pub(crate) skip_lines: usize,
-    pub(crate) separator: Option<Separator>,
-    pub(crate) encoding: Encoding,
-    pub(crate) header: bool,
-    pub(crate) time_step: Option<f64>,
-    pub(crate) from: f64,
-    pub(crate) until: f64,
-    pub(crate) every: usize,
-    pub(crate) columns: Vec<Described>,
-    pub(crate) particulars: Option<Particulars>,
+    pub(crate) table: TableKeys,
+    pub(crate) part: PartKeys,
+    pub(crate) check: CheckKeys,
+    pub(crate) columns: Vec<DescribedColumn>,
     pub(crate) noise: Noise,
-    pub(crate) plausibility: bool,
-    pub(crate) conditions: Conditions,
+    /// Particulars and conditions that are declared for the form of MSC/Circ.1053.
+    pub conditions: Conditions,
 }
 
 impl Sidecar {
@@ -104,19 +97,24 @@ impl Sidecar {
         SidecarError { file: self.file.clone(), line: Some(line), problem }
     }
 
+    /// Whether a line with names comes before the rows.
+    pub(crate) fn has_header(&self) -> bool {
+        self.table.header.unwrap_or(true)
+    }
+
+    /// The times that are used, s.
+    pub(crate) fn part(&self) -> RangeInclusive<f64> {
+        self.part.from_s.unwrap_or(f64::NEG_INFINITY)..=self.part.until_s.unwrap_or(f64::INFINITY)
+    }
+
+    /// Whether readings are cleaned, and a record that contradicts itself is refused.
+    pub(crate) fn is_checked(&self) -> bool {
+        self.check.plausibility.unwrap_or(true)
+    }
+
     /// Length and approach speed of the ship, where the sidecar declares them.
     pub fn particulars(&self) -> Option<Particulars> {
-        self.particulars
-    }
-
-    /// Sensor noise the sidecar declares.
-    pub fn noise(&self) -> Noise {
-        self.noise
-    }
-
-    /// Particulars and conditions the sidecar declares for the form of MSC/Circ.1053.
-    pub fn conditions(&self) -> &Conditions {
-        &self.conditions
+        self.conditions.particulars
     }
 }
 
@@ -190,21 +188,15 @@ fn syntax(error: toml::de::Error) -> Fault {
 fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     let document = DeTable::parse(text).map_err(syntax)?.into_inner();
     check_values(text, &document)?;
-    let Wire { table, part, column, ship, noise, check, form } = toml::from_str(text).map_err(syntax)?;
+    let SidecarKeys { table, part, column, ship, noise, check, form } = toml::from_str(text).map_err(syntax)?;
     let header = table.header.unwrap_or(true);
     let columns = column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
-    let (from, until) = (part.from_s.unwrap_or(f64::NEG_INFINITY), part.until_s.unwrap_or(f64::INFINITY));
-    // NaN is below nothing.
-    if from.partial_cmp(&until) != Some(std::cmp::Ordering::Less) {
-        let key = if part.until_s.is_some() { "until-s" } else { "from-s" };
-        return Err((place(&document, "part", key), SidecarProblem::Part { from_s: from, until_s: until }));
-    }
     let particulars = match ship {
         None => None,
-        Some(WireShip { length_m: Some(length), speed_m_s: Some(speed), speed_kn: None }) => {
+        Some(ShipKeys { length_m: Some(length), speed_m_s: Some(speed), speed_kn: None }) => {
             Some(Particulars { length, speed })
         }
-        Some(WireShip { length_m: Some(length), speed_m_s: None, speed_kn: Some(speed_kn) }) => {
+        Some(ShipKeys { length_m: Some(length), speed_m_s: None, speed_kn: Some(speed_kn) }) => {
             Some(Particulars { length, speed: speed_kn * KNOT })
         }
         Some(_) => return Err((place(&document, "ship", ""), SidecarProblem::Ship)),
@@ -213,31 +205,24 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     if let Some((key, expected)) = conditions.contradiction() {
         return Err(unfit(text, &document, ("form", key), expected));
     }
-    Ok(Sidecar {
-        file: file.to_path_buf(),
-        skip_lines: table.skip_lines,
-        separator: table.separator,
-        encoding: table.encoding,
-        header,
-        time_step: table.time_step_s,
-        from,
-        until,
-        every: part.every.unwrap_or(1),
-        columns,
-        particulars,
-        noise: Noise {
-            heading: noise.heading_deg.map(from_deg),
-            yaw_rate: noise.yaw_rate_deg_s.map(from_deg),
-            rudder: noise.rudder_deg.map(from_deg),
-        },
-        plausibility: check.plausibility.unwrap_or(true),
-        conditions,
-    })
+    let noise = Noise {
+        heading: noise.heading_deg.map(from_deg),
+        yaw_rate: noise.yaw_rate_deg_s.map(from_deg),
+        rudder: noise.rudder_deg.map(from_deg),
+    };
+    let sidecar = Sidecar { file: file.to_path_buf(), table, part, check, columns, noise, conditions };
+    let (from_s, until_s) = sidecar.part().into_inner();
+    // NaN is below nothing.
+    if from_s.partial_cmp(&until_s) != Some(std::cmp::Ordering::Less) {
+        let key = if sidecar.part.until_s.is_some() { "until-s" } else { "from-s" };
+        return Err((place(&document, "part", key), SidecarProblem::Part { from_s, until_s }));
+    }
+    Ok(sidecar)
 }
 
-fn described(column: &Spanned<WireColumn>, header: bool, text: &str) -> Result<Described, Fault> {
+fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<DescribedColumn, Fault> {
     let fault = |problem| Err((Some(column.span()), problem));
-    let WireColumn { index, name, is, flip, ignore } = column.get_ref();
+    let ColumnKeys { index, name, is, flip, ignore } = column.get_ref();
     let which = match (index, name) {
         (Some(_), Some(_)) => return fault(SidecarProblem::Which { found: "both" }),
         (None, None) => return fault(SidecarProblem::Which { found: "neither" }),
@@ -257,12 +242,14 @@ fn described(column: &Spanned<WireColumn>, header: bool, text: &str) -> Result<D
         contract(is.get_ref()).ok_or_else(|| (Some(is.span()), found()))
     };
     let meaning = is.as_ref().map(known).transpose()?;
-    Ok(Described { line: line_of(text, column.span().start), which, meaning, flip: *flip, ignore: *ignore })
+    Ok(DescribedColumn { line: line_of(text, column.span().start), which, meaning, flip: *flip, ignore: *ignore })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cells::Separator;
+    use crate::encoding::Encoding;
 
     fn parse(text: &str) -> Result<Sidecar, SidecarError> {
         Sidecar::parse(text, Path::new("run.trial.toml"))
@@ -289,22 +276,23 @@ mod tests {
              plausibility = false\n[form]\nship-type = \"tanker\"\nbeam-m = 58\nloading = \"partial\"\n",
         )
         .expect("all keys are documented");
-        assert_eq!((sidecar.skip_lines, sidecar.header, sidecar.every), (4, false, 4));
-        assert_eq!((sidecar.separator, sidecar.encoding), (Some(Separator::Blank), Encoding::Windows1252));
-        assert_eq!((sidecar.from, sidecar.until, sidecar.time_step), (20.0, 110.0, Some(0.1)));
+        let table = &sidecar.table;
+        assert_eq!((table.skip_lines, table.header, sidecar.part.every), (4, Some(false), Some(4)));
+        assert_eq!((table.separator, table.encoding), (Some(Separator::Blank), Encoding::Windows1252));
+        assert_eq!((sidecar.part(), table.time_step_s), (20.0..=110.0, Some(0.1)));
         assert_eq!(sidecar.columns.len(), 2);
         assert_eq!(sidecar.columns[0].line, 11);
         assert_eq!(sidecar.columns[0].which, Which::Place(3));
         assert_eq!(sidecar.columns[0].meaning, contract("heading_rad"));
         let particulars = sidecar.particulars().expect("declared");
         approx::assert_relative_eq!(particulars.speed, 7.973_888_888_888_89, max_relative = 1e-14);
-        approx::assert_relative_eq!(sidecar.noise().rudder.expect("declared"), from_deg(0.2));
-        assert!(!sidecar.plausibility);
-        let form = sidecar.conditions();
+        approx::assert_relative_eq!(sidecar.noise.rudder.expect("declared"), from_deg(0.2));
+        assert!(!sidecar.is_checked());
+        let form = &sidecar.conditions;
         assert_eq!((form.ship_type.as_deref(), form.beam), (Some("tanker"), Some(58.0)));
         assert_eq!(form.particulars, sidecar.particulars());
         assert_eq!(form.loading(), Some(crate::conditions::Loading::Partial));
-        assert!(parse("").expect("no key is required").plausibility);
+        assert!(parse("").expect("no key is required").is_checked());
     }
 
     #[test]

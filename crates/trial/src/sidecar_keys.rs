@@ -14,27 +14,27 @@ use crate::encoding::Encoding;
 
 #[derive(Deserialize, Default, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct Wire {
+pub(crate) struct SidecarKeys {
     #[serde(default)]
-    pub table: WireTable,
+    pub table: TableKeys,
     #[serde(default)]
-    pub part: WirePart,
+    pub part: PartKeys,
     #[serde(default)]
-    #[schemars(with = "Vec<WireColumn>")]
-    pub column: Vec<Spanned<WireColumn>>,
-    pub ship: Option<WireShip>,
+    #[schemars(with = "Vec<ColumnKeys>")]
+    pub column: Vec<Spanned<ColumnKeys>>,
+    pub ship: Option<ShipKeys>,
     #[serde(default)]
-    pub noise: WireNoise,
+    pub noise: NoiseKeys,
     #[serde(default)]
-    pub check: WireCheck,
+    pub check: CheckKeys,
     #[serde(default)]
     #[schemars(description = "The table as it is written.")]
     pub form: Conditions,
 }
 
-#[derive(Deserialize, Default, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct WireTable {
+pub(crate) struct TableKeys {
     /// Lines before the header, or before the rows when there is none; not even decoded. (number)
     #[serde(default)]
     pub skip_lines: usize,
@@ -52,9 +52,9 @@ pub(crate) struct WireTable {
     pub time_step_s: Option<f64>,
 }
 
-#[derive(Deserialize, Default, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct WirePart {
+pub(crate) struct PartKeys {
     /// First time that is used, on the clock of the record. (s)
     pub from_s: Option<f64>,
     /// Last time that is used. (s)
@@ -65,7 +65,7 @@ pub(crate) struct WirePart {
 
 #[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct WireColumn {
+pub(crate) struct ColumnKeys {
     /// Which column: counted from 1; this or its name. (number)
     pub index: Option<usize>,
     /// Which column: its name in the header. (text)
@@ -83,7 +83,7 @@ pub(crate) struct WireColumn {
 
 #[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct WireShip {
+pub(crate) struct ShipKeys {
     /// Length between perpendiculars; needs a speed beside it. (m)
     pub length_m: Option<f64>,
     /// Approach speed. (m/s)
@@ -94,7 +94,7 @@ pub(crate) struct WireShip {
 
 #[derive(Deserialize, Default, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct WireNoise {
+pub(crate) struct NoiseKeys {
     /// Standard deviation of the heading, where it is known. (deg)
     pub heading_deg: Option<f64>,
     /// The same of the yaw rate. (deg/s)
@@ -103,9 +103,9 @@ pub(crate) struct WireNoise {
     pub rudder_deg: Option<f64>,
 }
 
-#[derive(Deserialize, Default, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct WireCheck {
+pub(crate) struct CheckKeys {
     /// With false nothing is mended, and what looks implausible is a warning in place of an error. (true or false)
     pub plausibility: Option<bool>,
 }
@@ -115,7 +115,7 @@ pub(crate) struct WireCheck {
 pub fn schema() -> Schema {
     // Tables stand where they are used, so that a key is found by its table.
     let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
-    let mut schema = settings.into_generator().into_root_schema_for::<Wire>();
+    let mut schema = settings.into_generator().into_root_schema_for::<SidecarKeys>();
     schema.insert("title".into(), "Sidecar of a record".into());
     schema
 }

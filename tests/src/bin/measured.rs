@@ -13,7 +13,7 @@ use kempf_tests::stability;
 use kempf_tests::wrapped::without_jumps;
 use report::number::{fixed, significant};
 use report::{Column, Table};
-use study::options::{Common, Format, ReadingOptions, Style, TraceRequest, Withheld};
+use study::options::{Common, FigureOptions, Format, ReadingOptions, TraceRequest, Withheld};
 use trace::document::{BeforeAfter, EffectEntry, ErrorsEntry, RecordNoiseEntry};
 use trace::{Document, Rule};
 
@@ -291,7 +291,7 @@ fn trace_files(
         only: Vec::new(),
         without_effect: Vec::new(),
         rule: Rule::default(),
-        style: Style { paper: None, dpi: 600.0, style: None },
+        style: FigureOptions { paper: None, dpi: 600.0, style: None },
     };
     let common = Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
     study::commands::trace::run(&request, &common).map_err(|failure| failure.to_string())?;

@@ -21,8 +21,8 @@ pub struct Target {
     pub name: &'static str,
     /// Feeds one file through and asserts, panicking when a promise is broken; whether the file was accepted.
     pub run: fn(&[u8]) -> bool,
-    /// What files of the format are made of.
-    pub words: &'static [&'static str],
+    /// The dictionary of what files of the format are made of, in `words/`; empty without one.
+    dictionary: &'static str,
     /// Its part of all cases, of the sum of all shares.
     pub share: usize,
     /// Files to begin with that are made when the test runs.
@@ -31,16 +31,16 @@ pub struct Target {
 
 /// Every format.
 pub const TARGETS: [Target; 10] = [
-    Target { name: "record", run: record, words: mutate::RECORD, share: 6, made: Vec::new },
-    Target { name: "nmea", run: nmea, words: mutate::NMEA, share: 3, made: Vec::new },
-    Target { name: "gzip", run: gzip, words: mutate::RECORD, share: 2, made: seeds::packed },
-    Target { name: "stamp", run: stamp, words: mutate::STAMP, share: 2, made: Vec::new },
-    Target { name: "find", run: find, words: mutate::RECORD, share: 2, made: Vec::new },
-    Target { name: "sidecar", run: sidecar, words: mutate::SIDECAR, share: 4, made: Vec::new },
-    Target { name: "scenario", run: scenario, words: mutate::SCENARIO, share: 4, made: Vec::new },
-    Target { name: "rows", run: rows, words: &[], share: 2, made: seeds::rows },
-    Target { name: "cells", run: cells, words: mutate::CELLS, share: 2, made: seeds::cells },
-    Target { name: "manifest", run: manifest, words: mutate::SCENARIO, share: 2, made: seeds::manifest },
+    Target { name: "record", run: record, dictionary: "record", share: 6, made: Vec::new },
+    Target { name: "nmea", run: nmea, dictionary: "nmea", share: 3, made: Vec::new },
+    Target { name: "gzip", run: gzip, dictionary: "record", share: 2, made: seeds::packed },
+    Target { name: "stamp", run: stamp, dictionary: "stamp", share: 2, made: Vec::new },
+    Target { name: "find", run: find, dictionary: "record", share: 2, made: Vec::new },
+    Target { name: "sidecar", run: sidecar, dictionary: "sidecar", share: 4, made: Vec::new },
+    Target { name: "scenario", run: scenario, dictionary: "scenario", share: 4, made: Vec::new },
+    Target { name: "rows", run: rows, dictionary: "", share: 2, made: seeds::rows },
+    Target { name: "cells", run: cells, dictionary: "cells", share: 2, made: seeds::cells },
+    Target { name: "manifest", run: manifest, dictionary: "scenario", share: 2, made: seeds::manifest },
 ];
 
 impl Target {
@@ -55,13 +55,43 @@ impl Target {
         self.files("regressions")
     }
 
+    /// What files of the format are made of, from a dictionary as libFuzzer reads it: a quoted word a line, with `\xAB`
+    /// for bytes that are not printed.
+    pub fn words(&self) -> Vec<Vec<u8>> {
+        let path = folder("words").join(self.dictionary).with_extension("dict");
+        let text = if self.dictionary.is_empty() { Vec::new() } else { read(&path) };
+        let text = String::from_utf8(text).expect("a dictionary is plain text");
+        text.lines().filter_map(|line| line.strip_prefix('"')?.strip_suffix('"')).map(unescaped).collect()
+    }
+
     fn files(&self, kind: &str) -> Vec<PathBuf> {
-        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fuzz").join(kind).join(self.name);
-        let entries = std::fs::read_dir(&folder).into_iter().flatten();
+        let entries = std::fs::read_dir(folder(kind).join(self.name)).into_iter().flatten();
         let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("the folder is readable").path()).collect();
         files.sort();
         files
     }
+}
+
+fn folder(kind: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fuzz").join(kind)
+}
+
+fn unescaped(word: &str) -> Vec<u8> {
+    let mut bytes = word.bytes();
+    let mut plain = Vec::new();
+    while let Some(byte) = bytes.next() {
+        plain.push(match byte {
+            b'\\' => match bytes.next().expect("a byte after a backslash") {
+                b'x' => {
+                    let digits: String = bytes.by_ref().take(2).map(char::from).collect();
+                    u8::from_str_radix(&digits, 16).expect("two digits")
+                }
+                other => other,
+            },
+            byte => byte,
+        });
+    }
+    plain
 }
 
 fn read(path: &std::path::Path) -> Vec<u8> {

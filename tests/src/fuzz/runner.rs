@@ -41,12 +41,13 @@ pub struct Outcome {
 /// Runs `cases` damaged files of a target.
 pub fn run(target: &Target, cases: usize) -> Outcome {
     let corpus = target.corpus();
+    let words = target.words();
     assert!(!corpus.is_empty(), "no files for {} to begin with", target.name);
     let case = |index: usize| {
         // The files themselves come first.
         corpus.get(index).cloned().unwrap_or_else(|| {
             let mut generator = ChaCha8Rng::seed_from_u64(SEED ^ index as u64);
-            mutate::damaged(&corpus, target.words, &mut generator)
+            mutate::damaged(&corpus, &words, &mut generator)
         })
     };
     all(target, cases, case)
@@ -214,7 +215,9 @@ mod tests {
     fn damage_is_the_same_in_every_run() {
         let target = &TARGETS[0];
         let corpus = target.corpus();
-        let damaged = |seed| mutate::damaged(&corpus, target.words, &mut ChaCha8Rng::seed_from_u64(seed));
+        let words = target.words();
+        assert!(words.contains(&"\u{feff}".into()) && words.contains(&b"\"".to_vec()), "escapes are read");
+        let damaged = |seed| mutate::damaged(&corpus, &words, &mut ChaCha8Rng::seed_from_u64(seed));
         assert!((0..50).all(|seed| damaged(seed) == damaged(seed)));
         assert!((0..50).any(|seed| damaged(seed) != damaged(seed + 1)));
     }

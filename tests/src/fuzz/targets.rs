@@ -17,7 +17,7 @@ use study::screen;
 use study::views::tables;
 use tempfile::TempDir;
 use trial::clock::{Stamp, Stamps};
-use trial::reader::{self, Reading};
+use trial::reader::{self, ReadRecord};
 use trial::sidecar::Sidecar;
 use trial::{Channel, Trial};
 
@@ -55,7 +55,7 @@ pub fn record(data: &[u8]) -> bool {
     }
 }
 
-fn read(name: &str, data: &[u8]) -> Result<Reading, reader::ReadError> {
+fn read(name: &str, data: &[u8]) -> Result<ReadRecord, reader::ReadError> {
     reader::read_bytes(Path::new(name), data, None, None)
 }
 
@@ -115,7 +115,7 @@ pub fn stamp(data: &[u8]) -> bool {
 
 /// The manoeuvres of a record.
 pub fn find(data: &[u8]) -> bool {
-    let Ok(Reading { trial, .. }) = read("case.csv", data) else { return false };
+    let Ok(ReadRecord { trial, .. }) = read("case.csv", data) else { return false };
     let found = trial::find::manoeuvres(&trial::find::Signals {
         time: trial.time(),
         rudder: trial.rudder(),
@@ -248,7 +248,7 @@ fn is_one_message(message: &str) -> bool {
     false
 }
 
-fn is_a_reading(Reading { trial, warnings }: &Reading) {
+fn is_a_reading(ReadRecord { trial, warnings }: &ReadRecord) {
     for warning in warnings {
         is_one_message(warning);
     }

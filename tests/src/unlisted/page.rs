@@ -239,7 +239,8 @@ fn table(truths: &[Truth], outcomes: &[Outcome], group: Group, counted: &[Counte
         let count = |judgements: &[Judgement]| cell.iter().filter(|one| judgements.contains(&one.judgement)).count();
         let median = |side: usize| {
             let answers = cell.iter().filter_map(|outcome| outcome.answer.as_ref());
-            median(answers.map(|answer| to_deg(answer.heading[side]) / noise_deg).collect())
+            let mut errors: Vec<f64> = answers.map(|answer| to_deg(answer.heading[side]) / noise_deg).collect();
+            estimation::statistics::median(&mut errors).unwrap_or(f64::NAN)
         };
         let mut row = vec![
             truth.name.to_owned(),
@@ -302,17 +303,6 @@ fn with_interval(count: usize, of: usize) -> String {
     let text = percent(count, of);
     let (value, ends) = text.split_once(' ').unwrap_or((&text, ""));
     format!("{count} of {of} trials ({value} % {ends})")
-}
-
-/// The median; no number of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => f64::NAN,
-        count if count % 2 == 1 => values[middle],
-        _ => 0.5 * (values[middle - 1] + values[middle]),
-    }
 }
 
 /// Prose in lines of at most 120 characters.

@@ -3,7 +3,7 @@
 use identify::Identifier;
 use identify::characteristic_points::Settings;
 
-use super::{Check, INDEPENDENT, Section, Tolerance};
+use super::{Check, Section, Tolerance};
 use crate::records::Case;
 
 /// Half width of the local fits (s), K (1/s), T (s).
@@ -22,16 +22,14 @@ pub fn section() -> Section {
         for (symbol, published, decimals, ours, tolerance, unit) in
             [("K", k, 4, found.K(), 2e-4, "1/s"), ("T", t, 2, found.T(), 0.03, "s")]
         {
-            checks.push(Check {
-                id: format!("characteristic-points/{half_width}/{symbol}"),
-                what: format!("10/10 from rest, half width {half_width} s: {symbol}"),
-                source: INDEPENDENT,
-                published,
-                decimals,
+            checks.push(Check::new(
+                format!("characteristic-points/{half_width}/{symbol}"),
+                format!("10/10 from rest, half width {half_width} s: {symbol}"),
+                (published, decimals),
                 ours,
-                tolerance: Tolerance::Absolute(tolerance),
+                Tolerance::Absolute(tolerance),
                 unit,
-            });
+            ));
         }
     }
     Section {

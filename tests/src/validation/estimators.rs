@@ -11,7 +11,7 @@ use identify::{
 };
 use rayon::prelude::*;
 
-use super::{Check, INDEPENDENT, Section, Tolerance};
+use super::{Check, Section, Tolerance};
 use crate::records::{Begin, Case};
 
 /// Trials of a cell with noise.
@@ -156,16 +156,14 @@ pub fn section() -> Section {
                 };
                 let kind = if noise_deg == 0.0 { "error" } else { "rms error" };
                 let what = format!("{name}, {rudder_deg}/{heading_deg}, {noise_deg} deg: {kind} of {symbol}");
-                checks.push(Check {
-                    id: format!("estimators/{what}"),
+                checks.push(Check::new(
+                    format!("estimators/{what}"),
                     what,
-                    source: INDEPENDENT,
-                    published,
-                    decimals,
-                    ours: ours[i],
+                    (published, decimals),
+                    ours[i],
                     tolerance,
-                    unit: "%",
-                });
+                    "%",
+                ));
             }
         }
     }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use estimation::statistics::median;
 use ship::angle::to_deg;
 use simulate::helm::Watches;
 use simulate::vessel::Solver;
@@ -90,12 +91,6 @@ pub(super) fn peak(truth: &Truth, k: usize) -> usize {
     rows.max_by(|&i, &j| truth.heading[i].abs().total_cmp(&truth.heading[j].abs())).expect("rows between two executes")
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    if values.len().is_multiple_of(2) { 0.5 * (values[middle - 1] + values[middle]) } else { values[middle] }
-}
-
 /// The checks of section 1: nine zig-zags twice, times to check yaw, and the closed form of an overshoot.
 pub fn section() -> Section {
     let mut checks = Vec::new();
@@ -105,16 +100,14 @@ pub fn section() -> Section {
     for (angle, times) in CHECK_YAW {
         let truth = truth(Way::Exact, angle, angle, 2.5, 0.01);
         for (k, published) in times.into_iter().enumerate() {
-            checks.push(Check {
-                id: format!("first-order/{angle}-{angle}/check-yaw-{}", k + 1),
-                what: format!("{angle}/{angle} at 2.5 deg/s, closed form: time to check yaw {}", k + 1),
-                source: INDEPENDENT,
-                published,
-                decimals: 2,
-                ours: truth.time[peak(&truth, k + 1)] - truth.executes[k + 1].time,
-                tolerance: Tolerance::Absolute(TOLERANCE),
-                unit: "s",
-            });
+            checks.push(Check::new(
+                format!("first-order/{angle}-{angle}/check-yaw-{}", k + 1),
+                format!("{angle}/{angle} at 2.5 deg/s, closed form: time to check yaw {}", k + 1),
+                (published, 2),
+                truth.time[peak(&truth, k + 1)] - truth.executes[k + 1].time,
+                Tolerance::Absolute(TOLERANCE),
+                "s",
+            ));
         }
     }
     checks.extend(overshoot_in_closed_form());
@@ -140,7 +133,7 @@ fn table_row(way: Way, row: &Row, checks: &mut Vec<Check>) {
         let id = format!("first-order/{}/{delta}-{psi}/{rate}/{id}", way.name());
         let what = format!("{delta}/{psi} at {rate_name}, {}: {what}", way.name());
         let tolerance = Tolerance::Absolute(tolerance);
-        checks.push(Check { id, what, source: INDEPENDENT, published, decimals, ours, tolerance, unit });
+        checks.push(Check::new(id, what, (published, decimals), ours, tolerance, unit));
     };
     let made = &truth.executes;
     for (k, published) in executes.into_iter().enumerate() {
@@ -152,8 +145,9 @@ fn table_row(way: Way, row: &Row, checks: &mut Vec<Check>) {
         let ours = to_deg(truth.heading[peak(&truth, k + 1)].abs()) - psi;
         push(format!("overshoot-{}", k + 1), format!("overshoot {}", k + 1), published, 2, ours, TOLERANCE, "deg");
     }
-    let periods = made.windows(3).map(|three| three[2].time - three[0].time).collect();
-    push("period".into(), "period".into(), period, 2, median(periods), TOLERANCE + 2.0 * lateness, "s");
+    let mut periods: Vec<f64> = made.windows(3).map(|three| three[2].time - three[0].time).collect();
+    let median = median(&mut periods).expect("three executes");
+    push("period".into(), "period".into(), period, 2, median, TOLERANCE + 2.0 * lateness, "s");
     for (k, published) in rates.into_iter().enumerate() {
         let ours = to_deg(made[k + 1].yaw_rate.abs());
         let what = format!("yaw rate at execute {}", k + 2);
@@ -170,15 +164,16 @@ fn overshoot_in_closed_form() -> Vec<Check> {
     let peak = peak(&truth, 1);
     let log = 16.3 * to_deg(execute.yaw_rate).ln_1p();
     let formula = "re-derived from Nomoto et al. (1957)";
-    let check = |id: &str, what: &str, source, published, decimals, ours, tolerance, unit| Check {
-        id: format!("first-order/jump/{id}"),
-        what: format!("10/10, rudder jumps: {what}"),
-        source,
-        published,
-        decimals,
-        ours,
-        tolerance: Tolerance::Absolute(tolerance),
-        unit,
+    let check = |id: &str, what: &str, source, published, decimals, ours, tolerance, unit| {
+        Check::new(
+            format!("first-order/jump/{id}"),
+            format!("10/10, rudder jumps: {what}"),
+            (published, decimals),
+            ours,
+            Tolerance::Absolute(tolerance),
+            unit,
+        )
+        .from(source)
     };
     let (time, angle) = (truth.time[peak] - execute.time, to_deg(truth.heading[peak]) - 10.0);
     let derived = 16.3 * to_deg(execute.yaw_rate) - log;

@@ -2,11 +2,11 @@
 
 use identify::Identifier;
 use identify::fourier::regression::Response;
-use identify::fourier::{self, Fundamental, StartPoint};
+use identify::fourier::{self, Fundamental};
 use identify::fourier_projected::{Order, Rudder, Settings};
 use trial::Trial;
 
-use super::{Check, INDEPENDENT, Section, Tolerance};
+use super::{Check, Section, Tolerance};
 use crate::records::{Begin, Case};
 
 /// Harmonics of the paper.
@@ -49,21 +49,19 @@ pub fn section() -> Section {
     for (rudder, heading, begin, global, w, r_squared) in FITS {
         let trial = record(rudder, heading, begin);
         let time: Vec<f64> = trial.time().iter().map(|t| t - trial.time()[0]).collect();
-        let search = if global { Fundamental::Global } else { Fundamental::Starts(vec![StartPoint::FftPeak]) };
+        let search = if global { Fundamental::Global } else { Fundamental::FftPeak };
         let curve = fourier::fit(&time, trial.heading(), HARMONICS, &search).expect("271 headings are enough").curve;
         let from = if begin == Begin::Mid { "mid-trial" } else { "from rest" };
         let way = if global { "lowest sum of squares" } else { "local search from the peak of the spectrum" };
         let mut push = |symbol: &str, published, ours, tolerance, unit| {
-            checks.push(Check {
-                id: format!("fourier/{rudder}-{heading}/{from}/{way}/{symbol}"),
-                what: format!("{rudder}/{heading} {from}, {way}: {symbol}"),
-                source: INDEPENDENT,
-                published,
-                decimals: 5,
+            checks.push(Check::new(
+                format!("fourier/{rudder}-{heading}/{from}/{way}/{symbol}"),
+                format!("{rudder}/{heading} {from}, {way}: {symbol}"),
+                (published, 5),
                 ours,
-                tolerance: Tolerance::Absolute(tolerance),
+                Tolerance::Absolute(tolerance),
                 unit,
-            });
+            ));
         };
         push("fundamental w", w, curve.fundamental, FUNDAMENTAL_TOLERANCE, "rad/s");
         push("R²", r_squared, curve.r_squared, R_SQUARED_TOLERANCE, "");
@@ -74,23 +72,20 @@ pub fn section() -> Section {
             harmonics: Order::Fixed(HARMONICS),
             rudder: side,
             response: Response::YawRate,
-            trim_share: 0.05,
             ..Settings::default()
         };
         let method = settings.build().expect("valid settings");
         let found = method.identify(&[record(rudder, heading, Begin::Mid)]).expect("a zig-zag is identified").response;
         let name = if side == Rudder::Recorded { "recorded rudder" } else { "rudder projected on the same basis" };
         for (symbol, published, decimals, ours, unit) in [("K", k, 4, found.K(), "1/s"), ("T", t, 2, found.T(), "s")] {
-            checks.push(Check {
-                id: format!("fourier/{rudder}-{heading}/{name}/{symbol}"),
-                what: format!("{rudder}/{heading} mid-trial, all samples, {name}: {symbol}"),
-                source: INDEPENDENT,
-                published,
-                decimals,
+            checks.push(Check::new(
+                format!("fourier/{rudder}-{heading}/{name}/{symbol}"),
+                format!("{rudder}/{heading} mid-trial, all samples, {name}: {symbol}"),
+                (published, decimals),
                 ours,
-                tolerance: Tolerance::Relative(0.01),
+                Tolerance::Relative(0.01),
                 unit,
-            });
+            ));
         }
     }
     Section {

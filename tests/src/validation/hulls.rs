@@ -8,7 +8,7 @@ use ship::{Particulars, Ship};
 use simulate::manoeuvre::{TurnEnd, TurningCircle};
 use simulate::{Manoeuvre, Side, Simulation, SteeringGear, StreamKey, Vessel};
 
-use super::{Check, INDEPENDENT, Section, Tolerance};
+use super::{Check, Section, Tolerance};
 
 /// Sway-yaw part of the S175 container ship, prime. Source: Son and Nomoto (1982).
 const S175: PrimeSwayYaw = PrimeSwayYaw {
@@ -46,19 +46,6 @@ const KVLCC2_TURNS: [(f64, f64); 10] = [
 /// Time after which a turn is steady to far below the last digit, s.
 const STEADY: f64 = 3000.0;
 
-fn check(
-    id: &str,
-    what: String,
-    source: &'static str,
-    numbers: [f64; 2],
-    decimals: usize,
-    tolerance: Tolerance,
-    unit: &'static str,
-) -> Check {
-    let [published, ours] = numbers;
-    Check { id: format!("hulls/{id}"), what, source, published, decimals, ours, tolerance, unit }
-}
-
 /// Half of the last published digit, with a hundredth of it for numbers on the edge.
 fn half_digit(decimals: i32) -> Tolerance {
     Tolerance::Absolute(0.51 * 10f64.powi(-decimals))
@@ -71,17 +58,8 @@ pub fn section() -> Section {
     for (ship, turns) in [(mariner::hull(), MARINER_TURNS), (kvlcc2::full_scale(), KVLCC2_TURNS)] {
         for (rudder, rate) in turns {
             let what = format!("{}, steady turn with rudder {rudder} deg: yaw rate", ship.id);
-            let numbers = [rate, steady_rate(&ship, rudder)];
-            let tolerance = Tolerance::Absolute(1e-3);
-            checks.push(check(
-                &format!("{}/turn/{rudder}", ship.id),
-                what,
-                INDEPENDENT,
-                numbers,
-                3,
-                tolerance,
-                "deg/s",
-            ));
+            let (id, ours) = (format!("hulls/{}/turn/{rudder}", ship.id), steady_rate(&ship, rudder));
+            checks.push(Check::new(id, what, (rate, 3), ours, Tolerance::Absolute(1e-3), "deg/s"));
         }
     }
     Section {
@@ -99,39 +77,24 @@ fn linear_indices() -> Vec<Check> {
     let found = mariner::equations().linearised().indices().expect("the Mariner is course-stable").at(particulars);
     let mut checks = Vec::new();
     let simulator = "Marine Systems Simulator (Fossen), from Chislett and Strøm-Tejsen (1965)";
-    for (symbol, ours, rounded, few, exact, many, unit) in [
-        ("K", found.K, 0.185, 3, 0.1850, 4, "1/s"),
-        ("T1", found.T1, 118.0, 0, 117.98, 2, "s"),
-        ("T2", found.T2, 7.8, 1, 7.76, 2, "s"),
-        ("T3", found.T3, 18.5, 1, 18.53, 2, "s"),
+    let mut push = |id: &str, what: &str, published, decimals: usize, ours, unit| {
+        let tolerance = half_digit(decimals as i32);
+        checks.push(Check::new(format!("hulls/{id}"), what, (published, decimals), ours, tolerance, unit));
+    };
+    for (symbol, ours, exact, decimals, unit) in [
+        ("K", found.K, 0.1850, 4, "1/s"),
+        ("T1", found.T1, 117.98, 2, "s"),
+        ("T2", found.T2, 7.76, 2, "s"),
+        ("T3", found.T3, 18.53, 2, "s"),
     ] {
-        let what = format!("Mariner, linearised: {symbol}");
-        let tolerance = half_digit(few);
-        checks.push(check(
-            &format!("mariner/rounded/{symbol}"),
-            what.clone(),
-            simulator,
-            [rounded, ours],
-            few as usize,
-            tolerance,
-            unit,
-        ));
-        checks.push(check(
-            &format!("mariner/{symbol}"),
-            what,
-            INDEPENDENT,
-            [exact, ours],
-            many,
-            half_digit(many as i32),
-            unit,
-        ));
+        push(&format!("mariner/{symbol}"), &format!("Mariner, linearised: {symbol}"), exact, decimals, ours, unit);
     }
     let prime = S175.indices().expect("S175 is course-stable");
     for (symbol, published, ours) in
         [("K'", 2.731, prime.K), ("T1'", 4.443, prime.T1), ("T2'", 0.318, prime.T2), ("T3'", 0.789, prime.T3)]
     {
         let what = format!("S175 (Son and Nomoto 1982), linearised: {symbol}");
-        checks.push(check(&format!("s175/{symbol}"), what, INDEPENDENT, [published, ours], 3, half_digit(3), ""));
+        push(&format!("s175/{symbol}"), &what, published, 3, ours, "");
     }
     let at_7 = prime.at(Particulars { length: 175.0, speed: 7.0 });
     for (symbol, published, decimals, ours, unit) in [
@@ -140,52 +103,35 @@ fn linear_indices() -> Vec<Check> {
         ("T3", 20.0, 0, at_7.T3, "s"),
     ] {
         let what = format!("S175 at 7 m/s, linearised: {symbol}");
-        let tolerance = half_digit(decimals);
-        checks.push(check(
-            &format!("s175/7-m-s/{symbol}"),
-            what,
-            INDEPENDENT,
-            [published, ours],
-            decimals as usize,
-            tolerance,
-            unit,
-        ));
+        push(&format!("s175/7-m-s/{symbol}"), &what, published, decimals, ours, unit);
     }
     let particulars = kvlcc2::full_scale().particulars.expect("KVLCC2 has particulars");
     let hull = Mmg::at_speed(kvlcc2::FULL_SCALE, particulars.speed).expect("KVLCC2 balances");
-    let found = hull.linearised().indices().expect("KVLCC2 is not exactly neutral").at(particulars);
-    checks.push(check(
-        "kvlcc2/K-over-T",
-        "KVLCC2, linearised: K/T1".into(),
-        INDEPENDENT,
-        [3.0e-4, found.K / found.T1],
-        5,
-        half_digit(5),
-        "1/s²",
-    ));
-    checks.push(check(
-        "kvlcc2/T",
-        "KVLCC2, linearised: size of T1".into(),
-        INDEPENDENT,
-        [1e5, found.T1.abs()],
-        0,
-        Tolerance::AtLeast,
-        "s",
-    ));
+    let tanker = hull.linearised().indices().expect("KVLCC2 is not exactly neutral").at(particulars);
+    push("kvlcc2/K-over-T", "KVLCC2, linearised: K/T1", 3.0e-4, 5, tanker.K / tanker.T1, "1/s²");
+    let what = "KVLCC2, linearised: size of T1";
+    checks.push(Check::new("hulls/kvlcc2/T", what, (1e5, 0), tanker.T1.abs(), Tolerance::AtLeast, "s"));
+    for (symbol, ours, rounded, decimals, unit) in [
+        ("K", found.K, 0.185, 3, "1/s"),
+        ("T1", found.T1, 118.0, 0, "s"),
+        ("T2", found.T2, 7.8, 1, "s"),
+        ("T3", found.T3, 18.5, 1, "s"),
+    ] {
+        let (id, what) = (format!("hulls/mariner/rounded/{symbol}"), format!("Mariner, linearised: {symbol}"));
+        let tolerance = half_digit(decimals as i32);
+        checks.push(Check::new(id, what, (rounded, decimals), ours, tolerance, unit).from(simulator));
+    }
     checks
 }
 
-fn straight_approach() -> Vec<Check> {
+fn straight_approach() -> impl Iterator<Item = Check> {
     let hulls = [("kvlcc2", kvlcc2::FULL_SCALE, 15.5, 1.778), ("seiun-like", seiun_like::PARAMETERS, 16.7, 2.438)];
-    hulls
-        .into_iter()
-        .map(|(id, parameters, speed_kn, revolutions)| {
-            let hull = Mmg::at_speed(parameters, speed_kn * KNOT).expect("the set balances");
-            let what = format!("{id}, straight at {speed_kn} kn: propeller revolutions");
-            let numbers = [revolutions, hull.revolutions()];
-            check(&format!("{id}/revolutions"), what, INDEPENDENT, numbers, 3, Tolerance::Absolute(1e-3), "1/s")
-        })
-        .collect()
+    hulls.into_iter().map(|(id, parameters, speed_kn, revolutions)| {
+        let hull = Mmg::at_speed(parameters, speed_kn * KNOT).expect("the set balances");
+        let what = format!("{id}, straight at {speed_kn} kn: propeller revolutions");
+        let (id, ours) = (format!("hulls/{id}/revolutions"), hull.revolutions());
+        Check::new(id, what, (revolutions, 3), ours, Tolerance::Absolute(1e-3), "1/s")
+    })
 }
 
 /// Yaw rate, deg/s, at the end of a long turn.

@@ -9,7 +9,7 @@ use ship::first_order::State;
 use simulate::manoeuvre::{TurnEnd, TurningCircle};
 use simulate::{Manoeuvre, Side, Simulated, StreamKey};
 
-use super::{Check, INDEPENDENT, Section, Tolerance};
+use super::{BOUND, Check, DEFINITION, Section, Tolerance};
 use crate::records::{Begin, Case};
 
 /// Rudder and heading (deg), sd of K and T (%) and of δ_r (deg), correlation of K and T, for 0.1 deg of noise.
@@ -56,18 +56,6 @@ fn correlation(covariance: &Covariance, ship: &FirstOrder) -> f64 {
     product(of_k, of_t) / (product(of_k, of_k) * product(of_t, of_t)).sqrt()
 }
 
-fn check(
-    id: String,
-    what: String,
-    published: f64,
-    decimals: usize,
-    ours: f64,
-    tolerance: Tolerance,
-    unit: &'static str,
-) -> Check {
-    Check { id, what, source: INDEPENDENT, published, decimals, ours, tolerance, unit }
-}
-
 /// The checks of the bound.
 pub fn bound() -> Section {
     let mut checks = Vec::new();
@@ -75,13 +63,14 @@ pub fn bound() -> Section {
         let ours = [found.k_percent, found.t_percent, found.bias_deg, found.correlation];
         for (i, (quantity, unit)) in
             [("sd of K", "%"), ("sd of T", "%"), ("sd of rudder bias", "deg"), ("correlation of K and T", "")]
-                .iter()
+                .into_iter()
                 .enumerate()
         {
             let digit = 0.5 * 10f64.powi(-(decimals[i] as i32));
             let tolerance = Tolerance::Absolute(digit + slack * published[i].abs());
             let id = format!("bound/{name}/{quantity}");
-            checks.push(check(id, format!("{name}: {quantity}"), published[i], decimals[i], ours[i], tolerance, unit));
+            let numbers = (published[i], decimals[i]);
+            checks.push(Check::new(id, format!("{name}: {quantity}"), numbers, ours[i], tolerance, unit));
         }
     };
     for (rudder_deg, heading_deg, k, t, bias, correlation) in TABLE {
@@ -99,7 +88,8 @@ pub fn bound() -> Section {
     let found = bound_of(&case.run(0), &case.ship, 1.0);
     for (symbol, published, ours) in [("K", 0.67, found.k_percent), ("T", 1.04, found.t_percent)] {
         let (id, what) = (format!("bound/mid/{symbol}"), format!("10/10 mid-trial, 1 deg of noise: sd of {symbol}"));
-        checks.push(check(id, what, published, 2, ours, Tolerance::Absolute(0.005 + 0.01 * published), "%"));
+        let tolerance = Tolerance::Absolute(0.005 + 0.01 * published);
+        checks.push(Check::new(id, what, (published, 2), ours, tolerance, "%"));
     }
     Section {
         title: "Cramér-Rao bound",
@@ -165,16 +155,12 @@ pub fn efficiency() -> Section {
                 for (i, (symbol, bound)) in [("K", bound.k_percent), ("T", bound.t_percent)].into_iter().enumerate() {
                     let id = format!("efficiency/{name}/sd {symbol}");
                     let what = format!("{name}: sd of {symbol} and its bound");
-                    checks.push(Check {
-                        source: "Cramér-Rao bound",
-                        ..check(id, what, bound, 3, sample.sd_percent[i], Tolerance::Relative(most), "%")
-                    });
+                    let own = Check::new(id, what, (bound, 3), sample.sd_percent[i], Tolerance::Relative(most), "%");
+                    checks.push(own.from(BOUND));
                     let id = format!("efficiency/{name}/coverage {symbol}");
                     let what = format!("{name}: quoted 95 % intervals of {symbol} that hold the truth");
-                    checks.push(Check {
-                        source: "definition",
-                        ..check(id, what, 95.0, 0, sample.coverage_percent[i], Tolerance::Absolute(1.5), "%")
-                    });
+                    let (ours, tolerance) = (sample.coverage_percent[i], Tolerance::Absolute(1.5));
+                    checks.push(Check::new(id, what, (95.0, 0), ours, tolerance, "%").from(DEFINITION));
                 }
             }
         }

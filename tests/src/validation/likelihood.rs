@@ -10,7 +10,7 @@ use simulate::{Simulation, StreamKey};
 use trial::noise_model::{Moment, NoiseModel};
 use trial::{Channel, Columns, Origin, Trial};
 
-use super::{Check, INDEPENDENT, Section, Tolerance};
+use super::{BOUND, Check, DEFINITION, Section, Tolerance};
 use crate::records::Case;
 
 /// The record of the independent values: uneven rows, a clipped sine of the rudder, a sine of the heading.
@@ -82,16 +82,14 @@ pub fn section() -> Section {
         (of(Moment::Walk, 8.726646260e-5, f64::INFINITY), -365.883210199, 6),
     ] {
         let kind = noise.moment.as_str();
-        checks.push(Check {
-            id: format!("likelihood/{kind}"),
-            what: format!("log-likelihood, moment {kind}"),
-            source: INDEPENDENT,
-            published,
-            decimals,
-            ours: log_likelihood(&trial, &ship, &noise, [from_deg(5.0), from_deg(1.0)]),
-            tolerance: Tolerance::Relative(1e-9),
-            unit: "",
-        });
+        checks.push(Check::new(
+            format!("likelihood/{kind}"),
+            format!("log-likelihood, moment {kind}"),
+            (published, decimals),
+            log_likelihood(&trial, &ship, &noise, [from_deg(5.0), from_deg(1.0)]),
+            Tolerance::Relative(1e-9),
+            "",
+        ));
     }
     let case = Case { noise_deg: 0.1, ..Case::default() };
     let truth = case.ship;
@@ -106,16 +104,16 @@ pub fn section() -> Section {
         for (i, symbol) in ["K", "T"].into_iter().enumerate() {
             let mut push = |kind: &str, what: String, source, published, ours, tolerance| {
                 let id = format!("likelihood/{name}/{kind} {symbol}");
-                checks.push(Check { id, what, source, published, decimals: 3, ours, tolerance, unit: "%" });
+                checks.push(Check::new(id, what, (published, 3), ours, tolerance, "%").from(source));
             };
             let (own, bound) = (sample.own[i], sample.bound[i]);
             let what = format!("{name}: rms error of {symbol} and its bound");
-            push("rms", what, "Cramér-Rao bound", bound, own, Tolerance::Relative(0.15));
+            push("rms", what, BOUND, bound, own, Tolerance::Relative(0.15));
             let what = format!("{name}: quoted 95 % intervals of {symbol} that hold the truth");
-            push("coverage", what, "definition", 95.0, sample.coverage[i], Tolerance::Absolute(4.0));
+            push("coverage", what, DEFINITION, 95.0, sample.coverage[i], Tolerance::Absolute(4.0));
             if walk_deg > 0.0 {
                 let what = format!("{name}: rms error of {symbol} of output error, at least 1/0.65 of it");
-                push("gain", what, "definition", own / 0.65, sample.other[i], Tolerance::AtLeast);
+                push("gain", what, DEFINITION, own / 0.65, sample.other[i], Tolerance::AtLeast);
             }
         }
     }

@@ -16,7 +16,7 @@ pub mod residuals;
 pub mod table_1;
 pub mod zig_zags_of_hulls;
 
-use std::fmt::Write;
+use std::collections::BTreeSet;
 
 /// How far our number may lie from the published one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +53,30 @@ pub struct Check {
 /// Source of numbers that were computed for this project by other means.
 pub const INDEPENDENT: &str = "independent computation";
 
+/// Source of numbers that no unbiased method can go below.
+pub const BOUND: &str = "Cramér-Rao bound";
+
+/// Source of numbers that hold by what they mean.
+pub const DEFINITION: &str = "definition";
+
 impl Check {
+    /// A number that was computed independently, with its decimals, and ours.
+    pub fn new(
+        id: impl Into<String>,
+        what: impl Into<String>,
+        (published, decimals): (f64, usize),
+        ours: f64,
+        tolerance: Tolerance,
+        unit: &'static str,
+    ) -> Self {
+        Self { id: id.into(), what: what.into(), source: INDEPENDENT, published, decimals, ours, tolerance, unit }
+    }
+
+    /// The same, published by somebody.
+    pub fn from(self, source: &'static str) -> Self {
+        Self { source, ..self }
+    }
+
     /// Ours less the published number.
     pub fn difference(&self) -> f64 {
         self.ours - self.published
@@ -140,27 +163,51 @@ pub fn sections() -> Vec<Section> {
 }
 
 const PREFACE: &str = "\
-Every number below was published, or computed by a program that shares no code with this one, and stands beside the number \
-this workspace finds by the simulation or identification a user would run. \"Independent computation\" is a Python program \
-(numpy, scipy) made for the project's technical reference. *Difference* is ours less published; *tolerance* is what the \
-difference may be, and each section says where its tolerances come from. The published number has the digits it was \
-published with, ours has one more. Tests assert every line, and that this file is what the program writes.";
+Reference numbers stand beside the number that this workspace finds by the simulation or identification a user would run. \
+Three parts keep apart where a reference number comes from. *Difference* is ours less the reference; *tolerance* is what the \
+difference may be, and each section says where its tolerances come from. A reference number has the digits it was given \
+with, ours has one more. Tests assert every line, and that this file is what the program writes.";
+
+/// The parts of VALIDATION.md: heading, what the reference numbers are, and whether a source is of the part.
+const PARTS: [(&str, &str, fn(&str) -> bool); 3] = [
+    ("Published by others", "Numbers that stand in print.", |source| source != INDEPENDENT && !is_theory(source)),
+    ("By theory", "Numbers that follow from a closed form, a bound or a definition.", is_theory),
+    (
+        "Computed independently",
+        "Numbers of a Python program (numpy, scipy) made for the project's technical reference, which shares no code with \
+         this workspace. They are not published.",
+        |source| source == INDEPENDENT,
+    ),
+];
+
+fn is_theory(source: &str) -> bool {
+    [BOUND, DEFINITION].contains(&source) || source.starts_with("re-derived")
+}
 
 /// VALIDATION.md.
 pub fn markdown(sections: &[Section]) -> String {
-    let mut text =
-        format!("# Validation\n\n{PREFACE}\n\nMade by `cargo run -p kempf-tests --bin validation > VALIDATION.md`.\n");
     let all = || sections.iter().flat_map(|section| &section.checks);
     let agreeing = all().filter(|check| check.holds()).count();
-    let mut line = |line: &str| writeln!(text, "{line}").expect("writing to a string does not fail");
-    line(&format!("{agreeing} of {} numbers agree.", all().count()));
-    for section in sections {
-        line(&format!("\n## {}\n\n{}\n", section.title, section.method));
-        line("| what | source | published | ours | difference | tolerance | verdict |");
-        line("|---|---|---:|---:|---:|---:|---|");
-        section.checks.iter().for_each(|check| line(&check.row()));
+    let made = "Made by `cargo run -p kempf-tests --bin validation > VALIDATION.md`.";
+    let mut lines =
+        vec![format!("# Validation\n\n{PREFACE}\n\n{made}\n{agreeing} of {} numbers agree.", all().count())];
+    let mut described = BTreeSet::new();
+    for (heading, what, is_of) in PARTS {
+        let count = all().filter(|check| is_of(check.source)).count();
+        lines.push(format!("\n## {heading}: {count} numbers\n\n{what}"));
+        for section in sections {
+            let rows: Vec<String> = section.checks.iter().filter(|check| is_of(check.source)).map(Check::row).collect();
+            if rows.is_empty() {
+                continue;
+            }
+            let method = if described.insert(section.title) { section.method } else { "Made as described above." };
+            lines.push(format!("\n### {}\n\n{method}\n", section.title));
+            lines.push("| what | source | reference | ours | difference | tolerance | verdict |".to_owned());
+            lines.push("|---|---|---:|---:|---:|---:|---|".to_owned());
+            lines.extend(rows);
+        }
     }
-    text
+    lines.join("\n") + "\n"
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use trace::record::Record;
 use trace::weights::Law;
 use trace::{EffectId, Selection};
 
-use super::{Check, INDEPENDENT, Section, Tolerance};
+use super::{Check, Section, Tolerance};
 use crate::records::zig_zag;
 
 /// One line of the independent table.
@@ -154,15 +154,15 @@ pub fn section() -> Section {
         .par_iter()
         .flat_map_iter(|line| {
             let (rms, gain, time, after, own) = fitted(line);
-            let check = |what: &str, published: f64, decimals, ours, tolerance, unit| Check {
-                id: format!("residual/{}/{what}", line.name),
-                what: format!("{}: {what}", line.name),
-                source: INDEPENDENT,
-                published,
-                decimals,
-                ours,
-                tolerance,
-                unit,
+            let check = |what: &str, published: f64, decimals, ours, tolerance, unit| {
+                Check::new(
+                    format!("residual/{}/{what}", line.name),
+                    format!("{}: {what}", line.name),
+                    (published, decimals),
+                    ours,
+                    tolerance,
+                    unit,
+                )
             };
             let (place, unit, value) = line.found;
             let digits = if value < 0.01 { 4 } else { 3 };

@@ -9,7 +9,7 @@ use ship::angle::to_deg;
 use simulate::StreamKey;
 use simulate::recording::Start;
 
-use super::{Check, INDEPENDENT, Section, Tolerance};
+use super::{Check, Section, Tolerance};
 use crate::records::Case;
 
 /// Headings of Table 1 that a ship can have: time, s, and heading, deg.
@@ -78,33 +78,26 @@ pub fn section() -> Section {
     for (rudder, heading, published) in READINGS {
         let Some(best) = best(rudder, heading) else { continue };
         let reading = format!("{rudder:.0}/{heading:.0}");
-        checks.push(Check {
-            id: format!("table-1/{reading}"),
-            what: format!(
-                "misfit of the best {reading} (K {:.2} 1/s, T {:.0} s, {} deg/s)",
-                best.gain, best.time, best.rate
-            ),
-            source: INDEPENDENT,
-            published,
-            decimals: 0,
-            ours: best.score,
-            tolerance: if published < 10.0 { Tolerance::Absolute(4.0) } else { Tolerance::Relative(0.05) },
-            unit: "",
-        });
+        checks.push(Check::new(
+            format!("table-1/{reading}"),
+            format!("misfit of the best {reading} (K {:.2} 1/s, T {:.0} s, {} deg/s)", best.gain, best.time, best.rate),
+            (published, 0),
+            best.score,
+            if published < 10.0 { Tolerance::Absolute(4.0) } else { Tolerance::Relative(0.05) },
+            "",
+        ));
     }
     let of = |id: &str| checks.iter().find(|check| check.id == id).map_or(f64::NAN, |check| check.ours);
     let others = ["table-1/15/20", "table-1/10/10", "table-1/20/20"].map(of);
     let ratio = others.into_iter().fold(f64::INFINITY, f64::min) / of("table-1/10/20");
-    checks.push(Check {
-        id: "table-1/which".into(),
-        what: "next best reading over 10/20".into(),
-        source: INDEPENDENT,
-        published: 20.0,
-        decimals: 0,
-        ours: ratio,
-        tolerance: Tolerance::AtLeast,
-        unit: "times",
-    });
+    checks.push(Check::new(
+        "table-1/which",
+        "next best reading over 10/20",
+        (20.0, 0),
+        ratio,
+        Tolerance::AtLeast,
+        "times",
+    ));
     Section {
         title: "Which trial the paper's Table 1 was",
         method: "The visible rows of Table 1 (Ge, Hu, Yin and Sun) that are physically smooth: headings at 0, 268, 269 and 270 s, rudder at \

@@ -17,7 +17,7 @@ use simulate::{Manoeuvre, Side, Simulated, Simulation, StreamKey, Vessel};
 
 use super::first_order::peak;
 use super::hulls::registered;
-use super::{Check, INDEPENDENT, Section, Tolerance};
+use super::{Check, Section, Tolerance};
 use crate::records::zig_zag;
 
 /// What output error finds.
@@ -158,16 +158,14 @@ fn characteristics(anchor: &Anchor, way: Way, checks: &mut Vec<Check>) {
     let model = anchor.ship == "kvlcc2-l7";
     let (name, label) = (anchor.name(), if way == Way::Exact { "exact" } else { "stepped" });
     let mut push = |id: &str, what: &str, published, decimals, ours, tolerance, unit| {
-        checks.push(Check {
-            id: format!("zig-zag/{name}/{label}/{id}"),
-            what: format!("{name}, {label}: {what}"),
-            source: INDEPENDENT,
-            published,
-            decimals,
+        checks.push(Check::new(
+            format!("zig-zag/{name}/{label}/{id}"),
+            format!("{name}, {label}: {what}"),
+            (published, decimals),
             ours,
             tolerance,
             unit,
-        });
+        ));
     };
     let turning = if way == Way::Exact { 0.2 } else { 0.05 + STEP };
     push("t_a", "initial turning time", anchor.turning_time, 1, made[1].time, Tolerance::Absolute(turning), "s");
@@ -206,15 +204,13 @@ fn fit(anchor: &Anchor, checks: &mut Vec<Check>) {
         ("rudder bias", bias_deg, 1, to_deg(found.response.rudder_bias), "deg"),
         ("heading rms", rms_deg, 2, rms, "deg"),
     ] {
-        checks.push(Check {
-            id: format!("zig-zag/{}/output-error/{symbol}", anchor.name()),
-            what: format!("{}, output error: {symbol}", anchor.name()),
-            source: INDEPENDENT,
-            published,
-            decimals,
+        checks.push(Check::new(
+            format!("zig-zag/{}/output-error/{symbol}", anchor.name()),
+            format!("{}, output error: {symbol}", anchor.name()),
+            (published, decimals),
             ours,
-            tolerance: Tolerance::Absolute(10f64.powi(-(decimals as i32))),
+            Tolerance::Absolute(10f64.powi(-(decimals as i32))),
             unit,
-        });
+        ));
     }
 }

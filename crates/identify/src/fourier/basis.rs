@@ -228,13 +228,6 @@ impl Basis {
         Projection { coefficients, residual, r_squared }
     }
 
-    /// Residual sums of squares of the series with 0, 1, .. N harmonics of the same fundamental.
-    pub fn nested_rss(&self, values: &[f64]) -> Vec<f64> {
-        let mut rss = self.series.rss(values);
-        rss.truncate(self.harmonics + 1);
-        rss
-    }
-
     /// (XᵀX)⁻¹ in the order of [`Projection::coefficients`]: times a white noise variance, their covariance.
     pub fn unscaled_covariance(&self) -> DMatrix<f64> {
         let width = 2 * self.harmonics + 1;
@@ -350,7 +343,7 @@ mod tests {
     fn nested_residuals_are_those_of_the_shorter_series() {
         let time: Vec<f64> = (0..120).map(f64::from).collect();
         let values: Vec<f64> = time.iter().map(|t| (0.002 * t * t).sin()).collect();
-        let nested = Basis::new(&time, 0.045, 6).expect("enough instants").nested_rss(&values);
+        let nested = Nested::new(&time, 0.045, 6).expect("enough instants").rss(&values);
         assert_eq!(nested.len(), 7);
         for (harmonics, rss) in nested.into_iter().enumerate() {
             let alone = Basis::new(&time, 0.045, harmonics).expect("enough instants").project(&values);

@@ -1,58 +1,35 @@
-//! The fundamental w of the series: by local search from stated starts, by the lowest RSS of all, by a rule, or given.
+//! The fundamental w of the series: by local search, by the lowest RSS of all or by a rule.
 //!
 //! Reasons to prefer a rule: RSS is nearly the same in several minima while derivatives and conditioning are not, so
 //! the lowest RSS says little about which w serves best.
 
+use estimation::statistics::median;
 use serde::{Deserialize, Serialize};
 use ship::Shown;
 use std::f64::consts::{PI, TAU};
 
-use super::basis::Basis;
 use super::profile::Profile;
 use crate::error::IdentifyError;
 use crate::estimate::StopReason;
 use crate::settings::SettingsError;
 
-/// Where a local search for w starts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum StartPoint {
-    /// Highest peak of the discrete Fourier transform of the heading about its mean.
-    FftPeak,
-    /// 2π/T_rec: one period a record.
-    RecordLength,
-    /// π/T_rec: half a period a record.
-    TwiceRecordLength,
-}
-
-impl StartPoint {
-    /// How many there are.
-    const COUNT: usize = 3;
-}
-
 /// How the fundamental is chosen.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Fundamental {
-    /// A local search from every start, downhill in RSS(w); the best end wins.
-    Starts(Vec<StartPoint>),
+    /// Local searches, downhill in RSS(w), from the highest peak of the discrete Fourier transform of the heading, from one
+    /// period a record and from half a period; the best end wins.
+    Starts,
+    /// A local search from the peak alone.
+    FftPeak,
     /// The lowest RSS over all w from 0.35 periods a record (or 1.25/N of the peak of the transform, if that is more)
     /// to 1.5 times the peak.
     Global,
-    /// The best-conditioned local minimum of RSS whose R² lies within this much of the best.
-    BestConditioned {
-        /// Loss of R² that is accepted.
-        r_squared_loss: f64,
-    },
     /// One period of the series is the median period between zero crossings of the heading about its mean.
     ZeroCrossings,
     /// One period of the series is the record and this many zig-zag periods more (periods by [`Self::ZeroCrossings`]):
     /// room in which the series joins the end of the record to its beginning, so that it need not be periodic.
     RecordAndPeriods(f64),
-    /// One period of the series is this many record lengths.
-    RecordLengths(f64),
-    /// Given, rad/s.
-    FixedRadS(f64),
 }
 
 /// A fundamental and how it was found.
@@ -65,9 +42,6 @@ pub struct Choice {
     /// Fundamentals tried.
     pub evaluations: usize,
 }
-
-/// Fundamentals that can be given, rad/s: one period in two months, and faster than any instrument reads.
-const FREQUENCIES: std::ops::RangeInclusive<f64> = 1e-6..=1e3;
 
 /// Lowest fundamental of a scan, periods a record: below it 17 columns are one polynomial to rounding.
 const FEWEST_PERIODS: f64 = 0.35;
@@ -85,23 +59,9 @@ const DESCENT_STEP: f64 = 0.15;
 impl Fundamental {
     /// Refuses settings that cannot mean anything.
     pub fn check(&self) -> Result<(), SettingsError> {
-        let refuse = |key, found: f64, expected| Err(SettingsError::new(key, Shown(found), expected));
         match self {
-            Self::Starts(starts) if !(1..=StartPoint::COUNT).contains(&starts.len()) => {
-                let found = format!("a list of {} starts", starts.len());
-                Err(SettingsError::new("fundamental.starts", found, "1 to 3 starts"))
-            }
-            Self::BestConditioned { r_squared_loss: loss } if !(*loss >= 0.0 && *loss < 1.0) => {
-                refuse("fundamental.best-conditioned", *loss, "a loss of R² from 0 to below 1")
-            }
             Self::RecordAndPeriods(x) if !(*x >= 0.0 && *x <= 2.0) => {
-                refuse("fundamental.record-and-periods", *x, "0 to 2 periods")
-            }
-            Self::RecordLengths(x) if !(*x >= 0.01 && *x <= 1.0 / FEWEST_PERIODS) => {
-                refuse("fundamental.record-lengths", *x, "a period of 0.01 to 2.86 record lengths")
-            }
-            Self::FixedRadS(w) if !FREQUENCIES.contains(w) => {
-                refuse("fundamental.fixed-rad-s", *w, "a frequency of 1e-6 to 1000 rad/s")
+                Err(SettingsError::new("fundamental.record-and-periods", Shown(*x), "0 to 2 periods"))
             }
             _ => Ok(()),
         }
@@ -114,39 +74,24 @@ impl Fundamental {
     pub fn choose(&self, time: &[f64], heading: &[f64], harmonics: usize) -> Result<Choice, IdentifyError> {
         let length = time[time.len() - 1] - time[0];
         let direct = |fundamental| Choice { fundamental, stop: StopReason::Direct, evaluations: 0 };
-        match self {
-            Self::FixedRadS(fundamental) => Ok(direct(*fundamental)),
-            Self::RecordLengths(lengths) => Ok(direct(TAU / (lengths * length))),
-            Self::RecordAndPeriods(periods) => {
-                Ok(direct(TAU / (length + periods * zero_crossing_period(time, heading)?)))
-            }
-            Self::ZeroCrossings => Ok(direct(TAU / zero_crossing_period(time, heading)?)),
-            Self::Starts(starts) => Ok(search_from(starts, time, heading, harmonics)),
-            Self::Global => Ok(Scan::new(time, heading, harmonics).lowest()),
-            Self::BestConditioned { r_squared_loss } => {
-                Scan::new(time, heading, harmonics).best_conditioned(time, *r_squared_loss)
-            }
-        }
+        let peak = || peak_of_transform(time, heading);
+        Ok(match self {
+            Self::RecordAndPeriods(periods) => direct(TAU / (length + periods * zero_crossing_period(time, heading)?)),
+            Self::ZeroCrossings => direct(TAU / zero_crossing_period(time, heading)?),
+            Self::Starts => search_from(&[peak(), TAU / length, PI / length], time, heading, harmonics),
+            Self::FftPeak => search_from(&[peak()], time, heading, harmonics),
+            Self::Global => lowest(time, heading, harmonics),
+        })
     }
 }
 
-/// Local searches from every start, the lowest RSS kept.
-fn search_from(starts: &[StartPoint], time: &[f64], heading: &[f64], harmonics: usize) -> Choice {
+/// Local searches from every start (rad/s), the lowest RSS kept.
+fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) -> Choice {
     let length = time[time.len() - 1] - time[0];
     let mut profile = Profile::new(time, heading, harmonics);
-    let mut best: Option<(f64, Choice)> = None;
-    for start in starts {
-        let from = match start {
-            StartPoint::FftPeak => peak_of_transform(time, heading),
-            StartPoint::RecordLength => TAU / length,
-            StartPoint::TwiceRecordLength => PI / length,
-        };
-        let (rss, choice) = descend(&mut profile, from, length, harmonics);
-        if best.is_none_or(|(lowest, _)| rss < lowest) {
-            best = Some((rss, choice));
-        }
-    }
-    let (_, choice) = best.expect("settings hold at least one start");
+    let ends: Vec<(f64, Choice)> =
+        starts.iter().map(|&start| descend(&mut profile, start, length, harmonics)).collect();
+    let (_, choice) = ends.into_iter().min_by(|one, other| one.0.total_cmp(&other.0)).expect("there is a start");
     Choice { evaluations: profile.evaluations(), ..choice }
 }
 
@@ -230,69 +175,21 @@ fn close_in(profile: &mut Profile, lo: f64, middle: f64, hi: f64, value: f64) ->
     (x, fx)
 }
 
-/// RSS on a grid of fundamentals.
-struct Scan {
-    profile: Profile,
-    harmonics: usize,
-    lowest: f64,
-    step: f64,
-    rss: Vec<f64>,
-}
-
-impl Scan {
-    fn new(time: &[f64], heading: &[f64], harmonics: usize) -> Self {
-        let length = time[time.len() - 1] - time[0];
-        let peak = peak_of_transform(time, heading);
-        let lowest = (FEWEST_PERIODS * TAU / length).max(LEAST_REACH * peak / harmonics as f64);
-        let step = SCAN_STEP * PI / (harmonics as f64 * length);
-        let count = ((HIGHEST_OVER_PEAK * peak - lowest) / step).max(2.0).ceil() as usize + 1;
-        let mut profile = Profile::new(time, heading, harmonics);
-        let rss = profile.scan(lowest, step, count);
-        Self { profile, harmonics, lowest, step, rss }
-    }
-
-    fn at(&self, k: usize) -> f64 {
-        self.lowest + k as f64 * self.step
-    }
-
-    /// Closes in on the minimum around grid point `k`, inside the grid.
-    fn polish(&mut self, k: usize) -> (f64, f64) {
-        let last = self.rss.len() - 1;
-        let (lo, hi) = (self.at(k.saturating_sub(1)), self.at((k + 1).min(last)));
-        let (middle, value) = (self.at(k), self.rss[k]);
-        close_in(&mut self.profile, lo, middle, hi, value)
-    }
-
-    fn lowest(mut self) -> Choice {
-        let last = self.rss.len() - 1;
-        let best = (0..=last).min_by(|&p, &q| self.rss[p].total_cmp(&self.rss[q])).expect("a scan is not empty");
-        let stop = if best == 0 || best == last { StopReason::RangeLimit } else { StopReason::Converged };
-        let (fundamental, _) = self.polish(best);
-        Choice { fundamental, stop, evaluations: self.profile.evaluations() }
-    }
-
-    fn best_conditioned(mut self, time: &[f64], loss: f64) -> Result<Choice, IdentifyError> {
-        let last = self.rss.len() - 1;
-        let is_minimum =
-            |k: usize| (k == 0 || self.rss[k] <= self.rss[k - 1]) && (k == last || self.rss[k] < self.rss[k + 1]);
-        let minima: Vec<usize> = (0..=last).filter(|&k| is_minimum(k)).collect();
-        let mut ends = Vec::with_capacity(minima.len());
-        for k in minima {
-            let (w, rss) = self.polish(k);
-            ends.push((k, w, rss));
-        }
-        let best = ends.iter().fold(f64::INFINITY, |best, end| best.min(end.2));
-        let limit = best + loss * self.profile.total();
-        let mut chosen: Option<(f64, Choice)> = None;
-        for (k, fundamental, _) in ends.into_iter().filter(|end| end.2 <= limit) {
-            let condition = Basis::new(time, fundamental, self.harmonics)?.condition();
-            if chosen.is_none_or(|(least, _)| condition < least) {
-                let stop = if k == 0 || k == last { StopReason::RangeLimit } else { StopReason::Converged };
-                chosen = Some((condition, Choice { fundamental, stop, evaluations: self.profile.evaluations() }));
-            }
-        }
-        Ok(chosen.expect("the lowest point of a scan is a minimum within any loss").1)
-    }
+/// The lowest RSS on a grid of fundamentals, closed in on.
+fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> Choice {
+    let length = time[time.len() - 1] - time[0];
+    let peak = peak_of_transform(time, heading);
+    let lowest = (FEWEST_PERIODS * TAU / length).max(LEAST_REACH * peak / harmonics as f64);
+    let step = SCAN_STEP * PI / (harmonics as f64 * length);
+    let last = ((HIGHEST_OVER_PEAK * peak - lowest) / step).max(2.0).ceil() as usize;
+    let mut profile = Profile::new(time, heading, harmonics);
+    let rss = profile.scan(lowest, step, last + 1);
+    let best = (0..=last).min_by(|&p, &q| rss[p].total_cmp(&rss[q])).expect("a scan is not empty");
+    let stop = if best == 0 || best == last { StopReason::RangeLimit } else { StopReason::Converged };
+    let at = |k: usize| lowest + k as f64 * step;
+    let (lo, hi) = (at(best.saturating_sub(1)), at((best + 1).min(last)));
+    let (fundamental, _) = close_in(&mut profile, lo, at(best), hi, rss[best]);
+    Choice { fundamental, stop, evaluations: profile.evaluations() }
 }
 
 /// Angular frequency, rad/s, of the highest peak of the transform of the heading about its mean, from one period a
@@ -357,9 +254,7 @@ pub fn zero_crossing_period(time: &[f64], heading: &[f64]) -> Result<f64, Identi
     } else {
         crossings.windows(3).map(|three| three[2] - three[0]).collect()
     };
-    periods.sort_by(f64::total_cmp);
-    let middle = periods.len() / 2;
-    Ok(if periods.len() % 2 == 1 { periods[middle] } else { 0.5 * (periods[middle - 1] + periods[middle]) })
+    Ok(median(&mut periods).expect("there are two crossings"))
 }
 
 #[cfg(test)]

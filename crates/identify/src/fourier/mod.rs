@@ -9,21 +9,21 @@
 //! | choosing w | [`fundamental`] |
 //! | the series on the instants of a record | [`basis`] |
 //! | RSS as a function of w | [`profile`] |
-//! | fewer instants in place of the rows | [`nodes`] |
+//! | a record folded about its middle | [`nodes`] |
 //! | triples of instants, eq. (10) of the paper | [`triples`] |
 //! | regression on a pair of projected signals | [`regression`] |
 
 pub mod basis;
 mod curve;
 pub mod fundamental;
-pub mod nodes;
-pub mod profile;
+mod nodes;
+mod profile;
 pub mod regression;
 pub mod triples;
 
 pub use basis::{Basis, Projection};
 pub use curve::FourierFit;
-pub use fundamental::{Fundamental, StartPoint};
+pub use fundamental::Fundamental;
 pub use profile::MOST_HARMONICS;
 
 use crate::error::IdentifyError;

@@ -5,14 +5,13 @@
 //! is sin w u times one of degree k − 1. Over less than one period cos w u runs through a part of [−1, 1] only and its
 //! Chebyshev polynomials are nearly dependent; those of ξ = 1 − 2 (sin ½wu / sin ¼wL)², which always runs through all
 //! of it, span the same space and are not: Tₖ(ξ), k = 0..N, and sin w u Tₖ(ξ), k < N. Their normal equations hold only
-//! Σ Tₖ(ξ) and Σ sin w u Tₖ(ξ), and are well conditioned down to the lowest w. Where sums over rows are too many, they
-//! are taken over fewer [`Nodes`].
+//! Σ Tₖ(ξ) and Σ sin w u Tₖ(ξ), and are well conditioned down to the lowest w.
 //!
 //! Source of the elimination: Golub and Pereyra (1973), variable projection.
 
 use nalgebra::{DMatrix, DVector};
 use std::array::from_fn;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 use super::nodes::{LANES, Nodes, lanes};
 
@@ -20,16 +19,6 @@ use super::nodes::{LANES, Nodes, lanes};
 /// it: at 1e-6 that is harmless, from 1e-8 on pivots are made of their own error and false minima appear. It happens
 /// where gaps leave too little of the record, and where the highest harmonics are beyond the sampling.
 const SMALLEST_PIVOT: f64 = 1e-6;
-
-/// Highest fundamental of the coarsest nodes, periods a record; that of the others is doubled from one to the next.
-const COARSEST_REACH: f64 = 1.25;
-
-/// Nodes are made where the record, folded, has at least this many times as many rows.
-const WORTHWHILE: usize = 2;
-
-/// Most nodes of a level. To make them takes as long as about a quarter of their number over N sums over the rows, and
-/// a search asks for some hundred.
-const MOST_NODES: usize = 4096;
 
 /// Steps of a walk after which its phasors are computed anew, before rounding adds up.
 const ANCHOR_STEPS: usize = 32;
@@ -43,9 +32,6 @@ pub struct Profile {
     total: f64,
     /// The record itself.
     rows: Nodes,
-    /// Nodes in its place, from the coarsest, made when first wanted, and how many there are of them.
-    coarse: Vec<Option<Nodes>>,
-    counts: Vec<usize>,
     /// cos ½wu and sin ½wu of the fundamental evaluated last.
     phasor: Vec<[f64; 2]>,
     sums: Vec<Sums>,
@@ -74,10 +60,6 @@ impl Profile {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();
         let rows = Nodes::of_rows(time, &centred);
-        let counts: Vec<usize> = (0..)
-            .map(|level| Nodes::needed(2 * harmonics, FRAC_PI_2 * reach(level)))
-            .take_while(|&count| count <= MOST_NODES && count / 2 * WORTHWHILE <= rows.used)
-            .collect();
         let width = 2 * harmonics + 1;
         Self {
             harmonics,
@@ -85,18 +67,11 @@ impl Profile {
             total: centred.iter().map(|v| v * v).sum(),
             phasor: vec![[1.0, 0.0]; rows.time.len()],
             rows,
-            coarse: vec![None; counts.len()],
-            counts,
             sums: vec![Sums::default(); width],
             gram: vec![0.0; width * width],
             right: vec![0.0; width],
             evaluations: 0,
         }
-    }
-
-    /// Sum of squares about the mean.
-    pub fn total(&self) -> f64 {
-        self.total
     }
 
     /// Number of fundamentals tried so far.
@@ -106,9 +81,8 @@ impl Profile {
 
     /// RSS at `fundamental` (rad/s, positive).
     pub fn rss(&mut self, fundamental: f64) -> f64 {
-        let level = self.level(fundamental);
-        self.anchor(level, fundamental);
-        self.rss_of_phasor(level, fundamental)
+        self.anchor(fundamental);
+        self.rss_of_phasor(fundamental)
     }
 
     /// RSS at `count` fundamentals from `lowest` in steps of `step` (rad/s).
@@ -119,36 +93,21 @@ impl Profile {
 
     /// Fundamentals from `from` in steps of `step` (rad/s, either sign).
     pub fn walk(&mut self, from: f64, step: f64) -> Walk<'_> {
-        Walk { profile: self, turn: Vec::new(), level: 0, from, step, done: 0 }
-    }
-
-    /// Which nodes stand for the rows at `fundamental`: a place in `coarse`, or its length for the rows themselves.
-    fn level(&self, fundamental: f64) -> usize {
-        let periods = fundamental * self.length / TAU;
-        (0..self.coarse.len()).take_while(|&level| reach(level) < periods).count()
-    }
-
-    /// Makes the nodes of a level, from the next finer there are.
-    fn make(&mut self, level: usize) {
-        if self.coarse.get(level).is_some_and(Option::is_none) {
-            let finer = self.coarse[level..].iter().flatten().next().unwrap_or(&self.rows);
-            self.coarse[level] = Some(finer.fewer(self.counts[level], 0.5 * self.length));
-        }
+        let turn = self.rows.time.iter().map(|u| phasor(0.5 * step * u)).collect();
+        Walk { profile: self, turn, from, step, done: 0 }
     }
 
     /// Computes the phasors of `fundamental`.
-    fn anchor(&mut self, level: usize, fundamental: f64) {
-        self.make(level);
-        for (value, u) in self.phasor.iter_mut().zip(&nodes(&self.coarse, &self.rows, level).time) {
+    fn anchor(&mut self, fundamental: f64) {
+        for (value, u) in self.phasor.iter_mut().zip(&self.rows.time) {
             *value = phasor(0.5 * fundamental * u);
         }
     }
 
-    fn rss_of_phasor(&mut self, level: usize, fundamental: f64) -> f64 {
+    fn rss_of_phasor(&mut self, fundamental: f64) -> f64 {
         self.evaluations += 1;
         let share = cosine_share(fundamental, self.length);
-        let nodes = nodes(&self.coarse, &self.rows, level);
-        accumulate(nodes, &self.phasor, share, self.harmonics, &mut self.sums);
+        accumulate(&self.rows, &self.phasor, share, self.harmonics, &mut self.sums);
         self.assemble(share);
         match explained(&mut self.gram, &mut self.right) {
             Some(explained) => (self.total - explained).max(0.0),
@@ -216,8 +175,6 @@ impl Profile {
 pub struct Walk<'a> {
     profile: &'a mut Profile,
     turn: Vec<[f64; 2]>,
-    /// Of the nodes that phasors and turn belong to.
-    level: usize,
     from: f64,
     step: f64,
     done: usize,
@@ -227,15 +184,8 @@ impl Walk<'_> {
     /// RSS at the next fundamental, the first time at the start of the walk.
     pub fn next_rss(&mut self) -> f64 {
         let fundamental = self.from + self.done as f64 * self.step;
-        let level = self.profile.level(fundamental);
-        if self.done == 0 || level != self.level {
-            self.level = level;
-            self.profile.anchor(level, fundamental);
-            let nodes = nodes(&self.profile.coarse, &self.profile.rows, level);
-            self.turn.clear();
-            self.turn.extend(nodes.time.iter().map(|u| phasor(0.5 * self.step * u)));
-        } else if self.done.is_multiple_of(ANCHOR_STEPS) {
-            self.profile.anchor(level, fundamental);
+        if self.done.is_multiple_of(ANCHOR_STEPS) {
+            self.profile.anchor(fundamental);
         } else {
             for (phasor, turn) in self.profile.phasor.iter_mut().zip(&self.turn) {
                 let [c, s] = *phasor;
@@ -243,7 +193,7 @@ impl Walk<'_> {
             }
         }
         self.done += 1;
-        self.profile.rss_of_phasor(level, fundamental)
+        self.profile.rss_of_phasor(fundamental)
     }
 }
 
@@ -251,16 +201,6 @@ impl Walk<'_> {
 pub const MOST_HARMONICS: usize = 64;
 
 const MOST_COLUMNS: usize = 2 * MOST_HARMONICS + 1;
-
-/// Highest fundamental of the nodes of a level, periods a record.
-fn reach(level: usize) -> f64 {
-    COARSEST_REACH * f64::powi(2.0, level as i32)
-}
-
-/// The nodes of a level, or the rows beyond the last.
-fn nodes<'a>(coarse: &'a [Option<Nodes>], rows: &'a Nodes, level: usize) -> &'a Nodes {
-    coarse.get(level).and_then(Option::as_ref).unwrap_or(rows)
-}
 
 /// Share sin² ¼wL of [−1, 1] that cos w u runs through over a record of length L; all of it from one period on.
 fn cosine_share(fundamental: f64, length: f64) -> f64 {

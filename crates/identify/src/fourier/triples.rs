@@ -8,10 +8,8 @@
 use nalgebra::Matrix3;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::{Deserialize, Serialize};
-use ship::Shown;
 
 use crate::error::IdentifyError;
-use crate::settings::SettingsError;
 
 /// Area over the product of standard deviations below which three instants lie on one line to rounding.
 const SMALLEST_AREA: f64 = 1e-9;
@@ -22,82 +20,25 @@ const DRAWS_PER_TRIPLE: usize = 1000;
 /// Most triples: ten million draws where none of them is usable.
 pub const MOST_TRIPLES: usize = 10_000;
 
-/// Longest rest of the rudder that can be asked for, s: all rows within it are looked at for every row.
-const LONGEST_REST: f64 = 100.0;
+/// Largest condition number of the equations of a well-conditioned triple, columns divided by the standard deviations of
+/// r' and δ.
+const CONDITION_LIMIT: f64 = 10.0;
 
 /// Which triples are used.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Selection {
     /// Any three instants.
     Uniform,
-    /// Instants of one trial at least this far apart.
-    Separated {
-        /// Smallest time between two of them, s.
-        separation_s: f64,
-    },
-    /// Instants from the middle of the record with the rudder at rest, and equations that are well conditioned.
-    WellConditioned(WellConditioned),
-}
-
-/// The rule of [`Selection::WellConditioned`].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
-pub struct WellConditioned {
-    /// Largest condition number of the equations, columns divided by the standard deviations of r' and δ.
-    pub condition_limit: f64,
-    /// Central share of the record that instants are taken from.
-    pub interior_share: f64,
-    /// The rudder must be at rest this long before and after an instant, s.
-    pub rudder_rest_s: f64,
-    /// Range of the rudder in that time that counts as rest, deg.
-    pub rudder_rest_deg: f64,
-}
-
-impl Default for WellConditioned {
-    fn default() -> Self {
-        Self { condition_limit: 10.0, interior_share: 0.9, rudder_rest_s: 2.0, rudder_rest_deg: 0.5 }
-    }
-}
-
-impl Default for Selection {
-    fn default() -> Self {
-        Self::WellConditioned(WellConditioned::default())
-    }
-}
-
-impl Selection {
-    /// Refuses settings that cannot mean anything.
-    pub fn check(&self) -> Result<(), SettingsError> {
-        let need = |holds: bool, key, found: f64, expected| {
-            if holds { Ok(()) } else { Err(SettingsError::new(key, Shown(found), expected)) }
-        };
-        match self {
-            Self::Uniform => Ok(()),
-            Self::Separated { separation_s: s } => {
-                need(*s >= 0.0 && s.is_finite(), "selection.separated.separation-s", *s, "0 s or more")
-            }
-            Self::WellConditioned(rule) => {
-                let (limit, share) = (rule.condition_limit, rule.interior_share);
-                let (seconds, degrees) = (rule.rudder_rest_s, rule.rudder_rest_deg);
-                need(limit > 1.0, "selection.well-conditioned.condition-limit", limit, "a number above 1")?;
-                let key = "selection.well-conditioned.interior-share";
-                need(share > 0.0 && share <= 1.0, key, share, "above 0, at most 1")?;
-                let key = "selection.well-conditioned.rudder-rest-s";
-                need((0.0..=LONGEST_REST).contains(&seconds), key, seconds, "0 to 100 s")?;
-                need(degrees > 0.0, "selection.well-conditioned.rudder-rest-deg", degrees, "above 0 deg")
-            }
-        }
-    }
+    /// Instants from the central nine tenths of the record with the rudder at rest, and equations with a condition number
+    /// below 10.
+    #[default]
+    WellConditioned,
 }
 
 /// An instant at which the equation of motion may be written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instant {
-    /// Number of the trial.
-    pub trial: usize,
-    /// Time in the trial, s.
-    pub time: f64,
     /// Rudder δ, rad.
     pub rudder: f64,
     /// Yaw rate r, rad/s.
@@ -128,8 +69,6 @@ pub struct Drawn {
     pub singular: usize,
     /// Left out: condition number above the limit.
     pub ill_conditioned: usize,
-    /// Left out: instants too near to each other.
-    pub too_close: usize,
     /// Kept, with K or T below zero.
     pub negative: usize,
 }
@@ -138,7 +77,7 @@ pub struct Drawn {
 ///
 /// Fails with [`IdentifyError::TooFewPoints`] when there are fewer than three instants or `count` triples do not come
 /// together in a thousand draws each.
-pub fn draw(instants: &[Instant], selection: &Selection, count: usize, seed: u64) -> Result<Drawn, IdentifyError> {
+pub fn draw(instants: &[Instant], selection: Selection, count: usize, seed: u64) -> Result<Drawn, IdentifyError> {
     if instants.len() < 3 {
         let what = "instants with the rudder at rest";
         return Err(IdentifyError::TooFewPoints { what, needed: 3, found: instants.len() });
@@ -157,19 +96,11 @@ pub fn draw(instants: &[Instant], selection: &Selection, count: usize, seed: u64
         }
         drawn.tried += 1;
         let triple = chosen.map(|index| instants[index]);
-        if let Selection::Separated { separation_s } = *selection
-            && !is_separated(&triple, separation_s)
-        {
-            drawn.too_close += 1;
-            continue;
-        }
         let Some(answer) = solve(&triple, scale) else {
             drawn.singular += 1;
             continue;
         };
-        if let Selection::WellConditioned(rule) = selection
-            && condition(&triple, scale) >= rule.condition_limit
-        {
+        if selection == Selection::WellConditioned && condition(&triple, scale) >= CONDITION_LIMIT {
             drawn.ill_conditioned += 1;
             continue;
         }
@@ -209,11 +140,6 @@ fn condition(triple: &[Instant; 3], scale: [f64; 2]) -> f64 {
     values.max() / values.min()
 }
 
-fn is_separated(triple: &[Instant; 3], separation: f64) -> bool {
-    let apart = |x: &Instant, y: &Instant| x.trial != y.trial || (x.time - y.time).abs() >= separation;
-    apart(&triple[0], &triple[1]) && apart(&triple[1], &triple[2]) && apart(&triple[0], &triple[2])
-}
-
 fn deviation(instants: &[Instant], of: impl Fn(&Instant) -> f64) -> f64 {
     let count = instants.len() as f64;
     let mean = instants.iter().map(&of).sum::<f64>() / count;
@@ -230,8 +156,6 @@ mod tests {
         let truth = case.truth();
         (0..truth.time.len())
             .map(|row| Instant {
-                trial: 0,
-                time: truth.time[row],
                 rudder: truth.rudder[row],
                 yaw_rate: truth.yaw_rate[row],
                 yaw_acceleration: truth.yaw_acceleration[row],
@@ -243,7 +167,7 @@ mod tests {
     fn the_algebra_is_exact() {
         for heading_deg in [10.0, 20.0] {
             let case = Case { heading_deg, bias_deg: 0.7, ..Case::default() };
-            let drawn = draw(&exact(&case), &Selection::Uniform, 4000, 1).expect("most triples are usable");
+            let drawn = draw(&exact(&case), Selection::Uniform, 4000, 1).expect("most triples are usable");
             assert!(drawn.singular > 0 && drawn.negative == 0);
             for answer in &drawn.answers {
                 assert_relative_eq!(answer.K, case.K, max_relative = 1e-6);
@@ -259,19 +183,17 @@ mod tests {
     fn the_share_of_singular_triples_is_known() {
         for (heading_deg, counted) in [(10.0, 0.162), (20.0, 0.190)] {
             let instants = exact(&Case { heading_deg, ..Case::default() });
-            let drawn = draw(&instants, &Selection::Uniform, 4000, 1).expect("most triples are usable");
+            let drawn = draw(&instants, Selection::Uniform, 4000, 1).expect("most triples are usable");
             let share = drawn.singular as f64 / drawn.tried as f64;
             assert!((share - counted).abs() < 0.02, "{share} singular in 10/{heading_deg}");
         }
     }
 
     #[test]
-    fn separation_and_condition_hold_for_what_is_kept() {
+    fn the_condition_holds_for_what_is_kept() {
         let instants = exact(&Case::default());
-        let drawn = draw(&instants, &Selection::Separated { separation_s: 20.0 }, 200, 2).expect("enough room");
-        assert!(drawn.too_close > 0 && drawn.ill_conditioned == 0);
-        let drawn = draw(&instants, &Selection::default(), 200, 2).expect("enough good triples");
-        assert!(drawn.ill_conditioned > 0 && drawn.too_close == 0);
+        let drawn = draw(&instants, Selection::default(), 200, 2).expect("enough good triples");
+        assert!(drawn.ill_conditioned > 0);
         assert_eq!(drawn.tried, 200 + drawn.ill_conditioned + drawn.singular);
     }
 
@@ -279,7 +201,7 @@ mod tests {
     fn one_rudder_angle_gives_no_triple() {
         let mut instants = exact(&Case::default());
         instants.retain(|i| (i.rudder - 10f64.to_radians()).abs() < 1e-12);
-        let error = draw(&instants, &Selection::Uniform, 10, 1).expect_err("one rudder angle");
+        let error = draw(&instants, Selection::Uniform, 10, 1).expect_err("one rudder angle");
         assert_eq!(error, IdentifyError::TooFewPoints { what: "usable triples of instants", needed: 10, found: 0 });
     }
 }

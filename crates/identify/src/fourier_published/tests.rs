@@ -39,8 +39,8 @@ fn uniform_triples_are_useless() {
     let trial = case.trial();
     let samples = Samples::new(&trial, 18).expect("long enough");
     let fitted = method.fit(&samples).expect("fits");
-    let instants = method.instants(0, &trial, &samples, &fitted);
-    let drawn = triples::draw(&instants, &Selection::Uniform, 2000, 0).expect("most are usable");
+    let instants = method.instants(&trial, &samples, &fitted);
+    let drawn = triples::draw(&instants, Selection::Uniform, 2000, 0).expect("most are usable");
     let share = |holds: &dyn Fn(&Answer) -> bool| {
         drawn.answers.iter().filter(|answer| holds(answer)).count() as f64 / drawn.answers.len() as f64
     };
@@ -138,6 +138,4 @@ fn settings_out_of_range_name_their_key() {
     let key = |settings: Settings| settings.build().expect_err("out of range").key;
     assert_eq!(key(Settings { harmonics: 0, ..Settings::default() }), "harmonics");
     assert_eq!(key(Settings { triples: 0, ..Settings::default() }), "triples");
-    let selection = Selection::Separated { separation_s: -1.0 };
-    assert_eq!(key(Settings { selection, ..Settings::default() }), "selection.separated.separation-s");
 }

@@ -5,6 +5,8 @@ use std::f64::consts::{PI, TAU};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
+use super::circle::reached;
+
 /// Heading change from which a turn is steady enough, rad.
 const STEADY: f64 = PI;
 
@@ -48,12 +50,11 @@ pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Curr
     let change = |row: usize| side * (heading[row] - heading[0]);
     let whole = change(rows - 1);
     // The first time at which the heading has changed that much: time, north and east.
-    let reached = |angle: f64| {
-        let row = (1..rows).find(|&row| change(row) >= angle)?;
-        let share = (angle - change(row - 1)) / (change(row) - change(row - 1));
-        let between = |from: f64, to: f64| from + share * (to - from);
-        let [before, after] = [track[row - 1], track[row]];
-        let found = [between(time[row - 1], time[row]), between(before[0], after[0]), between(before[1], after[1])];
+    let instant = |angle: f64| {
+        let (row, share) = reached(change, 0, rows, angle)?;
+        let at = |row: usize| [time[row], track[row][0], track[row][1]];
+        let (before, after) = (at(row), at(row + 1));
+        let found: [f64; 3] = std::array::from_fn(|k| before[k] + share * (after[k] - before[k]));
         found.iter().all(|value| value.is_finite()).then_some(found)
     };
     if whole.is_nan() || whole < ENOUGH {
@@ -63,7 +64,7 @@ pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Curr
     let drifts: Vec<[f64; 2]> = (0..=pairs)
         .filter_map(|pair| {
             let angle = STEADY + pair as f64 * BETWEEN;
-            let (one, next) = (reached(angle)?, reached(angle + TAU)?);
+            let (one, next) = (instant(angle)?, instant(angle + TAU)?);
             let elapsed = next[0] - one[0];
             (elapsed > 0.0).then(|| [(next[1] - one[1]) / elapsed, (next[2] - one[2]) / elapsed])
         })

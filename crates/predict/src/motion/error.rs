@@ -67,12 +67,9 @@ pub enum MotionError {
         /// The value.
         value: f64,
     },
-    /// Coefficients that are too few, too many or not finite.
-    #[error("{needed} finite coefficients are needed, found {found}")]
-    Coefficients {
-        /// Coefficients of the equations.
-        needed: usize,
-        /// Finite ones found.
-        found: usize,
-    },
+}
+
+/// Fails with [`MotionError::NotPositive`] for what is no length or speed of a ship.
+pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<(), MotionError> {
+    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(MotionError::NotPositive { quantity, value }) }
 }

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 use ship::{Dynamics, Input, Motion};
 
-use super::coefficients::{COEFFICIENTS, SYMBOLS};
+use super::coefficients::COEFFICIENTS;
 use super::error::MotionError;
-use super::planar::Planar;
-use super::yaw::{YAW_COEFFICIENTS, YAW_SYMBOLS, Yaw};
+use super::planar::{Planar, moved};
+use super::yaw::{YAW_COEFFICIENTS, Yaw};
 
 /// Number of coefficients of a hull: those of surge and sway, then those of yaw.
 pub const HULL_COEFFICIENTS: usize = COEFFICIENTS + YAW_COEFFICIENTS;
@@ -63,7 +63,7 @@ pub struct IdentifiedHull {
     pub planar: Planar,
     /// Yaw.
     pub yaw: Yaw,
-    /// Covariance of all coefficients in the order of [`IdentifiedHull::symbols`].
+    /// Covariance of all coefficients: those of surge and sway, then those of yaw.
     pub covariance: Vec<Vec<f64>>,
     /// From what the covariance follows.
     pub spread: Spread,
@@ -97,33 +97,12 @@ impl IdentifiedHull {
         Ok(Self { planar, moment, ..self.clone() })
     }
 
-    /// The coefficients in the order of [`IdentifiedHull::symbols`].
-    pub fn coefficients(&self) -> Vec<f64> {
-        [self.planar.coefficients(), self.yaw.to_array().to_vec()].concat()
-    }
-
-    /// Symbols of the coefficients: surge and sway, then yaw.
-    pub fn symbols() -> Vec<&'static str> {
-        [&SYMBOLS[..], &YAW_SYMBOLS[..]].concat()
-    }
-
-    /// The same ship with other coefficients, in the order of [`IdentifiedHull::symbols`]: a draw from the covariance.
-    ///
-    /// A value of a sign that the equations do not allow is put to the nearest that they do. Fails with
-    /// [`MotionError::Coefficients`] when the number is wrong or one is not finite.
-    pub fn with_coefficients(&self, values: &[f64]) -> Result<Self, MotionError> {
-        let found = values.iter().filter(|value| value.is_finite()).count();
-        if found != HULL_COEFFICIENTS || values.len() != found {
-            return Err(MotionError::Coefficients { needed: HULL_COEFFICIENTS, found });
-        }
-        let (planar, yaw) = values.split_at(COEFFICIENTS);
-        let yaw = Yaw::from_array(std::array::from_fn(|i| yaw[i]));
-        Ok(Self { planar: self.planar.with_coefficients(planar)?, yaw, ..self.clone() })
-    }
-
-    /// Standard deviations of the coefficients.
-    pub fn deviations(&self) -> Vec<f64> {
-        (0..self.covariance.len()).map(|i| self.covariance[i][i].max(0.0).sqrt()).collect()
+    /// The same ship with its coefficients changed by so much, those of surge and sway first: a draw from the
+    /// covariance. A value of a sign that the equations do not allow is put to the nearest that they do.
+    pub fn stepped(&self, step: &[f64]) -> Self {
+        let (planar, yaw) = step.split_at(COEFFICIENTS.min(step.len()));
+        let yaw = Yaw::from_array(moved(self.yaw.to_array(), yaw));
+        Self { planar: self.planar.stepped(planar), yaw, ..self.clone() }
     }
 
     /// r' in rad/s² at surge u and sway v (m/s), yaw rate r (rad/s), rudder (rad) and a disturbance (rad) beside it.

@@ -3,16 +3,15 @@
 use nalgebra::{DMatrix, DVector};
 use trial::Trial;
 
-use super::coefficients::COEFFICIENTS;
-use super::course::{OUTPUTS, WindowedRecord};
-use super::error::MotionError;
+use super::coefficients::{COEFFICIENTS, PlanarCoefficients};
+use super::error::{MotionError, positive};
 use super::fit::fit;
 use super::hull::{HULL_COEFFICIENTS, HullRecord, IdentifiedHull, Spread};
-use super::hull_search::Windows;
 use super::moment::moment;
 use super::planar::Planar;
-use super::search::{NormalEquations, Squares, determined, free, minimise, part, sandwich};
-use super::yaw::{TYPICAL_YAW, YAW_SYMBOLS, Yaw};
+use super::search::GroupedSquares;
+use super::windows::{OUTPUTS, WindowedRecord};
+use super::yaw::{TYPICAL_YAW, YAW_BOUNDS, YAW_COEFFICIENTS, YAW_SYMBOLS, Yaw};
 
 /// Times the weights of the kinds of output are taken anew from their residuals.
 const REWEIGHTED: usize = 2;
@@ -41,36 +40,32 @@ const JACKKNIFE: usize = 3;
 /// Fails as [`fit()`](super::fit::fit()) does, with [`MotionError::NoDrift`] when no record has both surge and sway, and
 /// with [`MotionError::Undetermined`] when the records leave a coefficient of yaw open.
 pub fn fit_hull(trials: &[Trial], length: f64) -> Result<IdentifiedHull, MotionError> {
-    if !(length.is_finite() && length > 0.0) {
-        return Err(MotionError::NotPositive { quantity: "length", value: length });
-    }
-    let usable: Vec<&Trial> = trials.iter().filter(|trial| WindowedRecord::of(trial, length, 1.0).is_some()).collect();
+    positive("length", length)?;
+    let is_usable = |trial: &&Trial| WindowedRecord::of(trial, length, 1.0).is_some();
+    let usable: Vec<Trial> = trials.iter().filter(is_usable).cloned().collect();
     if usable.is_empty() {
         return Err(MotionError::NoDrift { records: trials.len() });
     }
-    let all: Vec<Trial> = usable.into_iter().cloned().collect();
-    let whole = HullFit::of(&all, length, TYPICAL_YAW)?;
-    let (covariance, spread) = match jackknife(&all, length, whole.yaw) {
+    let whole = HullFit::of(&usable, length, TYPICAL_YAW)?;
+    let (covariance, spread) = match jackknife(&usable, length, whole.yaw) {
         Some(covariance) => (covariance, Spread::Records),
         None => (whole.sandwich()?, Spread::Scores),
     };
-    let HullFit { planar, yaw, courses } = &whole;
+    let HullFit { planar, yaw, records } = whole;
     let second = length / planar.approach_speed;
-    let coefficients = whole.coefficients();
-    let record = |(trial, course): (&Trial, &WindowedRecord)| {
-        let windows = Windows::new(vec![course], false, [1.0; OUTPUTS]);
-        let [heading, yaw_rate, ..] = windows.rms(coefficients.as_slice());
+    let summary = |(trial, record): (&Trial, &WindowedRecord)| {
+        let [heading, yaw_rate, ..] = rms(std::slice::from_ref(record), Some(&planar.coefficients), &yaw);
         HullRecord { name: trial.name().to_owned(), heading, yaw_rate: yaw_rate / second }
     };
-    let records = all.iter().zip(courses).map(record).collect();
-    let mut random = moment(courses, yaw);
+    let mut random = moment(&records, &yaw);
     random.correlation_time *= second;
     Ok(IdentifiedHull {
         covariance: (0..HULL_COEFFICIENTS).map(|i| covariance.row(i).iter().copied().collect()).collect(),
         spread,
         moment: random,
-        records,
-        ..IdentifiedHull::new(planar.clone(), *yaw)
+        records: usable.iter().zip(&records).map(summary).collect(),
+        planar,
+        yaw,
     })
 }
 
@@ -78,58 +73,78 @@ pub fn fit_hull(trials: &[Trial], length: f64) -> Result<IdentifiedHull, MotionE
 struct HullFit {
     planar: Planar,
     yaw: Yaw,
-    courses: Vec<WindowedRecord>,
+    records: Vec<WindowedRecord>,
 }
 
 impl HullFit {
     fn of(trials: &[Trial], length: f64, start: Yaw) -> Result<Self, MotionError> {
         let planar = fit(trials, length)?;
         let speeds = planar.records.iter().map(|record| record.approach_speed);
-        let course = |(trial, speed)| WindowedRecord::of(trial, length, speed).expect("it has surge and sway");
-        let courses: Vec<WindowedRecord> = trials.iter().zip(speeds).map(course).collect();
-        let mut windows = Windows::new(courses.iter().collect(), true, FIRST);
-        let mut at = DVector::from_vec([planar.coefficients(), start.to_array().to_vec()].concat());
+        let record = |(trial, speed)| WindowedRecord::of(trial, length, speed).expect("it has surge and sway");
+        let records: Vec<WindowedRecord> = trials.iter().zip(speeds).map(record).collect();
+        let mut deviations = FIRST;
+        let mut at = start.to_array().to_vec();
         for round in 0..=REWEIGHTED {
-            at = minimise(&windows, at).map_err(|iterations| MotionError::NoConvergence { iterations })?;
+            at = squares(&records, deviations).minimise(&at)?;
             if round < REWEIGHTED {
-                windows.deviations = windows.rms(at.as_slice()).map(|rms| rms.max(LEAST));
+                deviations = believed(&records, &yaw_of(&at));
             }
         }
-        let (normal, free) = of_yaw(&windows, &at);
-        determined(&normal, &free, symbol)?;
-        let yaw = Yaw::from_array(std::array::from_fn(|i| at[COEFFICIENTS + i]));
-        Ok(Self { planar, yaw, courses })
-    }
-
-    /// All coefficients.
-    fn coefficients(&self) -> DVector<f64> {
-        DVector::from_vec([self.planar.coefficients(), self.yaw.to_array().to_vec()].concat())
+        squares(&records, deviations).inverse(&at, &YAW_SYMBOLS)?;
+        Ok(Self { planar, yaw: yaw_of(&at), records })
     }
 
     /// Block diagonal: that of surge and sway, and A⁻¹ S A⁻¹ of yaw.
     fn sandwich(&self) -> Result<DMatrix<f64>, MotionError> {
-        let mut windows = Windows::new(self.courses.iter().collect(), true, [1.0; OUTPUTS]);
-        let at = self.coefficients();
-        windows.deviations = windows.rms(at.as_slice()).map(|rms| rms.max(LEAST));
-        let (normal, free) = of_yaw(&windows, &at);
-        let open = MotionError::Undetermined { symbol: YAW_SYMBOLS[0] };
-        let inverse = part(&normal, &free).try_inverse().ok_or(open)?;
-        let mut covariance = sandwich(&inverse, &windows.long_run(&at, |place| free.contains(&place)), &free);
+        let squares = squares(&self.records, believed(&self.records, &self.yaw));
+        let of_yaw = squares.covariance(&self.yaw.to_array(), &YAW_SYMBOLS, false)?;
         let of_planar = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| self.planar.covariance[i][j]);
-        covariance.view_mut((0, 0), (COEFFICIENTS, COEFFICIENTS)).copy_from(&of_planar);
+        let mut covariance = DMatrix::zeros(HULL_COEFFICIENTS, HULL_COEFFICIENTS);
+        covariance.view_mut((0, 0), of_planar.shape()).copy_from(&of_planar);
+        covariance.view_mut((COEFFICIENTS, COEFFICIENTS), of_yaw.shape()).copy_from(&of_yaw);
         Ok(covariance)
     }
 }
 
-fn symbol(unknown: usize) -> Option<&'static str> {
-    YAW_SYMBOLS.get(unknown.checked_sub(COEFFICIENTS)?).copied()
+fn yaw_of(at: &[f64]) -> Yaw {
+    Yaw::from_array(std::array::from_fn(|i| at[i]))
 }
 
-/// The normal matrix, and the yaw coefficients that are at no bound.
-fn of_yaw(windows: &Windows, at: &DVector<f64>) -> (DMatrix<f64>, Vec<usize>) {
-    let NormalEquations { normal, gradient, .. } = windows.local(at);
-    let free = free(windows, at, &gradient).into_iter().filter(|i| *i >= COEFFICIENTS).collect();
-    (normal, free)
+/// Errors of the yaw equation in all windows, driven by measured surge, sway and rudder, over their deviations.
+fn squares(records: &[WindowedRecord], deviations: [f64; OUTPUTS]) -> GroupedSquares<'_> {
+    let of = |record: &'_ WindowedRecord| 0..record.windows.len();
+    let windows: Vec<(usize, usize)> =
+        records.iter().enumerate().flat_map(|(index, record)| of(record).map(move |window| (index, window))).collect();
+    GroupedSquares {
+        groups: vec![(0..YAW_COEFFICIENTS).collect(); windows.len()],
+        bounds: YAW_BOUNDS.to_vec(),
+        scales: vec![0.1; YAW_COEFFICIENTS],
+        residuals: Box::new(move |group, at| {
+            let (index, window) = windows[group];
+            let mut errors = records[index].errors(window, None, &yaw_of(at));
+            errors.column_iter_mut().zip(deviations).for_each(|(mut column, deviation)| column /= deviation);
+            errors
+        }),
+    }
+}
+
+/// Root mean squares of the errors in units of L and U₀, output by output.
+fn rms(records: &[WindowedRecord], planar: Option<&PlanarCoefficients>, yaw: &Yaw) -> [f64; OUTPUTS] {
+    let (mut squares, mut counts) = ([0.0; OUTPUTS], [0.0; OUTPUTS]);
+    for record in records {
+        for errors in (0..record.windows.len()).map(|window| record.errors(window, planar, yaw)) {
+            for (output, column) in errors.column_iter().enumerate() {
+                squares[output] += column.norm_squared();
+                counts[output] += column.iter().filter(|error| **error != 0.0).count() as f64;
+            }
+        }
+    }
+    std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
+}
+
+/// Deviations of the outputs as the errors show them.
+fn believed(records: &[WindowedRecord], yaw: &Yaw) -> [f64; OUTPUTS] {
+    rms(records, None, yaw).map(|rms| rms.max(LEAST))
 }
 
 /// (n − 1)/n Σ (θᵢ − θ̄)(θᵢ − θ̄)ᵀ over the fits to all records but one; `None` with too few records or where one of
@@ -142,7 +157,8 @@ fn jackknife(trials: &[Trial], length: f64, start: Yaw) -> Option<DMatrix<f64>> 
     let without = |left_out: usize| {
         let mut rest = trials.to_vec();
         rest.remove(left_out);
-        Some(HullFit::of(&rest, length, start).ok()?.coefficients())
+        let HullFit { planar, yaw, .. } = HullFit::of(&rest, length, start).ok()?;
+        Some(DVector::from_vec([&planar.coefficients.to_array()[..], &yaw.to_array()].concat()))
     };
     let found = (0..count).map(without).collect::<Option<Vec<_>>>()?;
     let mean = found.iter().sum::<DVector<f64>>() / count as f64;

@@ -24,14 +24,11 @@
 
 mod circle;
 mod coefficients;
-mod course;
 mod current;
 mod error;
 mod fit;
 mod hull;
 mod hull_fit;
-mod hull_search;
-mod model;
 mod moment;
 mod planar;
 mod planar_ship;
@@ -39,9 +36,10 @@ mod record;
 mod search;
 #[cfg(test)]
 mod tests;
+mod windows;
 mod yaw;
 
-pub use circle::{Turn, TurningCircleFigures, track, turning_circle};
+pub use circle::{TurningCircleFigures, track, turning_circle};
 pub use coefficients::{COEFFICIENTS, PlanarCoefficients, SYMBOLS};
 pub use current::{Current, current};
 pub use error::MotionError;

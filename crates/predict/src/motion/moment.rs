@@ -1,8 +1,8 @@
 //! What is random in yaw.
 
-use super::course::WindowedRecord;
 use super::hull::RandomYawMoment;
 use super::record::smoothed;
+use super::windows::WindowedRecord;
 use super::yaw::Yaw;
 
 /// Half width of the window in which the slope of the yaw rate is taken, in units of L/U₀.

@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::coefficients::{COEFFICIENTS, PlanarCoefficients};
-use super::error::MotionError;
-use super::model::{Drive, velocities};
+use super::error::{MotionError, positive};
 use super::record::MotionOutput;
 
 /// Speed and drift of one ship: coefficients, length, approach speed, and what the fit tells about them.
@@ -70,36 +69,16 @@ impl Planar {
     /// of lengths. At another, the residuary resistance is not that of the records, and the loss of speed is less sure.
     /// Fails with [`MotionError::NotPositive`].
     pub fn scaled_to(&self, length: f64, approach_speed: f64) -> Result<Self, MotionError> {
-        for (quantity, value) in [("length", length), ("approach speed", approach_speed)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(MotionError::NotPositive { quantity, value });
-            }
-        }
+        positive("length", length)?;
+        positive("approach speed", approach_speed)?;
         Ok(Self { length, approach_speed, ..self.clone() })
     }
 
-    /// The coefficients in the order of [`SYMBOLS`](super::coefficients::SYMBOLS).
-    pub fn coefficients(&self) -> Vec<f64> {
-        self.coefficients.to_array().to_vec()
-    }
-
-    /// The same ship with other coefficients, in the order of [`SYMBOLS`](super::coefficients::SYMBOLS): a draw from the covariance.
-    ///
-    /// A value of a sign that the equations do not allow is put to the nearest that they do. Fails with
-    /// [`MotionError::Coefficients`] when the number is wrong or one is not finite.
-    pub fn with_coefficients(&self, values: &[f64]) -> Result<Self, MotionError> {
-        let found = values.iter().filter(|value| value.is_finite()).count();
-        match <[f64; COEFFICIENTS]>::try_from(values) {
-            Ok(values) if found == COEFFICIENTS => {
-                Ok(Self { coefficients: PlanarCoefficients::from_array(values), ..self.clone() })
-            }
-            _ => Err(MotionError::Coefficients { needed: COEFFICIENTS, found }),
-        }
-    }
-
-    /// Standard deviations of the coefficients.
-    pub fn deviations(&self) -> [f64; COEFFICIENTS] {
-        std::array::from_fn(|i| self.covariance[i][i].max(0.0).sqrt())
+    /// The same ship with its coefficients changed by so much, in the order of [`SYMBOLS`](super::coefficients::SYMBOLS):
+    /// a draw from the covariance. A value of a sign that the equations do not allow is put to the nearest that they do.
+    pub fn stepped(&self, step: &[f64]) -> Self {
+        let coefficients = PlanarCoefficients::from_array(moved(self.coefficients.to_array(), step));
+        Self { coefficients, ..self.clone() }
     }
 
     /// (u', v') in m/s² at surge u and sway v (m/s), yaw rate r (rad/s) and rudder (rad).
@@ -116,14 +95,15 @@ impl Planar {
     /// As many rows as the shortest of the three columns has. Values that are not finite spread to all later rows.
     pub fn drive(&self, time: &[f64], yaw_rate: &[f64], rudder: &[f64], start: [f64; 2]) -> Vec<[f64; 2]> {
         let rows = time.len().min(yaw_rate.len()).min(rudder.len());
-        let drive = Drive { time: &time[..rows], yaw_rate: &yaw_rate[..rows], rudder: &rudder[..rows] };
-        velocities(&self.coefficients, [self.length, self.approach_speed], drive, start)
+        let driven = [time, yaw_rate, rudder].map(|column| &column[..rows]);
+        self.coefficients.velocities([self.length, self.approach_speed], driven, start)
     }
+}
 
-    /// Residual rms of one kind of output over all records that have it, in the [`unit`](MotionOutput::unit) of the output.
-    pub fn rms(&self, output: MotionOutput) -> Option<f64> {
-        pooled(&self.records, output)
-    }
+/// Values with a step added to each.
+pub(crate) fn moved<const N: usize>(mut values: [f64; N], step: &[f64]) -> [f64; N] {
+    values.iter_mut().zip(step).for_each(|(value, step)| *value += step);
+    values
 }
 
 /// Root mean square of one kind of residual over records.

@@ -25,12 +25,6 @@ impl PlanarShip {
         let measured = Measured { speed: Some(u.hypot(v)), sway: Some(v), ..input.measured };
         (own, Input { measured, ..*input })
     }
-
-    /// Surge and sway of a state, m/s.
-    pub fn velocity(&self, state: &[f64]) -> [f64; 2] {
-        let own = self.response.dimension();
-        [state[own], state[own + 1]]
-    }
 }
 
 impl Dynamics for PlanarShip {

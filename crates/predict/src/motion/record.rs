@@ -2,9 +2,11 @@
 
 use estimation::statistics::upper_median;
 use serde::{Deserialize, Serialize};
+use ship::Polyline;
 use trial::{Channel, Trial};
 
 use super::error::MotionError;
+use crate::line::StraightLine;
 
 /// A kind of output that the equations are fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
@@ -105,26 +107,11 @@ pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     upper_median(&mut values.filter(|value| value.is_finite()).collect::<Vec<f64>>())
 }
 
-/// Readings that are missing lie on the straight line between their neighbours, or are the nearest one.
+/// Readings that are missing lie on the straight line between their neighbours, or are the nearest one; NaN without any.
 pub(crate) fn filled(time: &[f64], values: &[f64]) -> Vec<f64> {
-    let there: Vec<usize> = (0..values.len()).filter(|&row| values[row].is_finite()).collect();
-    let mut next = 0;
-    let at = |row: usize, next: usize| match (next.checked_sub(1).map(|before| there[before]), there.get(next)) {
-        (Some(before), Some(&after)) => {
-            let share = (time[row] - time[before]) / (time[after] - time[before]);
-            values[before] + share * (values[after] - values[before])
-        }
-        (Some(one), None) | (None, Some(&one)) => values[one],
-        (None, None) => f64::NAN,
-    };
-    (0..values.len())
-        .map(|row| {
-            while there.get(next).is_some_and(|&there| there < row) {
-                next += 1;
-            }
-            if values[row].is_finite() { values[row] } else { at(row, next) }
-        })
-        .collect()
+    let (known, read) = time.iter().zip(values).filter(|(_, value)| value.is_finite()).unzip();
+    let line = Polyline::new(known, read);
+    time.iter().map(|time| line.as_ref().map_or(f64::NAN, |line| line.at(*time))).collect()
 }
 
 /// Value and slope of a signal in every row: a parabola by least squares over the rows within `half` seconds, at least
@@ -162,20 +149,11 @@ fn mean(values: &[f64]) -> Option<[f64; 2]> {
 }
 
 /// Speed and its standard deviation from the straight lines through positions, m/s.
-fn way_made(time: &[f64], north: &[f64], east: &[f64]) -> Option<[f64; 2]> {
-    let line = |values: &[f64]| {
-        let there: Vec<(f64, f64)> =
-            time.iter().copied().zip(values.iter().copied()).filter(|p| p.1.is_finite()).collect();
-        let count = there.len() as f64;
-        let [t, x] = [there.iter().map(|p| p.0).sum::<f64>() / count, there.iter().map(|p| p.1).sum::<f64>() / count];
-        let sum = |of: &dyn Fn(&(f64, f64)) -> f64| there.iter().map(of).sum::<f64>();
-        let (tt, tx) = (sum(&|p| (p.0 - t).powi(2)), sum(&|p| (p.0 - t) * (p.1 - x)));
-        let slope = tx / tt;
-        let left = sum(&|p| (p.1 - x - slope * (p.0 - t)).powi(2)) / (count - 2.0);
-        (there.len() >= 3).then(|| [slope, (left / tt).sqrt()])
-    };
-    let ([north, a], [east, b]) = (line(north)?, line(east)?);
-    Some([north.hypot(east), a.max(b)])
+fn way_made(time: &[f64], position: [&[f64]; 2]) -> Option<[f64; 2]> {
+    let line = |values: &[f64]| StraightLine::through(time.iter().copied().zip(values.iter().copied()));
+    let [north, east] = position.map(line);
+    let (north, east) = (north?, east?);
+    Some([north.slope.hypot(east.slope), north.slope_sd().max(east.slope_sd())])
 }
 
 impl<'a> MotionRecord<'a> {
@@ -203,7 +181,7 @@ impl<'a> MotionRecord<'a> {
         let still = (0..time.len()).take_while(is_straight).count();
         let of_rows = |rows: usize| match (surge.or(speed), position) {
             (Some(values), _) => mean(&values[..rows]),
-            (None, Some((north, east))) => way_made(&time[..rows], &north[..rows], &east[..rows]),
+            (None, Some((north, east))) => way_made(&time[..rows], [&north[..rows], &east[..rows]]),
             (None, None) => None,
         };
         let sound = |[speed, deviation]: &[f64; 2]| speed.is_finite() && *speed > 0.0 && deviation.is_finite();

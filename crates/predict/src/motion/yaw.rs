@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::coefficients::within;
+
 /// Number of coefficients.
 pub const YAW_COEFFICIENTS: usize = 6;
 
@@ -71,11 +73,7 @@ impl Yaw {
 
     /// PlanarCoefficients in the order of [`YAW_SYMBOLS`]; a value of the wrong sign is put to the nearest of the right one.
     pub fn from_array(values: [f64; YAW_COEFFICIENTS]) -> Self {
-        let mut values = values;
-        for (value, [least, most]) in values.iter_mut().zip(YAW_BOUNDS) {
-            *value = value.clamp(least, most);
-        }
-        let [N_r, N_v, N_vrr, N_d, N_ud, N_0] = values;
+        let [N_r, N_v, N_vrr, N_d, N_ud, N_0] = within(values, YAW_BOUNDS);
         Self { N_r, N_v, N_vrr, N_d, N_ud, N_0 }
     }
 

@@ -3,7 +3,6 @@
 mod failures;
 mod instruments;
 mod invariance;
-mod reference;
 
 use ship::FirstOrder;
 use ship::angle::from_deg;

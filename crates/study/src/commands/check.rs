@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+
 use crate::options::{Common, Format};
 use crate::screen;
 use crate::views::document;
@@ -11,11 +13,23 @@ use scenario::failure::{Blame, Failure};
 use serde_json::{Value, json};
 use simulate::settings::Assumption;
 
+/// What `study check` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct CheckRequest {
+    /// Scenario files
+    #[arg(required = true, value_name = "SCENARIO.toml")]
+    pub scenarios: Vec<PathBuf>,
+    /// Print every scenario with nothing left out, as TOML; defaults are marked
+    #[arg(long)]
+    pub resolved: bool,
+}
+
 /// Resolves every file and prints one line for each that is right, with a note where its rudder moves instantly; with
 /// `resolved` the whole scenario below it. All that are wrong are in the message.
-pub fn run(scenarios: &[PathBuf], resolved: bool, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &CheckRequest, common: &Common) -> Result<(), Failure> {
+    let resolved = request.resolved;
     let (mut wrong, mut right) = (Vec::new(), Vec::new());
-    for path in scenarios {
+    for path in &request.scenarios {
         match Scenario::read(path, common.seed) {
             Ok(_) if common.quiet => {}
             Ok(scenario) if common.format == Format::Json => right.push(entry(path, &scenario, resolved)),

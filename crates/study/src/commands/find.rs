@@ -58,9 +58,7 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
     if common.format == Format::Json {
         document::say("find/1", json!({ "logs": logs }))?;
     }
-    for warning in warnings {
-        screen::warn(&format!("warning: {warning}"));
-    }
+    screen::warn_of(&warnings);
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! `study list`: what scenario files can name.
 
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 use identify::{IdentifierSettings, external, registry};
 use report::number::MISSING;
 use report::{Column, Table};
@@ -19,8 +19,15 @@ use scenario::effect_keys;
 use scenario::failure::Failure;
 use scenario::keys::{Key as ScenarioKey, keys as keys_of_scenario};
 
+/// What `study list` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct ListRequest {
+    /// What to list
+    pub what: Listed,
+}
+
 /// Prints the list.
-pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
+pub fn run(&ListRequest { what }: &ListRequest, common: &Common) -> Result<(), Failure> {
     let table = match what {
         Listed::Identifiers => identifiers()?,
         Listed::Effects => effects(),

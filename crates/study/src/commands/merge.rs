@@ -4,13 +4,25 @@ use std::path::PathBuf;
 
 use campaign::folder::ResultFolder;
 use campaign::merge::join;
+use clap::Args;
 use scenario::failure::Failure;
 
-use crate::options::{Common, StudyStyle};
+use crate::options::{Common, StudyFigureOptions};
 use crate::views::publish::publish;
 
+/// What `study merge` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct MergeRequest {
+    /// Folders written with --shard, all of them, in any order
+    #[arg(required = true, value_name = "DIR")]
+    pub folders: Vec<PathBuf>,
+    /// How figures are drawn, and which
+    #[command(flatten)]
+    pub style: StudyFigureOptions,
+}
+
 /// Joins shards and publishes the whole.
-pub fn run(folders: &[PathBuf], style: &StudyStyle, common: &Common) -> Result<(), Failure> {
+pub fn run(MergeRequest { folders, style }: &MergeRequest, common: &Common) -> Result<(), Failure> {
     let theme = style.style.theme()?;
     let Some(out) = &common.out else {
         return Err(Failure::input("no folder for the joined study is given; add --out DIR"));

@@ -4,13 +4,13 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use report::markdown;
 use serde::Serialize;
 use serde_json::json;
 
-use crate::options::{Common, Format};
-use crate::screen;
-use crate::views::document;
+use super::reply;
+use crate::options::Common;
 use crate::views::drawings::HERO;
 use campaign::disk;
 use campaign::files;
@@ -37,8 +37,16 @@ struct Study {
     figure: Option<String>,
 }
 
+/// What `study overview` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct OverviewRequest {
+    /// Folder that holds the folders of studies
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
+
 /// Writes `README.md` beside the folders of the studies, or to `--out`.
-pub fn run(folder: &Path, common: &Common) -> Result<(), Failure> {
+pub fn run(OverviewRequest { folder }: &OverviewRequest, common: &Common) -> Result<(), Failure> {
     let studies = studies(folder)?;
     let target = ResultFolder::hold(common.out.as_deref().unwrap_or(folder))?;
     let path = target.path().join(PAGE);
@@ -49,10 +57,8 @@ pub fn run(folder: &Path, common: &Common) -> Result<(), Failure> {
         )));
     }
     target.write(PAGE, MARK.to_owned() + &markdown::prose(&page(&studies)))?;
-    if common.format == Format::Json && !common.quiet {
-        return document::say("overview/1", json!({ "page": path.display().to_string(), "studies": studies }));
-    }
-    if common.quiet { Ok(()) } else { screen::say(&format!("{} studies: {}", studies.len(), path.display())) }
+    let document = json!({ "page": path.display().to_string(), "studies": studies });
+    reply(common, "overview/1", document, &format!("{} studies: {}", studies.len(), path.display()))
 }
 
 /// The studies of a folder in the order of their names.

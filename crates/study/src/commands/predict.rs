@@ -11,7 +11,7 @@ use crate::records::read_others;
 use crate::screen::{self, Told};
 use crate::views::page_files::write_page;
 use crate::views::{document, predict_curves, predict_figures, predict_form, predict_page, predict_tables};
-use crate::work::predict::{Asked, Model, asked_scale, manoeuvres, predict};
+use crate::work::predict::{Model, PredictInput, predict};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
 
@@ -48,20 +48,9 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         _ => None,
     };
     let file = columns.map(|path| path.display().to_string());
-    let declared = file.as_deref().zip(declared.as_ref().map(Sidecar::conditions));
-    let asked = Asked {
-        models: &models,
-        ballast: &ballast,
-        records,
-        current,
-        manoeuvres: manoeuvres(request),
-        draws: request.draws as usize,
-        calm: request.calm,
-        scale: asked_scale(&request.reading),
-        form: request.form,
-        declared,
-    };
-    let predicted = predict(asked, common.quiet, &mut warnings)?;
+    let declared = file.as_deref().zip(declared.as_ref().map(|sidecar| &sidecar.conditions));
+    let input = PredictInput { models: &models, ballast: &ballast, records, current, declared };
+    let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     let path = folder.path().join(PREDICT);
     let document = document::text(&predicted).on("describe", &path)?;

@@ -1,32 +1,48 @@
 //! `study report DIR`: tables and figures of a finished study or of a trace, from what is stored and nothing else.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use campaign::folder::ResultFolder;
 use campaign::store::{self, StoredStudy};
+use clap::Args;
 use scenario::failure::Failure;
 
 use super::trace;
 use crate::documents::trace::TRACE;
-use crate::options::{Common, StudyStyle};
+use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
 
+/// What `study report` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct ReportRequest {
+    /// Folder of a finished study or of a trace; with --open also that of a fit or a prediction
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Show report.html in a browser; of a fit or a prediction as it is
+    #[arg(long)]
+    pub open: bool,
+    /// How figures are drawn, and which
+    #[command(flatten)]
+    pub style: StudyFigureOptions,
+}
+
 /// Makes tables, figures and the pages of a finished study or of a trace where it is stored, or in `--out`; with `open`
 /// shows the page in a browser, which is all that can be done for a fit and a prediction.
-pub fn run(rows: &Path, open: bool, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
+    let ReportRequest { folder: rows, open, style } = request;
     let folder = common.out.as_deref().unwrap_or(rows);
     let is_page = ["fit.json", "predict.json"].iter().any(|name| rows.join(name).is_file());
     if rows.join(TRACE).is_file() {
         trace::show(&ResultFolder::hold(folder)?, rows, &style.style.theme()?, common, &[])?;
-    } else if !(open && is_page) {
+    } else if !(*open && is_page) {
         rebuild(rows, style, common)?;
     }
-    if open { show(&(if is_page { rows } else { folder }).join(BROWSER)) } else { Ok(()) }
+    if *open { show(&(if is_page { rows } else { folder }).join(BROWSER)) } else { Ok(()) }
 }
 
-fn rebuild(rows: &Path, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
+fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &Common) -> Result<(), Failure> {
     let theme = style.style.theme()?;
     let is_same =
         |out: &Path| out.canonicalize().ok().zip(rows.canonicalize().ok()).is_some_and(|(out, rows)| out == rows);

@@ -9,10 +9,9 @@ use scenario::Scenario;
 use scenario::failure::Failure;
 use serde_json::json;
 
-use crate::options::{Common, Format, RunRequest};
-use crate::screen;
+use super::reply;
+use crate::options::{Common, RunRequest};
 use crate::terminal::Terminal;
-use crate::views::document;
 use crate::views::publish::publish;
 
 /// Runs a scenario, or a shard of it, and publishes it as `study report` would.
@@ -25,17 +24,7 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
     if shard == Shard::WHOLE {
         return publish(&stored, &folder, (&theme, request.style.figures), common);
     }
-    match common.format {
-        _ if common.quiet => Ok(()),
-        Format::Json => {
-            let folder = folder.path().display().to_string();
-            document::say("shard/1", json!({ "folder": folder, "manifest": stored.manifest }))
-        }
-        _ => screen::say(&format!(
-            "shard {shard} of {} is in {}; `study merge` joins all {}",
-            scenario.name,
-            folder.path().display(),
-            shard.of
-        )),
-    }
+    let place = folder.path().display().to_string();
+    let line = format!("shard {shard} of {} is in {place}; `study merge` joins all {}", scenario.name, shard.of);
+    reply(common, "shard/1", json!({ "folder": place, "manifest": stored.manifest }), &line)
 }

@@ -1,6 +1,7 @@
 //! `study schema`: the JSON schema of a file that people or programs write or read.
 
 use campaign::manifest::Manifest;
+use clap::Args;
 use predict::PredictDocument;
 use scenario::failure::{Failure, OnPath};
 use scenario::schema::plain;
@@ -14,8 +15,15 @@ use crate::options::{Common, Described};
 use crate::screen;
 use crate::views::document;
 
+/// What `study schema` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct SchemaRequest {
+    /// Which file
+    pub what: Described,
+}
+
 /// Prints the schema.
-pub fn run(what: Described, common: &Common) -> Result<(), Failure> {
+pub fn run(&SchemaRequest { what }: &SchemaRequest, common: &Common) -> Result<(), Failure> {
     let text = document::text(&schema(what)).on("describe", Path::new("a schema"))?;
     if common.quiet { Ok(()) } else { screen::say_document(&text) }
 }

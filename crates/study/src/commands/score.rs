@@ -12,7 +12,7 @@ use scenario::failure::Failure;
 use scenario::name;
 use trial::file::{self, Kind};
 
-use crate::options::{Common, StudyStyle};
+use crate::options::{Common, StudyFigureOptions};
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
 
@@ -34,7 +34,7 @@ pub struct ScoreRequest {
     pub restart: bool,
     /// How figures are drawn, and which
     #[command(flatten)]
-    pub style: StudyStyle,
+    pub style: StudyFigureOptions,
 }
 
 /// A scenario and little beside it.

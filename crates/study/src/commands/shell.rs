@@ -1,34 +1,52 @@
 //! `study completions SHELL` and `study man DIR`: what a shell and `man` know of the program, made from its options.
 
-use std::path::Path;
+use std::path::PathBuf;
 
-use clap::Command;
+use clap::{Args, Command};
 use clap_complete::Shell;
 use scenario::failure::{Failure, OnPath};
 use serde_json::json;
 
+use super::reply;
 use crate::options::{Common, Format};
 use crate::screen;
-use crate::views::document;
+
+/// What `study completions` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct CompletionsRequest {
+    /// The shell
+    pub shell: Shell,
+}
+
+/// What `study man` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct ManRequest {
+    /// Folder for the pages, such as ~/.local/share/man/man1
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
 
 /// Prints what a shell has to read to complete commands and options.
-pub fn completions(shell: Shell, mut command: Command, common: &Common) -> Result<(), Failure> {
+pub fn completions(
+    &CompletionsRequest { shell }: &CompletionsRequest,
+    mut command: Command,
+    common: &Common,
+) -> Result<(), Failure> {
     let name = command.get_name().to_owned();
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command, &name, &mut script);
     let script = String::from_utf8_lossy(&script).into_owned();
-    match common.format {
-        _ if common.quiet => Ok(()),
-        Format::Json => document::say("completions/1", json!({ "shell": shell.to_string(), "script": script })),
+    if common.format != Format::Json && !common.quiet {
         // A script is not shown but read.
-        _ => screen::say_document(&script),
+        return screen::say_document(&script);
     }
+    reply(common, "completions/1", json!({ "shell": shell.to_string(), "script": script }), "")
 }
 
 /// Writes a page for the program and one for each of its commands.
 ///
 /// Fails when the folder cannot be written.
-pub fn man(folder: &Path, mut command: Command, common: &Common) -> Result<(), Failure> {
+pub fn man(ManRequest { folder }: &ManRequest, mut command: Command, common: &Common) -> Result<(), Failure> {
     command.build();
     std::fs::create_dir_all(folder).on("make", folder)?;
     let mut files = Vec::new();
@@ -44,9 +62,6 @@ pub fn man(folder: &Path, mut command: Command, common: &Common) -> Result<(), F
         std::fs::write(&path, text).on("write", &path)?;
         files.push(path.display().to_string());
     }
-    match common.format {
-        _ if common.quiet => Ok(()),
-        Format::Json => document::say("man/1", json!({ "files": files })),
-        _ => screen::say(&format!("{} pages in {}; read one with `man {}`", files.len(), folder.display(), files[0])),
-    }
+    let line = format!("{} pages in {}; read one with `man {}`", files.len(), folder.display(), files[0]);
+    reply(common, "man/1", json!({ "files": files }), &line)
 }

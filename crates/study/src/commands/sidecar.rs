@@ -1,20 +1,28 @@
 //! `study sidecar`: a first description of a table for a person to check.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::Args;
 use serde_json::json;
 use trial::file::STDIN;
 use trial::{Sidecar, reader};
 
-use crate::options::{Common, Format};
-use crate::screen;
-use crate::views::document;
+use super::reply;
+use crate::options::Common;
 use scenario::failure::{Failure, OnPath};
+
+/// What `study sidecar` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct SidecarRequest {
+    /// The table
+    #[arg(value_name = "LOG")]
+    pub log: PathBuf,
+}
 
 /// Writes the description beside the table; that of a table on standard input to standard output.
 ///
 /// Fails when the table cannot be read, and when it has a description.
-pub fn run(log: &Path, common: &Common) -> Result<(), Failure> {
+pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(), Failure> {
     if log == Path::new(STDIN) {
         // There is nothing beside which it could be put.
         return tell(&reader::describe(log).map_err(Failure::input)?, None, common);
@@ -39,16 +47,13 @@ pub fn run(log: &Path, common: &Common) -> Result<(), Failure> {
 
 /// Tells where the description is; itself where it is in no file or a program reads.
 fn tell(text: &str, written: Option<(&Path, &Path)>, common: &Common) -> Result<(), Failure> {
-    match (common.format, written) {
-        _ if common.quiet => Ok(()),
-        (Format::Json, _) => {
-            let described: toml::Table = text.parse().map_err(Failure::work)?;
-            let file = written.map(|(path, _)| path.display().to_string());
-            document::say("sidecar/1", json!({ "file": file, "sidecar": described }))
+    let described: toml::Table = text.parse().map_err(Failure::work)?;
+    let file = written.map(|(path, _)| path.display().to_string());
+    let line = match written {
+        None => text.trim_end().to_owned(),
+        Some((path, log)) => {
+            format!("{}: check every line, then run `study fit {}`", path.display(), log.display())
         }
-        (_, None) => screen::say(text.trim_end()),
-        (_, Some((path, log))) => {
-            screen::say(&format!("{}: check every line, then run `study fit {}`", path.display(), log.display()))
-        }
-    }
+    };
+    reply(common, "sidecar/1", json!({ "file": file, "sidecar": described }), &line)
 }

@@ -13,11 +13,11 @@ use scenario::Scenario;
 use scenario::failure::{Failure, OnPath};
 use serde_json::json;
 
-use crate::options::{Common, Format, SimulateRequest};
-use crate::views::document;
+use super::reply;
+use crate::options::{Common, SimulateRequest};
+use crate::progress;
 use crate::views::picture::first_failure;
-use crate::work::simulate::{Made, records, tasks};
-use crate::{progress, screen};
+use crate::work::simulate::{RecordFiles, records, tasks};
 
 /// Simulates the trials that are asked for and writes them, with the truth of each.
 ///
@@ -55,18 +55,13 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     if !is_file {
         list(&scenario, &tasks, &names, &folder)?;
     }
-    if common.quiet {
-        return Ok(());
-    }
-    if common.format == Format::Json {
-        let files: Vec<String> =
-            names.iter().map(|name| folder.path().join(format!("{name}.csv")).display().to_string()).collect();
-        return document::say("simulate/1", json!({ "records": count, "files": files }));
-    }
-    match (names.as_slice(), count) {
-        ([name], 1) => screen::say(&format!("{}", folder.path().join(format!("{name}.csv")).display())),
-        _ => screen::say(&format!("{count} records in {}", folder.path().display())),
-    }
+    let file = |name: &String| folder.path().join(format!("{name}.csv")).display().to_string();
+    let line = match (names.as_slice(), count) {
+        ([name], 1) => file(name),
+        _ => format!("{count} records in {}", folder.path().display()),
+    };
+    let files: Vec<String> = names.iter().map(file).collect();
+    reply(common, "simulate/1", json!({ "records": count, "files": files }), &line)
 }
 
 /// Writes which record is of which trial, and what it takes to make the trials again.
@@ -90,7 +85,7 @@ const SCORE: &str = "# `study score ANSWERS.csv` scores answers to these trials 
 
 /// Writes the records of a trial, the sidecar of each where the ship has a length, and its truth.
 fn write(scenario: &Scenario, task: Task, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
-    for Made { name, table, sidecar, truth } in records(scenario, task, name)? {
+    for RecordFiles { name, table, sidecar, truth } in records(scenario, task, name)? {
         folder.write(&format!("{name}.csv"), table)?;
         if let Some(sidecar) = sidecar {
             folder.write(&format!("{name}.trial.toml"), sidecar)?;

@@ -15,7 +15,6 @@ use scenario::failure::Failure;
 use scenario::name;
 use serde_json::Value;
 use ship::Particulars;
-use ship::angle::KNOT;
 use trial::{Conditions, Trial, file};
 
 use crate::options::{PredictRequest, ReadingOptions};
@@ -115,8 +114,8 @@ impl Model {
     }
 }
 
-/// What is asked for.
-pub struct Asked<'a> {
+/// What a prediction is made from.
+pub struct PredictInput<'a> {
     /// The ship; several models are a mixture, all alike.
     pub models: &'a [Model],
     /// The same ship as she was loaded in the records; empty where they need no correction.
@@ -125,47 +124,42 @@ pub struct Asked<'a> {
     pub records: Vec<Trial>,
     /// What is taken out of the tracks of their turns; `None` for what each shows itself.
     pub current: Option<Current>,
-    /// Manoeuvres to predict.
-    pub manoeuvres: Vec<Kind>,
-    /// Ships that are drawn.
-    pub draws: usize,
-    /// Whether the models were read without their weather.
-    pub calm: bool,
-    /// Length and speed that are predicted for; a speed that is not given is NaN.
-    pub scale: Option<Particulars>,
-    /// Whether the form of MSC/Circ.1053 is filled in.
-    pub form: bool,
     /// What a sidecar says of the conditions, and its name.
     pub declared: Option<(&'a str, &'a Conditions)>,
 }
 
 /// The manoeuvres that were asked for; those of the IMO criteria where nothing is; those of the form beside them.
-pub fn manoeuvres(request: &PredictRequest) -> Vec<Kind> {
+fn manoeuvres(request: &PredictRequest) -> Vec<Kind> {
     let mut kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty() && !request.form) {
         ([], true) => Kind::of_imo(),
         (asked, _) => asked.to_vec(),
     };
-    for kind in form::manoeuvres() {
-        if request.form && !kinds.contains(&kind) {
+    let of_form = form::manoeuvres().into_iter().filter(|_| request.form);
+    for kind in of_form {
+        if !kinds.contains(&kind) {
             kinds.push(kind);
         }
     }
     kinds
 }
 
-/// Length and speed that were asked for.
-pub fn asked_scale(options: &ReadingOptions) -> Option<Particulars> {
-    let length = options.length_m?;
-    let speed = options.speed_m_s.or(options.speed_kn.map(|speed| speed * KNOT));
-    Some(Particulars { length, speed: speed.unwrap_or(f64::NAN) })
+/// Length and speed that are predicted for; a speed that is not given is NaN.
+fn asked_scale(options: &ReadingOptions) -> Option<Particulars> {
+    Some(Particulars { length: options.length_m?, speed: options.speed().unwrap_or(f64::NAN) })
 }
 
 /// Predicts the manoeuvres and replays the records.
 ///
 /// Fails when a model cannot be brought to the scale that is asked for, when a record does not say how the ship began,
 /// and when hardly any drawn ship comes to the end of every manoeuvre.
-pub fn predict(asked: Asked, quiet: bool, warnings: &mut Vec<String>) -> Result<PredictDocument, Failure> {
-    let Asked { models, ballast, records, current, manoeuvres: kinds, draws, calm, scale, form, declared } = asked;
+pub fn predict(
+    request: &PredictRequest,
+    input: PredictInput,
+    quiet: bool,
+    warnings: &mut Vec<String>,
+) -> Result<PredictDocument, Failure> {
+    let PredictInput { models, ballast, records, current, declared } = input;
+    let (draws, scale) = (request.draws as usize, asked_scale(&request.reading));
     let records: Vec<(Trial, Option<Current>)> = records
         .into_iter()
         .map(|record| at_own_scale(record, warnings))
@@ -175,11 +169,11 @@ pub fn predict(asked: Asked, quiet: bool, warnings: &mut Vec<String>) -> Result<
     let refused = |error: PredictError| Failure::input(format!("{first}: {error}"));
     let mixture = mixture_of(models, scale).map_err(refused)?;
     let busy = progress::busy("predicting", quiet);
-    let mut manoeuvres: Vec<Prediction> = Vec::with_capacity(kinds.len());
+    let mut predictions: Vec<Prediction> = Vec::new();
     let mut lost = None;
-    for kind in &kinds {
+    for kind in &manoeuvres(request) {
         match mixture.predict(kind, draws, true) {
-            Ok(prediction) => manoeuvres.push(prediction),
+            Ok(prediction) => predictions.push(prediction),
             // One manoeuvre that the model cannot make says nothing of the others.
             Err(error @ PredictError::Lost { .. }) => {
                 warnings.push(format!("{first}: {error}; it is left out"));
@@ -188,7 +182,7 @@ pub fn predict(asked: Asked, quiet: bool, warnings: &mut Vec<String>) -> Result<
             Err(error) => return Err(refused(error)),
         }
     }
-    if let Some(error) = lost.filter(|_| manoeuvres.is_empty() && records.is_empty()) {
+    if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
         return Err(refused(error));
     }
     let (mut replays, mut corrections) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
@@ -203,18 +197,19 @@ pub fn predict(asked: Asked, quiet: bool, warnings: &mut Vec<String>) -> Result<
     let held: Vec<FormRecord> = (records.iter().zip(&corrections))
         .map(|((trial, current), correction)| FormRecord { trial, correction: correction.as_ref(), current: *current })
         .collect();
-    let form = form.then(|| form::fill(&manoeuvres, particulars, &files(models).join(", "), &held, declared));
+    let fill = || form::fill(&predictions, particulars, &files(models).join(", "), &held, declared);
+    let form = request.form.then(fill);
     let (form, form_remarks) = form.map(|form| (form.entries, form.remarks)).unzip();
     let weight = 1.0 / models.len() as f64;
     Ok(PredictDocument {
         schema: String::from("predict/1"),
         models: files(models).into_iter().map(|file| ModelWeight { file, weight }).collect(),
         draws,
-        calm,
+        calm: request.calm,
         length_m: particulars.map(|own| own.length),
         speed_m_s: particulars.map(|own| own.speed),
-        imo: particulars.map(|own| imo::criteria(&manoeuvres, own)).unwrap_or_default(),
-        manoeuvres,
+        imo: particulars.map(|own| imo::criteria(&predictions, own)).unwrap_or_default(),
+        manoeuvres: predictions,
         replays,
         corrected: corrections.into_iter().flatten().collect(),
         form,

@@ -56,7 +56,7 @@ pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>
 }
 
 /// A simulated record as it is written.
-pub struct Made {
+pub struct RecordFiles {
     /// What it is called.
     pub name: String,
     /// The record, as CSV.
@@ -70,7 +70,7 @@ pub struct Made {
 /// The records of one trial; the first is called `name`, further ones of the same ship after it.
 ///
 /// Fails when the trial cannot be made.
-pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<Made>, Failure> {
+pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<RecordFiles>, Failure> {
     let refuse = |error: String| {
         Failure::work(format!(
             "trial {} of cell {} of {} cannot be made: {error}",
@@ -86,7 +86,13 @@ pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<Made>,
     made.collect::<Result<_, String>>().map_err(refuse)
 }
 
-fn made(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Truths, name: String) -> Result<Made, String> {
+fn made(
+    scenario: &Scenario,
+    task: Task,
+    simulated: &Simulated,
+    truths: Truths,
+    name: String,
+) -> Result<RecordFiles, String> {
     let mut table = Vec::new();
     trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
     let truth = serde_json::to_string(&TruthFile::of(scenario, task, simulated, truths)?);
@@ -95,5 +101,5 @@ fn made(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Truths, 
         .trial
         .particulars()
         .map(|Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n"));
-    Ok(Made { name, table, sidecar, truth })
+    Ok(RecordFiles { name, table, sidecar, truth })
 }

@@ -4,7 +4,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use campaign::rows::StudyRow;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 
 use crate::desk::Desk;
 
@@ -287,7 +287,7 @@ fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
     desk.run(&merge).is_done();
     assert!(whole == desk.bytes("joined/rows.parquet"));
 
-    let stored = Stored::read(&desk.path("whole")).expect("it is finished");
+    let stored = StoredStudy::read(&desk.path("whole")).expect("it is finished");
     let mut rows = Vec::new();
     let read = stored.rows(|row| {
         rows.push(row);

@@ -2,7 +2,7 @@
 //! table. What a program answers is tested where there is one, with the tests of the whole workspace.
 
 use campaign::rows::StudyRow;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 
 use crate::desk::Desk;
 use crate::scenarios::GOOD;
@@ -120,7 +120,9 @@ fn rows(desk: &Desk, folder: &str) -> Vec<StudyRow> {
         rows.push(row);
         Ok(())
     };
-    Stored::read(&desk.path(folder)).and_then(|stored| stored.rows(keep)).unwrap_or_else(|failure| panic!("{failure}"));
+    StoredStudy::read(&desk.path(folder))
+        .and_then(|stored| stored.rows(keep))
+        .unwrap_or_else(|failure| panic!("{failure}"));
     rows
 }
 

@@ -91,7 +91,7 @@ pub(super) fn series(columns: Columns, offset: f64) -> Vec<Series> {
             .filter(|(_, value)| value.is_finite())
             .map(|(t, value)| (t + offset, value))
             .unzip();
-        Series { channel, name: channel.quantity().to_owned(), time, values }
+        Series { channel, time, values }
     };
     channels.into_iter().map(readings).collect()
 }
@@ -154,7 +154,7 @@ pub(super) fn straight_rudder(columns: &mut Columns) -> Option<String> {
 }
 
 /// Puts position in degrees on a plane about its first point, m (a sphere of the mean radius; 0.5 % of the distance).
-pub(super) fn on_plane([latitude, longitude]: [Vec<f64>; 2]) -> Option<[(Channel, Vec<f64>); 2]> {
+pub(super) fn on_plane(latitude: Vec<f64>, longitude: Vec<f64>) -> Option<[(Channel, Vec<f64>); 2]> {
     const RADIUS: f64 = 6_371_008.8;
     let first = (0..latitude.len()).find(|&row| latitude[row].is_finite() && longitude[row].is_finite())?;
     let degree = Unit::Degree.to_si();
@@ -215,7 +215,7 @@ mod tests {
     fn series_of(channel: Channel, first: f64, step: f64, count: usize, value: impl Fn(f64) -> f64) -> Series {
         let time: Vec<f64> = (0..count).map(|k| first + step * k as f64).collect();
         let values = time.iter().map(|&t| value(t)).collect();
-        Series { channel, name: String::new(), time, values }
+        Series { channel, time, values }
     }
 
     #[test]
@@ -255,7 +255,7 @@ mod tests {
     fn a_minute_of_latitude_is_a_sea_mile() {
         let north = [54.0, 54.0 + 1.0 / 60.0].to_vec();
         let east = [179.999, -179.999].to_vec();
-        let [(_, north), (_, east)] = on_plane([north, east]).expect("there are positions");
+        let [(_, north), (_, east)] = on_plane(north, east).expect("there are positions");
         approx::assert_relative_eq!(north[1], 1852.0, max_relative = 2e-3);
         approx::assert_relative_eq!(east[1], 0.002 * 60.0 * 1852.0 * 54f64.to_radians().cos(), max_relative = 2e-3);
     }

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::error::{Problem, ReadError};
-use super::head::{self, Found};
+use super::head;
 use super::input::{self, Content};
 use super::limits::is_comment;
 use super::lines::Lines;
@@ -12,6 +12,7 @@ use crate::cells::{Cell, Separator, cell};
 use crate::channel::{Channel, Unit};
 use crate::encoding::Encoding;
 use crate::names::{ColumnMeaning, contract, meaning, with_unit};
+use crate::sidecar::Sidecar;
 use crate::words::shortened;
 
 /// Rows whose values are shown.
@@ -30,16 +31,15 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
     let table = open()?;
     let declared = table.is_made.then_some(Separator::Tab);
     let mut lines = Lines::new(table.bytes, Encoding::Utf8);
-    let (head, mut texts) = match head::find(&mut lines, declared, None) {
+    let head = match head::find(&mut lines, declared, &Sidecar::default()) {
         Err(Problem::NoHeader { .. }) => {
             lines = Lines::new(open()?.bytes, Encoding::Utf8);
-            (None, Vec::new())
+            None
         }
-        found => {
-            let Found { head, rows, .. } = found.map_err(fault)?;
-            (Some(head), rows.into_iter().map(|(_, text)| text).collect::<Vec<String>>())
-        }
+        found => Some(found.map_err(fault)?),
     };
+    let read = head.iter().flat_map(|head| &head.rows);
+    let mut texts: Vec<String> = read.map(|(_, text)| text.clone()).collect();
     while texts.len() < SHOWN {
         match lines.next_line().map_err(fault)? {
             Some(text) if is_comment(text) || text.trim().is_empty() => {}
@@ -59,8 +59,7 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
         return Ok(text + END);
     };
     for (place, name) in head.names.iter().enumerate() {
-        let unit = head.units.get(place).copied().flatten();
-        let said = meaning(name).map(|said| unit.and_then(|unit| with_unit(said, unit)).unwrap_or(said));
+        let said = meaning(name).map(|said| head.unit(place).and_then(|unit| with_unit(said, unit)).unwrap_or(said));
         let quoted = toml::Value::from(name.as_str());
         let (remark, is) = understood(name, &quoted.to_string(), said);
         text.push_str(&format!("\n# {}\n# {remark}\n", range(&texts, place, separator)));
@@ -131,11 +130,12 @@ fn range(rows: &[String], place: usize, separator: Separator) -> String {
         separator.split(row, &mut ranges);
         let text = ranges.get(place).map_or("", |range| &row[range.clone()]);
         match cell(text, separator) {
-            Cell::Number(value) | Cell::CommaNumber(value) => {
-                (low, high, numbers) = (low.min(value), high.max(value), numbers + 1);
-            }
-            Cell::Missing => {}
             Cell::Text => word = word.or_else(|| Some(shortened(text))),
+            read => {
+                if let Some(value) = read.number() {
+                    (low, high, numbers) = (low.min(value), high.max(value), numbers + 1);
+                }
+            }
         }
     }
     let place = place + 1;
@@ -166,6 +166,6 @@ mod tests {
         std::fs::write(&path, rows.replace(";x", "")).expect("written");
         let text = describe(&path).expect("a table");
         let sidecar = Sidecar::parse(&text, Path::new("log.trial.toml")).expect(&text);
-        assert!(!sidecar.header && text.contains("# index = 4"), "{text}");
+        assert!(!sidecar.has_header() && text.contains("# index = 4"), "{text}");
     }
 }

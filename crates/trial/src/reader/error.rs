@@ -240,13 +240,6 @@ pub enum Problem {
     Record(#[from] TrialError),
 }
 
-impl Problem {
-    pub(crate) fn no_column(line: usize, channels: &[Channel], wanted: &'static str, found: &[String]) -> Self {
-        let accepted: Vec<String> = channels.iter().map(|channel| channel.accepted_names()).collect();
-        Problem::NoColumn { line, wanted, accepted: accepted.join(" or "), found: found.to_vec() }
-    }
-}
-
 fn estimated(rows: Option<u64>) -> String {
     rows.map_or_else(String::new, |rows| format!(" (about {rows} by the size of the file)"))
 }

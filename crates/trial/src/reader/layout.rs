@@ -4,8 +4,9 @@
 use std::path::Path;
 
 use super::error::{Problem, ReadError};
+use super::head::Head;
 use super::limits::spoken;
-use crate::cells::{Cell, Separator, cell};
+use crate::cells::cell;
 use crate::channel::{Channel, Unit};
 use crate::clock::Stamp;
 use crate::names::{ColumnMeaning, contract, meaning, with_unit};
@@ -14,7 +15,7 @@ use crate::words::shortened;
 
 /// What one column holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Meaning {
+pub(super) enum Content {
     /// Time; the factor to seconds.
     Time(f64),
     /// Stamps of date and time, or of the time of day.
@@ -33,36 +34,11 @@ pub(super) enum Meaning {
     Ignored,
 }
 
-/// The head of a table.
-#[derive(Debug)]
-pub(super) struct Head {
-    /// Names of the columns.
-    pub names: Vec<String>,
-    /// Units below the names, where a row holds them.
-    pub units: Vec<Option<Unit>>,
-    /// Line of the names.
-    pub line: usize,
-    /// Cells of the first row.
-    pub first: Vec<String>,
-    /// What stands between cells.
-    pub separator: Separator,
-}
-
-/// The columns of a table.
-#[derive(Debug)]
-pub(super) struct Layout {
-    pub names: Vec<String>,
-    pub meanings: Vec<Meaning>,
-    /// Columns whose unit has to be found from their values; until then they are in the unit files are written in.
-    pub open: Vec<bool>,
-    /// The ordered rudder angle stands for the rudder angle, because there is no other.
-    pub order_is_rudder: bool,
-    /// Where the names stand.
-    pub line: usize,
-    /// Columns that were understood by what people call them, for a warning.
-    pub understood: Vec<usize>,
-    /// What was decided between columns, one sentence each.
-    pub told: Vec<String>,
+impl Content {
+    /// Whether the values of the column are kept.
+    fn is_kept(self) -> bool {
+        !matches!(self, Self::Time(_) | Self::Stamp | Self::Date | Self::Ignored)
+    }
 }
 
 /// How well a name says what it holds; the lower the better.
@@ -78,54 +54,105 @@ enum Rank {
     Substitute,
 }
 
+/// One column of a table: what it holds, what was met in it, and its values in the rows kept.
+#[derive(Debug)]
+pub(super) struct TableColumn {
+    pub name: String,
+    pub content: Content,
+    /// Whether its unit has to be found from its values; until then they are in the unit files are written in.
+    pub open: bool,
+    claim: Option<(ColumnMeaning, Rank)>,
+    sign: f64,
+    /// The last number, as it stands in the file.
+    pub last: Option<f64>,
+    /// The largest number, without its sign.
+    pub largest: f64,
+    /// How often there was a number that stands for no reading, and the last such number.
+    pub sentinels: (usize, f64),
+    /// Cells with text.
+    pub text: usize,
+    /// Whether its values are kept.
+    pub kept: bool,
+    pub values: Vec<f64>,
+}
+
+impl TableColumn {
+    fn claims(&self, wanted: impl Fn(ColumnMeaning) -> bool) -> bool {
+        self.claim.is_some_and(|(said, _)| wanted(said))
+    }
+}
+
+/// The columns of a table.
+#[derive(Debug)]
+pub(super) struct Layout {
+    pub columns: Vec<TableColumn>,
+    /// The ordered rudder angle stands for the rudder angle, because there is no other.
+    order_is_rudder: bool,
+    /// Where the names stand.
+    pub line: usize,
+    /// Columns that were understood by what people call them, for a warning.
+    pub understood: Vec<String>,
+    /// What was decided between columns, one sentence each.
+    pub warnings: Vec<String>,
+}
+
 impl Layout {
     /// Decides what the columns hold.
     ///
     /// A sidecar goes before the names, and a name of the contract before any other. Fails when the sidecar speaks of a
     /// column that is not there, when two columns say equally well that they hold one quantity, and when time, or in
     /// the table of a whole record rudder or both heading and yaw rate are absent.
-    pub fn new(head: Head, table: &Path, sidecar: Option<&Sidecar>, whole: bool) -> Result<Self, ReadError> {
-        let has_header = sidecar.is_none_or(|sidecar| sidecar.header);
-        let rebuilt = sidecar.is_some_and(|sidecar| sidecar.time_step.is_some());
-        let columns = head.names.len();
+    pub fn new(head: &Head, table: &Path, sidecar: &Sidecar, whole: bool) -> Result<Self, ReadError> {
+        let rebuilt = sidecar.table.time_step_s.is_some();
+        let column = |(place, name): (usize, &String)| TableColumn {
+            name: name.clone(),
+            content: Content::Unknown,
+            open: false,
+            claim: claim(name, head.unit(place)).filter(|_| sidecar.has_header()),
+            sign: 1.0,
+            last: None,
+            largest: 0.0,
+            sentinels: (0, 0.0),
+            text: 0,
+            kept: false,
+            values: Vec::new(),
+        };
         let mut layout = Self {
-            meanings: vec![Meaning::Unknown; columns],
-            open: vec![false; columns],
+            columns: head.names.iter().enumerate().map(column).collect(),
             order_is_rudder: false,
             line: head.line,
             understood: Vec::new(),
-            told: Vec::new(),
-            names: head.names.clone(),
+            warnings: Vec::new(),
         };
-        let mut claims: Vec<Option<(ColumnMeaning, Rank)>> = vec![None; columns];
-        if has_header {
-            for (place, name) in head.names.iter().enumerate() {
-                claims[place] = claim(name, head.units.get(place).copied().flatten());
-            }
-        }
-        let mut signs = vec![1.0; columns];
-        if let Some(sidecar) = sidecar {
-            describe(&head.names, &mut claims, &mut signs, &mut layout.meanings, table, sidecar)?;
-        }
+        layout.describe(table, sidecar)?;
         let fault = |problem| ReadError::table(table, problem);
-        layout.settle_channels(&mut claims, &signs).map_err(fault)?;
+        layout.settle_channels().map_err(fault)?;
         if rebuilt {
-            let stamps = claims.iter().zip(&mut layout.meanings);
-            stamps.filter(|(claim, _)| is_time(claim)).for_each(|(_, meaning)| *meaning = Meaning::Ignored);
+            let is_time = |said| matches!(said, ColumnMeaning::Time(_) | ColumnMeaning::Date);
+            let times = layout.columns.iter_mut().filter(|column| column.claims(is_time));
+            times.for_each(|column| column.content = Content::Ignored);
         } else {
-            layout.settle_time(&claims, &signs, &head).map_err(fault)?;
+            layout.settle_time(head).map_err(fault)?;
         }
         layout.order_is_rudder = layout.place(Channel::Rudder).is_none();
         if whole {
-            layout.check(&claims).map_err(fault)?;
+            layout.check().map_err(fault)?;
         }
         if layout.time().is_none() && !rebuilt {
-            let accepted =
-                "t_s (or t_ms or t_min), a column of dates and times, or `time-step-s` in a sidecar".to_owned();
-            let found = head.names;
-            return Err(fault(Problem::NoColumn { line: head.line, wanted: "time", accepted, found }));
+            let accepted = "t_s (or t_ms or t_min), a column of dates and times, or `time-step-s` in a sidecar".into();
+            let (line, found) = (head.line, layout.names());
+            return Err(fault(Problem::NoColumn { line, wanted: "time", accepted, found }));
         }
+        layout.columns.iter_mut().for_each(|column| column.kept = column.content.is_kept());
         Ok(layout)
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.columns.iter().map(|column| column.name.clone()).collect()
+    }
+
+    fn find(&self, wanted: impl Fn(Content) -> bool) -> Option<usize> {
+        self.columns.iter().position(|column| wanted(column.content))
     }
 
     /// The column that holds the rudder: the angle, or the order where there is no angle.
@@ -135,151 +162,176 @@ impl Layout {
 
     /// The column that holds a channel.
     pub fn place(&self, wanted: Channel) -> Option<usize> {
-        self.meanings.iter().position(|meaning| matches!(meaning, Meaning::Channel(channel, _) if *channel == wanted))
+        self.find(|content| matches!(content, Content::Channel(channel, _) if channel == wanted))
     }
 
     /// The column that holds time.
     pub fn time(&self) -> Option<usize> {
-        self.meanings.iter().position(|meaning| matches!(meaning, Meaning::Time(_) | Meaning::Stamp))
+        self.find(|content| matches!(content, Content::Time(_) | Content::Stamp))
     }
 
     /// The column that holds the dates of the stamps.
     pub fn date(&self) -> Option<usize> {
-        self.meanings.iter().position(|meaning| *meaning == Meaning::Date)
+        self.find(|content| content == Content::Date)
+    }
+
+    /// Lets the sidecar speak: its words replace the meaning of the names.
+    fn describe(&mut self, table: &Path, sidecar: &Sidecar) -> Result<(), ReadError> {
+        let mut seen = vec![false; self.columns.len()];
+        for described in &sidecar.columns {
+            let fault = |problem| Err(ReadError::from(sidecar.error(described.line, problem)));
+            let table = table.to_path_buf();
+            let place = match &described.which {
+                Which::Place(place) if *place < seen.len() => *place,
+                Which::Place(place) => {
+                    return fault(SidecarProblem::IndexBeyond { index: place + 1, table, columns: seen.len() });
+                }
+                Which::Name(name) => match self.columns.iter().position(|column| column.name == *name) {
+                    Some(place) => place,
+                    None => {
+                        let (name, found) = (name.clone(), self.names());
+                        return fault(SidecarProblem::NameNotFound { name, table, found });
+                    }
+                },
+            };
+            let column = &mut self.columns[place];
+            let name = column.name.clone();
+            if std::mem::replace(&mut seen[place], true) {
+                return fault(SidecarProblem::DescribedTwice { name });
+            }
+            column.sign = if described.flip { -1.0 } else { 1.0 };
+            match (described.meaning, &mut column.claim) {
+                _ if described.ignore => (column.content, column.claim) = (Content::Ignored, None),
+                (Some(meaning), claim) => *claim = Some((meaning, Rank::Described)),
+                (None, Some((_, rank))) => *rank = (*rank).min(Rank::Contract),
+                (None, None) => return fault(SidecarProblem::NameSaysNothing { name }),
+            }
+        }
+        Ok(())
     }
 
     /// Gives every channel the column that says best that it holds it.
-    fn settle_channels(&mut self, claims: &mut [Option<(ColumnMeaning, Rank)>], signs: &[f64]) -> Result<(), Problem> {
+    fn settle_channels(&mut self) -> Result<(), Problem> {
         for channel in Channel::ALL {
-            let mut of_channel: Vec<(Rank, usize, Option<Unit>)> = claims
-                .iter()
-                .enumerate()
-                .filter_map(|(place, claim)| match (*claim)? {
-                    (ColumnMeaning::Channel(found, unit), rank) if found == channel => Some((rank, place, unit)),
-                    (ColumnMeaning::OverGround(unit), _) if channel == Channel::Speed => {
-                        Some((Rank::Substitute, place, unit))
-                    }
-                    _ => None,
-                })
-                .collect();
-            of_channel.sort_by_key(|(rank, place, _)| (*rank, *place));
-            let Some(&(rank, place, unit)) = of_channel.first() else { continue };
-            if let Some(&(_, other, _)) = of_channel.get(1).filter(|(other, ..)| *other == rank) {
-                let needed = matches!(channel, Channel::Heading | Channel::Rudder | Channel::YawRate);
-                let (first, second) = (self.names[place].clone(), self.names[other].clone());
-                if needed || rank <= Rank::Contract {
-                    return Err(Problem::Duplicate { line: self.line, quantity: channel.quantity(), first, second });
+            let claim = |(place, column): (usize, &TableColumn)| match column.claim? {
+                (ColumnMeaning::Channel(found, unit), rank) if found == channel => Some((rank, place, unit)),
+                (ColumnMeaning::OverGround(unit), _) if channel == Channel::Speed => {
+                    Some((Rank::Substitute, place, unit))
                 }
-                self.told.push(format!(
-                    "the columns `{}` and `{}` could both be the {}; neither is used, unless a sidecar says which",
-                    shortened(&first),
-                    shortened(&second),
+                _ => None,
+            };
+            let mut claims: Vec<_> = self.columns.iter().enumerate().filter_map(claim).collect();
+            claims.sort_by_key(|(rank, place, _)| (*rank, *place));
+            let Some(&(rank, place, unit)) = claims.first() else { continue };
+            if let Some(&(_, other, _)) = claims.get(1).filter(|(other, ..)| *other == rank) {
+                let needed = matches!(channel, Channel::Heading | Channel::Rudder | Channel::YawRate);
+                if needed || rank <= Rank::Contract {
+                    return Err(self.duplicate(channel.quantity(), place, other));
+                }
+                let [first, second] = [place, other].map(|place| shortened(&self.columns[place].name));
+                self.warnings.push(format!(
+                    "the columns `{first}` and `{second}` could both be the {}; neither is used, unless a sidecar says \
+                     which",
                     spoken(channel)
                 ));
                 continue;
             }
-            let open = unit.is_none();
             let factor = unit.unwrap_or(channel.written_unit()).to_si();
-            self.meanings[place] = Meaning::Channel(channel, signs[place] * factor);
-            self.open[place] = open;
-            if rank >= Rank::Usual {
-                self.understood.push(place);
-            }
+            let content = |sign: f64| Content::Channel(channel, sign * factor);
+            self.settle(place, rank, unit, content);
         }
-        for (place, claim) in claims.iter().enumerate() {
-            match claim {
-                Some((ColumnMeaning::Latitude, _)) => self.meanings[place] = Meaning::Latitude,
-                Some((ColumnMeaning::Longitude, _)) => self.meanings[place] = Meaning::Longitude,
+        for column in &mut self.columns {
+            match column.claim {
+                Some((ColumnMeaning::Latitude, _)) => column.content = Content::Latitude,
+                Some((ColumnMeaning::Longitude, _)) => column.content = Content::Longitude,
                 _ => {}
             }
         }
         Ok(())
     }
 
+    fn settle(&mut self, place: usize, rank: Rank, unit: Option<Unit>, content: impl Fn(f64) -> Content) {
+        let column = &mut self.columns[place];
+        column.content = content(column.sign);
+        column.open = unit.is_none() && column.content != Content::Stamp;
+        if rank >= Rank::Usual {
+            self.understood.push(column.name.clone());
+        }
+    }
+
+    fn duplicate(&self, quantity: &'static str, first: usize, second: usize) -> Problem {
+        let [first, second] = [first, second].map(|place| self.columns[place].name.clone());
+        Problem::Duplicate { line: self.line, quantity, first, second }
+    }
+
     /// Finds the column of time, and the dates that belong to it.
-    fn settle_time(
-        &mut self,
-        claims: &[Option<(ColumnMeaning, Rank)>],
-        signs: &[f64],
-        head: &Head,
-    ) -> Result<(), Problem> {
+    fn settle_time(&mut self, head: &Head) -> Result<(), Problem> {
         let first = |place: usize| head.first.get(place).map_or("", String::as_str);
+        let is_number = |place: usize| cell(first(place), head.separator).number().is_some();
         let stamp = |place: usize| Stamp::parse(first(place));
-        let is_number =
-            |place: usize| matches!(cell(first(place), head.separator), Cell::Number(_) | Cell::CommaNumber(_));
+        let is_whole = |stamp: Stamp| stamp.has_date() && stamp.has_time();
         // Described or of the contract, then a number with a unit, a stamp with its date, a time of day, a number.
-        let mut candidates: Vec<(Rank, u8, usize, Option<Unit>)> = claims
-            .iter()
-            .enumerate()
-            .filter_map(|(place, claim)| {
-                let (said, rank) = (*claim)?;
-                let unit = match said {
-                    ColumnMeaning::Time(unit) => unit,
-                    ColumnMeaning::Date if stamp(place).is_some_and(|stamp| stamp.has_time()) => None,
-                    _ => return None,
-                };
-                let worth = match stamp(place).filter(|_| !is_number(place)) {
-                    _ if unit.is_some() && rank <= Rank::Contract => 0,
-                    None if unit.is_some() => 1,
-                    Some(stamp) if stamp.has_date() && stamp.has_time() => 2,
-                    Some(stamp) if stamp.has_time() => 3,
-                    _ => 4,
-                };
-                Some((rank, worth, place, unit))
-            })
-            .collect();
+        let candidate = |(place, column): (usize, &TableColumn)| {
+            let (said, rank) = column.claim?;
+            let unit = match said {
+                ColumnMeaning::Time(unit) => unit,
+                ColumnMeaning::Date if stamp(place).is_some_and(|stamp| stamp.has_time()) => None,
+                _ => return None,
+            };
+            let worth = match stamp(place).filter(|_| !is_number(place)) {
+                _ if unit.is_some() && rank <= Rank::Contract => 0,
+                None if unit.is_some() => 1,
+                Some(stamp) if is_whole(stamp) => 2,
+                Some(stamp) if stamp.has_time() => 3,
+                _ => 4,
+            };
+            Some((rank, worth, place, unit))
+        };
+        let mut candidates: Vec<_> = self.columns.iter().enumerate().filter_map(candidate).collect();
         candidates.sort_by_key(|(rank, worth, place, _)| (*rank, *worth, *place));
         if candidates.is_empty() {
             // Some programs give their column of stamps no name.
-            let unnamed = (0..self.names.len()).find(|&place| {
-                claims[place].is_none() && stamp(place).is_some_and(|stamp| stamp.has_date() && stamp.has_time())
-            });
+            let is_unnamed = |&place: &usize| self.columns[place].claim.is_none() && stamp(place).is_some_and(is_whole);
+            let unnamed = (0..self.columns.len()).find(is_unnamed);
             candidates.extend(unnamed.map(|place| (Rank::Usual, 2, place, None)));
         }
         let Some(&(rank, worth, place, unit)) = candidates.first() else { return Ok(()) };
         if let Some(&(_, _, other, _)) = candidates.get(1).filter(|(r, w, ..)| (*r, *w) == (rank, worth)) {
-            let (first, second) = (self.names[place].clone(), self.names[other].clone());
-            return Err(Problem::Duplicate { line: self.line, quantity: "time", first, second });
+            return Err(self.duplicate("time", place, other));
         }
-        candidates[1..].iter().for_each(|&(_, _, other, _)| self.meanings[other] = Meaning::Ignored);
-        let is_stamp = !is_number(place) && stamp(place).is_some();
-        if is_stamp {
-            self.meanings[place] = Meaning::Stamp;
-            let dated = stamp(place).is_some_and(|stamp| stamp.has_date());
-            let dates = claims.iter().position(|claim| matches!(claim, Some((ColumnMeaning::Date, _))));
-            if let Some(date) = dates.filter(|&date| !dated && date != place && stamp(date).is_some()) {
-                self.meanings[date] = Meaning::Date;
+        candidates[1..].iter().for_each(|&(_, _, other, _)| self.columns[other].content = Content::Ignored);
+        match stamp(place).filter(|_| !is_number(place)) {
+            Some(own) => {
+                self.settle(place, rank, unit, |_| Content::Stamp);
+                let dates = self.columns.iter().position(|column| column.claims(|said| said == ColumnMeaning::Date));
+                if let Some(date) = dates.filter(|&date| !own.has_date() && date != place && stamp(date).is_some()) {
+                    self.columns[date].content = Content::Date;
+                }
             }
-        } else {
-            self.meanings[place] = Meaning::Time(signs[place] * unit.map_or(1.0, Unit::to_si));
-            self.open[place] = unit.is_none();
-        }
-        if rank >= Rank::Usual {
-            self.understood.push(place);
+            None => self.settle(place, rank, unit, |sign| Content::Time(sign * unit.map_or(1.0, Unit::to_si))),
         }
         Ok(())
     }
 
     /// Refuses a table that has no rudder, or neither heading nor yaw rate.
-    fn check(&self, claims: &[Option<(ColumnMeaning, Rank)>]) -> Result<(), Problem> {
+    fn check(&self) -> Result<(), Problem> {
         let line = self.line;
+        let missing = |channels: [Channel; 2], wanted| {
+            let names = channels.map(|channel| channel.accepted_names());
+            Err(Problem::NoColumn { line, wanted, accepted: names.join(" or "), found: self.names() })
+        };
         if self.rudder().is_none() {
-            let accepted = [Channel::Rudder, Channel::RudderOrder];
-            return Err(Problem::no_column(line, &accepted, "rudder angle", &self.names));
+            return missing([Channel::Rudder, Channel::RudderOrder], "rudder angle");
         }
         if self.place(Channel::Heading).is_none() && self.place(Channel::YawRate).is_none() {
-            if let Some(place) = claims.iter().position(|claim| matches!(claim, Some((ColumnMeaning::Course, _)))) {
-                return Err(Problem::CourseOnly { line, column: self.names[place].clone() });
-            }
-            let accepted = [Channel::Heading, Channel::YawRate];
-            return Err(Problem::no_column(line, &accepted, "heading or the yaw rate", &self.names));
+            let is_course = |column: &&TableColumn| column.claims(|said| said == ColumnMeaning::Course);
+            return match self.columns.iter().find(is_course) {
+                Some(column) => Err(Problem::CourseOnly { line, column: column.name.clone() }),
+                None => missing([Channel::Heading, Channel::YawRate], "heading or the yaw rate"),
+            };
         }
         Ok(())
     }
-}
-
-fn is_time(claim: &Option<(ColumnMeaning, Rank)>) -> bool {
-    matches!(claim, Some((ColumnMeaning::Time(_) | ColumnMeaning::Date, _)))
 }
 
 /// What a name says, with the unit below it where it has none of its own.
@@ -293,48 +345,4 @@ fn claim(name: &str, below: Option<Unit>) -> Option<(ColumnMeaning, Rank)> {
         None => said,
     };
     Some((said, rank))
-}
-
-/// Lets the sidecar speak: its words replace the meaning of the names.
-fn describe(
-    names: &[String],
-    claims: &mut [Option<(ColumnMeaning, Rank)>],
-    signs: &mut [f64],
-    meanings: &mut [Meaning],
-    table: &Path,
-    sidecar: &Sidecar,
-) -> Result<(), ReadError> {
-    let mut seen = vec![false; names.len()];
-    for described in &sidecar.columns {
-        let fault = |problem| Err(ReadError::from(sidecar.error(described.line, problem)));
-        let place = match &described.which {
-            Which::Place(place) if *place < names.len() => *place,
-            Which::Place(place) => {
-                let (index, columns) = (place + 1, names.len());
-                return fault(SidecarProblem::IndexBeyond { index, table: table.to_path_buf(), columns });
-            }
-            Which::Name(name) => match names.iter().position(|found| found == name) {
-                Some(place) => place,
-                None => {
-                    let (name, found) = (name.clone(), names.to_vec());
-                    return fault(SidecarProblem::NameNotFound { name, table: table.to_path_buf(), found });
-                }
-            },
-        };
-        if std::mem::replace(&mut seen[place], true) {
-            return fault(SidecarProblem::DescribedTwice { name: names[place].clone() });
-        }
-        signs[place] = if described.flip { -1.0 } else { 1.0 };
-        if described.ignore {
-            meanings[place] = Meaning::Ignored;
-            claims[place] = None;
-        } else if let Some(meaning) = described.meaning {
-            claims[place] = Some((meaning, Rank::Described));
-        } else if let Some((_, rank)) = &mut claims[place] {
-            *rank = (*rank).min(Rank::Contract);
-        } else {
-            return fault(SidecarProblem::NameSaysNothing { name: names[place].clone() });
-        }
-    }
-    Ok(())
 }

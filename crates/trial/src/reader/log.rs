@@ -1,18 +1,19 @@
 //! A log: what one or several files hold, cleaned and on one clock, before a part of it becomes a record.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::assemble::{check, columns, complete, once, series, straight_rudder};
 use super::error::{Problem, ReadError};
-use super::input::{self, Content, Text};
+use super::input::{self, Content};
 use super::limits::spoken;
-use super::lines::Lines;
-use super::nmea;
-use super::source::{Piece, Series, Source};
+use super::lines::{self, Lines};
+use super::nmea::{self, ReadSentences};
+use super::source::{Log, Series};
 use super::table;
 use crate::channel::Channel;
 use crate::cleaning;
-use crate::clock::Clock;
+use crate::clock::{Clock, DAY};
 use crate::encoding::Encoding;
 use crate::file::called;
 use crate::plausibility;
@@ -22,26 +23,11 @@ use ship::Particulars;
 
 /// A record that was read, and what the reader had to decide or found remarkable.
 #[derive(Debug, Clone)]
-pub struct Reading {
+pub struct ReadRecord {
     /// The record.
     pub trial: Trial,
     /// One sentence each, without the name of the file.
     pub warnings: Vec<String>,
-}
-
-/// What one or several files hold, on one clock.
-#[derive(Debug, Clone)]
-pub struct Log {
-    path: PathBuf,
-    columns: Columns,
-    clock: Option<Clock>,
-    sha256: String,
-    rows: usize,
-    sidecar: Option<Sidecar>,
-    part: Option<[f64; 2]>,
-    /// What the reader had to decide or found remarkable, one sentence each.
-    pub warnings: Vec<String>,
-    marks: Vec<RejectedReading>,
 }
 
 impl Log {
@@ -53,14 +39,13 @@ impl Log {
         if path.to_str().is_some_and(|name| name.ends_with(".trial.toml")) {
             return Err(ReadError::table(path, Problem::IsSidecar));
         }
-        let sidecar = sidecar.map(Sidecar::load).transpose()?;
-        let piece = piece(path, sidecar.as_ref(), others.is_empty())?;
-        let mut log = Self::of(called(path), piece, sidecar);
+        let mut log = Self::of_file(path, sidecar, others.is_empty())?;
         for other in others {
             log.join(other)?;
         }
         if !others.is_empty() {
-            log.settle_joined()?;
+            check(&log.columns).map_err(|problem| log.fault(problem))?;
+            log.complete();
         }
         Ok(log)
     }
@@ -71,18 +56,49 @@ impl Log {
     /// Fails as [`open`](Self::open) does, except for faults of the file system.
     pub fn of_bytes(
         path: &Path,
-        input: impl std::io::Read,
+        input: impl Read,
         size: Option<u64>,
         sidecar: Option<&Sidecar>,
     ) -> Result<Self, ReadError> {
         let content = input::recognise(Box::new(input)).map_err(|problem| ReadError::table(path, problem))?;
-        let piece = of_content(path, content, size, sidecar, true)?;
-        Ok(Self::of(path, piece, sidecar.cloned()))
+        Self::of_content(path, content, size, sidecar.cloned(), true)
     }
 
-    fn of(path: &Path, piece: Piece, sidecar: Option<Sidecar>) -> Self {
-        let Piece { columns, clock, warnings, marks, rows, sha256 } = piece;
-        Self { path: path.to_path_buf(), columns, clock, sha256, rows, sidecar, part: None, warnings, marks }
+    /// `whole` says whether the file has to hold a whole record.
+    fn of_file(path: &Path, sidecar: Option<&Path>, whole: bool) -> Result<Self, ReadError> {
+        let sidecar = sidecar.map(Sidecar::load).transpose()?;
+        let name = called(path);
+        let (content, size) = input::open(path).map_err(|problem| ReadError::table(name, problem))?;
+        Self::of_content(name, content, size, sidecar, whole)
+    }
+
+    fn of_content(
+        path: &Path,
+        content: Content,
+        size: Option<u64>,
+        sidecar: Option<Sidecar>,
+        whole: bool,
+    ) -> Result<Self, ReadError> {
+        let sidecar = sidecar.unwrap_or_default();
+        let (Content::Table(text) | Content::Sentences(text)) = &content;
+        let on_disk = text.on_disk.clone();
+        let log = match content {
+            Content::Table(text) => table::read(path, text, size, &sidecar, whole)?,
+            Content::Sentences(_) if !sidecar.columns.is_empty() => {
+                return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
+            }
+            Content::Sentences(text) => {
+                let read = nmea::read(Lines::new(text.bytes, Encoding::Utf8)).map(|read| of_sentences(read, &sidecar));
+                let checked = read.and_then(|log| if whole { check(&log.columns).map(|()| log) } else { Ok(log) });
+                checked.map_err(|problem| ReadError::table(path, problem))?
+            }
+        };
+        let sha256 = on_disk.map_or(log.sha256, lines::Hash::finish);
+        let mut log = Self { path: path.to_path_buf(), sidecar, sha256, ..log };
+        if whole {
+            log.complete();
+        }
+        Ok(log)
     }
 
     fn fault(&self, problem: impl Into<Problem>) -> ReadError {
@@ -91,9 +107,8 @@ impl Log {
 
     /// Adds the channels of another file.
     fn join(&mut self, other: &Path) -> Result<(), ReadError> {
-        let sidecar = Sidecar::found_beside(other).map(|beside| Sidecar::load(&beside)).transpose()?;
-        let piece = piece(other, sidecar.as_ref(), false)?;
-        let offset = match (&self.clock, &piece.clock) {
+        let joined = Self::of_file(other, Sidecar::found_beside(other).as_deref(), false)?;
+        let offset = match (&self.clock, &joined.clock) {
             (Some(own), Some(its)) => offset(own, its),
             (None, None) => 0.0,
             (own, _) => {
@@ -102,26 +117,25 @@ impl Log {
             }
         };
         let of_file = |warning: String| format!("{}: {warning}", other.display());
-        self.warnings.extend(piece.warnings.into_iter().map(of_file));
-        self.marks.extend(piece.marks.into_iter().map(|mark| RejectedReading { time: mark.time + offset, ..mark }));
+        self.warnings.extend(joined.warnings.into_iter().map(of_file));
+        let shifted = |reading: RejectedReading| RejectedReading { time: reading.time + offset, ..reading };
+        self.rejected.extend(joined.rejected.into_iter().map(shifted));
         let mut all = series(std::mem::take(&mut self.columns), 0.0);
-        all.extend(series(piece.columns, offset));
+        all.extend(series(joined.columns, offset));
         let (all, doubled) = once(all);
         self.warnings.extend(doubled.into_iter().map(|channel| {
             of_file(format!("the {} is in an earlier file, too, and is taken from there", spoken(channel)))
         }));
         self.columns = columns(all);
-        self.sha256 = joined_hash(&self.sha256, &piece.sha256);
-        self.rows += piece.rows;
+        self.sha256 = joined_hash(&self.sha256, &joined.sha256);
+        self.rows += joined.rows;
         Ok(())
     }
 
-    /// Checks that files which belong together make a record.
-    fn settle_joined(&mut self) -> Result<(), ReadError> {
-        check(&self.columns).map_err(|problem| self.fault(problem))?;
+    /// Adds what was not recorded and can be told.
+    fn complete(&mut self) {
         self.warnings.extend(complete(&mut self.columns));
         self.warnings.extend(straight_rudder(&mut self.columns));
-        Ok(())
     }
 
     /// What the clock shows at time 0, where the files have stamps.
@@ -141,7 +155,8 @@ impl Log {
 
     /// Whether a sidecar says which part is to be used.
     pub fn has_declared_part(&self) -> bool {
-        self.sidecar.as_ref().is_some_and(|sidecar| sidecar.from.is_finite() || sidecar.until.is_finite())
+        let part = self.sidecar.part();
+        part.start().is_finite() || part.end().is_finite()
     }
 
     /// The part from one time to another, s, both included. Fails where it holds no row.
@@ -170,18 +185,17 @@ impl Log {
     /// The record that the log holds; `ship` goes before what a sidecar declares.
     ///
     /// Fails when it has too few rows, or contradicts itself ([`plausibility`]).
-    pub fn into_trial(self, ship: Option<Particulars>) -> Result<Reading, ReadError> {
-        let Self { path, columns, sha256, rows, sidecar, mut warnings, part, mut marks, .. } = self;
+    pub fn into_trial(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
+        let Self { path, columns, sha256, rows, sidecar, mut warnings, part, mut rejected, .. } = self;
         let (first, last) = (columns.time.first().copied(), columns.time.last().copied());
-        marks.retain(|mark| first <= Some(mark.time) && Some(mark.time) <= last);
+        rejected.retain(|reading| first <= Some(reading.time) && Some(reading.time) <= last);
         let fault = |problem| ReadError::table(&path, problem);
-        let checked = sidecar.as_ref().is_none_or(|sidecar| sidecar.plausibility);
-        let name = input::stem(&path);
+        let checked = sidecar.is_checked();
         // Two parts of one file are two records.
-        let sha256 =
-            part.map_or_else(|| sha256.clone(), |[from, until]| joined_hash(&sha256, &format!("{from} {until}")));
+        let of_part = |[from, until]: [f64; 2]| joined_hash(&sha256, &format!("{from} {until}"));
+        let sha256 = part.map(of_part).unwrap_or(sha256);
         let origin = Origin::Measured { file: path.display().to_string(), sha256 };
-        let trial = Trial::new(name, origin, columns).map_err(|error| {
+        let mut trial = Trial::new(input::stem(&path), origin, columns).map_err(|error| {
             fault(match error {
                 TrialError::TooShort { needed, found } => Problem::TooShort { needed, found, rows },
                 other => Problem::Record(other),
@@ -190,117 +204,59 @@ impl Log {
         if trial.heading_from_yaw_rate() {
             warnings.push("there is no heading; it is the integral of the yaw rate, from zero".to_owned());
         }
-        let noise = sidecar.as_ref().map(|sidecar| sidecar.noise).unwrap_or_default();
-        let trial = match ship.or_else(|| sidecar.as_ref().and_then(|sidecar| sidecar.particulars)) {
-            Some(particulars) => trial.with_noise(noise).with_particulars(particulars),
-            None => trial.with_noise(noise),
-        };
-        let conditions = sidecar.as_ref().map(|sidecar| sidecar.conditions.clone()).unwrap_or_default();
-        let trial = trial.with_rejected(marks).with_conditions(conditions);
+        if let Some(particulars) = ship.or(sidecar.particulars()) {
+            trial = trial.with_particulars(particulars);
+        }
+        let trial = trial.with_noise(sidecar.noise).with_rejected(rejected).with_conditions(sidecar.conditions);
         match plausibility::check(&trial) {
             Ok(found) => warnings.extend(found),
             Err(implausible) if !checked => warnings.push(implausible.to_string()),
             Err(implausible) => return Err(fault(implausible.into())),
         }
-        Ok(Reading { trial, warnings })
+        Ok(ReadRecord { trial, warnings })
     }
 }
 
 /// Seconds to add to the times of the second clock to have them on the first.
 fn offset(own: &Clock, its: &Clock) -> f64 {
-    let zone = match (own.zone, its.zone) {
-        (Some(own), Some(its)) => 60.0 * f64::from(own - its),
-        _ => 0.0,
-    };
+    let zone = own.zone.zip(its.zone).map_or(0.0, |(own, its)| 60.0 * f64::from(own - its));
     let seconds = its.second - own.second + zone;
-    let half = 0.5 * crate::clock::DAY;
-    match (own.day, its.day) {
-        (Some(own), Some(its)) => seconds + crate::clock::DAY * (its - own) as f64,
+    match own.day.zip(its.day) {
+        Some((own, its)) => seconds + DAY * (its - own) as f64,
         // Times of day alone: the nearest.
-        _ => (seconds + half).rem_euclid(crate::clock::DAY) - half,
+        None => (seconds + 0.5 * DAY).rem_euclid(DAY) - 0.5 * DAY,
     }
 }
 
 /// One hash for two: that of both.
 fn joined_hash(one: &str, other: &str) -> String {
-    super::lines::sha256(format!("{one} {other}").as_bytes())
+    lines::sha256(format!("{one} {other}").as_bytes())
 }
 
-fn piece(path: &Path, sidecar: Option<&Sidecar>, whole: bool) -> Result<Piece, ReadError> {
-    let name = called(path);
-    let (content, size) = input::open(path).map_err(|problem| ReadError::table(name, problem))?;
-    of_content(name, content, size, sidecar, whole)
-}
-
-fn of_content(
-    path: &Path,
-    content: Content,
-    size: Option<u64>,
-    sidecar: Option<&Sidecar>,
-    whole: bool,
-) -> Result<Piece, ReadError> {
-    let fault = |problem| ReadError::table(path, problem);
-    let checked = sidecar.is_none_or(|sidecar| sidecar.plausibility);
-    let (Content::Table(text) | Content::Sentences(text)) = &content;
-    let on_disk = text.on_disk.clone();
-    let mut piece = match content {
-        Content::Table(text) => table::read(path, text, size, sidecar, whole)?,
-        Content::Sentences(Text { bytes: input, .. }) => {
-            if let Some(sidecar) = sidecar.filter(|sidecar| !sidecar.columns.is_empty()) {
-                return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
-            }
-            let source = nmea::read(Vec::new(), Lines::new(input, Encoding::Utf8)).map_err(fault)?;
-            let mut piece = of_source(source, checked);
-            if let Some(sidecar) = sidecar {
-                piece.columns = kept_part(piece.columns, sidecar);
-            }
-            if whole {
-                check(&piece.columns).map_err(fault)?;
-            }
-            piece
-        }
-    };
-    if let Some(hash) = on_disk {
-        piece.sha256 = hash.finish();
-    }
-    if whole {
-        piece.warnings.extend(complete(&mut piece.columns));
-        piece.warnings.extend(straight_rudder(&mut piece.columns));
-    }
-    Ok(piece)
-}
-
-/// Channels with instants of their own, each cleaned by itself.
-fn of_source(source: Source, checked: bool) -> Piece {
-    let Source { series, clock, mut warnings, lines, sha256 } = source;
-    let mut marks = Vec::new();
-    let cleaned = series.into_iter().map(|one| {
-        let Series { channel, name, time, mut values } = one;
+/// Channels with instants of their own, each cleaned by itself, and of them the part that the sidecar asks for.
+fn of_sentences(read: ReadSentences, sidecar: &Sidecar) -> Log {
+    let ReadSentences { series, clock, mut warnings, lines, sha256 } = read;
+    let mut rejected = Vec::new();
+    let cleaned = series.into_iter().map(|Series { channel, time, mut values }| {
         if channel == Channel::Heading {
             ship::angle::unwrap_heading(&mut values);
         }
         let mut own = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
-        if checked {
-            warnings.extend(cleaning::clean(&mut own, &mut marks));
+        if sidecar.is_checked() {
+            warnings.extend(cleaning::clean(&mut own, &mut rejected));
         }
-        let values = own.channels.remove(&channel).unwrap_or_default();
-        Series { channel, name, time: own.time, values }
+        Series { channel, values: own.channels.remove(&channel).unwrap_or_default(), time: own.time }
     });
-    let columns = columns(cleaned.collect());
-    Piece { columns, clock, warnings, marks, rows: lines, sha256 }
-}
-
-/// The part of a log that its sidecar asks for.
-fn kept_part(mut columns: Columns, sidecar: &Sidecar) -> Columns {
-    let keep: Vec<bool> = columns.time.iter().map(|&t| (sidecar.from..=sidecar.until).contains(&t)).collect();
+    let mut columns = columns(cleaned.collect());
+    let keep: Vec<bool> = columns.time.iter().map(|t| sidecar.part().contains(t)).collect();
     columns.retain(&keep);
-    columns
+    Log { columns, clock, warnings, rejected, rows: lines, sha256, ..Log::default() }
 }
 
 /// Reads the trial at `path`, with the sidecar beside it where there is one.
 ///
 /// Fails as [`read_with`] does.
-pub fn read(path: &Path) -> Result<Reading, ReadError> {
+pub fn read(path: &Path) -> Result<ReadRecord, ReadError> {
     read_with(path, Sidecar::found_beside(path).as_deref())
 }
 
@@ -310,7 +266,7 @@ pub fn read(path: &Path) -> Result<Reading, ReadError> {
 /// when a needed channel is absent, a cell is no number, time does not increase, fewer than [`Trial::FEWEST_ROWS`] or
 /// more than [`super::MAX_ROWS`] rows are usable, the sidecar is at fault, or the record contradicts itself
 /// ([`plausibility`]).
-pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<Reading, ReadError> {
+pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, ReadError> {
     Log::open(path, sidecar, &[])?.into_trial(None)
 }
 
@@ -320,9 +276,9 @@ pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<Reading, ReadErr
 /// Fails as [`read_with`] does, except for faults of the file system.
 pub fn read_bytes(
     path: &Path,
-    input: impl std::io::Read,
+    input: impl Read,
     size: Option<u64>,
     sidecar: Option<&Sidecar>,
-) -> Result<Reading, ReadError> {
+) -> Result<ReadRecord, ReadError> {
     Log::of_bytes(path, input, size, sidecar)?.into_trial(None)
 }

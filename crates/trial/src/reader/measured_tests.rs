@@ -87,7 +87,7 @@ fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
         for entry in std::fs::read_dir(data.join(folder)).expect("the folder of measured trials is complete") {
             let path = entry.expect("a readable folder").path();
             let stem = path.file_stem().and_then(|stem| stem.to_str()).expect("plain names").to_owned();
-            let Reading { trial, warnings } = read(&path).unwrap_or_else(|error| panic!("{error}"));
+            let ReadRecord { trial, warnings } = read(&path).unwrap_or_else(|error| panic!("{error}"));
             let of_antennas = folder == "esso_osaka";
             assert!(are_expected(&warnings, of_antennas), "{stem}: {warnings:?}");
             let own = if folder == "esso_osaka" { stem.as_str() } else { folder };

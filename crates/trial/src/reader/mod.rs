@@ -20,14 +20,12 @@ mod instants;
 mod layout;
 mod limits;
 mod lines;
-mod read_table;
-
 mod log;
 #[cfg(test)]
 mod measured_tests;
 mod nmea;
 mod rows;
-pub(crate) mod source;
+mod source;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -37,7 +35,9 @@ pub use description::describe;
 pub use error::{Problem, ReadError};
 pub use limits::{MAX_CELLS, MAX_ROWS, RECORD};
 pub use lines::LONGEST_LINE;
-pub use log::{Log, Reading, read, read_bytes, read_with};
+pub use log::{ReadRecord, read, read_bytes, read_with};
+
+pub use source::Log;
 
 pub use crate::cells::Separator;
 pub use crate::encoding::Encoding;

@@ -1,75 +1,184 @@
-//! A table from its first line to its columns.
+//! A table from its first line to its columns. When the last row is read: instants of shared stamps, columns by channel,
+//! complaints about what is missing, and the list of what was decided.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::assemble::on_plane;
-use super::error::ReadError;
-use super::head::{self, Found};
+use super::error::{Problem, ReadError};
+use super::head;
 use super::input::Text;
-use super::layout::Layout;
+use super::instants::spread;
+use super::layout::{Content, Layout, TableColumn};
+use super::limits::{no_rows, spoken};
 use super::lines::Lines;
 use super::rows::Rows;
-use super::source::Piece;
-use super::units;
+use super::source::Log;
+use super::units::{self, UnitlessColumn};
 use crate::cells::Separator;
+use crate::channel::Channel;
 use crate::cleaning;
+use crate::clock::Stamps;
 use crate::encoding::Encoding;
+use crate::record::Columns;
 use crate::sidecar::Sidecar;
-use crate::words::listed;
+use crate::words::{counted, listed, shortened};
 
 /// Reads a table; `whole` says whether it has to hold a whole record.
 pub(super) fn read(
     path: &Path,
     input: Text,
     size: Option<u64>,
-    sidecar: Option<&Sidecar>,
+    sidecar: &Sidecar,
     whole: bool,
-) -> Result<Piece, ReadError> {
+) -> Result<Log, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     // What was written here has tabs between its cells and is UTF-8, whatever is said of other files.
-    let declared = sidecar.filter(|_| !input.is_made);
-    let separator = if input.is_made { Some(Separator::Tab) } else { declared.and_then(|sidecar| sidecar.separator) };
-    let mut lines = Lines::new(input.bytes, declared.map_or(Encoding::Utf8, |sidecar| sidecar.encoding));
-    let Found { head, rows: pending, passed } = head::find(&mut lines, separator, sidecar).map_err(fault)?;
-    let separator = head.separator;
-    let layout = Layout::new(head, path, sidecar, whole)?;
-    let mut rows = Rows::new(&layout, separator, sidecar);
-    for (number, text) in pending {
+    let (separator, encoding) = match input.is_made {
+        true => (Some(Separator::Tab), Encoding::Utf8),
+        false => (sidecar.table.separator, sidecar.table.encoding),
+    };
+    let mut lines = Lines::new(input.bytes, encoding);
+    let head = head::find(&mut lines, separator, sidecar).map_err(fault)?;
+    let layout = Layout::new(&head, path, sidecar, whole)?;
+    let mut rows = Rows::new(layout, head.separator, sidecar);
+    for (number, text) in head.rows {
         rows.add(&text, number).map_err(fault)?;
     }
     loop {
-        // The number is taken after the line is read, and the line borrows the source: hence the detour over `number`.
-        let number = lines.number() + 1;
-        let consumed = lines.consumed();
-        match lines.next_line().map_err(fault)? {
-            Some(text) => rows.add(text, number).map_err(fault)?,
-            None => break,
+        // The number is taken before the line is read, because the line borrows the source.
+        let (number, consumed) = (lines.number() + 1, lines.consumed());
+        let Some(text) = lines.next_line().map_err(fault)? else { break };
+        rows.add(text, number).map_err(fault)?;
+        rows.check_length(consumed, size).map_err(fault)?;
+    }
+    let mut log = rows.finish(head.passed).map_err(fault)?;
+    log.sha256 = lines.sha256();
+    if sidecar.is_checked() {
+        log.warnings.extend(cleaning::clean(&mut log.columns, &mut log.rejected));
+    }
+    Ok(log)
+}
+
+impl Rows<'_> {
+    /// The columns of all rows kept; `passed` lines before the names were passed over.
+    fn finish(mut self, passed: usize) -> Result<Log, Problem> {
+        let line = self.layout.line;
+        if self.counts.rows == 0 {
+            return Err(no_rows(line));
         }
-        if rows.kept() > rows.limit() || rows.will_be_too_many(consumed, size) {
-            return Err(fault(rows.too_many(consumed, size)));
+        self.check_values()?;
+        let mut warnings = self.warnings();
+        if self.stamps.is_some() {
+            let usual = if self.whole_seconds { spread(&mut self.time) } else { None };
+            warnings.extend(usual.map(|usual| {
+                format!(
+                    "rows share their stamps, {usual} as a rule; they are spread evenly over the time to the next stamp"
+                )
+            }));
+            let thin = |values: &mut Vec<f64>| {
+                *values = std::mem::take(values).into_iter().step_by(self.every).collect();
+            };
+            thin(&mut self.time);
+            self.layout.columns.iter_mut().for_each(|column| thin(&mut column.values));
+        }
+        let Layout { columns, understood, .. } = self.layout;
+        let open_time = self.time_place.map(|place| &columns[place]).filter(|column| column.open);
+        let open_time = open_time.map(|column| column.name.clone());
+        let (mut channels, mut unknown, mut open) = (BTreeMap::new(), Vec::new(), Vec::new());
+        let [mut latitude, mut longitude] = [None, None];
+        for column in columns.into_iter().filter(|column| column.kept) {
+            let TableColumn { name, content, values, largest, .. } = column;
+            let missing = values.iter().all(|value| value.is_nan());
+            match content {
+                // A channel nobody needs and nobody recorded is as good as absent.
+                Content::Channel(..) if missing => {
+                    warnings.push(format!("the column `{}` has no value and is left out", shortened(&name)));
+                }
+                Content::Channel(channel, _) => {
+                    channels.insert(channel, values);
+                    open.extend(column.open.then_some(UnitlessColumn { channel, name, largest }));
+                }
+                Content::Latitude => latitude = Some(values),
+                Content::Longitude => longitude = Some(values),
+                _ if missing && column.text > 0 => {}
+                _ => unknown.push((name, values)),
+            }
+        }
+        if let Some(position) = latitude.zip(longitude).and_then(|(latitude, longitude)| on_plane(latitude, longitude))
+        {
+            for (channel, values) in position {
+                channels.entry(channel).or_insert(values);
+            }
+        }
+        let clock = self.stamps.as_ref().and_then(Stamps::clock);
+        let columns = Columns { time: self.time, channels, unknown };
+        let mut log = Log { columns, clock, rows: self.counts.rows, ..Log::default() };
+        let decided = units::settle(&mut log, open, open_time, line)?;
+        if passed > 0 {
+            log.warnings.push(format!("{passed} lines before the header passed over"));
+        }
+        if !understood.is_empty() {
+            log.warnings.push(format!("columns understood by their names: {}", listed(&understood)));
+        }
+        log.warnings.extend(decided.into_iter().chain(warnings));
+        Ok(log)
+    }
+
+    /// Refuses a part without rows, and needed columns without a value.
+    fn check_values(&self) -> Result<(), Problem> {
+        let (counts, layout) = (&self.counts, &self.layout);
+        let all_missing =
+            |place: usize, quantity| Err(Problem::AllMissing { column: layout.columns[place].name.clone(), quantity });
+        if let Some(place) = self.time_place.filter(|_| counts.no_time == counts.rows) {
+            return all_missing(place, "time");
+        }
+        if self.usable == 0 && counts.nothing == 0 {
+            let (&from_s, &until_s) = (self.part.start(), self.part.end());
+            let (first_s, last_s) = self.span.expect("some row has a time, or all_missing had returned");
+            return Err(Problem::EmptyPart { from_s, until_s, first_s, last_s });
+        }
+        let is_empty = |place: &usize| layout.columns[*place].values.iter().all(|value| value.is_nan());
+        if let Some(place) = layout.rudder().filter(is_empty) {
+            return all_missing(place, spoken(Channel::Rudder));
+        }
+        let [heading, rate] = [Channel::Heading, Channel::YawRate].map(|channel| layout.place(channel));
+        match (heading, rate) {
+            (_, Some(rate)) if !is_empty(&rate) => Ok(()),
+            (Some(heading), _) if is_empty(&heading) => all_missing(heading, spoken(Channel::Heading)),
+            (None, Some(rate)) => all_missing(rate, spoken(Channel::YawRate)),
+            _ => Ok(()),
         }
     }
-    let sha256 = lines.sha256();
-    let (mut kept, found) = rows.finish().map_err(fault)?;
-    let mut warnings = Vec::new();
-    if passed > 0 {
-        warnings.push(format!("{passed} lines before the header passed over"));
-    }
-    if let Some(position) = kept.position.take().and_then(on_plane) {
-        for (channel, values) in position {
-            kept.columns.channels.entry(channel).or_insert(values);
+
+    fn warnings(&mut self) -> Vec<String> {
+        let counts = &self.counts;
+        let mut warnings = std::mem::take(&mut self.layout.warnings);
+        let mut count = |number: usize, text: &str| {
+            if number > 0 {
+                warnings.push(format!("{} {text}", counted(number, "row")));
+            }
+        };
+        count(counts.no_time, "without time left out");
+        count(counts.nothing, "with neither rudder nor heading nor yaw rate left out");
+        count(counts.repeated, "left out as exact copies of the row before");
+        count(counts.short, "with fewer cells than the header; the last columns were taken as missing there");
+        let first = counts.astray.first().copied().unwrap_or_default();
+        let astray = format!("left out because the time does not fit the rows around, the first has {first} s");
+        count(counts.astray.len(), &astray);
+        if counts.decimal_commas > 0 {
+            warnings.push(format!("{} numbers were read with a decimal comma", counts.decimal_commas));
         }
+        let columns = || self.layout.columns.iter().map(|column| (shortened(&column.name), column));
+        for (name, TableColumn { text, .. }) in columns().filter(|(_, column)| column.text > 0) {
+            warnings.push(format!("the column `{name}` holds text in {text} rows, taken as missing"));
+        }
+        for (name, TableColumn { sentinels: (count, value), .. }) in
+            columns().filter(|(_, column)| column.sentinels.0 > 0)
+        {
+            let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
+            warnings.push(format!("the column `{name}` holds {value} {times}, taken as missing"));
+        }
+        warnings
     }
-    let decided = units::settle(&mut kept, layout.line).map_err(fault)?;
-    if !layout.understood.is_empty() {
-        let names: Vec<String> = layout.understood.iter().map(|&place| layout.names[place].clone()).collect();
-        warnings.push(format!("columns understood by their names: {}", listed(&names)));
-    }
-    warnings.extend(decided);
-    warnings.extend(found);
-    let mut marks = Vec::new();
-    if sidecar.is_none_or(|sidecar| sidecar.plausibility) {
-        warnings.extend(cleaning::clean(&mut kept.columns, &mut marks));
-    }
-    Ok(Piece { columns: kept.columns, clock: kept.clock, warnings, marks, rows: kept.rows, sha256 })
 }

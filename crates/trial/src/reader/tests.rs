@@ -44,12 +44,12 @@ pub(super) fn simple() -> String {
     table("t_s,heading_deg,rudder_deg", ",")
 }
 
-fn parse_with(bytes: impl AsRef<[u8]>, sidecar: &str) -> Result<Reading, ReadError> {
+fn parse_with(bytes: impl AsRef<[u8]>, sidecar: &str) -> Result<ReadRecord, ReadError> {
     let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
     read_bytes(Path::new("run.csv"), bytes.as_ref(), None, Some(&sidecar))
 }
 
-fn parse(bytes: impl AsRef<[u8]>) -> Result<Reading, ReadError> {
+fn parse(bytes: impl AsRef<[u8]>) -> Result<ReadRecord, ReadError> {
     read_bytes(Path::new("run.csv"), bytes.as_ref(), None, None)
 }
 
@@ -58,7 +58,7 @@ fn problem(bytes: impl AsRef<[u8]>, parts: &[&str]) -> Problem {
     complaint(parse(bytes), parts)
 }
 
-fn complaint(result: Result<Reading, ReadError>, parts: &[&str]) -> Problem {
+fn complaint(result: Result<ReadRecord, ReadError>, parts: &[&str]) -> Problem {
     let error = result.expect_err("the table is wrong");
     let message = error.to_string();
     assert!(message.starts_with("run.csv: "), "{message}");
@@ -128,7 +128,7 @@ fn rows_with_missing_values_are_left_out_or_kept_and_counted() {
             writeln!(text, "60.5,{heading},{rudder}").expect("a string takes all text");
         }
     }
-    let Reading { trial, warnings } = parse(text).expect("missing values are no fault");
+    let ReadRecord { trial, warnings } = parse(text).expect("missing values are no fault");
     assert_eq!(trial.len(), 240 - 1 + 1);
     assert_eq!(trial.heading().iter().filter(|psi| psi.is_nan()).count(), 1);
     assert!(trial.heading()[39].is_nan());
@@ -148,7 +148,7 @@ fn rows_with_missing_values_are_left_out_or_kept_and_counted() {
 
 #[test]
 fn the_order_and_the_yaw_rate_stand_in_with_a_warning() {
-    let Reading { trial, warnings } =
+    let ReadRecord { trial, warnings } =
         parse(table("t_s,heading_deg,rudder_order_deg", ",")).expect("the order stands for the rudder");
     assert_eq!(trial.rudder()[0], from_deg(10.0));
     assert_eq!(trial.channel(Channel::RudderOrder), Some(trial.rudder()));
@@ -160,12 +160,12 @@ fn the_order_and_the_yaw_rate_stand_in_with_a_warning() {
         let rate = (pair[1][1] - pair[0][1] + 180.0).rem_euclid(360.0) - 180.0;
         writeln!(text, "{} {rate} {}", pair[0][0], pair[0][2]).expect("a string takes all text");
     }
-    let Reading { trial, warnings } = parse(&text).expect("the yaw rate stands for the heading");
+    let ReadRecord { trial, warnings } = parse(&text).expect("the yaw rate stands for the heading");
     assert!(trial.heading_from_yaw_rate());
     assert!(warnings[0].contains("integral of the yaw rate"), "{warnings:?}");
     let text = text.replacen("yaw_rate_deg_s rudder_deg", "yaw_rate_deg_s rudder_deg heading_deg", 1);
     let text = text.lines().enumerate().map(|(i, l)| if i == 0 { format!("{l}\n") } else { format!("{l} nan\n") });
-    let Reading { trial, warnings } =
+    let ReadRecord { trial, warnings } =
         parse(text.collect::<String>()).expect("an empty heading column is as good as none");
     assert!(trial.heading_from_yaw_rate());
     assert!(warnings.iter().any(|warning| warning.contains("`heading_deg` has no value")), "{warnings:?}");

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::error::Problem;
 use super::limits::spoken;
-use super::read_table::{ReadTable, UnitlessColumn};
+use super::source::Log;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
 use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals};
@@ -42,17 +42,31 @@ const SERIAL_ZERO: i64 = -25_569;
 
 type Channels = BTreeMap<Channel, Vec<f64>>;
 
-/// Finds the open units; what was decided, in words.
+/// A channel whose unit its values have to show.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct UnitlessColumn {
+    pub channel: Channel,
+    /// Name of its column.
+    pub name: String,
+    /// Its largest number, without its sign.
+    pub largest: f64,
+}
+
+/// Finds the units of `open` columns, and of that of time where its name is in `open_time`; what was decided, in words.
 ///
 /// Fails where heading, rudder, a yaw rate that stands for the heading, or time could have two units.
-pub(super) fn settle(kept: &mut ReadTable, line: usize) -> Result<Vec<String>, Problem> {
+pub(super) fn settle(
+    log: &mut Log,
+    mut open: Vec<UnitlessColumn>,
+    open_time: Option<String>,
+    line: usize,
+) -> Result<Vec<String>, Problem> {
     let mut decided = Vec::new();
     let mut left_out = Vec::new();
-    let mut open = std::mem::take(&mut kept.open);
     // The unit of a heading is seen beside the rudder, that of a yaw rate beside the heading.
     const FIRST: [Channel; 4] = [Channel::Rudder, Channel::RudderOrder, Channel::Heading, Channel::YawRate];
     open.sort_by_key(|open| FIRST.iter().position(|first| *first == open.channel).unwrap_or(FIRST.len()));
-    let (time, channels) = (&kept.columns.time, &mut kept.columns.channels);
+    let (time, channels) = (&log.columns.time, &mut log.columns.channels);
     for open in &open {
         let is_angle = open.channel.units().contains(&Unit::Radian);
         let unit = match open.channel {
@@ -92,8 +106,8 @@ pub(super) fn settle(kept: &mut ReadTable, line: usize) -> Result<Vec<String>, P
             channel.column_name()
         ));
     }
-    if let Some(name) = kept.open_time.take() {
-        told.extend(seconds(kept, &name, line)?);
+    if let Some(name) = open_time {
+        told.push(seconds(log, &name, line)?);
     }
     Ok(told)
 }
@@ -199,27 +213,27 @@ fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
 }
 
 /// Time without a unit: seconds where ships can turn like that, or the count of a clock.
-fn seconds(kept: &mut ReadTable, name: &str, line: usize) -> Result<Option<String>, Problem> {
+fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     let name = shortened(name);
-    let times = &mut kept.columns.time;
+    let times = &mut log.columns.time;
     let first = times[0];
     for (factor, unit) in [(1.0, "seconds"), (1e-3, "milliseconds"), (1e-6, "microseconds"), (1e-9, "nanoseconds")] {
         if (EPOCH[0]..EPOCH[1]).contains(&(first * factor)) {
             times.iter_mut().for_each(|time| *time = (*time - first) * factor);
-            kept.clock = Some(clock(first * factor, 0));
-            return Ok(Some(format!("`{name}` is read as {unit} since 1970-01-01, UTC; time 0 is the first row")));
+            log.clock = Some(clock(first * factor, 0));
+            return Ok(format!("`{name}` is read as {unit} since 1970-01-01, UTC; time 0 is the first row"));
         }
     }
     let last = times[times.len() - 1];
     if SERIAL_DAY[0] < first && last < SERIAL_DAY[1] && last - first < 31.0 {
         times.iter_mut().for_each(|time| *time = (*time - first) * 86_400.0);
-        kept.clock = Some(Clock { zone: None, ..clock(first * 86_400.0, SERIAL_ZERO) });
-        return Ok(Some(format!(
+        log.clock = Some(Clock { zone: None, ..clock(first * 86_400.0, SERIAL_ZERO) });
+        return Ok(format!(
             "`{name}` is read as days since 1899-12-30, as spreadsheets count; time 0 is the first row"
-        )));
+        ));
     }
     let refusal = || Problem::OpenTime { line, column: name.clone() };
-    let channels = &kept.columns.channels;
+    let channels = &log.columns.channels;
     if let Some(heading) = channels.get(&Channel::Heading) {
         let rate_deg_s = mean_rate(times, heading).to_degrees();
         if !(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s) {
@@ -243,7 +257,7 @@ fn seconds(kept: &mut ReadTable, name: &str, line: usize) -> Result<Option<Strin
             return Err(refusal());
         }
     }
-    Ok(Some(format!("`{name}` has no unit and is read as seconds")))
+    Ok(format!("`{name}` has no unit and is read as seconds"))
 }
 
 /// The clock at a number of seconds after a day, which is counted from 1970-01-01.

@@ -5,9 +5,9 @@ use super::*;
 use crate::testing::{Case, Start, Truth};
 use approx::assert_abs_diff_eq;
 
-fn curve(case: &Case, fundamental: &Fundamental) -> super::super::FourierFit {
+fn curve(case: &Case, fundamental: Fundamental) -> super::super::FourierFit {
     let Truth { time, heading, .. } = case.truth();
-    fit(&time, &heading, 8, fundamental).expect("a zig-zag has a series").curve
+    fit(&time, &heading, 8, &fundamental).expect("a zig-zag has a series").curve
 }
 
 fn ten_twenty() -> Case {
@@ -25,7 +25,7 @@ fn global_optima_are_the_known_ones() {
         (twenty, 0.01807, 0.99996, 1.3e2),
         (Case { start: Start::Rest, ..ten_twenty() }, 0.01109, 0.99984, 1.4e6),
     ] {
-        let fit = curve(&case, &Fundamental::Global);
+        let fit = curve(&case, Fundamental::Global);
         assert_abs_diff_eq!(fit.fundamental, w, epsilon = 3e-4);
         assert_abs_diff_eq!(fit.r_squared, r_squared, epsilon = 2e-5);
         assert!((fit.condition / condition).ln().abs() < 1.5f64.ln(), "{} for {condition}", fit.condition);
@@ -35,13 +35,12 @@ fn global_optima_are_the_known_ones() {
 /// Local optima from the peak of the transform, same source and tolerances.
 #[test]
 fn a_search_from_the_peak_stays_at_the_zig_zag_period() {
-    let from_peak = Fundamental::Starts(vec![StartPoint::FftPeak]);
     for (case, w, r_squared, condition) in [
         (Case::default(), 0.05395, 0.99828, 1.6),
         (Case { start: Start::Rest, ..Case::default() }, 0.05377, 0.99274, 1.6),
         (ten_twenty(), 0.03929, 0.99981, 1.9),
     ] {
-        let fit = curve(&case, &from_peak);
+        let fit = curve(&case, Fundamental::FftPeak);
         assert_abs_diff_eq!(fit.fundamental, w, epsilon = 3e-4);
         assert_abs_diff_eq!(fit.r_squared, r_squared, epsilon = 2e-5);
         assert!((fit.condition / condition).ln().abs() < 1.5f64.ln(), "{} for {condition}", fit.condition);
@@ -52,14 +51,18 @@ fn a_search_from_the_peak_stays_at_the_zig_zag_period() {
 /// stops at 0.0239 rad/s (independent computation).
 #[test]
 fn long_starts_end_at_a_period_beyond_the_record() {
-    for start in [StartPoint::RecordLength, StartPoint::TwiceRecordLength] {
-        let local = Fundamental::Starts(vec![start]);
-        assert_abs_diff_eq!(curve(&ten_twenty(), &local).fundamental, 0.0162, epsilon = 3e-4);
-        assert_abs_diff_eq!(curve(&Case::default(), &local).fundamental, 0.0204, epsilon = 3e-4);
-    }
     let twenty = Case { rudder_deg: 20.0, ..ten_twenty() };
-    let local = Fundamental::Starts(vec![StartPoint::RecordLength]);
-    assert_abs_diff_eq!(curve(&twenty, &local).fundamental, 0.0239, epsilon = 3e-4);
+    for (case, periods, found) in [
+        (Case::default(), 1.0, 0.0204),
+        (Case::default(), 0.5, 0.0204),
+        (ten_twenty(), 1.0, 0.0162),
+        (ten_twenty(), 0.5, 0.0162),
+        (twenty, 1.0, 0.0239),
+    ] {
+        let Truth { time, heading, .. } = case.truth();
+        let start = periods * TAU / (time[time.len() - 1] - time[0]);
+        assert_abs_diff_eq!(search_from(&[start], &time, &heading, 8).fundamental, found, epsilon = 3e-4);
+    }
 }
 
 /// Limit-cycle periods 116.63 s (10/10) and 159.13 s (10/20) from an independent simulation.
@@ -73,29 +76,8 @@ fn zero_crossings_give_the_limit_cycle_under_noise() {
 }
 
 #[test]
-fn the_best_conditioned_minimum_gives_up_little() {
-    let global = curve(&ten_twenty(), &Fundamental::Global);
-    let rule = curve(&ten_twenty(), &Fundamental::BestConditioned { r_squared_loss: 1e-3 });
-    assert!(rule.condition < 3.0 && rule.r_squared > global.r_squared - 1e-3);
-    assert_abs_diff_eq!(rule.fundamental, 0.0393, epsilon = 3e-4);
-}
-
-#[test]
 fn a_record_without_a_crossing_has_no_period() {
     let time: Vec<f64> = (0..40).map(f64::from).collect();
     let error = zero_crossing_period(&time, &time).expect_err("a line crosses its mean once");
     assert_eq!(error.kind(), "too-few-points");
-}
-
-#[test]
-fn meaningless_settings_are_refused() {
-    for bad in [
-        Fundamental::Starts(vec![]),
-        Fundamental::FixedRadS(-0.1),
-        Fundamental::FixedRadS(f64::NAN),
-        Fundamental::RecordLengths(5.0),
-        Fundamental::BestConditioned { r_squared_loss: 1.0 },
-    ] {
-        assert!(bad.check().is_err(), "{bad:?}");
-    }
 }

@@ -1,19 +1,10 @@
 //! The profile against the orthogonal decomposition.
 
+use std::f64::consts::TAU;
+
 use super::super::basis::Basis;
 use super::*;
 use approx::assert_relative_eq;
-
-/// A thousand periods want so many nodes that to make them would take a time that grows with the square of the rows.
-#[test]
-fn a_record_of_very_many_periods_is_summed_row_by_row() {
-    let time: Vec<f64> = (0..60_000).map(f64::from).collect();
-    let heading: Vec<f64> = time.iter().map(|t| (TAU * t / 59.0).sin()).collect();
-    let mut profile = Profile::new(&time, &heading, 8);
-    assert!(profile.counts.last().is_some_and(|&most| most > MOST_NODES / 4 && most <= MOST_NODES));
-    assert!(profile.rss(TAU / 59.0) < 1e-6 * profile.total());
-    assert!(profile.coarse.iter().all(Option::is_none));
-}
 
 #[test]
 fn agrees_with_the_orthogonal_decomposition() {
@@ -33,27 +24,6 @@ fn agree(time: Vec<f64>) {
         let exact: f64 = basis.project(&values).residual.iter().map(|e| e * e).sum();
         assert_relative_eq!(scanned, exact, max_relative = 1e-8);
         assert_relative_eq!(profile.rss(w), exact, max_relative = 1e-8);
-    }
-}
-
-/// Enough rows for three levels of nodes, at 0.4 to 12 periods a record: an even record, an odd number of rows and an
-/// uneven record.
-#[test]
-fn nodes_in_place_of_the_rows_change_nothing() {
-    for (rows, unevenness) in [(1200, 0.0), (1201, 0.0), (1800, 0.4)] {
-        let time: Vec<f64> = (0..rows).map(|i| 0.5 * (i as f64 + unevenness * (i as f64).sin())).collect();
-        let values: Vec<f64> = (0..rows).map(|i| (0.021 * i as f64).sin() + 0.01 * ((i * i) as f64).sin()).collect();
-        let mut profile = Profile::new(&time, &values, 8);
-        assert!(profile.coarse.len() >= 2, "{} levels", profile.coarse.len());
-        let one = TAU / profile.length;
-        let curve = profile.scan(0.4 * one, 0.1 * one, 117);
-        for (k, scanned) in curve.into_iter().enumerate() {
-            let w = (0.4 + 0.1 * k as f64) * one;
-            let basis = Basis::new(&time, w, 8).expect("enough rows");
-            let exact: f64 = basis.project(&values).residual.iter().map(|e| e * e).sum();
-            assert_relative_eq!(scanned, exact, max_relative = 1e-9);
-            assert_relative_eq!(profile.rss(w), exact, max_relative = 1e-9);
-        }
     }
 }
 

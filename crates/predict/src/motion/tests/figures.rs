@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
 
-use crate::motion::{Turn, TurningCircleFigures, track, turning_circle};
+use crate::motion::{TurningCircleFigures, track, turning_circle};
 
 const SURGE: f64 = 5.0;
 const SWAY: f64 = -1.2;
@@ -15,11 +15,9 @@ fn circle(side: f64, course: f64, turned: f64) -> TurningCircleFigures {
     let rows = 4000;
     let time: Vec<f64> = (0..=rows).map(|row| f64::from(row) * turned / RATE / f64::from(rows)).collect();
     let heading: Vec<f64> = time.iter().map(|t| course + side * RATE * t).collect();
-    let all = |value: f64| vec![value; time.len()];
-    let (surge, sway, yaw_rate) = (all(SURGE), all(side * SWAY), all(side * RATE));
-    let path = track(&time, &heading, &surge, &sway);
-    let turn = Turn { time: &time, heading: &heading, track: &path, surge: &surge, sway: &sway, yaw_rate: &yaw_rate };
-    turning_circle(&turn, 0.0)
+    let velocity = vec![[SURGE, side * SWAY]; time.len()];
+    let path = track(&time, &heading, &velocity);
+    turning_circle([&time, &heading, &vec![side * RATE; time.len()]], [&path, &velocity], 0.0)
 }
 
 #[test]
@@ -52,15 +50,12 @@ fn what_is_not_reached_is_none() {
 fn a_series_that_is_no_turn_has_no_figures() {
     let (time, two) = ([0.0, 1.0, 2.0], [0.0, 2.0]);
     let path = [[0.0; 2]; 3];
-    let of = |heading: &[f64], execute: f64| {
-        let turn = Turn { time: &time, heading, track: &path, surge: &time, sway: &time, yaw_rate: &time };
-        turning_circle(&turn, execute)
-    };
+    let of = |heading: &[f64], execute: f64| turning_circle([&time, heading, &time], [&path, &path], execute);
     let none = TurningCircleFigures::default();
     assert_eq!(of(&two, 0.0), none);
     assert_eq!(of(&[0.0, f64::NAN, 3.0], 0.0), none);
     assert_eq!(of(&time, 9.0), none);
     assert_eq!(of(&[0.0; 3], 0.0), none);
     assert_eq!(of(&time, f64::NAN), none);
-    assert!(track(&[], &[], &[], &[]).is_empty());
+    assert!(track(&[], &[], &[]).is_empty());
 }

@@ -11,6 +11,8 @@ use ship::{Dynamics, FirstOrder, Particulars, Polyline, Response, ResponseModel}
 use std::sync::Arc;
 use trial::{Channel, Columns, Origin, Trial};
 
+use super::sd;
+use crate::motion::planar::pooled;
 use crate::motion::{
     COEFFICIENTS, MotionError, MotionOutput, Planar, PlanarCoefficients, PlanarShip, SYMBOLS, fit, track,
 };
@@ -71,7 +73,8 @@ fn record(name: &str, rudder: &Polyline, current: [f64; 2], noise: [f64; 4], see
             .map(|value| value + deviation * Distribution::<f64>::sample(&StandardNormal, &mut random))
             .collect()
     };
-    let path = track(&time, &heading, &surge, &sway);
+    let velocity: Vec<[f64; 2]> = surge.iter().zip(&sway).map(|(u, v)| [*u, *v]).collect();
+    let path = track(&time, &heading, &velocity);
     let along = |axis: usize| path.iter().zip(&time).map(|(p, t)| 50.0 + p[axis] + current[axis] * t).collect();
     let channels = [
         (Channel::Rudder, time.iter().map(|t| rudder.at(*t)).collect()),
@@ -106,28 +109,24 @@ fn circles(current: [f64; 2]) -> Vec<Trial> {
 }
 
 fn assert_found(planar: &Planar, most: f64) {
-    for (i, symbol) in SYMBOLS.iter().enumerate() {
-        let (found, deviation) = (planar.coefficients()[i], planar.deviations()[i]);
-        println!(
-            "{symbol}: {found:.4} ± {deviation:.4}, made with {} ({:.1} sd)",
-            TRUTH[i],
-            (found - TRUTH[i]) / deviation
-        );
-    }
-    for (i, symbol) in SYMBOLS.iter().enumerate() {
-        let (found, deviation) = (planar.coefficients()[i], planar.deviations()[i]);
+    for (i, (found, symbol)) in planar.coefficients.to_array().into_iter().zip(SYMBOLS).enumerate() {
+        let deviation = sd(&planar.covariance, i);
         assert!((found - TRUTH[i]).abs() < 3.0 * deviation, "{symbol}: {found} ± {deviation}");
         assert!(deviation < most * TRUTH[i], "{symbol}: {found} ± {deviation}");
     }
+}
+
+fn rms(planar: &Planar, output: MotionOutput) -> Option<f64> {
+    pooled(&planar.records, output)
 }
 
 #[test]
 fn surge_and_sway_give_the_coefficients_back() {
     let planar = fit(&zig_zags(1.0), LENGTH).expect("a fit");
     assert_found(&planar, 0.1);
-    assert_relative_eq!(planar.rms(MotionOutput::Surge).expect("surge"), NOISE[2], max_relative = 0.05);
-    assert_relative_eq!(planar.rms(MotionOutput::Sway).expect("sway"), NOISE[2], max_relative = 0.05);
-    assert_eq!((planar.rms(MotionOutput::Speed), planar.rms(MotionOutput::Position)), (None, None));
+    assert_relative_eq!(rms(&planar, MotionOutput::Surge).expect("surge"), NOISE[2], max_relative = 0.05);
+    assert_relative_eq!(rms(&planar, MotionOutput::Sway).expect("sway"), NOISE[2], max_relative = 0.05);
+    assert_eq!((rms(&planar, MotionOutput::Speed), rms(&planar, MotionOutput::Position)), (None, None));
     assert_eq!(planar.records.len(), 3);
     let text = serde_json::to_string(&planar).expect("text");
     assert_eq!(serde_json::from_str::<Planar>(&text).expect("the same"), planar);
@@ -139,7 +138,7 @@ fn speed_alone_beside_positions_is_enough() {
         zig_zags(1.0).iter().map(|t| t.clone().without(&[Channel::Surge, Channel::Sway])).collect();
     let planar = fit(&trials, LENGTH).expect("a fit");
     assert_found(&planar, 0.3);
-    assert!(planar.rms(MotionOutput::Speed).is_some() && planar.rms(MotionOutput::Position).is_some());
+    assert!(rms(&planar, MotionOutput::Speed).is_some() && rms(&planar, MotionOutput::Position).is_some());
     assert!(planar.records.iter().all(|record| record.current.is_none()));
 }
 
@@ -157,7 +156,7 @@ fn positions_alone_are_enough_with_and_without_a_current() {
             let found = found.current.expect("a current");
             assert!((0..2).all(|axis| (found[axis] - current[axis]).abs() < 2e-3), "{found:?}");
         }
-        assert_relative_eq!(planar.rms(MotionOutput::Position).expect("positions"), NOISE[3], max_relative = 0.1);
+        assert_relative_eq!(rms(&planar, MotionOutput::Position).expect("positions"), NOISE[3], max_relative = 0.1);
     }
 }
 
@@ -165,8 +164,8 @@ fn positions_alone_are_enough_with_and_without_a_current() {
 fn a_yaw_rate_that_is_missing_is_the_slope_of_the_heading() {
     let without = |trial: &Trial| trial.clone().without(&[Channel::YawRate]);
     let planar = fit(&zig_zags(1.0).iter().map(without).collect::<Vec<_>>(), LENGTH).expect("a fit");
-    for (found, truth) in planar.coefficients().iter().zip(TRUTH) {
-        assert_relative_eq!(*found, truth, max_relative = 0.1);
+    for (found, truth) in planar.coefficients.to_array().into_iter().zip(TRUTH) {
+        assert_relative_eq!(found, truth, max_relative = 0.1);
     }
 }
 
@@ -200,8 +199,8 @@ fn the_mirrored_records_give_the_mirrored_answer() {
     let trials = zig_zags(1.0);
     let (one, other) = (fit(&trials, LENGTH), fit(&trials.iter().map(mirrored).collect::<Vec<_>>(), LENGTH));
     let (one, other) = (one.expect("a fit"), other.expect("a fit"));
-    for (one, other) in one.coefficients().iter().zip(other.coefficients()) {
-        assert_relative_eq!(*one, other, max_relative = 1e-9);
+    for (one, other) in one.coefficients.to_array().into_iter().zip(other.coefficients.to_array()) {
+        assert_relative_eq!(one, other, max_relative = 1e-9);
     }
     assert_relative_eq!(one.records[0].start[1], -other.records[0].start[1], max_relative = 1e-9);
 }
@@ -216,8 +215,7 @@ fn a_ship_at_the_same_froude_number_has_the_track_times_the_ratio_of_lengths() {
         let time: Vec<f64> = trial.time().iter().map(|t| t * f64::sqrt(scale)).collect();
         let rate: Vec<f64> = trial.yaw_rate().expect("a rate").iter().map(|r| r / f64::sqrt(scale)).collect();
         let found = planar.drive(&time, &rate, trial.rudder(), [planar.approach_speed, 0.0]);
-        let (u, v): (Vec<f64>, Vec<f64>) = found.iter().map(|[u, v]| (u, v)).unzip();
-        track(&time, trial.heading(), &u, &v)
+        track(&time, trial.heading(), &found)
     };
     for (small, large) in of(&model, 1.0).iter().zip(of(&ship, ratio)) {
         for axis in 0..2 {
@@ -250,13 +248,13 @@ fn a_response_sees_the_speed_of_its_ship() {
         let ship = PlanarShip { response, planar: planar() };
         let mut state = vec![f64::NAN; ship.dimension()];
         ship.approach(0.0, 0.0, &mut state);
-        assert_eq!(ship.velocity(&state), [SPEED, 0.0]);
+        assert_eq!(state[state.len() - 2..], [SPEED, 0.0]);
         let step = ship.largest_step();
         let mut last = None;
         ship::replay::replay(&ship, &Recorded::rudder(&rudder), &[0.0, 200.0], step, &mut state, |_, motion| {
             last = Some(*motion);
         });
-        let (motion, [u, v]) = (last.expect("a motion"), ship.velocity(&state));
+        let (motion, [u, v]) = (last.expect("a motion"), [state[state.len() - 2], state[state.len() - 1]]);
         assert_eq!((motion.speed, motion.sway), (Some(u.hypot(v)), Some(v)));
         (motion.yaw_rate, u.hypot(v) / SPEED)
     };
@@ -365,12 +363,8 @@ fn a_record_at_rest_has_no_approach_speed() {
 #[test]
 fn numbers_that_are_no_ship_are_refused() {
     let known = planar();
-    assert_eq!(known.with_coefficients(&[1.0]), Err(MotionError::Coefficients { needed: COEFFICIENTS, found: 1 }));
-    let mut values = TRUTH;
-    values[3] = f64::NAN;
-    assert_eq!(known.with_coefficients(&values), Err(MotionError::Coefficients { needed: COEFFICIENTS, found: 7 }));
-    values[3] = -1.0;
-    assert_eq!(known.with_coefficients(&values).expect("a ship").coefficients.X_dv, 0.0);
-    assert_eq!(known.with_coefficients(&known.coefficients()).expect("a ship"), known);
+    assert_eq!(known.stepped(&[0.0, 0.0, 0.0, -1.0]).coefficients.X_dv, 0.0);
+    assert_eq!(known.stepped(&[0.1]).coefficients.X_0, TRUTH[0] + 0.1);
+    assert_eq!(known.stepped(&[]), known);
     assert!(matches!(known.scaled_to(7.0, 0.0), Err(MotionError::NotPositive { quantity: "approach speed", .. })));
 }

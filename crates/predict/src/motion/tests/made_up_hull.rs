@@ -11,6 +11,7 @@ use ship::{Dynamics, Input};
 use trial::{Channel, Columns, Origin, Trial};
 
 use super::steered::{Helm, steer};
+use super::{coefficients, sd};
 use crate::motion::{
     HULL_COEFFICIENTS, IdentifiedHull, MotionError, Planar, PlanarCoefficients, Spread, Yaw, fit_hull,
 };
@@ -65,12 +66,10 @@ fn changed(trial: &Trial, change: impl Fn(Channel, &[f64]) -> Vec<f64>) -> Trial
 fn zig_zags_give_all_coefficients_back() {
     let found = fit_hull(&zig_zags(), LENGTH).expect("a fit");
     assert_eq!((found.spread, found.records.len()), (Spread::Records, 4));
-    let truth = hull().coefficients();
-    for (i, symbol) in IdentifiedHull::symbols().iter().enumerate() {
-        let (value, deviation) = (found.coefficients()[i], found.deviations()[i]);
-        println!("{symbol} {value:.4} ± {deviation:.4}, made with {}", truth[i]);
-        assert!((value - truth[i]).abs() < 0.05 * truth[i].abs().max(0.05), "{symbol}: {value} {}", truth[i]);
-        assert!(deviation < 0.05 * truth[i].abs().max(0.1), "{symbol}: ± {deviation}");
+    for (i, ((symbol, value), (_, truth))) in coefficients(&found).into_iter().zip(coefficients(&hull())).enumerate() {
+        let deviation = sd(&found.covariance, i);
+        assert!((value - truth).abs() < 0.05 * truth.abs().max(0.05), "{symbol}: {value} {truth}");
+        assert!(deviation < 0.05 * truth.abs().max(0.1), "{symbol}: ± {deviation}");
     }
     // Nothing random was put in but the noise of the readings.
     println!("{:?} {:?}", found.moment, found.records);
@@ -84,12 +83,10 @@ fn few_records_and_no_yaw_rate_are_enough() {
     let trials: Vec<Trial> = zig_zags()[1..3].iter().map(|trial| trial.clone().without(&[Channel::YawRate])).collect();
     let found = fit_hull(&trials, LENGTH).expect("a fit");
     assert_eq!(found.spread, Spread::Scores);
-    for ((value, truth), symbol) in
-        found.coefficients().iter().zip(hull().coefficients()).zip(IdentifiedHull::symbols())
-    {
+    for ((symbol, value), (_, truth)) in coefficients(&found).into_iter().zip(coefficients(&hull())) {
         assert!((value - truth).abs() < 0.25 * truth.abs().max(0.05), "{symbol}: {value} {truth}");
     }
-    assert!(found.deviations().iter().all(|deviation| *deviation > 0.0), "{:?}", found.deviations());
+    assert!((0..HULL_COEFFICIENTS).all(|i| sd(&found.covariance, i) > 0.0), "{:?}", found.covariance);
 }
 
 /// All but the moment of the propeller, which changes its side.
@@ -103,9 +100,9 @@ fn the_mirrored_records_give_the_mirrored_hull() {
     let trials = &zig_zags()[1..3];
     let other: Vec<Trial> = trials.iter().map(|trial| changed(trial, mirrored)).collect();
     let (one, other) = (fit_hull(trials, LENGTH).expect("a fit"), fit_hull(&other, LENGTH).expect("a fit"));
-    for (i, (one, other)) in one.coefficients().iter().zip(other.coefficients()).enumerate() {
-        let side = if i + 1 == HULL_COEFFICIENTS { -1.0 } else { 1.0 };
-        assert_relative_eq!(*one, side * other, max_relative = 1e-4);
+    for ((symbol, one), (_, other)) in coefficients(&one).into_iter().zip(coefficients(&other)) {
+        let side = if symbol == "N_0" { -1.0 } else { 1.0 };
+        assert_relative_eq!(one, side * other, max_relative = 1e-4);
     }
 }
 
@@ -175,12 +172,9 @@ fn records_that_do_not_tell_yaw_are_refused() {
 #[test]
 fn numbers_that_are_no_hull_are_refused() {
     let known = hull();
-    assert_eq!(known.with_coefficients(&[1.0]), Err(MotionError::Coefficients { needed: HULL_COEFFICIENTS, found: 1 }));
-    let mut values = known.coefficients();
-    assert_eq!(known.with_coefficients(&values).expect("a ship"), known);
-    values[8] = -1.0;
-    assert_eq!(known.with_coefficients(&values).expect("a ship").yaw.N_r, 1e-3);
-    values[8] = f64::NAN;
-    assert!(matches!(known.with_coefficients(&values), Err(MotionError::Coefficients { found: 13, .. })));
+    let mut step = [0.0; HULL_COEFFICIENTS];
+    assert_eq!(known.stepped(&step), known);
+    step[8] = -10.0;
+    assert_eq!(known.stepped(&step).yaw.N_r, 1e-3);
     assert!(matches!(known.scaled_to(7.0, 0.0), Err(MotionError::NotPositive { .. })));
 }

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use trial::{Channel, Columns, Origin, Trial};
 
-use crate::motion::{MotionOutput, Planar, SYMBOLS, Turn, TurningCircleFigures, fit, track, turning_circle};
+use super::sd;
+use crate::motion::planar::pooled;
+use crate::motion::{MotionOutput, Planar, SYMBOLS, TurningCircleFigures, fit, track, turning_circle};
 
 /// `None` (and one line) where the data are not there.
 pub(super) fn measured(file: &str) -> Option<Trial> {
@@ -61,12 +63,12 @@ fn zig_zags_of_hsva_tell_those_left_out() {
     assert!((planar.approach_speed - 1.177).abs() < 2e-3, "{}", planar.approach_speed);
     // Measured: 0.0044 and 0.0038 m/s, that is 0.4 and 0.3 % of the approach speed.
     for output in [MotionOutput::Surge, MotionOutput::Sway] {
-        let rms = planar.rms(output).expect("an output");
+        let rms = pooled(&planar.records, output).expect("an output");
         println!("fitted {output:?}: {rms:.4} m/s");
         assert!(rms < 0.005, "{output:?}: {rms}");
     }
-    let deviations = planar.deviations();
-    for ((value, deviation), symbol) in planar.coefficients().iter().zip(deviations).zip(SYMBOLS) {
+    for (i, (value, symbol)) in planar.coefficients.to_array().iter().zip(SYMBOLS).enumerate() {
+        let deviation = sd(&planar.covariance, i);
         println!("{symbol} {value:.4} ± {deviation:.4}");
         assert!(deviation > 0.0 && deviation < 0.1 * value, "{symbol}: {value} ± {deviation}");
     }
@@ -91,19 +93,17 @@ fn circle(planar: &Planar) -> Option<[TurningCircleFigures; 3]> {
     let (time, heading, rudder) = (&circle.time()[..rows], &circle.heading()[..rows], &circle.rudder()[..rows]);
     let (surge, sway, yaw_rate) = (read(Channel::Surge), read(Channel::Sway), read(Channel::YawRate));
     // As `find` bounds it: the rudder leaves 1.2° at 4.1 s.
-    let figures = |track: &[[f64; 2]], surge: &[f64], sway: &[f64]| {
-        turning_circle(&Turn { time, heading, track, surge, sway, yaw_rate }, 4.1)
-    };
-    let positions: Vec<[f64; 2]> =
-        read(Channel::North).iter().zip(read(Channel::East)).map(|(x, y)| [*x, *y]).collect();
+    let figures =
+        |track: &[[f64; 2]], velocity: &[[f64; 2]]| turning_circle([time, heading, yaw_rate], [track, velocity], 4.1);
+    let pairs = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(x, y)| [*x, *y]).collect::<Vec<_>>();
+    let (positions, velocity) = (pairs(read(Channel::North), read(Channel::East)), pairs(surge, sway));
     // 15.5 knots, at the Froude number of the model.
     let ship = planar.scaled_to(320.0, 7.974).expect("a ship");
     let told = ship.drive(time, yaw_rate, rudder, [surge[0], sway[0]]);
-    let (u, v): (Vec<f64>, Vec<f64>) = told.iter().map(|[u, v]| (u, v)).unzip();
     Some([
-        figures(&positions, surge, sway),
-        figures(&track(time, heading, surge, sway), surge, sway),
-        figures(&track(time, heading, &u, &v), &u, &v),
+        figures(&positions, &velocity),
+        figures(&track(time, heading, &velocity), &velocity),
+        figures(&track(time, heading, &told), &told),
     ])
 }
 
@@ -139,8 +139,8 @@ fn positions_of_the_zig_zags_tell_the_circle_as_well() {
     let trials: Vec<Trial> =
         trials.into_iter().map(|trial| trial.without(&[Channel::Surge, Channel::Sway, Channel::Speed])).collect();
     let planar = fit(&trials, LENGTH).expect("a fit");
-    let rms = planar.rms(MotionOutput::Position).expect("positions");
-    println!("{:?} ± {:?}\npositions {rms:.4} m", planar.coefficients, planar.deviations());
+    let rms = pooled(&planar.records, MotionOutput::Position).expect("positions");
+    println!("{:?}\npositions {rms:.4} m", planar.coefficients);
     assert!(rms < 0.05, "{rms}");
     let Some([measured, _, told]) = circle(&planar) else { return };
     println!("errors {:.4?}", errors(&measured, &told));

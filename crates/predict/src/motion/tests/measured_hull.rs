@@ -5,7 +5,8 @@ use trial::{Channel, Trial};
 
 use super::measured::measured;
 use super::steered::{Helm, overshoots, steer};
-use crate::motion::{IdentifiedHull, Spread, Turn, TurningCircleFigures, fit_hull, track, turning_circle};
+use super::{coefficients, sd};
+use crate::motion::{IdentifiedHull, Spread, TurningCircleFigures, fit_hull, track, turning_circle};
 
 const ZIG_ZAGS: [&str; 8] = ["05_01", "10_05", "10_10_s", "15_05", "20_05", "20_10_s", "30_05", "35_05"];
 
@@ -21,23 +22,19 @@ fn rudder_rate() -> f64 {
 fn figures(hull: &IdentifiedHull, angle: f64) -> TurningCircleFigures {
     let rows = steer(hull, &Helm::Turn(from_deg(angle)), rudder_rate(), 1500.0);
     let time: Vec<f64> = rows.iter().map(|row| row.time).collect();
-    let column = |i: usize| rows.iter().map(|row| row.state[i]).collect::<Vec<f64>>();
-    let [heading, yaw_rate, surge, sway] = [0, 1, 2, 3].map(column);
-    let track = track(&time, &heading, &surge, &sway);
-    turning_circle(
-        &Turn { time: &time, heading: &heading, track: &track, surge: &surge, sway: &sway, yaw_rate: &yaw_rate },
-        0.0,
-    )
+    let [heading, yaw_rate] = [0, 1].map(|i| rows.iter().map(|row| row.state[i]).collect::<Vec<f64>>());
+    let velocity: Vec<[f64; 2]> = rows.iter().map(|row| [row.state[2], row.state[3]]).collect();
+    turning_circle([&time, &heading, &yaw_rate], [&track(&time, &heading, &velocity), &velocity], 0.0)
 }
 
 /// Figures of MARIN's circle from its positions.
 fn circle_of(circle: &Trial) -> TurningCircleFigures {
     let rows = circle.time().partition_point(|time| *time < 1513.0);
     let read = |channel| &circle.channel(channel).expect("the channel")[..rows];
-    let track: Vec<[f64; 2]> = read(Channel::North).iter().zip(read(Channel::East)).map(|(x, y)| [*x, *y]).collect();
+    let pairs = |one, other| read(one).iter().zip(read(other)).map(|(x, y)| [*x, *y]).collect::<Vec<_>>();
     let (time, heading) = (&circle.time()[..rows], &circle.heading()[..rows]);
-    let (surge, sway, yaw_rate) = (read(Channel::Surge), read(Channel::Sway), read(Channel::YawRate));
-    turning_circle(&Turn { time, heading, track: &track, surge, sway, yaw_rate }, 4.1)
+    let (track, velocity) = (pairs(Channel::North, Channel::East), pairs(Channel::Surge, Channel::Sway));
+    turning_circle([time, heading, read(Channel::YawRate)], [&track, &velocity], 4.1)
 }
 
 /// Overshoots of a steered zig-zag, degrees.
@@ -58,11 +55,10 @@ fn a_hull_fitted_to_zig_zags_foretells_trials_of_another_model() {
     let model = fit_hull(&trials, 7.0).expect("a fit");
     println!("fitted in {:.2} s", begun.elapsed().as_secs_f64());
     assert_eq!(model.spread, Spread::Records);
-    for ((symbol, value), deviation) in
-        IdentifiedHull::symbols().iter().zip(model.coefficients()).zip(model.deviations())
-    {
+    for (i, (symbol, value)) in coefficients(&model).into_iter().enumerate() {
+        let deviation = sd(&model.covariance, i);
         println!("{symbol} {value:.4} ± {deviation:.4}");
-        assert!(*symbol == "N_0" || deviation < 0.3 * value.abs(), "{symbol}: {value} ± {deviation}");
+        assert!(symbol == "N_0" || deviation < 0.3 * value.abs(), "{symbol}: {value} ± {deviation}");
     }
     for record in &model.records {
         println!("{} windows: {:.2}°, {:.3}°/s", record.name, to_deg(record.heading), to_deg(record.yaw_rate));

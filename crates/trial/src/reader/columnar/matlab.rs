@@ -7,7 +7,7 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
-use super::text::{self, Lines, Written};
+use super::text::{self, Written};
 use crate::file::FileError;
 use crate::names;
 use crate::reader::error::Problem;
@@ -87,13 +87,6 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// What a variable is, found out from the bytes inside its element.
-enum Found {
-    Numbers(Variable),
-    /// Its name and size, or what it is.
-    Other(String),
-}
-
 fn damaged(found: &str) -> Problem {
     Problem::Damaged { format: "a MATLAB file", found: found.to_owned() }
 }
@@ -107,13 +100,13 @@ fn is_numeric(class: u32) -> bool {
     (6..=15).contains(&class)
 }
 
-/// Reads a variable; `None` where the bytes are none.
-fn variable(bytes: &[u8], big_endian: bool) -> Option<Found> {
+/// Reads a variable, or the name and size of one without numbers; `None` where the bytes are none.
+fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, String>> {
     let mut scan = Scan { rest: bytes, big_endian };
     let (_, own) = scan.element()?;
     let (class, complex) = flags(Scan { rest: own, big_endian }.word()?);
     if !is_numeric(class) {
-        return Some(Found::Other(NO_NUMBERS.to_owned()));
+        return Some(Err(NO_NUMBERS.to_owned()));
     }
     let mut sizes = Scan { rest: scan.element()?.1, big_endian };
     let mut dimensions = Vec::new();
@@ -124,7 +117,7 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Found> {
     let sizes = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
     // What MATLAB keeps for objects is a variable of bytes without a name.
     if name.is_empty() || complex || dimensions.len() != 2 {
-        return Some(Found::Other(format!("{name} ({sizes})")));
+        return Some(Err(format!("{name} ({sizes})")));
     }
     let (kind, data) = scan.element()?;
     let stored = (kind, size(kind)?);
@@ -132,7 +125,7 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Found> {
     (rows.checked_mul(columns)?.checked_mul(stored.1)? == data.len()).then_some(())?;
     // A row is as good as a column.
     let (rows, columns) = if rows == 1 { (columns, 1) } else { (rows, columns) };
-    Some(Found::Numbers(Variable { name, rows, columns, stored, bytes: data.to_vec() }))
+    Some(Ok(Variable { name, rows, columns, stored, bytes: data.to_vec() }))
 }
 
 /// Unpacks a variable, with its tag; one that holds no numbers up to its flags alone.
@@ -174,7 +167,7 @@ fn variables(bytes: &[u8]) -> Result<(Vec<Variable>, Vec<String>), Problem> {
             _ => data,
         };
         let found = match kind {
-            COMPRESSED if inner.len() <= UP_TO_FLAGS => Some(Found::Other(NO_NUMBERS.to_owned())),
+            COMPRESSED if inner.len() <= UP_TO_FLAGS => Some(Err(NO_NUMBERS.to_owned())),
             COMPRESSED => Scan { rest: inner, big_endian }
                 .element()
                 .filter(|(kind, _)| *kind == MATRIX)
@@ -183,19 +176,11 @@ fn variables(bytes: &[u8]) -> Result<(Vec<Variable>, Vec<String>), Problem> {
             _ => continue,
         };
         match found.ok_or_else(|| damaged("a variable of it contradicts itself"))? {
-            Found::Numbers(variable) => numeric.push(variable),
-            Found::Other(other) => others.push(other),
+            Ok(variable) => numeric.push(variable),
+            Err(other) => others.push(other),
         }
     }
     Ok((numeric, others))
-}
-
-/// The rows of the variables of one length.
-struct Rows {
-    variables: Vec<Variable>,
-    big_endian: bool,
-    /// Lines written, with that of the names.
-    lines: usize,
 }
 
 /// The text of a file: of the variables of one length with the most known names, or else the most numbers.
@@ -215,32 +200,25 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         let wanted = "numeric variables of one length";
         return Err(Problem::NoTable { format: "a MATLAB file", wanted, found: others });
     };
-    let variables = numeric.into_iter().filter(|variable| variable.rows == length).collect();
+    let variables: Vec<Variable> = numeric.into_iter().filter(|variable| variable.rows == length).collect();
     let big_endian = bytes.get(HEAD - 2) == Some(&b'M');
-    Ok(Box::new(Written::new(Rows { variables, big_endian, lines: 0 })))
-}
-
-impl Lines for Rows {
-    fn write_line(&mut self, text: &mut String) -> Result<bool, Problem> {
-        if self.variables.first().is_none_or(|first| self.lines > first.rows) {
-            return Ok(false);
-        }
-        for (first, variable) in self.variables.iter().enumerate() {
-            for column in 0..variable.columns {
-                if first + column > 0 {
-                    text.push('\t');
-                }
-                match self.lines {
-                    0 if variable.columns == 1 => text::words(text, &variable.name),
-                    0 => text::words(text, &format!("{}_{}", variable.name, column + 1)),
-                    line => variable.write(text, column * variable.rows + line - 1, self.big_endian),
-                }
+    let columns: Vec<(usize, usize)> = (variables.iter().enumerate())
+        .flat_map(|(number, variable)| (0..variable.columns).map(move |column| (number, column)))
+        .collect();
+    let line = move |line: usize| {
+        let mut text = String::new();
+        text::line(&mut text, columns.len(), |text, place| {
+            let (number, column) = columns[place];
+            let variable = &variables[number];
+            match line {
+                0 if variable.columns == 1 => text::words(text, &variable.name),
+                0 => text::words(text, &format!("{}_{}", variable.name, column + 1)),
+                line => variable.write(text, column * variable.rows + line - 1, big_endian),
             }
-        }
-        text.push('\n');
-        self.lines += 1;
-        Ok(true)
-    }
+        });
+        Ok(text)
+    };
+    Ok(Box::new(Written::new((0..=length).map(line))))
 }
 
 impl Variable {

@@ -4,6 +4,7 @@
 use std::io::Read;
 
 use bytes::Bytes;
+use half::f16;
 use parquet::basic::{Compression, ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{DataType, Int96};
@@ -12,7 +13,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use super::decoding::Checked;
-use super::text::{self, Lines, Written};
+use super::text::{self, Written};
 use crate::decoder::guarded;
 use crate::reader::error::Problem;
 
@@ -76,9 +77,6 @@ impl Meaning {
     }
 }
 
-/// Writes one of the values that are there by its place.
-type Write = Box<dyn Fn(&mut String, usize)>;
-
 /// A column as far as it is decoded.
 struct Column {
     /// Its place in the file.
@@ -86,11 +84,22 @@ struct Column {
     name: String,
     meaning: Meaning,
     reader: Option<ColumnReader>,
-    write: Write,
-    /// For each row whether it has a value; empty where every row has one.
-    present: Vec<i16>,
-    /// Values written already.
-    written: usize,
+    /// The cells of the rows that are decoded, one after the other.
+    cells: Cells,
+}
+
+/// Cells one after the other, and where each ends.
+#[derive(Default)]
+struct Cells {
+    text: String,
+    ends: Vec<usize>,
+}
+
+impl Cells {
+    fn get(&self, row: usize) -> &str {
+        let begin = row.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.text[begin..self.ends[row]]
+    }
 }
 
 /// The rows of a file.
@@ -102,9 +111,6 @@ struct Rows {
     groups: usize,
     /// Rows of the group that are not decoded yet.
     left: usize,
-    /// Rows decoded, and those of them that are written.
-    decoded: usize,
-    written: usize,
 }
 
 fn damaged(found: String) -> Problem {
@@ -117,7 +123,8 @@ fn failed(error: ParquetError) -> Problem {
 
 /// The text of a file.
 pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
-    Ok(Box::new(Written::new(checked(|| Rows::open(bytes))?)))
+    let mut rows = checked(|| Rows::open(bytes))?;
+    Ok(Box::new(Written::new(std::iter::from_fn(move || checked(|| rows.chunk()).transpose()))))
 }
 
 fn checked<T>(work: impl FnOnce() -> Result<T, Problem>) -> Result<T, Problem> {
@@ -143,8 +150,7 @@ impl Rows {
             let flat = column.max_rep_level() == 0 && column.path().parts().len() == 1;
             let Some(meaning) = Meaning::of(column).filter(|_| flat) else { continue };
             let name = column.name().to_owned();
-            let write = Box::new(|_: &mut String, _| {});
-            columns.push(Column { place, name, meaning, reader: None, write, present: Vec::new(), written: 0 });
+            columns.push(Column { place, name, meaning, reader: None, cells: Cells::default() });
         }
         if columns.is_empty() {
             let found = schema.columns().iter().map(|column| column.path().string()).collect();
@@ -160,14 +166,19 @@ impl Rows {
                 }
             }
         }
-        Ok(Self { file, columns, headed: false, groups: 0, left: 0, decoded: 0, written: 0 })
+        Ok(Self { file, columns, headed: false, groups: 0, left: 0 })
     }
 
-    /// Decodes the next rows; `false` where there are none.
-    fn decode(&mut self) -> Result<bool, Problem> {
+    /// The names, and then the next rows; `None` where there are none.
+    fn chunk(&mut self) -> Result<Option<String>, Problem> {
+        let mut text = String::new();
+        if !std::mem::replace(&mut self.headed, true) {
+            text::line(&mut text, self.columns.len(), |text, place| text::words(text, &self.columns[place].name));
+            return Ok(Some(text));
+        }
         while self.left == 0 {
             if self.groups == self.file.num_row_groups() {
-                return Ok(false);
+                return Ok(None);
             }
             let group = self.file.get_row_group(self.groups).map_err(failed)?;
             self.left = group.metadata().num_rows().unsigned_abs() as usize;
@@ -181,85 +192,44 @@ impl Rows {
             column.decode(length)?;
         }
         self.left -= length;
-        (self.decoded, self.written) = (length, 0);
-        Ok(true)
-    }
-}
-
-impl Lines for Rows {
-    fn write_line(&mut self, text: &mut String) -> Result<bool, Problem> {
-        if !self.headed {
-            for (place, column) in self.columns.iter().enumerate() {
-                if place > 0 {
-                    text.push('\t');
-                }
-                text::words(text, &column.name);
-            }
-            text.push('\n');
-            self.headed = true;
-            return Ok(true);
+        for row in 0..length {
+            text::line(&mut text, self.columns.len(), |text, place| text.push_str(self.columns[place].cells.get(row)));
         }
-        if self.written == self.decoded && !checked(|| self.decode())? {
-            return Ok(false);
-        }
-        for (place, column) in self.columns.iter_mut().enumerate() {
-            if place > 0 {
-                text.push('\t');
-            }
-            column.write(text, self.written);
-        }
-        text.push('\n');
-        self.written += 1;
-        Ok(true)
+        Ok(Some(text))
     }
 }
 
 impl Column {
     fn decode(&mut self, length: usize) -> Result<(), Problem> {
-        let Self { name, reader, present, meaning, .. } = self;
+        let Self { name, reader, cells, meaning, .. } = self;
         let meaning = *meaning;
-        present.clear();
-        self.written = 0;
         let early = || damaged(format!("its column `{}` ends too early", crate::words::shortened(name)));
-        let (values, write) = match reader.as_mut().ok_or_else(early)? {
+        let whole = match reader.as_mut().ok_or_else(early)? {
             ColumnReader::BoolColumnReader(reader) => {
-                read(reader, length, present, |text, &value| text.push(if value { '1' } else { '0' }))
+                read(reader, length, cells, |text, &value| text.push(if value { '1' } else { '0' }))
             }
-            ColumnReader::Int32ColumnReader(reader) => {
-                read(reader, length, present, move |text, &value| match meaning {
-                    Meaning::Unsigned => text::whole(text, value as u32),
-                    _ => integer(text, i64::from(value), meaning),
-                })
-            }
+            ColumnReader::Int32ColumnReader(reader) => read(reader, length, cells, |text, &value| match meaning {
+                Meaning::Unsigned => text::whole(text, value as u32),
+                _ => integer(text, i64::from(value), meaning),
+            }),
             ColumnReader::Int64ColumnReader(reader) => {
-                read(reader, length, present, move |text, &value| integer(text, value, meaning))
+                read(reader, length, cells, |text, &value| integer(text, value, meaning))
             }
-            ColumnReader::Int96ColumnReader(reader) => read(reader, length, present, julian),
+            ColumnReader::Int96ColumnReader(reader) => read(reader, length, cells, julian),
             ColumnReader::FloatColumnReader(reader) => {
-                read(reader, length, present, |text, &value| text::single(text, value))
+                read(reader, length, cells, |text, &value| text::single(text, value))
             }
             ColumnReader::DoubleColumnReader(reader) => {
-                read(reader, length, present, |text, &value| text::number(text, value))
+                read(reader, length, cells, |text, &value| text::number(text, value))
             }
             ColumnReader::ByteArrayColumnReader(reader) => {
-                read(reader, length, present, move |text, value| bytes(text, value.data(), meaning))
+                read(reader, length, cells, |text, value| bytes(text, value.data(), meaning))
             }
             ColumnReader::FixedLenByteArrayColumnReader(reader) => {
-                read(reader, length, present, move |text, value| bytes(text, value.data(), meaning))
+                read(reader, length, cells, |text, value| bytes(text, value.data(), meaning))
             }
         }?;
-        self.write = write;
-        let rows = if present.is_empty() { values } else { present.len() };
-        let there = if present.is_empty() { rows } else { present.iter().filter(|&&level| level > 0).count() };
-        if rows != length || there != values { Err(early()) } else { Ok(()) }
-    }
-
-    /// Writes the value of a row; nothing where it has none. Rows are asked for in their order.
-    fn write(&mut self, text: &mut String, row: usize) {
-        if self.present.get(row).is_none_or(|&level| level > 0) {
-            (self.write)(text, self.written);
-            self.written += 1;
-        }
+        if whole { Ok(()) } else { Err(early()) }
     }
 }
 
@@ -296,40 +266,39 @@ fn bytes(text: &mut String, bytes: &[u8], meaning: Meaning) {
             let value = bytes.iter().fold(sign, |value: i128, &byte| value << 8 | i128::from(byte));
             text::decimal(text, value, decimals);
         }
-        (Meaning::Half, &[low, high]) => text::single(text, half(u16::from_le_bytes([low, high]))),
+        (Meaning::Half, &[low, high]) => text::single(text, f16::from_le_bytes([low, high]).to_f32()),
         (Meaning::Half, _) => {}
         _ => text::words(text, &String::from_utf8_lossy(bytes)),
     }
 }
 
-/// A number of half precision (IEEE 754 binary16).
-fn half(bits: u16) -> f32 {
-    let sign = if bits >> 15 == 0 { 1.0 } else { -1.0 };
-    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f32::from(bits & 0x3ff));
-    let size = match exponent {
-        0 => fraction * 2f32.powi(-24),
-        0x1f if fraction == 0.0 => f32::INFINITY,
-        0x1f => f32::NAN,
-        _ => (1024.0 + fraction) * 2f32.powi(exponent - 25),
-    };
-    sign * size
-}
-
-/// How many values `length` rows have and how each is written, and into `present` which rows have one.
+/// Writes the next `length` rows of a column into cells; `false` where it has fewer.
 fn read<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     length: usize,
-    present: &mut Vec<i16>,
-    write: impl Fn(&mut String, &T::T) + 'static,
-) -> Result<(usize, Write), Problem> {
-    let mut values = Vec::with_capacity(length);
+    cells: &mut Cells,
+    write: impl Fn(&mut String, &T::T),
+) -> Result<bool, Problem> {
+    let (mut present, mut values) = (Vec::new(), Vec::with_capacity(length));
     let mut read = 0;
     while read < length {
-        let (rows, ..) = reader.read_records(length - read, Some(present), None, &mut values).map_err(failed)?;
+        let (rows, ..) = reader.read_records(length - read, Some(&mut present), None, &mut values).map_err(failed)?;
         if rows == 0 {
             break;
         }
         read += rows;
     }
-    Ok((values.len(), Box::new(move |text, at| write(text, &values[at]))))
+    cells.text.clear();
+    cells.ends.clear();
+    let mut values = values.iter();
+    let rows = if present.is_empty() { values.len() } else { present.len() };
+    for row in 0..rows {
+        // No level stands where every row has a value.
+        if present.get(row).is_none_or(|&level| level > 0) {
+            let Some(value) = values.next() else { return Ok(false) };
+            write(&mut cells.text, value);
+        }
+        cells.ends.push(cells.text.len());
+    }
+    Ok(rows == length && values.next().is_none())
 }

@@ -5,11 +5,11 @@
 //! its lines are not read.
 
 use std::io::{Cursor, Read};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{SyncSender, sync_channel};
 
 use calamine::{DataRef, Reader, Xlsx, XlsxCellReader, XlsxError};
 
-use super::text::{self, Lines, Written};
+use super::text::{self, Written};
 use crate::decoder::guarded;
 use crate::names;
 use crate::reader::error::Problem;
@@ -30,21 +30,6 @@ type Book = Xlsx<Cursor<Vec<u8>>>;
 type Cells<'a> = XlsxCellReader<'a, Cursor<Vec<u8>>>;
 type Chunk = Result<String, Problem>;
 
-/// Chunks of lines as they come from the decoder.
-struct Sent(Receiver<Chunk>);
-
-impl Lines for Sent {
-    fn write_line(&mut self, text: &mut String) -> Result<bool, Problem> {
-        match self.0.recv() {
-            Ok(chunk) => {
-                text.push_str(&chunk?);
-                Ok(true)
-            }
-            Err(_) => Ok(false),
-        }
-    }
-}
-
 fn damaged(found: impl ToString) -> Problem {
     Problem::Damaged { format: "a spreadsheet or an archive (ZIP)", found: found.to_string() }
 }
@@ -60,7 +45,7 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         }
     };
     std::thread::Builder::new().name("spreadsheet".to_owned()).spawn(decode).map_err(Problem::of_input)?;
-    Ok(Box::new(Written::new(Sent(receive))))
+    Ok(Box::new(Written::new(receive.into_iter())))
 }
 
 /// Hands on the lines of the sheet with the table.

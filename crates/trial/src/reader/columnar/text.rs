@@ -6,43 +6,42 @@ use std::io::{self, Read};
 use crate::clock;
 use crate::reader::error::Problem;
 
-/// Bytes that are written ahead.
-const AHEAD: usize = 1 << 16;
-
-/// Where the lines of a table come from.
-pub trait Lines {
-    /// Writes the next line, with its end; `false` where there is no more.
-    fn write_line(&mut self, text: &mut String) -> Result<bool, Problem>;
-}
-
-/// The text of lines, written as it is read.
-pub struct Written<L> {
-    lines: L,
+/// The text of chunks of lines, given out as they are written.
+pub struct Written<I> {
+    chunks: I,
     text: String,
     given: usize,
-    ended: bool,
 }
 
-impl<L: Lines> Written<L> {
-    pub fn new(lines: L) -> Self {
-        Self { lines, text: String::new(), given: 0, ended: false }
+impl<I: Iterator<Item = Result<String, Problem>>> Written<I> {
+    pub fn new(chunks: I) -> Self {
+        Self { chunks, text: String::new(), given: 0 }
     }
 }
 
-impl<L: Lines> Read for Written<L> {
+impl<I: Iterator<Item = Result<String, Problem>>> Read for Written<I> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        if self.given == self.text.len() && !self.ended {
-            self.text.clear();
-            self.given = 0;
-            while self.text.len() < AHEAD && !self.ended {
-                self.ended = !self.lines.write_line(&mut self.text).map_err(io::Error::other)?;
-            }
+        while self.given == self.text.len()
+            && let Some(chunk) = self.chunks.next()
+        {
+            (self.text, self.given) = (chunk.map_err(io::Error::other)?, 0);
         }
         let count = buffer.len().min(self.text.len() - self.given);
         buffer[..count].copy_from_slice(&self.text.as_bytes()[self.given..self.given + count]);
         self.given += count;
         Ok(count)
     }
+}
+
+/// A line of so many cells, with its end.
+pub fn line(text: &mut String, cells: usize, mut write: impl FnMut(&mut String, usize)) {
+    for place in 0..cells {
+        if place > 0 {
+            text.push('\t');
+        }
+        write(text, place);
+    }
+    text.push('\n');
 }
 
 /// Puts what is written for one value at the end of a text.
@@ -84,9 +83,7 @@ pub fn decimal(text: &mut String, value: i128, decimals: u32) {
 
 /// A day since 1970-01-01.
 pub fn day(text: &mut String, day: i64) {
-    // Damaged days may lie beyond all calendars; their years have too many digits either way.
-    let (year, month, of_month) = clock::date(day.clamp(-1_000_000_000, 1_000_000_000));
-    put(text, format_args!("{year:04}-{month:02}-{of_month:02}"));
+    put(text, format_args!("{}", clock::date(day)));
 }
 
 /// Nanoseconds since midnight, as a time of day.

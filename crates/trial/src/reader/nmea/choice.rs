@@ -5,46 +5,67 @@
 use ship::angle::to_deg;
 
 use super::epochs::{median, rounded};
-use super::log::{Log, Sensor, name};
+use super::log::Instrument;
 use super::position::plane;
-use super::sentence::{Kind, Slot, turned};
+use super::sentence::{Slot, turned};
 use crate::channel::Channel;
 use crate::reader::source::Series;
 use crate::words::counted;
 
 /// An instrument that may give a channel.
-#[derive(Debug, Clone, Copy)]
-struct Candidate {
-    sensor: usize,
-    /// Place among its columns.
+#[derive(Clone, Copy)]
+struct Offer<'a> {
+    instrument: &'a Instrument,
+    /// Its place among the instruments.
+    number: usize,
+    /// The place of the quantity among its columns.
     place: usize,
     /// 0 is preferred to 1.
     class: usize,
     readings: usize,
 }
 
-/// One with fewer readings than the fullest by this factor is no candidate, of whatever class it is.
-const SPARSE: usize = 100;
+impl<'a> Offer<'a> {
+    fn name(&self) -> &'a str {
+        &self.instrument.name
+    }
+
+    fn values(&self) -> &'a [f64] {
+        &self.instrument.columns[self.place]
+    }
+
+    /// The quantity beside this one of the same instrument.
+    fn beside(self, place: usize) -> Self {
+        Self { place, readings: self.instrument.readings(place), ..self }
+    }
+
+    /// Whether it has far fewer readings than the fullest: then it is no candidate, of whatever class it is.
+    fn is_sparse(&self, most: usize) -> bool {
+        const SPARSE: usize = 100;
+        self.readings.saturating_mul(SPARSE) < most
+    }
+}
+
 /// Rudders that differ by more than this (rms) are not one, degrees.
 const RUDDERS_APART_DEG: f64 = 2.0;
 
 /// Makes the channels of a log.
 pub(super) struct Choice<'a> {
-    log: &'a Log,
+    instruments: &'a [Instrument],
     pub series: Vec<Series>,
     /// One sentence each.
     pub warnings: Vec<String>,
 }
 
 impl<'a> Choice<'a> {
-    /// All channels the log gives.
-    pub fn of(log: &'a Log) -> Self {
-        let mut choice = Self { log, series: Vec::new(), warnings: Vec::new() };
+    /// All channels that instruments give.
+    pub fn of(instruments: &'a [Instrument]) -> Self {
+        let mut choice = Self { instruments, series: Vec::new(), warnings: Vec::new() };
         choice.heading();
         choice.rudder();
         choice.one("rudder order", Slot::RudderOrder, Channel::RudderOrder, |_| true);
         choice.one("yaw rate", Slot::YawRate, Channel::YawRate, |_| true);
-        choice.one("roll angle", Slot::Transducer, Channel::Roll, |sensor| sensor.part[0] == b'O');
+        choice.one("roll angle", Slot::Transducer, Channel::Roll, |instrument| instrument.part[0] == b'O');
         choice.speed();
         choice.surge_and_sway();
         choice.position();
@@ -54,38 +75,37 @@ impl<'a> Choice<'a> {
     }
 
     /// The instruments that give one of some quantities, each with the class of the quantity.
-    fn candidates(&self, slots: &[(Slot, usize)], wanted: impl Fn(&Sensor) -> bool) -> Vec<Candidate> {
-        let mut found = Vec::new();
-        for &(slot, class) in slots {
-            for (sensor, table) in self.log.sensors.iter().enumerate().filter(|(_, table)| wanted(table)) {
-                if let Some(place) = table.place(slot) {
-                    found.push(Candidate { sensor, place, class, readings: table.readings(place) });
-                }
-            }
-        }
-        found
+    fn offers(&self, slots: &[(Slot, usize)], wanted: impl Fn(&Instrument) -> bool) -> Vec<Offer<'a>> {
+        let of_slot = |&(slot, class): &(Slot, usize)| {
+            let wanted = &wanted;
+            self.instruments.iter().enumerate().filter(move |(_, own)| wanted(own)).filter_map(
+                move |(number, instrument)| {
+                    let place = instrument.place(slot)?;
+                    let readings = instrument.readings(place);
+                    (readings > 0).then_some(Offer { instrument, number, place, class, readings })
+                },
+            )
+        };
+        slots.iter().flat_map(of_slot).collect()
     }
 
-    /// The best candidate; what was chosen among several is said, and always where `always`.
-    fn pick(&mut self, what: &str, mut candidates: Vec<Candidate>, always: bool) -> Option<Candidate> {
-        candidates.retain(|candidate| candidate.readings > 0);
-        let most = candidates.iter().map(|candidate| candidate.readings).max()?;
-        let order = |candidate: &Candidate| {
-            let sparse = candidate.readings.saturating_mul(SPARSE) < most;
-            (sparse, candidate.class, usize::MAX - candidate.readings, candidate.sensor, candidate.place)
+    /// The best offer; what was chosen among several is said, and always where `always`.
+    fn pick(&mut self, what: &str, offers: Vec<Offer<'a>>, always: bool) -> Option<Offer<'a>> {
+        let most = offers.iter().map(|offer| offer.readings).max()?;
+        let order = |offer: &&Offer| {
+            (offer.is_sparse(most), offer.class, usize::MAX - offer.readings, offer.number, offer.place)
         };
-        let chosen = *candidates.iter().min_by_key(|candidate| order(candidate))?;
-        let mut others: Vec<Candidate> = Vec::new();
-        for candidate in candidates {
-            if candidate.sensor != chosen.sensor && others.iter().all(|other| other.sensor != candidate.sensor) {
-                others.push(candidate);
+        let chosen = *offers.iter().min_by_key(order)?;
+        let mut others: Vec<Offer> = Vec::new();
+        for offer in offers {
+            if offer.number != chosen.number && others.iter().all(|other| other.number != offer.number) {
+                others.push(offer);
             }
         }
-        let label = name(self.log, chosen.sensor);
         if always || !others.is_empty() {
-            let mut text = format!("{what} from {label} ({})", counted(chosen.readings, "reading"));
+            let mut text = format!("{what} from {} ({})", chosen.name(), counted(chosen.readings, "reading"));
             let unused: Vec<String> =
-                others.iter().map(|other| format!("{} ({})", name(self.log, other.sensor), other.readings)).collect();
+                others.iter().map(|other| format!("{} ({})", other.name(), other.readings)).collect();
             match unused.as_slice() {
                 [] => {}
                 [one] => text.push_str(&format!("; {one} is not used")),
@@ -97,21 +117,18 @@ impl<'a> Choice<'a> {
         Some(chosen)
     }
 
-    fn tell_odd(&mut self, what: &str, chosen: Candidate) {
-        let odd = self.log.sensors[chosen.sensor].odd[chosen.place];
+    fn tell_odd(&mut self, what: &str, chosen: Offer) {
+        let odd = chosen.instrument.odd[chosen.place];
         if odd > 0 {
-            let label = name(self.log, chosen.sensor);
             let text = counted(odd, "entry").replace("entrys", "entries");
-            self.warnings.push(format!("{text} of {label} cannot be a {what}, taken as missing"));
+            self.warnings.push(format!("{text} of {} cannot be a {what}, taken as missing", chosen.name()));
         }
     }
 
     /// Adds a channel with the instants of an instrument.
-    fn push(&mut self, channel: Channel, chosen: Candidate, values: impl Iterator<Item = f64>) {
-        let at = &self.log.sensors[chosen.sensor].at;
-        let room = || Vec::with_capacity(at.len());
-        let mut series = Series { channel, name: name(self.log, chosen.sensor), time: room(), values: room() };
-        for (&time, value) in at.iter().zip(values) {
+    fn push(&mut self, channel: Channel, chosen: Offer, values: impl IntoIterator<Item = f64>) {
+        let mut series = Series { channel, time: Vec::new(), values: Vec::new() };
+        for (&time, value) in chosen.instrument.at.iter().zip(values) {
             let time = rounded(time);
             // Two readings at one instant would be a step without time.
             if series.time.last().is_none_or(|&last| time > last) {
@@ -122,71 +139,60 @@ impl<'a> Choice<'a> {
         self.series.push(series);
     }
 
-    fn push_column(&mut self, channel: Channel, chosen: Candidate) {
-        let log = self.log;
-        self.push(channel, chosen, log.sensors[chosen.sensor].columns[chosen.place].iter().copied());
+    fn push_column(&mut self, channel: Channel, chosen: Offer) {
+        self.push(channel, chosen, chosen.values().iter().copied());
     }
 
     /// A channel that is one column of one instrument.
-    fn one(&mut self, what: &str, slot: Slot, channel: Channel, wanted: impl Fn(&Sensor) -> bool) {
-        let candidates = self.candidates(&[(slot, 0)], wanted);
-        if let Some(chosen) = self.pick(what, candidates, false) {
+    fn one(&mut self, what: &str, slot: Slot, channel: Channel, wanted: impl Fn(&Instrument) -> bool) {
+        let offers = self.offers(&[(slot, 0)], wanted);
+        if let Some(chosen) = self.pick(what, offers, false) {
             self.push_column(channel, chosen);
         }
     }
 
     /// True before magnetic; a magnetic heading with variation is a true one.
     fn heading(&mut self) {
-        let log = self.log;
-        let variation = |sensor: usize| {
-            let sensor = &log.sensors[sensor];
-            sensor.place(Slot::Variation).map(|place| &sensor.columns[place])
-        };
-        let first = |column: &Vec<f64>| column.iter().copied().find(|value| value.is_finite());
-        let mut candidates = self.candidates(&[(Slot::HeadingTrue, 0), (Slot::HeadingMagnetic, 1)], |_| true);
-        for candidate in candidates.iter_mut().filter(|candidate| candidate.class == 1) {
-            candidate.class = usize::from(variation(candidate.sensor).and_then(first).is_none());
+        let variation = |offer: &Offer<'a>| offer.instrument.place(Slot::Variation).map(|place| offer.beside(place));
+        let variation = |offer: &Offer<'a>| variation(offer).filter(|variation| variation.readings > 0);
+        let mut offers = self.offers(&[(Slot::HeadingTrue, 0), (Slot::HeadingMagnetic, 1)], |_| true);
+        for offer in offers.iter_mut().filter(|offer| offer.class == 1) {
+            offer.class = usize::from(variation(offer).is_none());
         }
-        let Some(chosen) = self.pick("heading", candidates, false) else { return };
+        let Some(chosen) = self.pick("heading", offers, false) else { return };
         if chosen.class == 1 {
             self.warnings.push(format!(
                 "the heading of {} is magnetic, because no variation is given; changes of heading are right, the direction \
                  of north is not",
-                name(log, chosen.sensor)
+                chosen.name()
             ));
         }
-        match variation(chosen.sensor).and_then(|column| Some((column, first(column)?))) {
-            Some((column, mut held)) => {
-                let sensor = &log.sensors[chosen.sensor];
-                let values = sensor.columns[chosen.place].iter().zip(column).map(|(heading, variation)| {
-                    if variation.is_finite() {
-                        held = *variation;
-                    }
-                    if heading.is_finite() { turned(heading + held) } else { f64::NAN }
-                });
-                self.push(Channel::Heading, chosen, values);
+        let Some(variation) = variation(&chosen) else { return self.push_column(Channel::Heading, chosen) };
+        let mut held = variation.values().iter().copied().find(|value| value.is_finite()).unwrap_or(f64::NAN);
+        let values = chosen.values().iter().zip(variation.values()).map(|(heading, variation)| {
+            if variation.is_finite() {
+                held = *variation;
             }
-            None => self.push_column(Channel::Heading, chosen),
-        }
+            turned(heading + held)
+        });
+        self.push(Channel::Heading, chosen, values);
     }
 
     /// One rudder, or the mean of two that go together.
     fn rudder(&mut self) {
-        let log = self.log;
-        let mut candidates = self.candidates(&[(Slot::RudderStarboard, 0), (Slot::RudderPort, 0)], |_| true);
-        candidates.extend(self.candidates(&[(Slot::Transducer, 1)], |sensor| sensor.part[0] == b'R'));
-        let Some(chosen) = self.pick("rudder angle", candidates, false) else { return };
-        let sensor = &log.sensors[chosen.sensor];
-        if sensor.kind != Kind::Rsa {
+        let mut offers = self.offers(&[(Slot::RudderStarboard, 0), (Slot::RudderPort, 0)], |_| true);
+        offers.extend(self.offers(&[(Slot::Transducer, 1)], |instrument| instrument.part[0] == b'R'));
+        let Some(chosen) = self.pick("rudder angle", offers, false) else { return };
+        if !chosen.instrument.sends(b"RSA") {
             return self.push_column(Channel::Rudder, chosen);
         }
-        let [starboard, port] = [&sensor.columns[0], &sensor.columns[1]];
+        let [starboard, port] = [0, 1].map(|place| chosen.beside(place).values());
         let pairs = || starboard.iter().zip(port).filter(|(one, other)| one.is_finite() && other.is_finite());
         let number = pairs().count();
         let side = ["starboard", "port"][chosen.place];
         // A second rudder that speaks now and then is no second reading.
         if 2 * number < chosen.readings {
-            let spoken = sensor.readings(1 - chosen.place);
+            let spoken = chosen.beside(1 - chosen.place).readings;
             if chosen.place == 1 || spoken > 0 {
                 self.warnings.push(format!(
                     "the rudder angle is that of the {side} rudder; the other one has {}",
@@ -195,8 +201,7 @@ impl<'a> Choice<'a> {
             }
             return self.push_column(Channel::Rudder, chosen);
         }
-        let rms = (pairs().map(|(one, other)| (one - other).powi(2)).sum::<f64>() / number as f64).sqrt();
-        let rms_deg = to_deg(rms);
+        let rms_deg = to_deg((pairs().map(|(one, other)| (one - other).powi(2)).sum::<f64>() / number as f64).sqrt());
         if rms_deg > RUDDERS_APART_DEG {
             self.warnings.push(format!(
                 "the two rudders differ by {rms_deg:.1}° (rms); the rudder angle is that of the {side} rudder"
@@ -210,123 +215,97 @@ impl<'a> Choice<'a> {
 
     /// Through the water before over ground.
     fn speed(&mut self) {
-        let log = self.log;
         let slots = [(Slot::SpeedWater, 0), (Slot::SurgeWater, 0), (Slot::SpeedGround, 1), (Slot::SurgeGround, 1)];
-        let candidates = self.candidates(&slots, |_| true);
-        let most = candidates.iter().map(|candidate| candidate.readings).max().unwrap_or(0);
-        let is_water = |one: &Candidate| one.readings > 0 && one.class == 0 && one.readings * SPARSE >= most;
-        let water = candidates.iter().any(is_water);
+        let offers = self.offers(&slots, |_| true);
+        let most = offers.iter().map(|offer| offer.readings).max().unwrap_or(0);
+        let water = offers.iter().any(|offer| offer.class == 0 && !offer.is_sparse(most));
         let what = if water { "speed through the water" } else { "speed over ground" };
-        let Some(chosen) = self.pick(what, candidates, true) else { return };
-        let sensor = &log.sensors[chosen.sensor];
-        if sensor.kind == Kind::Vbw {
-            // A log with one axis gives no sway.
-            let (ahead, across) = (&sensor.columns[chosen.place], &sensor.columns[chosen.place + 1]);
-            let speed = ahead.iter().zip(across).map(|(u, v)| if v.is_finite() { u.hypot(*v) } else { u.abs() });
-            self.push(Channel::Speed, chosen, speed);
-        } else {
-            self.push_column(Channel::Speed, chosen);
+        let Some(chosen) = self.pick(what, offers, true) else { return };
+        if !chosen.instrument.sends(b"VBW") {
+            return self.push_column(Channel::Speed, chosen);
         }
+        // A log with one axis gives no sway.
+        let speed = |(u, v): (&f64, &f64)| if v.is_finite() { u.hypot(*v) } else { u.abs() };
+        let across = chosen.beside(chosen.place + 1).values();
+        self.push(Channel::Speed, chosen, chosen.values().iter().zip(across).map(speed));
     }
 
     /// Both of one instrument and one reference.
     fn surge_and_sway(&mut self) {
-        let candidates = self.candidates(&[(Slot::SurgeWater, 0), (Slot::SurgeGround, 1)], |_| true);
-        let Some(surge) = self.pick("surge velocity", candidates, false) else { return };
+        let offers = self.offers(&[(Slot::SurgeWater, 0), (Slot::SurgeGround, 1)], |_| true);
+        let Some(surge) = self.pick("surge velocity", offers, false) else { return };
         if surge.class == 1 {
-            self.warnings.push(format!("surge and sway of {} are over ground", name(self.log, surge.sensor)));
+            self.warnings.push(format!("surge and sway of {} are over ground", surge.name()));
         }
         self.push_column(Channel::Surge, surge);
-        let sway = Candidate { place: surge.place + 1, ..surge };
-        if self.log.sensors[sway.sensor].readings(sway.place) > 0 {
+        let sway = surge.beside(surge.place + 1);
+        if sway.readings > 0 {
             self.tell_odd("sway velocity", sway);
             self.push_column(Channel::Sway, sway);
         }
     }
 
     fn position(&mut self) {
-        let log = self.log;
-        let candidates = self.candidates(&[(Slot::Latitude, 0)], |_| true);
-        let Some(chosen) = self.pick("position", candidates, false) else { return };
-        let sensor = &log.sensors[chosen.sensor];
-        let (north, east) = plane(&sensor.columns[chosen.place], &sensor.columns[chosen.place + 1]);
-        self.push(Channel::North, chosen, north.into_iter());
-        self.push(Channel::East, chosen, east.into_iter());
+        let offers = self.offers(&[(Slot::Latitude, 0)], |_| true);
+        let Some(chosen) = self.pick("position", offers, false) else { return };
+        let (north, east) = plane(chosen.values(), chosen.beside(chosen.place + 1).values());
+        self.push(Channel::North, chosen, north);
+        self.push(Channel::East, chosen, east);
     }
 
     /// Shafts before engines; several shafts give their mean.
     fn propeller(&mut self) {
-        let log = self.log;
-        let mut candidates = self.candidates(&[(Slot::Revolutions, 0)], |_| true);
-        candidates.retain(|candidate| candidate.readings > 0);
-        let group = |candidate: &Candidate| {
-            let sensor = &log.sensors[candidate.sensor];
-            (sensor.address, sensor.source, sensor.part[0])
-        };
-        for candidate in &mut candidates {
-            candidate.class = usize::from(log.sensors[candidate.sensor].part[0] == b'E');
-        }
-        let mut leaders: Vec<Candidate> = Vec::new();
-        for candidate in &candidates {
-            match leaders.iter_mut().find(|leader| group(leader) == group(candidate)) {
-                Some(leader) if leader.readings < candidate.readings => *leader = *candidate,
+        let mut offers = self.offers(&[(Slot::Revolutions, 0)], |_| true);
+        let group = |offer: &Offer| (offer.instrument.address, offer.instrument.source, offer.instrument.part[0]);
+        let mut leaders: Vec<Offer> = Vec::new();
+        for offer in &mut offers {
+            offer.class = usize::from(offer.instrument.part[0] == b'E');
+            match leaders.iter_mut().find(|leader| group(leader) == group(offer)) {
+                Some(leader) if leader.readings < offer.readings => *leader = *offer,
                 Some(_) => {}
-                None => leaders.push(*candidate),
+                None => leaders.push(*offer),
             }
         }
         let Some(chosen) = self.pick("propeller rate", leaders, false) else { return };
-        let shafts: Vec<Candidate> = candidates
-            .into_iter()
-            .filter(|candidate| group(candidate) == group(&chosen))
-            .filter(|candidate| candidate.readings.saturating_mul(SPARSE) >= chosen.readings)
-            .collect();
-        let lead = &log.sensors[chosen.sensor];
+        offers.retain(|shaft| group(shaft) == group(&chosen) && !shaft.is_sparse(chosen.readings));
         // The sign tells how a shaft turns, seen from astern; outward turning ones have one of each.
-        let sign = |shaft: &Candidate| {
-            let sum: f64 =
-                log.sensors[shaft.sensor].columns[shaft.place].iter().filter(|value| value.is_finite()).sum();
-            if sum < 0.0 { -1.0 } else { 1.0 }
-        };
-        let mut values = vec![0.0; lead.at.len()];
-        for shaft in &shafts {
-            let sensor = &log.sensors[shaft.sensor];
-            let factor = sign(shaft) / shafts.len() as f64;
-            let mut near = Nearest::new(&sensor.at, &sensor.columns[shaft.place]);
-            for (value, &time) in values.iter_mut().zip(&lead.at) {
+        let is_counter = |shaft: &&Offer| shaft.values().iter().filter(|value| value.is_finite()).sum::<f64>() < 0.0;
+        let mut values = vec![0.0; chosen.instrument.at.len()];
+        for shaft in &offers {
+            let factor = if is_counter(&shaft) { -1.0 } else { 1.0 } / offers.len() as f64;
+            let mut near = Nearest::new(&shaft.instrument.at, shaft.values());
+            for (value, &time) in values.iter_mut().zip(&chosen.instrument.at) {
                 *value += factor * near.at(time);
             }
         }
-        if shafts.len() > 1 {
-            self.warnings.push(format!("the propeller rate is the mean of {} shafts", shafts.len()));
+        if offers.len() > 1 {
+            self.warnings.push(format!("the propeller rate is the mean of {} shafts", offers.len()));
         }
-        let turned: Vec<String> =
-            shafts.iter().filter(|shaft| sign(shaft) < 0.0).map(|shaft| name(log, shaft.sensor)).collect();
-        if !turned.is_empty() {
+        let counter: Vec<&str> = offers.iter().filter(is_counter).map(Offer::name).collect();
+        if !counter.is_empty() {
             self.warnings.push(format!(
                 "{} turns counter-clockwise (below zero) in most readings; its rate is taken as positive",
-                turned.join(" and ")
+                counter.join(" and ")
             ));
         }
-        self.push(Channel::PropellerRate, chosen, values.into_iter());
+        self.push(Channel::PropellerRate, chosen, values);
     }
 
     fn wind(&mut self) {
-        let reference = |letter: u8| move |sensor: &Sensor| sensor.kind == Kind::Mwv && sensor.part[0] == letter;
-        let relative = self.candidates(&[(Slot::WindFrom, 0)], reference(b'R'));
+        let reference = |letter: u8| move |own: &Instrument| own.sends(b"MWV") && own.part[0] == letter;
+        let relative = self.offers(&[(Slot::WindFrom, 0)], reference(b'R'));
         if let Some(chosen) = self.pick("relative wind", relative, false) {
-            self.push_column(Channel::WindRelativeSpeed, Candidate { place: 0, ..chosen });
+            self.push_column(Channel::WindRelativeSpeed, chosen.beside(0));
             self.push_column(Channel::WindRelativeFrom, chosen);
         }
-        let log = self.log;
-        let mut real = self.candidates(&[(Slot::WindFrom, 0)], |sensor| sensor.kind == Kind::Mwd);
-        real.extend(self.candidates(&[(Slot::WindFrom, 1)], reference(b'T')));
+        let mut real = self.offers(&[(Slot::WindFrom, 0)], |instrument| instrument.sends(b"MWD"));
+        real.extend(self.offers(&[(Slot::WindFrom, 1)], reference(b'T')));
         let Some(chosen) = self.pick("true wind", real, false) else { return };
-        self.push_column(Channel::WindTrueSpeed, Candidate { place: 0, ..chosen });
-        let sensor = &log.sensors[chosen.sensor];
-        if sensor.kind == Kind::Mwd {
+        self.push_column(Channel::WindTrueSpeed, chosen.beside(0));
+        if chosen.instrument.sends(b"MWD") {
             return self.push_column(Channel::WindTrueFrom, chosen);
         }
-        let from_bow = name(log, chosen.sensor);
+        let from_bow = chosen.name();
         let Some(heading) = self.series.iter().find(|series| series.channel == Channel::Heading) else {
             self.warnings.push(format!(
                 "{from_bow} gives the true wind from the bow; without a heading its direction is left out"
@@ -334,10 +313,9 @@ impl<'a> Choice<'a> {
             return;
         };
         let mut near = Nearest::new(&heading.time, &heading.values);
-        let readings = sensor.at.iter().zip(&sensor.columns[chosen.place]);
-        let north = readings.map(|(&time, from)| from + near.at(time));
-        let values: Vec<f64> = north.map(|from| if from.is_finite() { turned(from) } else { f64::NAN }).collect();
-        self.push(Channel::WindTrueFrom, chosen, values.into_iter());
+        let readings = chosen.instrument.at.iter().zip(chosen.values());
+        let values: Vec<f64> = readings.map(|(&time, from)| turned(from + near.at(time))).collect();
+        self.push(Channel::WindTrueFrom, chosen, values);
         self.warnings
             .push(format!("{from_bow} gives the direction of the true wind from the bow; the heading is added to it"));
     }

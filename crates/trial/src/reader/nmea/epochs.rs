@@ -2,8 +2,8 @@
 //! sentences of one instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than
 //! the others is filled at the usual pace, and the rest of it stays empty.
 
-use super::log::{Log, Sensor, name};
-use super::sentence::{Kind, Slot};
+use super::log::{Instrument, Log};
+use super::sentence::Slot;
 use crate::clock::{Clock, DAY, Stamp, Stamps};
 use crate::reader::error::Problem;
 use crate::words::counted;
@@ -34,9 +34,9 @@ pub(super) struct Timed {
 /// Gives every sentence its instant where the time is in stamps before the sentences.
 pub(super) fn from_stamps(log: &mut Log) -> Timed {
     let (mut spread, mut disordered) = (0, 0);
-    for sensor in &mut log.sensors {
+    for instrument in &mut log.instruments {
         let mut latest = f64::NEG_INFINITY;
-        for at in sensor.at.iter_mut().filter(|at| at.is_finite()) {
+        for at in instrument.at.iter_mut().filter(|at| at.is_finite()) {
             if *at < latest {
                 *at = f64::NAN;
                 disordered += 1;
@@ -44,8 +44,8 @@ pub(super) fn from_stamps(log: &mut Log) -> Timed {
                 latest = *at;
             }
         }
-        drop_rows(sensor);
-        spread += usize::from(spread_stamps(&mut sensor.at));
+        drop_rows(instrument);
+        spread += usize::from(spread_stamps(&mut instrument.at));
     }
     let neighbours = if log.counts.strayed == 1 { "its" } else { "their" };
     let mut warnings: Vec<String> = [
@@ -99,39 +99,36 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
 ///
 /// Fails without at least two different times, and where they go back for more than one sentence.
 pub(super) fn from_sentences(log: &mut Log) -> Result<Timed, Problem> {
-    let times = |sensor: &Sensor| sensor.place(Slot::Second).map_or(0, |place| sensor.readings(place));
-    let rank = |kind: Kind| [Kind::Zda, Kind::Rmc, Kind::Gga, Kind::Gll].iter().position(|&own| own == kind);
-    let driver = (0..log.sensors.len()).filter(|&sensor| times(&log.sensors[sensor]) > 0).min_by_key(|&place| {
-        let sensor = &log.sensors[place];
-        (std::cmp::Reverse(times(sensor)), rank(sensor.kind), place)
-    });
+    let times = |own: &Instrument| own.place(Slot::Second).map_or(0, |place| own.readings(place));
+    let rank =
+        |own: &Instrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|formatter| own.sends(formatter));
+    let clocks = log.instruments.iter().filter(|own| times(own) > 0);
     let none = |clocks| Problem::NoClock { sentences: log.counts.sentences, clocks };
-    let driver = driver.ok_or_else(|| none(0))?;
-    let (epochs, mut clock, strayed) = epochs(&log.sensors[driver])?;
+    let driver = clocks.min_by_key(|own| (std::cmp::Reverse(times(own)), rank(own))).ok_or_else(|| none(0))?;
+    let (name, driven) = (driver.name.clone(), times(driver));
+    let (epochs, mut clock, strayed) = epochs(driver)?;
     let times_of_epochs: Vec<f64> = epochs.iter().map(|epoch| epoch.time).collect();
     let (lengths, usual) = lengths(&times_of_epochs).ok_or_else(|| none(epochs.len()))?;
     if clock.day.is_none() {
-        clock.day = log.sensors.iter().find_map(|sensor| first_day(sensor, &epochs, clock.second));
+        clock.day = log.instruments.iter().find_map(|instrument| first_day(instrument, &epochs, clock.second));
     }
     let (mut several, mut before) = (false, 0);
     let mut groups = Vec::new();
-    let name = name(log, driver);
-    let driven = times(&log.sensors[driver]);
-    for sensor in &mut log.sensors {
+    for instrument in &mut log.instruments {
         groups.clear();
-        let mut row = sensor.at.partition_point(|&line| line < epochs[0].line);
+        let mut row = instrument.at.partition_point(|&line| line < epochs[0].line);
         before += row;
-        sensor.at[..row].fill(f64::NAN);
+        instrument.at[..row].fill(f64::NAN);
         for (place, epoch) in epochs.iter().enumerate() {
             let begin = row;
             let until = epochs.get(place + 1).map_or(f64::INFINITY, |next| next.line);
-            row += sensor.at[row..].iter().take_while(|&&line| line < until).count();
+            row += instrument.at[row..].iter().take_while(|&&line| line < until).count();
             if row > begin {
                 groups.push(Group { begin, end: row, time: epoch.time, length: lengths[place] });
             }
         }
-        several |= spread(&mut sensor.at, &groups, usual);
-        drop_rows(sensor);
+        several |= spread(&mut instrument.at, &groups, usual);
+        drop_rows(instrument);
     }
     let mut warnings = vec![format!(
         "the time is that of {name} ({driven} times, every {usual:.1} s): a sentence has the time before it, and heading and \
@@ -155,15 +152,15 @@ struct Epoch {
 }
 
 /// The times of one instrument, strictly increasing, what the clock shows at time 0, and times that were left out.
-fn epochs(sensor: &Sensor) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
-    let second = &sensor.columns[sensor.place(Slot::Second).expect("only instruments with times are asked")];
-    let days = sensor.place(Slot::Day).map(|place| &sensor.columns[place]);
+fn epochs(instrument: &Instrument) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
+    let second = &instrument.columns[instrument.place(Slot::Second).expect("only instruments with times are asked")];
+    let days = instrument.place(Slot::Day).map(|place| &instrument.columns[place]);
     // Dates that are there at times only would be mixed with times of day alone.
     let dated = days.filter(|days| second.iter().zip(*days).all(|(second, day)| second.is_nan() || day.is_finite()));
     let mut stamps = Stamps::default();
     let read = |row: usize| {
         let stamp = Stamp::of(dated.map(|days| days[row] as i64), second[row]);
-        stamps.seconds(stamp).ok().map(|time| Epoch { line: sensor.at[row], time: rounded(time) })
+        stamps.seconds(stamp).ok().map(|time| Epoch { line: instrument.at[row], time: rounded(time) })
     };
     let all: Vec<Epoch> = (0..second.len()).filter(|&row| second[row].is_finite()).filter_map(read).collect();
     let clock = stamps.clock().expect("there is a time, and each has a second");
@@ -198,11 +195,11 @@ fn epochs(sensor: &Sensor) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
 }
 
 /// The day at time 0, from the first date of an instrument; `second` is what the clock shows then.
-fn first_day(sensor: &Sensor, epochs: &[Epoch], second: f64) -> Option<i64> {
-    let (seconds, days) = (sensor.place(Slot::Second)?, sensor.place(Slot::Day)?);
-    let (seconds, days) = (&sensor.columns[seconds], &sensor.columns[days]);
+fn first_day(instrument: &Instrument, epochs: &[Epoch], second: f64) -> Option<i64> {
+    let (seconds, days) = (instrument.place(Slot::Second)?, instrument.place(Slot::Day)?);
+    let (seconds, days) = (&instrument.columns[seconds], &instrument.columns[days]);
     let row = (0..seconds.len()).find(|&row| seconds[row].is_finite() && days[row].is_finite())?;
-    let epoch = epochs.partition_point(|epoch| epoch.line <= sensor.at[row]).saturating_sub(1);
+    let epoch = epochs.partition_point(|epoch| epoch.line <= instrument.at[row]).saturating_sub(1);
     let passed = (second + epochs[epoch].time - seconds[row]) / DAY;
     Some(days[row] as i64 - passed.round() as i64)
 }
@@ -230,15 +227,15 @@ fn spread(at: &mut [f64], groups: &[Group], usual: f64) -> bool {
 }
 
 /// Takes the rows without an instant out of the table of an instrument.
-fn drop_rows(sensor: &mut Sensor) {
-    if sensor.at.iter().all(|at| at.is_finite()) {
+fn drop_rows(instrument: &mut Instrument) {
+    if instrument.at.iter().all(|at| at.is_finite()) {
         return;
     }
-    for column in &mut sensor.columns {
-        let mut at = sensor.at.iter();
+    for column in &mut instrument.columns {
+        let mut at = instrument.at.iter();
         column.retain(|_| at.next().is_some_and(|at| at.is_finite()));
     }
-    sensor.at.retain(|at| at.is_finite());
+    instrument.at.retain(|at| at.is_finite());
 }
 
 /// Seconds to the microsecond: finer than any clock here, and without what subtracting large numbers leaves.

@@ -2,8 +2,6 @@
 //! NMEA 0183 (start, address, fields, checksum) and plain numbers, and nothing of what a sentence says. It allocates
 //! nothing.
 
-use crate::cells::plain_number;
-
 /// What a line is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Line<'a> {
@@ -168,21 +166,13 @@ pub(super) enum Number {
     Not,
 }
 
-/// Reads a plain decimal number, exactly as the standard library does.
+/// Reads a plain decimal number.
 pub(super) fn number(field: &[u8]) -> Number {
     let field = field.trim_ascii();
-    let digits = match field {
-        [b'+', b'0'..=b'9' | b'.', ..] => &field[1..],
-        field => field,
-    };
-    if let Some(value) = plain_number(digits) {
-        return Number::Of(value);
-    }
     if field.is_empty() {
         return Number::Empty;
     }
-    // More digits than one division of two exact numbers takes.
-    let plain = field.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+'));
-    let value = std::str::from_utf8(field).ok().filter(|_| plain).and_then(|text| text.parse::<f64>().ok());
-    value.filter(|value| value.is_finite()).map_or(Number::Not, Number::Of)
+    let is_plain = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+');
+    let text = std::str::from_utf8(field).ok().filter(|_| field.iter().all(is_plain));
+    text.and_then(|text| text.parse().ok()).filter(|value: &f64| value.is_finite()).map_or(Number::Not, Number::Of)
 }

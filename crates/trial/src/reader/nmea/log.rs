@@ -2,26 +2,29 @@
 //! all that was left out. Which instruments are used is not decided before the end of the log.
 
 use super::frame::{Fields, Frame, Line, frame};
-use super::sentence::{Kind, MOST_SLOTS, Row, Slot, read, transducers};
+use super::sentence::{MOST_SLOTS, Row, Slot, XDR, sentence, transducers};
 use super::stamp::Leading;
-use crate::clock::{StampFault, Stamps};
+use crate::clock::Stamps;
 use crate::reader::error::Problem;
 use crate::reader::limits::MAX_CELLS;
 use crate::words::shortened;
 
 /// The sentences of one instrument.
 #[derive(Debug)]
-pub(super) struct Sensor {
-    pub kind: Kind,
+pub(super) struct Instrument {
+    /// What it is called in messages: `$HEHDT`, `$HEHDT of GYRO1`.
+    pub name: String,
     /// Talker and sentence.
     pub address: [u8; 5],
+    /// Its quantities.
+    slots: &'static [Slot],
     /// As in [`Row::part`].
     pub part: [u8; 2],
     /// Number of its source as in [`Leading`].
     pub source: u8,
     /// When each sentence was sent: the number of its line until the clock is known, then s; NaN where left out.
     pub at: Vec<f64>,
-    /// The quantities of [`Kind::slots`], one number a sentence.
+    /// The quantities, one number a sentence.
     pub columns: Vec<Vec<f64>>,
     /// Numbers that cannot be, by quantity.
     pub odd: [usize; MOST_SLOTS],
@@ -29,10 +32,15 @@ pub(super) struct Sensor {
     summed: bool,
 }
 
-impl Sensor {
+impl Instrument {
+    /// Whether it sends sentences with this formatter.
+    pub fn sends(&self, formatter: &[u8; 3]) -> bool {
+        self.address[2..] == *formatter
+    }
+
     /// The place of a quantity among its columns.
     pub fn place(&self, slot: Slot) -> Option<usize> {
-        self.kind.slots().iter().position(|&own| own == slot)
+        self.slots.iter().position(|&own| own == slot)
     }
 
     /// Readings of a quantity.
@@ -42,7 +50,7 @@ impl Sensor {
 }
 
 /// Most instruments that are told apart; what noise makes of addresses is not kept beyond that.
-const MOST_SENSORS: usize = 256;
+const MOST_INSTRUMENTS: usize = 256;
 /// Stamps of two ports may be a little out of order, s.
 const DISORDER: f64 = 1.0;
 
@@ -68,7 +76,7 @@ pub(super) struct Counts {
 /// What a log gave so far.
 #[derive(Debug)]
 pub(super) struct Log {
-    pub sensors: Vec<Sensor>,
+    pub instruments: Vec<Instrument>,
     /// What tells them apart, in the same order: apart from the tables, because every sentence looks through it.
     keys: Vec<u64>,
     pub counts: Counts,
@@ -87,7 +95,7 @@ impl Log {
     /// A log whose time is in stamps before its sentences, or in some of the sentences.
     pub fn new(stamped: bool) -> Self {
         Self {
-            sensors: Vec::new(),
+            instruments: Vec::new(),
             keys: Vec::new(),
             counts: Counts::default(),
             leading: Leading::default(),
@@ -118,9 +126,8 @@ impl Log {
     }
 
     fn sentence(&mut self, frame: &Frame, number: usize) -> Result<(), Problem> {
-        let Some(kind) = Kind::of(&frame.address[2..]) else {
-            self.counts.sentences += 1;
-            self.counts.unsummed += usize::from(!frame.summed);
+        let Some((formatter, slots, read)) = sentence(&frame.address[2..]) else {
+            self.count(frame);
             return Ok(());
         };
         let (stamp, source) = if frame.before.is_empty() { (None, 0) } else { self.leading.read(frame.before) };
@@ -131,28 +138,23 @@ impl Log {
                 self.counts.unstamped += 1;
                 return Ok(());
             };
-            at = self.stamps.seconds(stamp).map_err(|fault| match fault {
-                StampFault::EitherMonth | StampFault::NoTime => {
-                    Problem::EitherMonth { line: number, value: shortened(frame.before.trim()) }
-                }
-            })?;
+            let fault = |_| Problem::EitherMonth { line: number, value: shortened(frame.before.trim()) };
+            at = self.stamps.seconds(stamp).map_err(fault)?;
             if !self.follows(at, number)? {
                 self.counts.sentences += 1;
                 return Ok(());
             }
         }
-        if kind == Kind::Xdr {
-            self.counts.sentences += 1;
-            self.counts.unsummed += usize::from(!frame.summed);
-            let body = frame.body;
-            transducers(body, |row| {
-                self.add(kind, frame, source, at, &row);
+        if *formatter == XDR {
+            self.count(frame);
+            transducers(frame.body, |row| {
+                self.add(slots, frame, source, at, &row);
             });
         } else {
-            let row = read(kind, &Fields::new(frame.body));
-            if self.add(kind, frame, source, at, &row) {
-                self.counts.sentences += 1;
-                self.counts.unsummed += usize::from(!frame.summed);
+            let mut row = Row::empty();
+            read(&mut row, &Fields::new(frame.body));
+            if self.add(slots, frame, source, at, &row) {
+                self.count(frame);
             } else {
                 self.counts.broken += 1;
             }
@@ -163,46 +165,51 @@ impl Log {
         Ok(())
     }
 
+    /// Counts a sentence that is accepted.
+    fn count(&mut self, frame: &Frame) {
+        self.counts.sentences += 1;
+        self.counts.unsummed += usize::from(!frame.summed);
+    }
+
     /// Adds what a sentence says to the table of its instrument.
     ///
     /// `false` where an instrument that writes checksums wrote none: the end of the sentence is lost, and with it maybe
     /// a digit.
-    fn add(&mut self, kind: Kind, frame: &Frame, source: u8, at: f64, row: &Row) -> bool {
+    fn add(&mut self, slots: &'static [Slot], frame: &Frame, source: u8, at: f64, row: &Row) -> bool {
         let [a, b, c, d, e] = frame.address;
         let key = u64::from_be_bytes([a, b, c, d, e, row.part[0], row.part[1], source]);
         let place = match self.keys.iter().position(|&own| own == key) {
             Some(place) => place,
-            None if self.sensors.len() < MOST_SENSORS => {
+            None if self.instruments.len() < MOST_INSTRUMENTS => {
                 self.keys.push(key);
-                self.sensors.push(Sensor {
-                    kind,
+                self.instruments.push(Instrument {
+                    name: self.name(frame.address, row.part, source),
                     address: frame.address,
+                    slots,
                     part: row.part,
                     source,
                     at: Vec::new(),
-                    columns: vec![Vec::new(); kind.slots().len()],
+                    columns: vec![Vec::new(); slots.len()],
                     odd: [0; MOST_SLOTS],
                     summed: false,
                 });
-                self.sensors.len() - 1
+                self.instruments.len() - 1
             }
             None => return true,
         };
-        let sensor = &mut self.sensors[place];
-        if sensor.summed && !frame.summed {
+        let instrument = &mut self.instruments[place];
+        if instrument.summed && !frame.summed {
             return false;
         }
-        sensor.summed = frame.summed;
-        sensor.at.push(at);
-        for (column, value) in sensor.columns.iter_mut().zip(row.values) {
+        instrument.summed = frame.summed;
+        instrument.at.push(at);
+        for (column, value) in instrument.columns.iter_mut().zip(row.values) {
             column.push(value);
         }
-        if row.odd != [false; MOST_SLOTS] {
-            for (count, odd) in sensor.odd.iter_mut().zip(row.odd) {
-                *count += usize::from(odd);
-            }
+        for (count, odd) in instrument.odd.iter_mut().zip(row.odd) {
+            *count += usize::from(odd);
         }
-        self.numbers += 1 + sensor.columns.len();
+        self.numbers += 1 + instrument.columns.len();
         true
     }
 
@@ -217,8 +224,8 @@ impl Log {
         }
         if lines == 1 && at >= before - DISORDER && before.is_finite() {
             // The one before was ahead of its time.
-            for sensor in &mut self.sensors {
-                if let Some(last) = sensor.at.last_mut().filter(|last| **last == latest) {
+            for instrument in &mut self.instruments {
+                if let Some(last) = instrument.at.last_mut().filter(|last| **last == latest) {
                     *last = f64::NAN;
                 }
             }
@@ -235,22 +242,20 @@ impl Log {
         self.late = Some((number, at));
         Ok(false)
     }
-}
 
-/// The name of an instrument, for messages: `$HEHDT`, `$HEHDT of GYRO1`.
-pub(super) fn name(log: &Log, place: usize) -> String {
-    let sensor = &log.sensors[place];
-    let mut name = String::from("$");
-    name.extend(sensor.address.map(char::from));
-    match sensor.kind {
-        Kind::Rpm => name.push_str(&format!(" {}{}", char::from(sensor.part[0]), shown(sensor.part[1]))),
-        Kind::Mwv => name.push_str(&format!(" {}", shown(sensor.part[0]))),
-        _ => {}
+    /// The name of an instrument, for messages.
+    fn name(&self, address: [u8; 5], [first, second]: [u8; 2], source: u8) -> String {
+        let mut name: String = std::iter::once('$').chain(address.map(char::from)).collect();
+        match &address[2..] {
+            b"RPM" => name.push_str(&format!(" {}{}", char::from(first), shown(second))),
+            b"MWV" => name.push_str(&format!(" {}", shown(first))),
+            _ => {}
+        }
+        if let Some(source) = usize::from(source).checked_sub(1).and_then(|source| self.leading.sources.get(source)) {
+            name.push_str(&format!(" of {}", shortened(source)));
+        }
+        name
     }
-    if let Some(source) = usize::from(sensor.source).checked_sub(1).and_then(|source| log.leading.sources.get(source)) {
-        name.push_str(&format!(" of {}", crate::words::shortened(source)));
-    }
-    name
 }
 
 fn shown(byte: u8) -> char {

@@ -1,4 +1,4 @@
-//! A log of NMEA 0183 sentences becomes a [`Source`]: every quantity that is used at the instants its instrument sent
+//! A log of NMEA 0183 sentences becomes [`ReadSentences`]: every quantity that is used at the instants its instrument sent
 //! it. Headings, rudder angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and the
 //! sentences of single makers are passed over. Time comes from stamps before the sentences, or from the sentences of a
 //! GPS or clock. What is damaged is left out and counted; a course over ground never stands for a heading. Whether
@@ -23,7 +23,7 @@ use self::log::{Counts, Log};
 use self::stamp::Leading;
 use super::error::Problem;
 use super::lines::Lines;
-use super::source::{Series, Source};
+use super::source::Series;
 use crate::clock::{Clock, DAY};
 use crate::words::counted;
 
@@ -45,19 +45,33 @@ pub(super) fn is_sentence(line: &str) -> bool {
     !line.trim_start().starts_with('#') && (address(rest, 5) || of_maker)
 }
 
-/// Reads the whole log; `first` are lines already taken from `lines`, in order from line 1.
+/// What a log of sentences holds.
+#[derive(Debug, Clone)]
+pub(super) struct ReadSentences {
+    /// One for each channel.
+    pub series: Vec<Series>,
+    /// What the clock shows at time 0, where the file has one.
+    pub clock: Option<Clock>,
+    /// What was decided or found remarkable on the way, one sentence each.
+    pub warnings: Vec<String>,
+    /// Lines of the file.
+    pub lines: usize,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+}
+
+/// Reads the whole log.
 ///
 /// Fails where more than half of its lines are damaged, where there is no time or it goes back, where dates may be read
 /// in two ways, and where no sentence gives a quantity that is used.
-pub(super) fn read<R: Read>(first: Vec<String>, mut lines: Lines<R>) -> Result<Source, Problem> {
-    let mut begin: Vec<Vec<u8>> = first.into_iter().map(String::into_bytes).collect();
-    let is_framed = |line: &Vec<u8>| matches!(frame(line), Line::Sentence(_));
-    let mut sentences = begin.iter().filter(|line| is_framed(line)).count();
-    while sentences < LOOKED_AT && begin.len() < FIRST_LINES {
-        let Some(line) = lines.next_bytes()? else { break };
-        let line = line.to_vec();
-        sentences += usize::from(is_framed(&line));
-        begin.push(line);
+pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<ReadSentences, Problem> {
+    let (mut begin, mut sentences) = (Vec::new(), 0);
+    while sentences < LOOKED_AT
+        && begin.len() < FIRST_LINES
+        && let Some(line) = lines.next_bytes()?
+    {
+        sentences += usize::from(matches!(frame(line), Line::Sentence(_)));
+        begin.push(line.to_vec());
     }
     let mut log = Log::new(is_stamped(&begin));
     for (place, line) in begin.iter().enumerate() {
@@ -88,14 +102,14 @@ fn is_stamped(lines: &[Vec<u8>]) -> bool {
 }
 
 /// Makes channels of all that was read.
-fn finish(mut log: Log, lines: usize, sha256: String) -> Result<Source, Problem> {
+fn finish(mut log: Log, lines: usize, sha256: String) -> Result<ReadSentences, Problem> {
     let counts = log.counts;
     let written = lines - counts.blank;
     let damaged = counts.wrong + counts.broken;
     if 2 * damaged > written {
         return Err(Problem::DamagedLog { lines: written, damaged, wrong: counts.wrong, broken: counts.broken });
     }
-    if log.sensors.is_empty() {
+    if log.instruments.is_empty() {
         return Err(if counts.unstamped > 0 {
             Problem::NoClock { sentences: counts.sentences, clocks: 0 }
         } else {
@@ -105,14 +119,13 @@ fn finish(mut log: Log, lines: usize, sha256: String) -> Result<Source, Problem>
     let timed = if log.is_stamped() { from_stamps(&mut log) } else { from_sentences(&mut log)? };
     let mut warnings = of_counts(&counts, lines);
     warnings.extend(timed.warnings);
-    let Choice { mut series, warnings: choices, .. } = Choice::of(&log);
-    drop(log);
+    let Choice { mut series, warnings: choices, .. } = Choice::of(&log.instruments);
     warnings.extend(choices);
     if series.is_empty() {
         return Err(Problem::NoReadings { sentences: counts.sentences });
     }
     let clock = begin_at_zero(&mut series, timed.clock);
-    Ok(Source { series, clock, warnings, lines, sha256 })
+    Ok(ReadSentences { series, clock, warnings, lines, sha256 })
 }
 
 /// Makes the first instant time 0.

@@ -6,30 +6,7 @@ use std::f64::consts::TAU;
 use ship::angle::{DEGREE, KNOT};
 
 use super::frame::{Fields, Number};
-use crate::clock::days;
-
-/// A sentence that is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Hdt,
-    Ths,
-    Hdg,
-    Hdm,
-    Rot,
-    Rsa,
-    Htc,
-    Vhw,
-    Vbw,
-    Vtg,
-    Rmc,
-    Gga,
-    Gll,
-    Zda,
-    Rpm,
-    Mwv,
-    Mwd,
-    Xdr,
-}
+use crate::clock::{days, full_year, second_of_day};
 
 /// A quantity in a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,44 +58,99 @@ pub(super) enum Slot {
 /// Most quantities of one sentence.
 pub(super) const MOST_SLOTS: usize = 5;
 
-/// A sentence with its formatters and quantities.
-type Sentence = (Kind, &'static [&'static [u8]], &'static [Slot]);
+/// A sentence that is read: its formatter, its quantities in the order of [`Row::values`], and how it is read.
+type Sentence = (&'static [u8; 3], &'static [Slot], fn(&mut Row, &Fields));
 
-/// The sentences that are read: formatters, and quantities in the order of [`Row::values`].
-const SENTENCES: [Sentence; 18] = {
+const SENTENCES: [Sentence; 19] = {
     use Slot::*;
     [
-        (Kind::Hdt, &[b"HDT"], &[HeadingTrue]),
-        (Kind::Ths, &[b"THS"], &[HeadingTrue]),
-        (Kind::Hdg, &[b"HDG"], &[HeadingMagnetic, Variation]),
-        (Kind::Hdm, &[b"HDM"], &[HeadingMagnetic]),
-        (Kind::Rot, &[b"ROT"], &[YawRate]),
-        (Kind::Rsa, &[b"RSA"], &[RudderStarboard, RudderPort]),
-        (Kind::Htc, &[b"HTC", b"HTD"], &[RudderOrder]),
-        (Kind::Vhw, &[b"VHW"], &[HeadingTrue, HeadingMagnetic, SpeedWater]),
-        (Kind::Vbw, &[b"VBW"], &[SurgeWater, SwayWater, SurgeGround, SwayGround]),
-        (Kind::Vtg, &[b"VTG"], &[SpeedGround]),
-        (Kind::Rmc, &[b"RMC"], &[Second, Day, Latitude, Longitude, SpeedGround]),
-        (Kind::Gga, &[b"GGA"], &[Second, Latitude, Longitude]),
-        (Kind::Gll, &[b"GLL"], &[Second, Latitude, Longitude]),
-        (Kind::Zda, &[b"ZDA"], &[Second, Day]),
-        (Kind::Rpm, &[b"RPM"], &[Revolutions]),
-        (Kind::Mwv, &[b"MWV"], &[WindSpeed, WindFrom]),
-        (Kind::Mwd, &[b"MWD"], &[WindSpeed, WindFrom]),
-        (Kind::Xdr, &[b"XDR"], &[Transducer]),
+        (b"HDT", &[HeadingTrue], |row, fields| row.take_heading(fields, b"T")),
+        (b"HDM", &[HeadingMagnetic], |row, fields| row.take_heading(fields, b"M")),
+        (b"THS", &[HeadingTrue], |row, fields| {
+            // A: autonomous, E: estimated; manual, simulated and invalid headings are none of this ship.
+            if matches!(fields.at(2), b"A" | b"E") {
+                row.take_direction(0, fields.number(1));
+            }
+        }),
+        (b"HDG", &[HeadingMagnetic, Variation], read_hdg),
+        (b"ROT", &[YawRate], |row, fields| {
+            row.take_valid(fields, 2, &[(0, 1)], (-3600.0, 3600.0), DEGREE / 60.0);
+        }),
+        (b"RSA", &[RudderStarboard, RudderPort], |row, fields| {
+            row.take_valid(fields, 2, &[(0, 1)], (-90.0, 90.0), DEGREE);
+            row.take_valid(fields, 4, &[(1, 3)], (-90.0, 90.0), DEGREE);
+        }),
+        (b"HTC", &[RudderOrder], read_order),
+        (b"HTD", &[RudderOrder], read_order),
+        (b"VHW", &[HeadingTrue, HeadingMagnetic, SpeedWater], |row, fields| {
+            row.take_direction(0, fields.number(1));
+            row.take_direction(1, fields.number(3));
+            row.take_either(
+                2,
+                (fields.number(5), SPEED, KNOT),
+                (fields.number(7), (-185.0, 185.0), KILOMETRE_PER_HOUR),
+            );
+        }),
+        (b"VBW", &[SurgeWater, SwayWater, SurgeGround, SwayGround], |row, fields| {
+            row.take_valid(fields, 3, &[(0, 1), (1, 2)], SPEED, KNOT);
+            row.take_valid(fields, 6, &[(2, 4), (3, 5)], SPEED, KNOT);
+        }),
+        (b"VTG", &[SpeedGround], |row, fields| {
+            if !fields.is(9, b'N') && fields.is(6, b'N') {
+                let kmh = (fields.number(7), (0.0, 185.0), KILOMETRE_PER_HOUR);
+                row.take_either(0, (fields.number(5), (0.0, SPEED.1), KNOT), kmh);
+            }
+        }),
+        (b"RMC", &[Second, Day, Latitude, Longitude, SpeedGround], |row, fields| {
+            if fields.is(2, b'A') {
+                row.take_second(0, fields.at(1));
+                let day = date(fields.at(9));
+                row.odd[1] = day.is_none() && !fields.at(9).is_empty();
+                row.values[1] = day.unwrap_or(f64::NAN);
+                row.take_position(2, fields, 3);
+                row.take(4, fields.number(7), (0.0, SPEED.1), KNOT);
+            }
+        }),
+        (b"GGA", &[Second, Latitude, Longitude], |row, fields| {
+            // The quality is 0 where there is no position, 6 to 8 where it is reckoned, entered or simulated.
+            if matches!(fields.at(6), b"1" | b"2" | b"3" | b"4" | b"5" | b"9") {
+                row.take_second(0, fields.at(1));
+                row.take_position(1, fields, 2);
+            }
+        }),
+        (b"GLL", &[Second, Latitude, Longitude], |row, fields| {
+            if fields.is(6, b'A') {
+                row.take_second(0, fields.at(5));
+                row.take_position(1, fields, 1);
+            }
+        }),
+        (b"ZDA", &[Second, Day], |row, fields| {
+            row.take_second(0, fields.at(1));
+            row.values[1] = day([2, 3, 4].map(|place| fields.number(place))).unwrap_or(f64::NAN);
+        }),
+        (b"RPM", &[Revolutions], |row, fields| {
+            let shaft = fields.at(2).first().copied().unwrap_or(b'0');
+            row.part = [if fields.is(1, b'E') { b'E' } else { b'S' }, shaft];
+            row.take_valid(fields, 5, &[(0, 3)], (-10_000.0, 10_000.0), 1.0 / 60.0);
+        }),
+        (b"MWV", &[WindSpeed, WindFrom], read_mwv),
+        (b"MWD", &[WindSpeed, WindFrom], |row, fields| {
+            if fields.is(2, b'T') {
+                row.take_direction(1, fields.number(1));
+            }
+            row.take_either(0, (fields.number(7), (0.0, 100.0), 1.0), (fields.number(5), (0.0, 200.0), KNOT));
+        }),
+        // See `transducers`.
+        (XDR, &[Transducer], |_, _| {}),
     ]
 };
 
-impl Kind {
-    /// The sentence with this formatter.
-    pub fn of(formatter: &[u8]) -> Option<Self> {
-        SENTENCES.iter().find(|(_, formatters, _)| formatters.contains(&formatter)).map(|(kind, ..)| *kind)
-    }
+/// The formatter of transducers.
+pub(super) const XDR: &[u8; 3] = b"XDR";
 
-    /// Its quantities, in the order of [`Row::values`].
-    pub fn slots(self) -> &'static [Slot] {
-        SENTENCES[self as usize].2
-    }
+/// The sentence with this formatter.
+pub(super) fn sentence(formatter: &[u8]) -> Option<&'static Sentence> {
+    SENTENCES.iter().find(|(own, ..)| *own == formatter)
 }
 
 /// A number with its bounds, and its factor to SI units and radians.
@@ -127,7 +159,7 @@ type Bounded = (Number, (f64, f64), f64);
 /// What one sentence says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Row {
-    /// In the order of [`Kind::slots`]; NaN where nothing was read.
+    /// In the order of the quantities of the sentence; NaN where nothing was read.
     pub values: [f64; MOST_SLOTS],
     /// Places with something that cannot be.
     pub odd: [bool; MOST_SLOTS],
@@ -156,9 +188,30 @@ impl Row {
         self.take(place, number, bounds, factor);
     }
 
+    /// Takes numbers, each with its place, where a field says that they are valid.
+    fn take_valid(
+        &mut self,
+        fields: &Fields,
+        status: usize,
+        places: &[(usize, usize)],
+        bounds: (f64, f64),
+        factor: f64,
+    ) {
+        if fields.is(status, b'A') {
+            places.iter().for_each(|&(place, field)| self.take(place, fields.number(field), bounds, factor));
+        }
+    }
+
+    /// Takes the heading of a sentence that has nothing else, with the letter of its reference.
+    fn take_heading(&mut self, fields: &Fields, reference: &[u8]) {
+        if fields.at(2) == reference || fields.at(2).is_empty() {
+            self.take_direction(0, fields.number(1));
+        }
+    }
+
     /// Takes an angle of [0°, 360°].
     fn take_direction(&mut self, place: usize, number: Number) {
-        self.take(place, number, (0.0, 360.0), DEGREE);
+        self.take(place, number, HEADING, DEGREE);
         self.values[place] = turned(self.values[place]);
     }
 
@@ -188,8 +241,9 @@ impl Row {
     }
 
     fn take_second(&mut self, place: usize, field: &[u8]) {
+        let field = field.trim_ascii();
         let second = second_of_day(field);
-        self.odd[place] = second.is_none() && !field.trim_ascii().is_empty();
+        self.odd[place] = second.is_none() && !field.is_empty();
         self.values[place] = second.unwrap_or(f64::NAN);
     }
 }
@@ -204,85 +258,18 @@ pub(super) fn turned(angle: f64) -> f64 {
 const HEADING: (f64, f64) = (0.0, 360.0);
 /// Knots; nothing that steers is faster, and instruments write 999 for no reading.
 const SPEED: (f64, f64) = (-100.0, 100.0);
+/// m/s.
+const KILOMETRE_PER_HOUR: f64 = 1.0 / 3.6;
 
-/// Reads a sentence; of XDR, see [`transducers`].
-pub(super) fn read(kind: Kind, fields: &Fields) -> Row {
-    let mut row = Row::empty();
-    match kind {
-        Kind::Hdt if matches!(fields.at(2), b"T" | b"") => row.take_direction(0, fields.number(1)),
-        Kind::Hdm if matches!(fields.at(2), b"M" | b"") => row.take_direction(0, fields.number(1)),
-        // A: autonomous, E: estimated; manual, simulated and invalid headings are none of this ship.
-        Kind::Ths if matches!(fields.at(2), b"A" | b"E") => row.take_direction(0, fields.number(1)),
-        Kind::Hdg => read_hdg(&mut row, fields),
-        Kind::Rot if fields.is(2, b'A') => row.take(0, fields.number(1), (-3600.0, 3600.0), DEGREE / 60.0),
-        Kind::Rsa => {
-            for (place, field) in [(0, 1), (1, 3)] {
-                if fields.is(field + 1, b'A') {
-                    row.take(place, fields.number(field), (-90.0, 90.0), DEGREE);
-                }
-            }
-        }
-        Kind::Htc => match fields.at(3) {
-            b"R" => row.take(0, fields.number(2), (0.0, 90.0), DEGREE),
-            b"L" => row.take(0, fields.number(2), (0.0, 90.0), -DEGREE),
-            // Midships has no side.
-            _ if fields.number(2) == Number::Of(0.0) => row.values[0] = 0.0,
-            _ => row.odd[0] = fields.number(2) != Number::Empty,
-        },
-        Kind::Vhw => {
-            row.take_direction(0, fields.number(1));
-            row.take_direction(1, fields.number(3));
-            row.take_either(2, (fields.number(5), SPEED, KNOT), (fields.number(7), (-185.0, 185.0), 1.0 / 3.6));
-        }
-        Kind::Vbw => {
-            for (place, field, status) in [(0, 1, 3), (1, 2, 3), (2, 4, 6), (3, 5, 6)] {
-                if fields.is(status, b'A') {
-                    row.take(place, fields.number(field), SPEED, KNOT);
-                }
-            }
-        }
-        Kind::Vtg if !fields.is(9, b'N') && fields.is(6, b'N') => {
-            let kmh = (fields.number(7), (0.0, 185.0), 1.0 / 3.6);
-            row.take_either(0, (fields.number(5), (0.0, SPEED.1), KNOT), kmh);
-        }
-        Kind::Rmc if fields.is(2, b'A') => {
-            row.take_second(0, fields.at(1));
-            let day = date(fields.at(9));
-            row.odd[1] = day.is_none() && !fields.at(9).is_empty();
-            row.values[1] = day.unwrap_or(f64::NAN);
-            row.take_position(2, fields, 3);
-            row.take(4, fields.number(7), (0.0, SPEED.1), KNOT);
-        }
-        // The quality is 0 where there is no position, 6 to 8 where it is reckoned, entered or simulated.
-        Kind::Gga if matches!(fields.at(6), b"1" | b"2" | b"3" | b"4" | b"5" | b"9") => {
-            row.take_second(0, fields.at(1));
-            row.take_position(1, fields, 2);
-        }
-        Kind::Gll if fields.is(6, b'A') => {
-            row.take_second(0, fields.at(5));
-            row.take_position(1, fields, 1);
-        }
-        Kind::Zda => {
-            row.take_second(0, fields.at(1));
-            row.values[1] = day(fields.number(2), fields.number(3), fields.number(4)).unwrap_or(f64::NAN);
-        }
-        Kind::Rpm => {
-            let shaft = fields.at(2).first().copied().unwrap_or(b'0');
-            row.part = [if fields.is(1, b'E') { b'E' } else { b'S' }, shaft];
-            if fields.is(5, b'A') {
-                row.take(0, fields.number(3), (-10_000.0, 10_000.0), 1.0 / 60.0);
-            }
-        }
-        Kind::Mwv => read_mwv(&mut row, fields),
-        Kind::Mwd => {
-            if fields.is(2, b'T') {
-                row.take_direction(1, fields.number(1));
-            }
-            row.take_either(0, (fields.number(7), (0.0, 100.0), 1.0), (fields.number(5), (0.0, 200.0), KNOT));
-        }
-        _ => {}
+/// HTC, HTD: the ordered rudder with its side.
+fn read_order(row: &mut Row, fields: &Fields) {
+    match fields.at(3) {
+        b"R" => row.take(0, fields.number(2), (0.0, 90.0), DEGREE),
+        b"L" => row.take(0, fields.number(2), (0.0, 90.0), -DEGREE),
+        // Midships has no side.
+        _ if fields.number(2) == Number::Of(0.0) => row.values[0] = 0.0,
+        _ => row.odd[0] = fields.number(2) != Number::Empty,
     }
-    row
 }
 
 /// HDG: sensor, deviation and variation. What the compass shows and the deviation make the magnetic heading.
@@ -309,7 +296,7 @@ fn read_hdg(row: &mut Row, fields: &Fields) {
 fn read_mwv(row: &mut Row, fields: &Fields) {
     row.part = [fields.at(2).first().copied().unwrap_or(0), 0];
     let factor = match fields.at(4) {
-        b"K" => 1.0 / 3.6,
+        b"K" => KILOMETRE_PER_HOUR,
         b"M" => 1.0,
         b"N" => KNOT,
         // Statute miles an hour: 1609.344 m in 3600 s.
@@ -331,12 +318,10 @@ pub(super) fn transducers(body: &[u8], mut each: impl FnMut(Row)) {
     while let (Some(of), Some(value), Some(unit), Some(name)) =
         (fields.next(), fields.next(), fields.next(), fields.next())
     {
-        let part = if name.eq_ignore_ascii_case(b"rudder") {
-            b'R'
-        } else if name.eq_ignore_ascii_case(b"roll") {
-            b'O'
-        } else {
-            continue;
+        let part = match name.to_ascii_lowercase().as_slice() {
+            b"rudder" => b'R',
+            b"roll" => b'O',
+            _ => continue,
         };
         if of == b"A" && unit == b"D" {
             let mut row = Row { part: [part, 0], ..Row::empty() };
@@ -346,40 +331,15 @@ pub(super) fn transducers(body: &[u8], mut each: impl FnMut(Row)) {
     }
 }
 
-/// The value of two digits.
-fn two(digits: &[u8]) -> Option<u32> {
-    match digits {
-        [tens @ b'0'..=b'9', ones @ b'0'..=b'9'] => Some(u32::from(10 * (tens - b'0') + ones - b'0')),
-        _ => None,
-    }
-}
-
-/// Second of the day from `hhmmss.ss`.
-fn second_of_day(field: &[u8]) -> Option<f64> {
-    let field = field.trim_ascii();
-    let (hour, minute) = (two(field.get(..2)?)?, two(field.get(2..4)?)?);
-    two(field.get(4..6)?)?;
-    if field.get(6).is_some_and(|&byte| byte != b'.') {
-        return None;
-    }
-    let Number::Of(second) = super::frame::number(&field[4..]) else { return None };
-    // A leap second is the 60th.
-    (hour < 24 && minute < 60 && second < 61.0).then(|| f64::from(3600 * hour + 60 * minute) + second)
-}
-
 /// The day of `ddmmyy`.
 fn date(field: &[u8]) -> Option<f64> {
-    let [day, month, year] = [field.get(..2)?, field.get(2..4)?, field.get(4..)?].map(two);
-    let year = year? as i32;
-    Some(days(if year < 70 { 2000 } else { 1900 } + year, month?, day?)? as f64)
+    let is_date = field.len() == 6 && field.iter().all(u8::is_ascii_digit);
+    let digits: u32 = std::str::from_utf8(field).ok().filter(|_| is_date)?.parse().ok()?;
+    Some(days(full_year(digits % 100, 2)?, digits / 100 % 100, digits / 10_000)? as f64)
 }
 
-/// The day of three numbers.
-fn day(day: Number, month: Number, year: Number) -> Option<f64> {
-    match (day, month, year) {
-        (Number::Of(day), Number::Of(month), Number::Of(year)) if day >= 0.0 && month >= 0.0 => {
-            Some(days(year as i32, month as u32, day as u32)? as f64)
-        }
-        _ => None,
-    }
+/// The day of day, month and year.
+fn day(date: [Number; 3]) -> Option<f64> {
+    let [Number::Of(day), Number::Of(month), Number::Of(year)] = date else { return None };
+    (day >= 0.0 && month >= 0.0).then(|| days(year as i32, month as u32, day as u32))?.map(|day| day as f64)
 }

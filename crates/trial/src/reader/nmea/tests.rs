@@ -1,5 +1,4 @@
 mod harm;
-mod speed;
 mod time;
 
 use std::f64::consts::PI;
@@ -16,23 +15,23 @@ fn summed(body: &str) -> String {
     format!("${body}*{:02X}", sum(body.as_bytes()))
 }
 
-fn read_bytes(bytes: &[u8]) -> Result<Source, Problem> {
-    read(Vec::new(), Lines::new(bytes, Encoding::Utf8))
+fn read_bytes(bytes: &[u8]) -> Result<ReadSentences, Problem> {
+    read(Lines::new(bytes, Encoding::Utf8))
 }
 
-fn read_log(lines: &[String]) -> Result<Source, Problem> {
+fn read_log(lines: &[String]) -> Result<ReadSentences, Problem> {
     read_bytes(lines.join("\r\n").as_bytes())
 }
 
-fn source(lines: &[String]) -> Source {
+fn source(lines: &[String]) -> ReadSentences {
     read_log(lines).expect("a log that can be read")
 }
 
-fn series(source: &Source, channel: Channel) -> &Series {
+fn series(source: &ReadSentences, channel: Channel) -> &Series {
     source.series.iter().find(|series| series.channel == channel).expect("the channel is there")
 }
 
-fn has(source: &Source, channel: Channel) -> bool {
+fn has(source: &ReadSentences, channel: Channel) -> bool {
     source.series.iter().any(|series| series.channel == channel)
 }
 
@@ -40,7 +39,7 @@ fn degrees(series: &Series) -> Vec<f64> {
     series.values.iter().map(|value| (value.to_degrees() * 1e9).round() / 1e9).collect()
 }
 
-fn told(source: &Source, text: &str) -> bool {
+fn told(source: &ReadSentences, text: &str) -> bool {
     source.warnings.iter().any(|warning| warning.contains(text))
 }
 
@@ -319,13 +318,11 @@ fn positions_are_metres_from_the_first() {
 }
 
 #[test]
-fn first_lines_count_and_the_hash_is_that_of_the_file() {
+fn lines_are_counted_and_the_hash_is_that_of_the_file() {
     let text = stamped(&["HEHDT,1.0,T", "HEHDT,2.0,T", "HEHDT,3.0,T"]).join("\n");
-    let mut lines = Lines::new(text.as_bytes(), Encoding::Utf8);
-    let first = vec![lines.next_line().expect("text").expect("a line").to_owned()];
-    let source = read(first, lines).expect("a log");
+    let source = read_bytes(text.as_bytes()).expect("a log");
     assert_eq!((source.lines, series(&source, Channel::Heading).time.len()), (3, 3));
-    assert_eq!(source.sha256, read_bytes(text.as_bytes()).expect("a log").sha256);
+    assert_eq!(source.sha256, crate::reader::lines::sha256(text.as_bytes()));
 }
 
 #[test]

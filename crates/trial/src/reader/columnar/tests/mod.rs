@@ -12,15 +12,15 @@ use sha2::{Digest, Sha256};
 
 use crate::reader::lines::in_hex;
 use crate::reader::tests::{rows, simple};
-use crate::reader::{ReadError, Reading, read, read_bytes};
+use crate::reader::{ReadError, ReadRecord, read, read_bytes};
 use crate::record::Origin;
 use crate::sidecar::Sidecar;
 
-fn parse(bytes: &[u8]) -> Result<Reading, ReadError> {
+fn parse(bytes: &[u8]) -> Result<ReadRecord, ReadError> {
     read_bytes(Path::new("run"), bytes, None, None)
 }
 
-fn parse_with(bytes: &[u8], sidecar: &str) -> Result<Reading, ReadError> {
+fn parse_with(bytes: &[u8], sidecar: &str) -> Result<ReadRecord, ReadError> {
     let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
     read_bytes(Path::new("run"), bytes, None, Some(&sidecar))
 }
@@ -35,7 +35,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
 }
 
 /// Sees that two readings hold the same record.
-fn assert_same(one: &Reading, other: &Reading) {
+fn assert_same(one: &ReadRecord, other: &ReadRecord) {
     let (one, other) = (&one.trial, &other.trial);
     assert_eq!(bits(one.time()), bits(other.time()));
     assert_eq!(bits(one.heading()), bits(other.heading()));
@@ -43,14 +43,14 @@ fn assert_same(one: &Reading, other: &Reading) {
 }
 
 /// Sees that a file holds the plainest record and has the hash of its bytes.
-fn assert_plain(bytes: &[u8]) -> Reading {
+fn assert_plain(bytes: &[u8]) -> ReadRecord {
     let reading = parse(bytes).unwrap_or_else(|error| panic!("{error}"));
     assert_same(&reading, &parse(simple().as_bytes()).expect("a plain table"));
     assert_eq!(hash(&reading), in_hex(&Sha256::digest(bytes)));
     reading
 }
 
-fn hash(reading: &Reading) -> &str {
+fn hash(reading: &ReadRecord) -> &str {
     let Origin::Measured { sha256, .. } = reading.trial.origin() else { panic!("it was read from a file") };
     sha256
 }
@@ -62,7 +62,7 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Sees that a message has these parts.
-fn assert_told(result: Result<Reading, ReadError>, parts: &[&str]) {
+fn assert_told(result: Result<ReadRecord, ReadError>, parts: &[&str]) {
     let message = result.expect_err("the file is wrong").to_string();
     for part in parts {
         assert!(message.contains(part), "`{part}` is not in: {message}");
@@ -108,15 +108,7 @@ fn what_is_not_read_is_named_with_a_cure() {
 
 #[test]
 fn a_long_text_is_written_as_it_is_read() {
-    struct Endless(u64);
-    impl super::text::Lines for Endless {
-        fn write_line(&mut self, text: &mut String) -> Result<bool, crate::reader::Problem> {
-            self.0 += 1;
-            text.push_str("1\t2\t3\n");
-            Ok(true)
-        }
-    }
-    let mut written = super::text::Written::new(Endless(0));
+    let mut written = super::text::Written::new(std::iter::repeat_with(|| Ok("1\t2\t3\n".to_owned())));
     let mut first = [0; 10];
     written.read_exact(&mut first).expect("there is no end of it");
     assert_eq!(&first, b"1\t2\t3\n1\t2\t");

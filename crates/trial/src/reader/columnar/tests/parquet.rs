@@ -220,21 +220,3 @@ fn codec_place(bytes: &[u8], name: &[u8]) -> usize {
     let found = ends.filter(|(_, window)| window.starts_with(name) && window[name.len()] == 0x15);
     found.map(|(place, _)| place + name.len() + 1).find(|&place| bytes[place] == 2).expect("snappy is there")
 }
-
-/// Time for a million rows; `cargo test --release -p kempf-trial columnar -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-fn speed() {
-    let time: Vec<f64> = (0..1_000_000).map(|row| f64::from(row) * 0.1).collect();
-    let heading: Vec<f64> = time.iter().map(|t| (t / 60.0).sin() * 20.123 + 180.0).collect();
-    let rudder: Vec<f64> = time.iter().map(|t| (t / 60.0).cos() * 10.321).collect();
-    let bytes = plain(&time, &heading, &rudder);
-    let begin = std::time::Instant::now();
-    let written = text(bytes.clone());
-    println!("{} MB to {} MB of text: {:?}", bytes.len() >> 20, written.len() >> 20, begin.elapsed());
-    for (what, bytes) in [("parquet", &bytes[..]), ("the same text", written.as_bytes())] {
-        let begin = std::time::Instant::now();
-        let rows = parse(bytes).map(|reading| reading.trial.len()).map_err(|error| error.to_string());
-        println!("{what}: {:?}, {rows:?}", begin.elapsed());
-    }
-}

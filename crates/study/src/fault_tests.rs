@@ -5,8 +5,9 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::commands::{merge, report};
-use crate::options::{Common, FigureChoice, Format, StudyStyle, Style};
+use crate::commands::merge::{self, MergeRequest};
+use crate::commands::report::{self, ReportRequest};
+use crate::options::{Common, FigureChoice, FigureOptions, Format, StudyFigureOptions};
 use campaign::NoObserver;
 use campaign::collect::collect;
 use campaign::disk::faults;
@@ -40,8 +41,14 @@ fn quiet(out: Option<&Path>) -> Common {
 }
 
 /// Figures that take no time.
-const STYLE: StudyStyle =
-    StudyStyle { style: Style { paper: Some(60.0), dpi: 72.0, style: None }, figures: FigureChoice::Named };
+const STYLE: StudyFigureOptions = StudyFigureOptions {
+    style: FigureOptions { paper: Some(60.0), dpi: 72.0, style: None },
+    figures: FigureChoice::Named,
+};
+
+fn report_of(folder: &Path) -> ReportRequest {
+    ReportRequest { folder: folder.to_owned(), open: false, style: STYLE }
+}
 
 /// Runs a scenario into a folder.
 fn run(scenario: &Scenario, shard: Shard, folder: &Path) -> Result<(), Failure> {
@@ -137,7 +144,7 @@ fn no_fault_of_the_disk_loses_anything_of_a_report() {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let whole = desk.path().join("whole");
     run(&scenario(""), Shard::WHOLE, &whole).unwrap_or_else(|failure| panic!("{failure}"));
-    assert!(fail_each(Some(&whole), |folder| report::run(folder, false, &STYLE, &quiet(None))) > 50);
+    assert!(fail_each(Some(&whole), |folder| report::run(&report_of(folder), &quiet(None))) > 50);
 }
 
 #[test]
@@ -148,7 +155,12 @@ fn no_fault_of_the_disk_loses_anything_of_a_merge() {
     for (number, folder) in (1..).zip(&shards) {
         run(&study, Shard { number, of: 2 }, folder).unwrap_or_else(|failure| panic!("{failure}"));
     }
-    assert!(fail_each(None, |folder| merge::run(&shards, &STYLE, &quiet(Some(folder)))) > 50);
+    assert!(
+        fail_each(None, |folder| merge::run(
+            &MergeRequest { folders: shards.clone(), style: STYLE },
+            &quiet(Some(folder))
+        )) > 50
+    );
 }
 
 /// Every operation of going on after a kill fails once; no part is lost by it.

@@ -1,9 +1,9 @@
 //! A record cut into windows that begin at measured states, and the hull stepped through them.
 
-use super::coefficients::PlanarCoefficients;
-use super::model::LARGEST_STEP;
+use super::coefficients::{FASTEST, LARGEST_STEP, PlanarCoefficients};
 use super::record::{filled, smoothed};
 use super::yaw::Yaw;
+use nalgebra::DMatrix;
 use trial::{Channel, Trial};
 
 /// Length of a window in units of L/U₀: half a zig-zag of a full ship, too short for its instability to rule.
@@ -15,11 +15,11 @@ pub(crate) const SMOOTHED: f64 = 0.25;
 /// A last window is kept if it has this share of the others.
 const KEPT: f64 = 0.25;
 
-/// Velocities beyond this many U₀ and yaw rates beyond as many U₀/L are no ship's; a bad trial step stays finite.
-const FASTEST: f64 = 10.0;
-
 /// Kinds of outputs: heading, yaw rate, surge, sway.
 pub(crate) const OUTPUTS: usize = 4;
+
+/// Those of the yaw equation alone.
+const OUTPUTS_OF_YAW: usize = 2;
 
 /// A record in units of L and U₀.
 #[derive(Debug, Clone)]
@@ -62,36 +62,34 @@ impl WindowedRecord {
         Some(Self { rudder: trial.rudder().to_vec(), readings: [heading, rate, surge, sway], states, windows, time })
     }
 
-    /// Heading, yaw rate, surge and sway at one row.
-    pub fn state(&self, row: usize) -> [f64; OUTPUTS] {
-        std::array::from_fn(|i| self.states[i][row])
+    /// States of the hull minus readings in all rows of a window that begins at the measured state, zero where nothing
+    /// was read: a column an output. Without coefficients of surge and sway these are as measured, and no outputs.
+    pub fn errors(&self, window: usize, planar: Option<&PlanarCoefficients>, yaw: &Yaw) -> DMatrix<f64> {
+        let [first, last] = self.windows[window];
+        let states = self.replay(planar, yaw, [first, last]);
+        let outputs = if planar.is_some() { OUTPUTS } else { OUTPUTS_OF_YAW };
+        DMatrix::from_fn(states.len(), outputs, |row, output| {
+            let reading = self.readings[output][first + row];
+            if reading.is_finite() { states[row][output] - reading } else { 0.0 }
+        })
     }
 
-    /// States of the hull in all rows of a window that begins at the measured state. With `driven`, surge and sway are
-    /// those of the record.
-    pub fn replay(
-        &self,
-        planar: &PlanarCoefficients,
-        yaw: &Yaw,
-        [first, last]: [usize; 2],
-        driven: bool,
-    ) -> Vec<[f64; OUTPUTS]> {
+    fn replay(&self, planar: Option<&PlanarCoefficients>, yaw: &Yaw, [first, last]: [usize; 2]) -> Vec<[f64; OUTPUTS]> {
         let bounded = |value: f64| value.clamp(-FASTEST, FASTEST);
-        let mut state = self.state(first);
-        let mut found = Vec::with_capacity(last + 1 - first);
-        found.push(state);
+        let mut state: [f64; OUTPUTS] = std::array::from_fn(|i| self.states[i][first]);
+        let mut found = vec![state];
         for row in first + 1..=last {
             let span = self.time[row] - self.time[row - 1];
             let pieces = (span / LARGEST_STEP).ceil().max(1.0);
             let step = span / pieces;
             let between = |values: &[f64], share: f64| values[row - 1] + share * (values[row] - values[row - 1]);
             for piece in 0..pieces as usize {
-                let rates = |state: [f64; OUTPUTS], place: f64| {
+                let rates = |[_, r, u, v]: [f64; OUTPUTS], place: f64| {
                     let share = place / pieces;
                     let rudder = between(&self.rudder, share);
-                    let [_, r, u, v] = state;
-                    let [u, v] = if driven { [2, 3].map(|i| between(&self.states[i], share)) } else { [u, v] };
-                    let [surge, sway] = if driven { [0.0; 2] } else { planar.rates(u, v, r, rudder) };
+                    let driven = || [2, 3].map(|i| between(&self.states[i], share));
+                    let [u, v] = if planar.is_some() { [u, v] } else { driven() };
+                    let [surge, sway] = planar.map_or([0.0; 2], |planar| planar.rates(u, v, r, rudder));
                     [r, yaw.rate(u, v, r, rudder, 0.0), surge, sway]
                 };
                 let begin = rates(state, piece as f64);
@@ -100,7 +98,7 @@ impl WindowedRecord {
                 let next: [f64; OUTPUTS] = std::array::from_fn(|i| state[i] + step * rate[i]);
                 state = [next[0], bounded(next[1]), bounded(next[2]), bounded(next[3])];
             }
-            found.push(if driven { [state[0], state[1], self.states[2][row], self.states[3][row]] } else { state });
+            found.push(state);
         }
         found
     }

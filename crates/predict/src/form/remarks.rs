@@ -1,0 +1,114 @@
+//! Remarks of the form of MSC/Circ.1053: conditions that are not met or not known, sides that were not tried, and records
+//! that are no manoeuvre of the form.
+
+use indexmap::IndexMap;
+use ship::Particulars;
+use trial::{Conditions, Loading};
+
+use super::record::TestedManoeuvre;
+use crate::imo::{CIRCLE, TEN, TWENTY};
+use crate::replay::file_of;
+
+/// Length from which the criteria hold, m. Source: MSC.137(76), 2.
+const SHORTEST_SHIP: f64 = 100.0;
+
+/// The remarks, in the order in which a reader asks.
+pub(crate) fn remarks(
+    tested: &[TestedManoeuvre],
+    declared: Option<(&str, &Conditions)>,
+    particulars: Option<Particulars>,
+) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if let Some(Particulars { length, speed }) = particulars.filter(|own| own.length < SHORTEST_SHIP) {
+        remarks.push(format!(
+            "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length), and limits of \
+             the 10/10 zig-zag follow L/V, here {length:.2} m at {speed:.2} m/s; for a model give --length-m and \
+             --speed-kn of the ship"
+        ));
+    }
+    // What holds for several files is said once.
+    let mut files: IndexMap<String, Vec<&str>> = IndexMap::new();
+    for one in tested {
+        for text in of_record(one) {
+            files.entry(text).or_default().push(file_of(one.record.trial));
+        }
+    }
+    if let Some((file, text)) = declared.and_then(|(file, form)| Some((file, form.remark.clone()?))) {
+        files.entry(text).or_default().push(file);
+    }
+    remarks.extend(files.into_iter().map(|(text, files)| format!("{}: {text}", files.join(", "))));
+    remarks.extend(sides(tested));
+    if tested.iter().any(|one| one.what.is_some()) {
+        remarks.push(String::from(
+            "not looked at: the test speed (at least 90 % of that at 85 % of the engine output) and the engine",
+        ));
+    }
+    remarks.extend(tested.iter().filter_map(of_current));
+    for manoeuvre in [TEN, TWENTY, CIRCLE] {
+        for side in ["port", "starboard"] {
+            if tested.iter().filter(|one| one.is(manoeuvre, side)).count() > 1 {
+                remarks.push(format!(
+                    "{manoeuvre} to {side}: several records; the first that is at full load or corrected is used"
+                ));
+            }
+        }
+    }
+    remarks
+}
+
+/// Manoeuvres that were not tried, or to one side only.
+fn sides(tested: &[TestedManoeuvre]) -> Vec<String> {
+    let names = [(TEN, "10/10 zig-zag"), (TWENTY, "20/20 zig-zag"), (CIRCLE, "turning circle")];
+    let missing = |(manoeuvre, name): (&'static str, &str)| {
+        let tried = ["port", "starboard"].map(|side| tested.iter().any(|one| one.is(manoeuvre, side)).then_some(side));
+        match tried {
+            [Some(_), Some(_)] => None,
+            [None, None] => Some(format!("{name}: not tried")),
+            [Some(side), None] | [None, Some(side)] => {
+                Some(format!("{name}: tried to {side} only; trials are asked for to both sides"))
+            }
+        }
+    };
+    names.into_iter().filter_map(missing).collect()
+}
+
+/// What a current did to the track of a record.
+fn of_current(tested: &TestedManoeuvre) -> Option<String> {
+    let file = file_of(tested.record.trial);
+    match tested.record.current {
+        Some(current) => Some(format!(
+            "{file}: a current of {:.2} m/s that sets to {:.0}° was taken out of the track",
+            current.speed_m_s, current.set_deg
+        )),
+        None => tested.what.filter(|(manoeuvre, _)| *manoeuvre == CIRCLE).map(|_| {
+            format!(
+                "{file}: the turn is shorter than the 720° that show a current; what one did to the track is not known"
+            )
+        }),
+    }
+}
+
+/// What is to be said of one record.
+fn of_record(tested: &TestedManoeuvre) -> Vec<String> {
+    let record = &tested.record;
+    let mut remarks: Vec<String> = tested.remark.iter().cloned().collect();
+    // A record that fills in nothing need not be by the book.
+    if tested.what.is_some() {
+        remarks.extend(record.trial.shortcomings().iter().map(ToString::to_string));
+        if record.loading() == Some(Loading::Partial) && record.correction.is_none() {
+            remarks.push(String::from(
+                "tested at partial load and not corrected, and the criteria are for full load; give --ballast with a model \
+                 of the ship as she was tried",
+            ));
+        }
+        if let Some(correction) = record.correction {
+            remarks.extend(correction.warnings.iter().map(|caveat| format!("correction to full load: {caveat}")));
+            for (name, figure) in correction.figures.iter().filter(|(name, _)| tested.figure(name).is_some()) {
+                let name = name.replace('_', " ");
+                remarks.extend(figure.warnings.iter().map(|caveat| format!("correction of {name}: {caveat}")));
+            }
+        }
+    }
+    remarks.extend(record.trial.conditions().remark.clone());
+    remarks
+}

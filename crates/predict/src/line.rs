@@ -1,0 +1,39 @@
+//! A straight line by least squares.
+
+/// A straight line through points, with what it leaves.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StraightLine {
+    /// Means of the points along and across.
+    pub mean: [f64; 2],
+    pub slope: f64,
+    /// Sum of squares along, about the mean.
+    spread: f64,
+    /// Variance of what the line leaves.
+    variance: f64,
+    count: f64,
+}
+
+impl StraightLine {
+    /// The line through the points that are finite; `None` for less than three, or all at one place.
+    pub fn through(points: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
+        let points: Vec<(f64, f64)> = points.filter(|(_, y)| y.is_finite()).collect();
+        let count = points.len() as f64;
+        let mean = [points.iter().map(|p| p.0).sum::<f64>() / count, points.iter().map(|p| p.1).sum::<f64>() / count];
+        let spread: f64 = points.iter().map(|(x, _)| (x - mean[0]).powi(2)).sum();
+        let slope = points.iter().map(|(x, y)| (x - mean[0]) * (y - mean[1])).sum::<f64>() / spread;
+        let square: f64 = points.iter().map(|(x, y)| (y - mean[1] - slope * (x - mean[0])).powi(2)).sum();
+        let line = Self { mean, slope, spread, variance: square / (count - 2.0), count };
+        (points.len() >= 3 && spread > 0.0).then_some(line)
+    }
+
+    /// Standard deviation of the slope.
+    pub fn slope_sd(&self) -> f64 {
+        (self.variance / self.spread).sqrt()
+    }
+
+    /// Value at zero with its standard deviation.
+    pub fn at_zero(&self) -> (f64, f64) {
+        let [x, y] = self.mean;
+        (y - self.slope * x, (self.variance / self.count + self.variance * x * x / self.spread).sqrt())
+    }
+}
