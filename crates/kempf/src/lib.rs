@@ -15,6 +15,7 @@
 //! | find what a first-order model lacks | [`trace`](mod@trace) |
 //! | read a scenario file | [`scenario`] |
 //! | run one to rows and summarise them | [`campaign`] |
+//! | hold methods against each other on published records | [`campaign::benchmark`] |
 //!
 //! ```
 //! use kempf::prelude::*;
