@@ -1,6 +1,6 @@
 //! Figures of a benchmark: scores over those of the reference.
 
-use campaign::benchmark::Results;
+use campaign::benchmark::BenchDocument;
 use campaign::benchmark::board::Board;
 use campaign::disk;
 use campaign::folder::ResultFolder;
@@ -35,7 +35,7 @@ pub fn capital(words: &str) -> String {
 }
 
 /// The figures, one for every kind of record.
-pub fn figures(results: &Results) -> Vec<PageFigure> {
+pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
     let figure = |field: &str| {
         let caption = format!(
             "{}: median of the score over that of {} in the same case, with 95 % intervals where there are six independent \
@@ -60,7 +60,7 @@ fn origin(method: &str) -> CurveOrigin {
     }
 }
 
-fn ratios(results: &Results, field: &str) -> Option<NamedRows> {
+fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let boards: Vec<_> = results.boards.iter().filter(|board| board.field == field).collect();
     let others: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
     let has_ratios = boards.iter().flat_map(|board| &board.standings).any(|standing| standing.ratio.is_some());

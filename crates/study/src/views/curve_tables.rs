@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use campaign::folder::ResultFolder;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 use report::figures::Replays;
 use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
@@ -68,7 +68,7 @@ pub fn write_replays(curves: &FitCurves, folder: &ResultFolder) -> Result<(), Fa
 }
 
 /// Writes the replays of every showcase beside their figure.
-pub fn write_showcases(stored: &Stored, figures: &[StudyFigure], folder: &ResultFolder) -> Result<(), Failure> {
+pub fn write_showcases(stored: &StoredStudy, figures: &[StudyFigure], folder: &ResultFolder) -> Result<(), Failure> {
     for (place, figure) in figures.iter().filter(|(_, figure)| figure.stem.contains("replays")) {
         let FigurePlace::Showcase(index) = place else { continue };
         let showcase = &stored.showcases[*index];

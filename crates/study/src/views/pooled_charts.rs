@@ -71,13 +71,13 @@ const SPREADS: f64 = 4.0;
 
 /// Distributions of the errors in the cells whose detail was asked for; nothing for fewer than ten trials.
 pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
-    type Of = fn(&MethodDetail) -> &Option<summary::Violin>;
+    type Of = fn(&MethodDetail) -> &Option<summary::ErrorDensity>;
     let column = |detail: &CellDetail, title: &str, of: Of| RowsColumn {
         x: Ruler::decimal(title).within(SPREADS, Some(0.0)),
         rows: (detail.methods.iter().enumerate())
             .map(|(method, own)| {
                 let look = origin(design, method).look();
-                let violin = |own: &summary::Violin| RowKind::Violin(look, own.density.clone(), own.quantiles);
+                let violin = |own: &summary::ErrorDensity| RowKind::Violin(look, own.density.clone(), own.quantiles);
                 of(own).as_ref().map(|own| RowItem::new("", violin(own))).into_iter().collect()
             })
             .collect(),

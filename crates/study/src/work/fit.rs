@@ -22,7 +22,7 @@ use crate::scales::{self, RescaledRecords};
 use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
 use campaign::curves::{curve, replay_curves, zigzag_figure};
-use campaign::known::{self, Shown};
+use campaign::known::{self, RecordFacts};
 
 /// What came out.
 pub struct FitResult {
@@ -120,7 +120,7 @@ pub fn fit(
     let zigzags: Vec<Result<ZigZag, ZigZagError>> = records.iter().map(ZigZag::of).collect();
     let entries_of_trials: Vec<TrialEntry> =
         records.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag)).collect();
-    let shown = Shown::of(trials).with_motion();
+    let shown = RecordFacts::of(trials).with_motion();
     warn_of_no_track(&shown, warnings);
     let document = FitDocument {
         schema: "fit/1".into(),
