@@ -17,9 +17,9 @@
 //!
 //! ```
 //! use kempf_report::figures::{Layer, LayerKind, PanelRow, Panels, Plot, Ruler};
-//! use kempf_report::{Curve, Theme};
+//! use kempf_report::{PlotCurve, Theme};
 //!
-//! let heading = Curve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]);
+//! let heading = PlotCurve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]);
 //! let layers = vec![Layer::new("recorded heading", heading, LayerKind::Record)];
 //! let figure = Plot::from(Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.3), layers)]));
 //! let figure = figure.draw(&Theme::screen());
