@@ -6,12 +6,12 @@ use std::sync::Arc;
 use campaign::collect::in_memory;
 use campaign::curves::zigzag_figure;
 use rayon::prelude::*;
-use report::{Figure, Theme};
+use report::{Drawing, Theme};
 use scenario::Scenario;
 use trial::ZigZag;
 
 use crate::records::{ROWS, first_order_zig_zag, record};
-use crate::work::{Group, Reach, Work};
+use crate::work::{Reach, Work, WorkGroup};
 
 /// Trials of one go.
 const TRIALS: u64 = 256;
@@ -43,15 +43,15 @@ fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
     move || in_memory(&scenario).1.len()
 }
 
-fn drawing() -> Figure {
+fn drawing() -> Drawing {
     let trial = record(&first_order_zig_zag(ROWS));
     let zigzag = ZigZag::of(&trial).expect("a zig-zag");
     report::figures::Plot::from(zigzag_figure(&trial, &zigzag)).draw(&Theme::screen())
 }
 
 /// Trials, scenarios and figures.
-pub fn studies() -> Group {
-    let mut group = Group::new(
+pub fn studies() -> WorkGroup {
+    let mut group = WorkGroup::new(
         "study",
         "Trials, scenarios and figures",
         "Trials are those of benches/throughput.toml: 271 samples, seven methods, rows kept in memory. The figure is a zig-zag of \

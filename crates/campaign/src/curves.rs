@@ -2,8 +2,8 @@
 
 use identify::Estimate;
 use identify::replay::replay;
-use report::figures::{Mark, Overshoot, Replay, Span, ZigzagTrial};
-use report::{Curve, Origin};
+use report::figures::{OvershootMark, ReplayCurves, TimeSpan, ZigZagMark, ZigzagTrial};
+use report::{CurveOrigin, PlotCurve};
 use scenario::MethodName;
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag};
@@ -11,26 +11,26 @@ use trial::{Trial, ZigZag};
 use crate::answer::MethodEntry;
 
 /// How a method of a scenario is drawn: as itself when it goes by its id, else as a variant of it.
-pub fn origin(names: &[MethodName], label: &str) -> Origin {
+pub fn origin(names: &[MethodName], label: &str) -> CurveOrigin {
     match names.iter().find(|name| name.label == label) {
         Some(own) if own.id != label => {
             let mut variants = names.iter().filter(|name| name.id == own.id && name.label != name.id);
             let number = variants.position(|name| name.label == label).unwrap_or(0);
-            Origin::Variant { label: label.to_owned(), method: own.id.clone(), number }
+            CurveOrigin::Variant { label: label.to_owned(), method: own.id.clone(), number }
         }
-        _ => Origin::Method(label.to_owned()),
+        _ => CurveOrigin::Method(label.to_owned()),
     }
 }
 
 /// Radians over seconds as degrees over seconds.
-pub fn curve(time: &[f64], angle: &[f64]) -> Curve {
-    Curve::new(time, angle.iter().map(|&angle| to_deg(angle)).collect::<Vec<_>>())
+pub fn curve(time: &[f64], angle: &[f64]) -> PlotCurve {
+    PlotCurve::new(time, angle.iter().map(|&angle| to_deg(angle)).collect::<Vec<_>>())
 }
 
 /// The trial with its characteristic points marked.
 pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
-    let mark = |time: f64, heading: f64| Mark { t_s: time, heading_deg: to_deg(heading) };
-    let span = |from: f64, length: f64| Span { from_s: from, to_s: from + length };
+    let mark = |time: f64, heading: f64| ZigZagMark { t_s: time, heading_deg: to_deg(heading) };
+    let span = |from: f64, length: f64| TimeSpan { from_s: from, to_s: from + length };
     let first = zigzag.executes.first();
     // The cycle that begins with the second execute of a trial holds the transient of the start: drawn only if alone.
     let settled = if zigzag.begins_within_trial() { 0 } else { 2 };
@@ -42,7 +42,8 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
         title: None,
         heading: curve(trial.time(), trial.heading()),
         // What is left of a thinned record are its extremes: as points they would be taken for the record.
-        heading_as_points: trial.len() <= Curve::MOST_PAIRS && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
+        heading_as_points: trial.len() <= PlotCurve::MOST_PAIRS
+            && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
         rudder: curve(trial.time(), trial.rudder()),
         truth: None,
         executes: zigzag.executes.iter().map(|execute| mark(execute.time.value, execute.heading.value)).collect(),
@@ -51,7 +52,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
             .iter()
             .map(|overshoot| {
                 let execute = &zigzag.executes[overshoot.execute];
-                Overshoot {
+                OvershootMark {
                     execute: mark(execute.time.value, execute.heading.value),
                     extremum: mark(overshoot.peak_time.value, overshoot.peak_heading.value),
                     angle_deg: to_deg(overshoot.angle.value),
@@ -74,14 +75,14 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
 pub fn replay_curves(
     trial: &Trial,
     answers: &[(MethodEntry, Option<Estimate>)],
-    origin: impl Fn(&str) -> Origin,
-) -> Vec<Replay> {
+    origin: impl Fn(&str) -> CurveOrigin,
+) -> Vec<ReplayCurves> {
     answers
         .iter()
         .filter_map(|(entry, estimate)| {
             let replay = replay(trial, &estimate.as_ref()?.response)?;
             let (time, residual): (Vec<f64>, Vec<f64>) = replay.observed().unzip();
-            Some(Replay {
+            Some(ReplayCurves {
                 origin: origin(&entry.method),
                 heading: curve(&replay.time, &replay.heading),
                 residual: curve(&time, &residual),

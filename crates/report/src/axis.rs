@@ -2,7 +2,7 @@
 //! a separate place for zero, and a list of names.
 
 use crate::number;
-use crate::ticks::{self, Steps};
+use crate::ticks::{self, TickSteps};
 
 /// Share of a logarithmic axis that belongs to zero and the break.
 const ZERO_SLOT: f64 = 0.21;
@@ -15,8 +15,8 @@ const BREAK_AT: f64 = 0.155;
 const LARGEST: f64 = 1e100;
 
 #[derive(Debug, Clone, PartialEq)]
-enum Scale {
-    Linear(Steps),
+enum AxisScale {
+    Linear(TickSteps),
     Log {
         zero: bool,
     },
@@ -28,10 +28,10 @@ enum Scale {
 
 /// One axis of a panel.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Axis {
+pub(crate) struct PlotAxis {
     lo: f64,
     hi: f64,
-    scale: Scale,
+    scale: AxisScale,
     /// Distance of the ticks, where it is not for the axis to choose.
     step: Option<f64>,
 }
@@ -43,9 +43,9 @@ pub(crate) struct Ticks {
     pub minor: Vec<f64>,
 }
 
-impl Axis {
+impl PlotAxis {
     /// From `lo` to `hi`; a range that is empty or not finite is widened to something that can be drawn.
-    pub(crate) fn linear(lo: f64, hi: f64, steps: Steps) -> Self {
+    pub(crate) fn linear(lo: f64, hi: f64, steps: TickSteps) -> Self {
         let (lo, hi) = match (lo.is_finite(), hi.is_finite()) {
             (true, true) => (lo.min(hi), lo.max(hi)),
             (true, false) => (lo, lo),
@@ -61,11 +61,11 @@ impl Axis {
             let half = if lo == 0.0 { 1.0 } else { 0.05 * lo.abs() };
             (lo - half, hi + half)
         };
-        Self { lo, hi, scale: Scale::Linear(steps), step: None }
+        Self { lo, hi, scale: AxisScale::Linear(steps), step: None }
     }
 
     /// Covers the finite `values` with a margin of `pad` of their range on either side.
-    pub(crate) fn covering(values: impl IntoIterator<Item = f64>, pad: f64, steps: Steps) -> Self {
+    pub(crate) fn covering(values: impl IntoIterator<Item = f64>, pad: f64, steps: TickSteps) -> Self {
         match range(values) {
             Some((lo, hi)) => Self::linear(lo - pad * (hi - lo), hi + pad * (hi - lo), steps),
             None => Self::linear(f64::NAN, f64::NAN, steps),
@@ -80,22 +80,22 @@ impl Axis {
         let (lo, hi) = (lo.clamp(LARGEST.recip(), LARGEST), hi.clamp(LARGEST.recip(), LARGEST));
         let pad = ((hi / lo).log10() * 0.06).max(0.05);
         let widen = 10f64.powf(pad);
-        Self { lo: lo / widen, hi: hi * widen, scale: Scale::Log { zero }, step: None }
+        Self { lo: lo / widen, hi: hi * widen, scale: AxisScale::Log { zero }, step: None }
     }
 
     /// From `lo` to `hi`, both positive, on a logarithmic scale.
     pub(crate) fn log_between(lo: f64, hi: f64) -> Self {
-        Self { lo, hi, scale: Scale::Log { zero: false }, step: None }
+        Self { lo, hi, scale: AxisScale::Log { zero: false }, step: None }
     }
 
     /// A list of names, one unit each, the first at the top (of a vertical axis).
     pub(crate) fn names(names: Vec<String>) -> Self {
-        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Names(names), step: None }
+        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: AxisScale::Names(names), step: None }
     }
 
     /// A list of short names along a horizontal axis, one unit each, the first at the left.
     pub(crate) fn columns(names: Vec<String>) -> Self {
-        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Columns(names), step: None }
+        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: AxisScale::Columns(names), step: None }
     }
 
     /// The same axis with ticks at the multiples of `step`, as long as there are two.
@@ -104,12 +104,12 @@ impl Axis {
     }
 
     /// Kind, ends and where the scale begins as a fraction, or the names: what a value is found with from its place.
-    pub(crate) fn told(&self) -> String {
+    pub(crate) fn described(&self) -> String {
         let Self { lo, hi, .. } = self;
         match &self.scale {
-            Scale::Linear(_) => format!("linear|{lo}|{hi}"),
-            Scale::Log { zero } => format!("log|{lo}|{hi}|{}", if *zero { ZERO_SLOT } else { 0.0 }),
-            Scale::Names(names) | Scale::Columns(names) => format!("names|{lo}|{hi}|{}", names.join("|")),
+            AxisScale::Linear(_) => format!("linear|{lo}|{hi}"),
+            AxisScale::Log { zero } => format!("log|{lo}|{hi}|{}", if *zero { ZERO_SLOT } else { 0.0 }),
+            AxisScale::Names(names) | AxisScale::Columns(names) => format!("names|{lo}|{hi}|{}", names.join("|")),
         }
     }
 
@@ -125,22 +125,22 @@ impl Axis {
 
     /// Whether it has numbers and no names.
     pub(crate) fn is_numeric(&self) -> bool {
-        matches!(self.scale, Scale::Linear(_) | Scale::Log { .. })
+        matches!(self.scale, AxisScale::Linear(_) | AxisScale::Log { .. })
     }
 
     /// Whether it is logarithmic.
     pub(crate) fn is_logarithmic(&self) -> bool {
-        matches!(self.scale, Scale::Log { .. })
+        matches!(self.scale, AxisScale::Log { .. })
     }
 
     /// Whether it is a list of names from left to right.
     pub(crate) fn is_columns(&self) -> bool {
-        matches!(self.scale, Scale::Columns(_))
+        matches!(self.scale, AxisScale::Columns(_))
     }
 
     /// Where the axis is broken, as a fraction.
     pub(crate) fn break_at(&self) -> Option<f64> {
-        matches!(self.scale, Scale::Log { zero: true }).then_some(BREAK_AT)
+        matches!(self.scale, AxisScale::Log { zero: true }).then_some(BREAK_AT)
     }
 
     /// Place of `value` as a fraction of the axis, outside 0..1 when it lies beyond the ends; `None` when it has no
@@ -150,30 +150,30 @@ impl Axis {
             return None;
         }
         match &self.scale {
-            Scale::Linear(_) | Scale::Columns(_) => Some((value - self.lo) / (self.hi - self.lo)),
-            Scale::Names(_) => Some(1.0 - (value - self.lo) / (self.hi - self.lo)),
-            Scale::Log { zero } if value > 0.0 => {
+            AxisScale::Linear(_) | AxisScale::Columns(_) => Some((value - self.lo) / (self.hi - self.lo)),
+            AxisScale::Names(_) => Some(1.0 - (value - self.lo) / (self.hi - self.lo)),
+            AxisScale::Log { zero } if value > 0.0 => {
                 let along = (value / self.lo).log10() / (self.hi / self.lo).log10();
                 let start = if *zero { ZERO_SLOT } else { 0.0 };
                 Some(start + along * (1.0 - start))
             }
-            Scale::Log { zero } => (*zero && value == 0.0).then_some(ZERO_AT),
+            AxisScale::Log { zero } => (*zero && value == 0.0).then_some(ZERO_AT),
         }
     }
 
     /// The marks, at most `count` intervals (names are always all shown).
     pub(crate) fn ticks(&self, count: usize) -> Ticks {
         match &self.scale {
-            Scale::Linear(steps) => self.linear_ticks(count, *steps),
-            Scale::Log { zero } => self.log_ticks(count, *zero),
-            Scale::Names(names) | Scale::Columns(names) => {
+            AxisScale::Linear(steps) => self.linear_ticks(count, *steps),
+            AxisScale::Log { zero } => self.log_ticks(count, *zero),
+            AxisScale::Names(names) | AxisScale::Columns(names) => {
                 let at = |i: usize| self.fraction(i as f64).expect("an index is finite");
                 Ticks { major: names.iter().enumerate().map(|(i, n)| (at(i), n.clone())).collect(), minor: vec![] }
             }
         }
     }
 
-    fn linear_ticks(&self, count: usize, steps: Steps) -> Ticks {
+    fn linear_ticks(&self, count: usize, steps: TickSteps) -> Ticks {
         let divide = |intervals: usize| {
             let step = ticks::nice_step(self.hi - self.lo, intervals, steps);
             (step, ticks::multiples(self.lo, self.hi, step))
@@ -247,23 +247,23 @@ pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)>
 mod tests {
     use super::*;
 
-    fn labels(axis: &Axis, count: usize) -> Vec<String> {
+    fn labels(axis: &PlotAxis, count: usize) -> Vec<String> {
         axis.ticks(count).major.into_iter().map(|(_, label)| label).collect()
     }
 
     #[test]
     fn degenerate_ranges_can_be_drawn() {
         for axis in [
-            Axis::covering([], 0.1, Steps::Time),
-            Axis::covering([3.0, 3.0], 0.1, Steps::Angle),
-            Axis::covering([0.0], 0.1, Steps::Decimal),
-            Axis::linear(f64::NAN, 4.0, Steps::Decimal),
-            Axis::linear(-1e308, 1e308, Steps::Angle),
-            Axis::linear(1e-320, 2e-320, Steps::Time),
-            Axis::linear(1e9, 1e9 + 1e-3, Steps::Time),
-            Axis::log_covering([0.0]),
-            Axis::log_covering([5.0]),
-            Axis::names(vec![]),
+            PlotAxis::covering([], 0.1, TickSteps::Time),
+            PlotAxis::covering([3.0, 3.0], 0.1, TickSteps::Angle),
+            PlotAxis::covering([0.0], 0.1, TickSteps::Decimal),
+            PlotAxis::linear(f64::NAN, 4.0, TickSteps::Decimal),
+            PlotAxis::linear(-1e308, 1e308, TickSteps::Angle),
+            PlotAxis::linear(1e-320, 2e-320, TickSteps::Time),
+            PlotAxis::linear(1e9, 1e9 + 1e-3, TickSteps::Time),
+            PlotAxis::log_covering([0.0]),
+            PlotAxis::log_covering([5.0]),
+            PlotAxis::names(vec![]),
         ] {
             assert!(axis.lo < axis.hi && axis.lo.is_finite() && axis.hi.is_finite());
             assert!(axis.ticks(5).major.iter().all(|(f, _)| f.is_finite()));
@@ -272,18 +272,18 @@ mod tests {
 
     #[test]
     fn logarithmic_places_and_labels() {
-        let axis = Axis { lo: 1e-6, hi: 1.0, scale: Scale::Log { zero: false }, step: None };
+        let axis = PlotAxis { lo: 1e-6, hi: 1.0, scale: AxisScale::Log { zero: false }, step: None };
         assert!((axis.fraction(1e-3).unwrap() - 0.5).abs() < 1e-12);
         assert_eq!(axis.fraction(0.0), None);
         assert_eq!(axis.fraction(-1.0), None);
         assert_eq!(labels(&axis, 8), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
         assert_eq!(labels(&axis, 3), ["10⁻⁶", "10⁻³", "10⁰"]);
-        assert_eq!(labels(&Axis::log_covering([0.05, 0.5, 3.0]), 4), ["0.1", "1"]);
+        assert_eq!(labels(&PlotAxis::log_covering([0.05, 0.5, 3.0]), 4), ["0.1", "1"]);
     }
 
     #[test]
     fn zero_has_its_place_on_a_logarithmic_axis() {
-        let axis = Axis::log_covering([0.0, 0.1, 1.0]);
+        let axis = PlotAxis::log_covering([0.0, 0.1, 1.0]);
         let (zero, tenth) = (axis.fraction(0.0).unwrap(), axis.fraction(0.1).unwrap());
         assert!(zero < axis.break_at().unwrap() && axis.break_at().unwrap() < tenth);
         assert_eq!(labels(&axis, 4)[0], "0");
@@ -291,14 +291,14 @@ mod tests {
 
     #[test]
     fn a_given_step_is_kept_where_it_gives_two_ticks() {
-        let axis = Axis::linear(0.0, 10.0, Steps::Decimal);
+        let axis = PlotAxis::linear(0.0, 10.0, TickSteps::Decimal);
         assert_eq!(labels(&axis.clone().stepped(4.0), 9), ["0", "4", "8"]);
         assert_eq!(labels(&axis.clone().stepped(50.0), 2), labels(&axis, 2));
     }
 
     #[test]
     fn names_run_downwards() {
-        let axis = Axis::names(vec!["a".into(), "b".into()]);
+        let axis = PlotAxis::names(vec!["a".into(), "b".into()]);
         assert!(axis.fraction(0.0) > axis.fraction(1.0));
         assert_eq!(labels(&axis, 1), ["a", "b"]);
     }

@@ -1,6 +1,6 @@
 //! What a style changes in a finished drawing besides sizes: one colour for another, and the ends of axes.
 
-use crate::axis::Axis;
+use crate::axis::PlotAxis;
 use crate::markup::is_markup;
 use crate::paint::Paint;
 
@@ -29,7 +29,7 @@ impl Changes {
 
     /// Ends of the axis with a title, where they are given. A list of names stays, as does a logarithmic axis that
     /// should begin at zero or below.
-    pub(crate) fn limit(&self, axis: &mut Axis, title: &str) {
+    pub(crate) fn limit(&self, axis: &mut PlotAxis, title: &str) {
         let is_titled = |wanted: &str| wanted.chars().eq(title.chars().filter(|&c| !is_markup(c)));
         let Some((_, [lo, hi])) = self.limits.iter().find(|(wanted, _)| is_titled(wanted)) else { return };
         if axis.is_numeric() && (*lo > 0.0 || !axis.is_logarithmic()) {

@@ -2,7 +2,7 @@
 //! page, y downwards.
 
 /// A place on the page, points from the upper left corner.
-pub(crate) type Place = (f64, f64);
+pub(crate) type PagePoint = (f64, f64);
 
 /// A rectangle on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +22,7 @@ impl Rect {
         self.y + self.h
     }
 
-    pub(crate) fn contains(&self, (x, y): Place) -> bool {
+    pub(crate) fn contains(&self, (x, y): PagePoint) -> bool {
         // A point on the frame is inside, whatever the last bit says.
         let slack = 1e-6;
         x >= self.x - slack && x <= self.right() + slack && y >= self.y - slack && y <= self.bottom() + slack
@@ -30,10 +30,10 @@ impl Rect {
 }
 
 /// The parts of a polyline inside `rect`; `None` in the input is a gap.
-pub(crate) fn clip(line: impl IntoIterator<Item = Option<Place>>, rect: &Rect) -> Vec<Vec<Place>> {
-    let mut parts: Vec<Vec<Place>> = Vec::new();
-    let mut current: Vec<Place> = Vec::new();
-    let mut previous: Option<Place> = None;
+pub(crate) fn clip(line: impl IntoIterator<Item = Option<PagePoint>>, rect: &Rect) -> Vec<Vec<PagePoint>> {
+    let mut parts: Vec<Vec<PagePoint>> = Vec::new();
+    let mut current: Vec<PagePoint> = Vec::new();
+    let mut previous: Option<PagePoint> = None;
     for place in line {
         if let (Some(from), Some(to)) = (previous, place) {
             match segment(from, to, rect) {
@@ -55,7 +55,7 @@ pub(crate) fn clip(line: impl IntoIterator<Item = Option<Place>>, rect: &Rect) -
     parts
 }
 
-fn finish(parts: &mut Vec<Vec<Place>>, current: &mut Vec<Place>) {
+fn finish(parts: &mut Vec<Vec<PagePoint>>, current: &mut Vec<PagePoint>) {
     if current.len() > 1 {
         parts.push(std::mem::take(current));
     }
@@ -63,7 +63,7 @@ fn finish(parts: &mut Vec<Vec<Place>>, current: &mut Vec<Place>) {
 }
 
 /// The part of a segment inside `rect` (Liang & Barsky 1984).
-fn segment((x0, y0): Place, (x1, y1): Place, rect: &Rect) -> Option<(Place, Place)> {
+fn segment((x0, y0): PagePoint, (x1, y1): PagePoint, rect: &Rect) -> Option<(PagePoint, PagePoint)> {
     let (dx, dy) = (x1 - x0, y1 - y0);
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for (p, q) in [(-dx, x0 - rect.x), (dx, rect.right() - x0), (-dy, y0 - rect.y), (dy, rect.bottom() - y0)] {
@@ -87,7 +87,7 @@ fn segment((x0, y0): Place, (x1, y1): Place, rect: &Rect) -> Option<(Place, Plac
 
 /// Keeps of every run of points within one `column` (in points) only first, lowest, highest and last: a record of a
 /// hundred thousand samples looks the same and draws as fast as one of a thousand.
-pub(crate) fn thin(line: Vec<Place>, column: f64) -> Vec<Place> {
+pub(crate) fn thin(line: Vec<PagePoint>, column: f64) -> Vec<PagePoint> {
     const WORTH_IT: usize = 400;
     if line.len() < WORTH_IT {
         return line;
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn thinning_keeps_the_extremes() {
-        let line: Vec<Place> = (0..100_000).map(|i| (f64::from(i) * 1e-3, f64::from(i * 7919 % 1000))).collect();
+        let line: Vec<PagePoint> = (0..100_000).map(|i| (f64::from(i) * 1e-3, f64::from(i * 7919 % 1000))).collect();
         let thinned = thin(line.clone(), 0.25);
         assert!(thinned.len() <= 4 * 401);
         assert_eq!((thinned[0], thinned.last()), (line[0], line.last()));

@@ -5,10 +5,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// A curve or a cloud of points: `y[i]` at `x[i]`, in the units the figure states.
 ///
 /// A pair with an undefined (NaN or infinite) number is a gap: it is skipped, and a line is broken there. When the
-/// lengths differ the surplus is ignored. In JSON a gap is `null`. What is made by [`Curve::new`] has no more pairs
+/// lengths differ the surplus is ignored. In JSON a gap is `null`. What is made by [`PlotCurve::new`] has no more pairs
 /// than a figure can show.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Curve {
+pub struct PlotCurve {
     /// Abscissae.
     #[serde(serialize_with = "with_gaps", deserialize_with = "from_gaps")]
     pub x: Vec<f64>,
@@ -26,7 +26,7 @@ const CHI_SQUARED: f64 = 5.991_464_547;
 /// Corners of a drawn ellipse.
 const CORNERS: usize = 96;
 
-impl Curve {
+impl PlotCurve {
     /// Most pairs of a curve.
     pub const MOST_PAIRS: usize = 4000;
 
@@ -103,16 +103,16 @@ mod tests {
 
     #[test]
     fn gaps_and_surplus_are_skipped() {
-        let curve = Curve::new([0.0, 1.0, f64::NAN, 3.0], [5.0, f64::INFINITY, 7.0]);
+        let curve = PlotCurve::new([0.0, 1.0, f64::NAN, 3.0], [5.0, f64::INFINITY, 7.0]);
         assert_eq!(curve.finite().collect::<Vec<_>>(), [(0.0, 5.0)]);
         assert_eq!(curve.pairs().count(), 3);
     }
 
     #[test]
     fn a_curve_that_can_be_shown_is_kept_to_the_bit() {
-        let x: Vec<f64> = (0..Curve::MOST_PAIRS).map(|k| 0.1 * k as f64).collect();
+        let x: Vec<f64> = (0..PlotCurve::MOST_PAIRS).map(|k| 0.1 * k as f64).collect();
         let y: Vec<f64> = x.iter().map(|x| x.sin()).collect();
-        assert_eq!(Curve::new(x.as_slice(), y.as_slice()), Curve { x, y });
+        assert_eq!(PlotCurve::new(x.as_slice(), y.as_slice()), PlotCurve { x, y });
     }
 
     #[test]
@@ -123,8 +123,12 @@ mod tests {
         (y[123_456], y[654_321]) = (7.0, -7.0);
         y[300_000..310_000].fill(f64::NAN);
         y[500_000] = f64::NAN;
-        let thin = Curve::new(x.as_slice(), y.as_slice());
-        assert!(thin.x.len() <= Curve::MOST_PAIRS && thin.x.len() > Curve::MOST_PAIRS / 4, "{} pairs", thin.x.len());
+        let thin = PlotCurve::new(x.as_slice(), y.as_slice());
+        assert!(
+            thin.x.len() <= PlotCurve::MOST_PAIRS && thin.x.len() > PlotCurve::MOST_PAIRS / 4,
+            "{} pairs",
+            thin.x.len()
+        );
         assert_eq!((thin.x[0], thin.x.last()), (0.0, x.last()));
         assert!(thin.x.is_sorted());
         let kept: Vec<(f64, f64)> = thin.finite().collect();
@@ -138,7 +142,9 @@ mod tests {
     #[test]
     fn a_dense_curve_of_gaps_alone_draws_nothing() {
         assert_eq!(
-            Curve::new(vec![f64::NAN; 2 * Curve::MOST_PAIRS], vec![0.0; 2 * Curve::MOST_PAIRS]).finite().count(),
+            PlotCurve::new(vec![f64::NAN; 2 * PlotCurve::MOST_PAIRS], vec![0.0; 2 * PlotCurve::MOST_PAIRS])
+                .finite()
+                .count(),
             0
         );
     }

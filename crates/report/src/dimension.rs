@@ -1,9 +1,9 @@
 //! Dimension lines as on a technical drawing: a line with an arrow at either end and the quantity beside it.
 
-use crate::clip::Place;
+use crate::clip::PagePoint;
 use crate::paint::Paint;
 use crate::palette::DIMENSION;
-use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
 use crate::theme::Theme;
 
 /// Length of an arrow head, in small-font sizes.
@@ -11,7 +11,7 @@ const HEAD: f64 = 0.5;
 
 /// Draws dimension lines into a scene.
 pub(crate) struct Dimensions<'a> {
-    pub scene: &'a mut Scene,
+    pub scene: &'a mut Canvas,
     pub theme: Theme,
 }
 
@@ -21,7 +21,7 @@ impl Dimensions<'_> {
     }
 
     /// An arrow head with its tip at `tip`, pointing along the unit vector `(dx, dy)`.
-    pub(crate) fn head(scene: &mut Scene, (x, y): Place, (dx, dy): Place, size: f64, colour: Paint) {
+    pub(crate) fn head(scene: &mut Canvas, (x, y): PagePoint, (dx, dy): PagePoint, size: f64, colour: Paint) {
         let (bx, by) = (x - size * dx, y - size * dy);
         let half = 0.36 * size;
         scene.fill(
@@ -33,7 +33,7 @@ impl Dimensions<'_> {
     }
 
     /// The line between two places; when they are too close for two heads, the heads point at them from outside.
-    pub(crate) fn between(&mut self, from: Place, to: Place) {
+    pub(crate) fn between(&mut self, from: PagePoint, to: PagePoint) {
         let length = (to.0 - from.0).hypot(to.1 - from.1);
         if length == 0.0 || !length.is_finite() {
             return;
@@ -46,7 +46,7 @@ impl Dimensions<'_> {
             Self::head(self.scene, from, (-along.0, -along.1), size, DIMENSION);
             Self::head(self.scene, to, along, size, DIMENSION);
         } else {
-            let beyond = |(x, y): Place, s: f64| (x + s * along.0 * 2.2 * size, y + s * along.1 * 2.2 * size);
+            let beyond = |(x, y): PagePoint, s: f64| (x + s * along.0 * 2.2 * size, y + s * along.1 * 2.2 * size);
             self.scene.line(Layer::Note, [beyond(from, -1.0), beyond(to, 1.0)], stroke);
             Self::head(self.scene, from, along, size, DIMENSION);
             Self::head(self.scene, to, (-along.0, -along.1), size, DIMENSION);
@@ -54,14 +54,14 @@ impl Dimensions<'_> {
     }
 
     /// A thin line from a point of the data to its dimension line.
-    pub(crate) fn extension(&mut self, from: Place, to: Place) {
+    pub(crate) fn extension(&mut self, from: PagePoint, to: PagePoint) {
         let stroke = Stroke { opacity: 0.75, width: 0.8 * self.theme.thin, ..self.stroke() };
         self.scene.line(Layer::Data, [from, to], stroke);
     }
 
     /// The quantity at a dimension line.
-    pub(crate) fn label(&mut self, place: Place, anchor: Anchor, text: &str) {
-        let text = Text::new(text, self.theme.small_font).anchor(anchor).colour(DIMENSION);
+    pub(crate) fn label(&mut self, place: PagePoint, anchor: Anchor, text: &str) {
+        let text = TextLine::new(text, self.theme.small_font).anchor(anchor).colour(DIMENSION);
         self.scene.text_on_ground(Layer::Note, place, text);
     }
 }
@@ -70,8 +70,8 @@ impl Dimensions<'_> {
 mod tests {
     use super::*;
 
-    fn lines(from: Place, to: Place) -> usize {
-        let mut scene = Scene::default();
+    fn lines(from: PagePoint, to: PagePoint) -> usize {
+        let mut scene = Canvas::default();
         Dimensions { scene: &mut scene, theme: Theme::screen() }.between(from, to);
         scene.shapes().len()
     }

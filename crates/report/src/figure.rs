@@ -17,14 +17,14 @@ const LONGEST_SIDE: u32 = 20_000;
 
 /// A drawing that is ready to be written.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
+pub struct Drawing {
     svg: String,
     width: f64,
     height: f64,
     dpi: f64,
 }
 
-impl Figure {
+impl Drawing {
     pub(crate) fn new(svg: String, width: f64, height: f64, dpi: f64) -> Self {
         Self { svg, width, height, dpi }
     }
@@ -104,13 +104,13 @@ impl Figure {
 mod tests {
     use super::*;
     use crate::changes::Changes;
-    use crate::scene::{Layer, Scene, Text};
+    use crate::scene::{Canvas, Layer, TextLine};
     use crate::svg;
 
-    fn sample() -> Figure {
-        let mut scene = Scene::default();
-        scene.text(Layer::Note, (10.0, 30.0), Text::new("ψ", 24.0));
-        Figure::new(svg::render(&scene, 72.0, 36.0, &Changes::default()), 72.0, 36.0, 300.0)
+    fn sample() -> Drawing {
+        let mut scene = Canvas::default();
+        scene.text(Layer::Note, (10.0, 30.0), TextLine::new("ψ", 24.0));
+        Drawing::new(svg::render(&scene, 72.0, 36.0, &Changes::default()), 72.0, 36.0, 300.0)
     }
 
     #[test]
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn refuses_an_image_nobody_can_hold() {
-        let figure = Figure::new(String::new(), 1e5, 10.0, 300.0);
+        let figure = Drawing::new(String::new(), 1e5, 10.0, 300.0);
         assert!(matches!(figure.png(), Err(ReportError::TooLarge { width_px: 416_667, .. })));
     }
 }

@@ -2,14 +2,14 @@
 //! Panels of one column share the horizontal axis, panels of one row the vertical one; their frames, ticks and titles
 //! are drawn here, the data by the figures.
 
-use crate::axis::{Axis, Ticks};
+use crate::axis::{PlotAxis, Ticks};
 use crate::clip::Rect;
-use crate::figure::Figure;
+use crate::figure::Drawing;
 use crate::fonts::text_width;
-use crate::legend::{self, Entry};
+use crate::legend::{self, KeyEntry};
 use crate::palette::{GRID, INK, PAPER};
 use crate::panel::Panel;
-use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
 use crate::svg;
 use crate::theme::Theme;
 
@@ -21,13 +21,13 @@ const LEADING: f64 = 1.35;
 
 /// One side of a grid of panels: a column with its horizontal axis or a row with its vertical one.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Side {
-    pub axis: Axis,
+pub(crate) struct AxisSide {
+    pub axis: PlotAxis,
     pub title: String,
 }
 
-impl Side {
-    pub(crate) fn new(axis: Axis, title: impl Into<String>) -> Self {
+impl AxisSide {
+    pub(crate) fn new(axis: PlotAxis, title: impl Into<String>) -> Self {
         Self { axis, title: title.into() }
     }
 }
@@ -35,11 +35,11 @@ impl Side {
 /// Panels in rows and columns.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Grid {
-    pub columns: Vec<Side>,
+    pub columns: Vec<AxisSide>,
     /// Rows with their heights in points.
-    pub rows: Vec<(Side, f64)>,
+    pub rows: Vec<(AxisSide, f64)>,
     /// Line above each panel, row by row; empty when there is none.
-    pub heads: Vec<Option<Entry>>,
+    pub heads: Vec<Option<KeyEntry>>,
     /// Number of panels, when the last row is not full.
     pub panels: Option<usize>,
     /// Title of all vertical axes together, for rows too low to have one each.
@@ -50,17 +50,17 @@ pub(crate) struct Grid {
 
 impl Grid {
     /// Full rows without heads.
-    pub(crate) fn new(columns: Vec<Side>, rows: Vec<(Side, f64)>) -> Self {
+    pub(crate) fn new(columns: Vec<AxisSide>, rows: Vec<(AxisSide, f64)>) -> Self {
         Self { columns, rows, heads: Vec::new(), panels: None, shared_title: None, left: None }
     }
 
     /// Panels above each other over one horizontal axis.
-    pub(crate) fn stack(x: Side, rows: Vec<(Side, f64)>) -> Self {
+    pub(crate) fn stack(x: AxisSide, rows: Vec<(AxisSide, f64)>) -> Self {
         Self::new(vec![x], rows)
     }
 
     /// So many panels with the same axes, in rows of `across`; the last row may not be full.
-    pub(crate) fn alike(count: usize, across: usize, column: Side, row: (Side, f64)) -> Self {
+    pub(crate) fn alike(count: usize, across: usize, column: AxisSide, row: (AxisSide, f64)) -> Self {
         let rows = vec![row; count.div_ceil(across)];
         Self { panels: Some(count), ..Self::new(vec![column; across], rows) }
     }
@@ -80,7 +80,7 @@ impl Grid {
 #[derive(Debug, Clone)]
 pub(crate) struct Sheet {
     pub theme: Theme,
-    pub scene: Scene,
+    pub scene: Canvas,
     y: f64,
     /// Left edge of the strip that is being filled, points.
     edge: f64,
@@ -88,12 +88,12 @@ pub(crate) struct Sheet {
 
 impl Sheet {
     pub(crate) fn new(theme: &Theme, title: Option<&str>) -> Self {
-        let mut sheet = Self { theme: *theme, scene: Scene::default(), y: 0.5 * theme.small_font, edge: 0.0 };
+        let mut sheet = Self { theme: *theme, scene: Canvas::default(), y: 0.5 * theme.small_font, edge: 0.0 };
         if let Some(title) = title {
             let size = theme.title_font;
             for line in wrap(title, size, true, theme.width - 2.0 * theme.small_font) {
                 sheet.y += 1.2 * size;
-                let text = Text { bold: true, ..Text::new(line, size).anchor(Anchor::Middle) };
+                let text = TextLine { bold: true, ..TextLine::new(line, size).anchor(Anchor::Middle) };
                 sheet.scene.text(Layer::Note, (theme.width / 2.0, sheet.y), text);
             }
             sheet.y += 0.35 * size;
@@ -102,7 +102,7 @@ impl Sheet {
     }
 
     /// The key, centred above what follows.
-    pub(crate) fn legend(&mut self, entries: &[Entry]) {
+    pub(crate) fn legend(&mut self, entries: &[KeyEntry]) {
         if entries.is_empty() {
             return;
         }
@@ -132,7 +132,7 @@ impl Sheet {
         let margin = theme.small_font;
         for line in wrap(text, theme.small_font, false, theme.width - 2.0 * margin) {
             self.y += LEADING * theme.small_font;
-            self.scene.text(Layer::Note, (margin, self.y), Text::new(line, theme.small_font));
+            self.scene.text(Layer::Note, (margin, self.y), TextLine::new(line, theme.small_font));
         }
         self.y += 0.2 * theme.small_font;
     }
@@ -151,11 +151,11 @@ impl Sheet {
         0.5 * theme.small_font + titles + widths.fold(0.0, f64::max) + self.tick_length() + 0.4 * theme.tick_font
     }
 
-    fn row_ticks(&self, side: &Side, height: f64) -> Ticks {
+    fn row_ticks(&self, side: &AxisSide, height: f64) -> Ticks {
         side.axis.ticks(((height / (1.7 * self.theme.tick_font)) as usize).max(2))
     }
 
-    fn row_title(&self, side: &Side, height: f64) -> Vec<String> {
+    fn row_title(&self, side: &AxisSide, height: f64) -> Vec<String> {
         wrap(&side.title, self.theme.label_font, false, 1.1 * height)
     }
 
@@ -278,7 +278,7 @@ impl Sheet {
     }
 
     /// Two short slanted lines on the frame where a logarithmic axis jumps to zero.
-    fn axis_breaks(&mut self, rect: &Rect, x: &Side, y: &Side) {
+    fn axis_breaks(&mut self, rect: &Rect, x: &AxisSide, y: &AxisSide) {
         let size = 0.45 * self.theme.tick_font;
         let mut mark = |centre: (f64, f64), along: (f64, f64)| {
             let side = |s: f64| (centre.0 + s * along.0, centre.1 + s * along.1);
@@ -301,13 +301,13 @@ impl Sheet {
         }
     }
 
-    fn vertical_labels(&mut self, rect: &Rect, ticks: &Ticks, side: &Side) {
+    fn vertical_labels(&mut self, rect: &Rect, ticks: &Ticks, side: &AxisSide) {
         let theme = self.theme;
         let end = rect.x - self.tick_length() - 0.3 * theme.tick_font;
         for (f, label) in &ticks.major {
             let lines = wrap(label, theme.tick_font, false, NAMES * theme.width);
             for (index, line) in lines.iter().enumerate() {
-                let text = Text::new(line.as_str(), theme.tick_font).anchor(Anchor::End);
+                let text = TextLine::new(line.as_str(), theme.tick_font).anchor(Anchor::End);
                 let down = (index as f64 - 0.5 * (lines.len() - 1) as f64) * 1.15 * theme.tick_font;
                 self.scene.text(Layer::Frame, (end, rect.bottom() - f * rect.h + down + text.centring()), text);
             }
@@ -319,49 +319,50 @@ impl Sheet {
         let theme = self.theme;
         for (i, line) in lines.into_iter().enumerate() {
             let x = self.edge + 0.5 * theme.small_font + (0.85 + 1.2 * i as f64) * theme.label_font;
-            let text = Text { turned: true, ..Text::new(line, theme.label_font).anchor(Anchor::Middle) };
+            let text = TextLine { turned: true, ..TextLine::new(line, theme.label_font).anchor(Anchor::Middle) };
             self.scene.text(Layer::Frame, (x, middle), text);
         }
     }
 
     /// Labels and title under a panel; returns where they end.
-    fn horizontal_labels(&mut self, rect: &Rect, ticks: &Ticks, side: &Side) -> f64 {
+    fn horizontal_labels(&mut self, rect: &Rect, ticks: &Ticks, side: &AxisSide) -> f64 {
         let theme = self.theme;
         let mut base = rect.bottom() + self.tick_length() + 1.05 * theme.tick_font;
         if side.axis.is_columns() && !fits(ticks, rect.w, &theme) {
             // Names too long to stand side by side are turned and end at their tick.
             let top = rect.bottom() + self.tick_length() + 0.3 * theme.tick_font;
             for (f, label) in &ticks.major {
-                let text = Text { turned: true, ..Text::new(label.as_str(), theme.tick_font).anchor(Anchor::End) };
+                let text =
+                    TextLine { turned: true, ..TextLine::new(label.as_str(), theme.tick_font).anchor(Anchor::End) };
                 let x = rect.x + f * rect.w + text.centring();
                 self.scene.text(Layer::Frame, (x, top), text);
             }
             base = top + label_width(ticks, &theme);
         } else {
             for (f, label) in &ticks.major {
-                let text = Text::new(label.as_str(), theme.tick_font).anchor(Anchor::Middle);
+                let text = TextLine::new(label.as_str(), theme.tick_font).anchor(Anchor::Middle);
                 self.scene.text(Layer::Frame, (rect.x + f * rect.w, base), text);
             }
         }
         let mut y = base + 0.25 * theme.label_font;
         for line in wrap(&side.title, theme.label_font, false, rect.w + theme.label_font) {
             y += 1.2 * theme.label_font;
-            let text = Text::new(line, theme.label_font).anchor(Anchor::Middle);
+            let text = TextLine::new(line, theme.label_font).anchor(Anchor::Middle);
             self.scene.text(Layer::Frame, (rect.x + rect.w / 2.0, y), text);
         }
         y + 0.8 * theme.label_font
     }
 
     /// The finished figure.
-    pub(crate) fn finish(self) -> Figure {
+    pub(crate) fn finish(self) -> Drawing {
         let height = self.y + 0.3 * self.theme.small_font;
         let svg = svg::render(&self.scene, self.theme.width, height, &self.theme.changes);
-        Figure::new(svg, self.theme.width, height, self.theme.dpi)
+        Drawing::new(svg, self.theme.width, height, self.theme.dpi)
     }
 }
 
 /// As many ticks as their labels leave room for.
-fn fitting_ticks(axis: &Axis, width: f64, theme: &Theme) -> Ticks {
+fn fitting_ticks(axis: &PlotAxis, width: f64, theme: &Theme) -> Ticks {
     (2..=10)
         .rev()
         .map(|count| axis.ticks(count))
@@ -370,7 +371,7 @@ fn fitting_ticks(axis: &Axis, width: f64, theme: &Theme) -> Ticks {
 }
 
 /// Distance of these ticks, in units of the axis.
-pub(crate) fn fitting_step(axis: &Axis, width: f64, theme: &Theme) -> Option<f64> {
+pub(crate) fn fitting_step(axis: &PlotAxis, width: f64, theme: &Theme) -> Option<f64> {
     match &fitting_ticks(axis, width, theme).major[..] {
         [(first, _), (second, _), ..] => Some(axis.worth(second - first)),
         _ => None,
@@ -381,13 +382,13 @@ pub(crate) fn fitting_step(axis: &Axis, width: f64, theme: &Theme) -> Option<f64
 fn fits(ticks: &Ticks, width: f64, theme: &Theme) -> bool {
     let gap = 1.0 * theme.tick_font;
     ticks.major.windows(2).all(|pair| {
-        let half = |label: &str| Text::new(label, theme.tick_font).width() / 2.0;
+        let half = |label: &str| TextLine::new(label, theme.tick_font).width() / 2.0;
         (pair[1].0 - pair[0].0).abs() * width >= half(&pair[0].1) + half(&pair[1].1) + gap
     })
 }
 
 fn label_width(ticks: &Ticks, theme: &Theme) -> f64 {
-    ticks.major.iter().map(|(_, label)| Text::new(label.as_str(), theme.tick_font).width()).fold(0.0, f64::max)
+    ticks.major.iter().map(|(_, label)| TextLine::new(label.as_str(), theme.tick_font).width()).fold(0.0, f64::max)
 }
 
 /// Splits a text at (breaking) spaces into lines of at most `width` points; a single longer word stays whole.
@@ -407,13 +408,13 @@ pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ticks::Steps;
+    use crate::ticks::TickSteps;
 
     #[test]
     fn panels_share_edges_and_stay_on_the_page() {
         let theme = Theme::paper(85.0, 300.0).unwrap();
         let mut sheet = Sheet::new(&theme, Some("title"));
-        let side = |hi: f64| Side::new(Axis::linear(0.0, hi, Steps::Decimal), "quantity [unit]");
+        let side = |hi: f64| AxisSide::new(PlotAxis::linear(0.0, hi, TickSteps::Decimal), "quantity [unit]");
         let rows = vec![(side(1e5), 60.0), (side(0.001), 40.0)];
         let panels = sheet.grid(Grid { panels: Some(3), ..Grid::new(vec![side(1.0), side(2.0)], rows) });
         assert_eq!(panels.len(), 3);

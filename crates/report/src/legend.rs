@@ -1,14 +1,14 @@
 //! The key of a figure: samples with their names in aligned columns, always outside the data.
 
-use crate::clip::Place;
+use crate::clip::PagePoint;
 use crate::paint::Paint;
-use crate::palette::{Look, Origin};
-use crate::scene::{Ink, Layer, Scene, Stroke, Text};
+use crate::palette::{CurveOrigin, Look};
+use crate::scene::{Canvas, Ink, Layer, Stroke, TextLine};
 use crate::theme::Theme;
 
 /// What stands before a name.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Sample {
+pub(crate) enum KeySample {
     Nothing,
     Line(Stroke),
     Dots(Paint),
@@ -22,79 +22,79 @@ pub(crate) enum Sample {
 
 /// A sample and its name.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Entry {
-    pub sample: Sample,
+pub(crate) struct KeyEntry {
+    pub sample: KeySample,
     pub label: String,
 }
 
-impl Entry {
-    pub(crate) fn new(sample: Sample, label: impl Into<String>) -> Self {
+impl KeyEntry {
+    pub(crate) fn new(sample: KeySample, label: impl Into<String>) -> Self {
         Self { sample, label: label.into() }
     }
 
     /// The line of an origin under its own name.
-    pub(crate) fn line_of(origin: &Origin, theme: &Theme) -> Self {
-        Self::new(Sample::Line(stroke_of(origin, theme)), origin.label())
+    pub(crate) fn line_of(origin: &CurveOrigin, theme: &Theme) -> Self {
+        Self::new(KeySample::Line(stroke_of(origin, theme)), origin.label())
     }
 
     /// What is drawn in the figure like the sample.
     pub(crate) fn ink(&self) -> Option<Ink> {
         match self.sample {
-            Sample::Line(stroke) => Some(Ink { colour: stroke.colour, dash: Some(stroke.dash) }),
-            Sample::LineAndMarker(stroke, look) => Some(Ink { colour: look.colour, dash: Some(stroke.dash) }),
-            Sample::Dots(colour) => Some(Ink::of(colour)),
-            Sample::Marker(look) => Some(Ink::of(look.colour)),
-            Sample::Nothing | Sample::Upright(_) | Sample::Hull(_) => None,
+            KeySample::Line(stroke) => Some(Ink { colour: stroke.colour, dash: Some(stroke.dash) }),
+            KeySample::LineAndMarker(stroke, look) => Some(Ink { colour: look.colour, dash: Some(stroke.dash) }),
+            KeySample::Dots(colour) => Some(Ink::of(colour)),
+            KeySample::Marker(look) => Some(Ink::of(look.colour)),
+            KeySample::Nothing | KeySample::Upright(_) | KeySample::Hull(_) => None,
         }
     }
 
     fn sample_width(&self, theme: &Theme) -> f64 {
         match self.sample {
-            Sample::Nothing => 0.0,
-            Sample::Dots(_) | Sample::Marker(_) | Sample::Upright(_) => 1.6 * theme.small_font,
-            Sample::Line(_) | Sample::LineAndMarker(..) | Sample::Hull(_) => 2.9 * theme.small_font,
+            KeySample::Nothing => 0.0,
+            KeySample::Dots(_) | KeySample::Marker(_) | KeySample::Upright(_) => 1.6 * theme.small_font,
+            KeySample::Line(_) | KeySample::LineAndMarker(..) | KeySample::Hull(_) => 2.9 * theme.small_font,
         }
     }
 
     /// Width of sample and name, points.
     pub(crate) fn width(&self, theme: &Theme) -> f64 {
-        self.sample_width(theme) + Text::new(self.label.as_str(), theme.small_font).width()
+        self.sample_width(theme) + TextLine::new(self.label.as_str(), theme.small_font).width()
     }
 
     /// Draws the entry with its base line at `place`.
-    pub(crate) fn draw(&self, scene: &mut Scene, (x, y): Place, theme: &Theme) {
-        let text = Text::new(self.label.as_str(), theme.small_font);
+    pub(crate) fn draw(&self, scene: &mut Canvas, (x, y): PagePoint, theme: &Theme) {
+        let text = TextLine::new(self.label.as_str(), theme.small_font);
         let middle = y - text.centring();
         let width = self.sample_width(theme);
         let end = x + width - 0.5 * theme.small_font;
         let centre = ((x + end) / 2.0, middle);
         match self.sample {
-            Sample::Nothing => {}
-            Sample::Line(stroke) => scene.line(Layer::Note, [(x, middle), (end, middle)], stroke),
-            Sample::Dots(colour) => scene.disc(Layer::Note, centre, theme.dot * 1.2, colour, 1.0),
-            Sample::Marker(look) => scene.marker(Layer::Note, centre, theme.marker, &look),
-            Sample::LineAndMarker(stroke, look) => {
+            KeySample::Nothing => {}
+            KeySample::Line(stroke) => scene.line(Layer::Note, [(x, middle), (end, middle)], stroke),
+            KeySample::Dots(colour) => scene.disc(Layer::Note, centre, theme.dot * 1.2, colour, 1.0),
+            KeySample::Marker(look) => scene.marker(Layer::Note, centre, theme.marker, &look),
+            KeySample::LineAndMarker(stroke, look) => {
                 scene.line(Layer::Note, [(x, middle), (end, middle)], stroke);
                 scene.marker(Layer::Note, centre, theme.marker, &look);
             }
-            Sample::Upright(stroke) => {
+            KeySample::Upright(stroke) => {
                 let half = 0.5 * theme.small_font;
                 scene.line(Layer::Note, [(centre.0, middle - half), (centre.0, middle + half)], stroke);
             }
-            Sample::Hull(colour) => scene.hull(Layer::Note, centre, (1.0, 0.0), 1.6 * theme.small_font, colour),
+            KeySample::Hull(colour) => scene.hull(Layer::Note, centre, (1.0, 0.0), 1.6 * theme.small_font, colour),
         }
         scene.text(Layer::Note, (x + width, y), text);
     }
 }
 
 /// The line an origin is drawn with.
-pub(crate) fn stroke_of(origin: &Origin, theme: &Theme) -> Stroke {
+pub(crate) fn stroke_of(origin: &CurveOrigin, theme: &Theme) -> Stroke {
     let look = origin.look();
     Stroke::solid(look.colour, theme.line).dashed(look.dash)
 }
 
 /// Where each entry goes in `width` points: column offsets, and the number of columns is their count.
-pub(crate) fn columns(entries: &[Entry], width: f64, theme: &Theme) -> Vec<f64> {
+pub(crate) fn columns(entries: &[KeyEntry], width: f64, theme: &Theme) -> Vec<f64> {
     let gap = 1.6 * theme.small_font;
     let offsets = |count: usize| {
         let mut x = 0.0;
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn columns_fit_the_width() {
         let theme = Theme::screen();
-        let entries: Vec<Entry> = (0..7).map(|i| Entry::new(Sample::Nothing, "m".repeat(4 + i))).collect();
+        let entries: Vec<KeyEntry> = (0..7).map(|i| KeyEntry::new(KeySample::Nothing, "m".repeat(4 + i))).collect();
         assert_eq!(columns(&entries, 1e4, &theme).len(), 7);
         assert_eq!(columns(&entries, 10.0, &theme), [0.0]);
         let starts = columns(&entries, 300.0, &theme);

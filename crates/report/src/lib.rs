@@ -17,9 +17,9 @@
 //!
 //! ```
 //! use kempf_report::figures::{Layer, LayerKind, PanelRow, Panels, Plot, Ruler};
-//! use kempf_report::{Curve, Theme};
+//! use kempf_report::{PlotCurve, Theme};
 //!
-//! let heading = Curve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]);
+//! let heading = PlotCurve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]);
 //! let layers = vec![Layer::new("recorded heading", heading, LayerKind::Record)];
 //! let figure = Plot::from(Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.3), layers)]));
 //! let figure = figure.draw(&Theme::screen());
@@ -56,12 +56,12 @@ mod scene;
 mod svg;
 mod ticks;
 
-pub use curve::Curve;
+pub use curve::PlotCurve;
 pub use error::ReportError;
-pub use figure::Figure;
+pub use figure::Drawing;
 pub use markup::symbol;
 pub use page::{Page, PageFigure};
-pub use palette::Origin;
+pub use palette::CurveOrigin;
 pub use style::Style;
-pub use table::{Alignment, Column, Table};
+pub use table::{Alignment, Table, TableColumn};
 pub use theme::Theme;

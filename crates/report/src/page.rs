@@ -135,7 +135,7 @@ impl Page {
 mod tests {
     use super::*;
     use crate::figures::Panels;
-    use crate::table::Column;
+    use crate::table::TableColumn;
 
     #[test]
     fn blocks_stand_apart_in_every_form() {
@@ -143,7 +143,7 @@ mod tests {
         page.words("a*b\n<b>c");
         page.say("  ");
         page.part("Numbers");
-        let mut table = Table::new(vec![Column::left("K")]);
+        let mut table = Table::new(vec![TableColumn::left("K")]);
         table.push(["0.1"]);
         page.table(table);
         page.figures([PageFigure::new("fit", "a*b", Panels::default())]);

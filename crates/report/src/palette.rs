@@ -10,7 +10,7 @@ use crate::paint::Paint;
 /// Whom a curve or a value comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Origin {
+pub enum CurveOrigin {
     /// The measured (or simulated and noisy) record.
     Record,
     /// The noise-free truth of a simulation.
@@ -43,7 +43,7 @@ pub enum Origin {
     },
 }
 
-impl Origin {
+impl CurveOrigin {
     /// The name in a legend.
     pub fn label(&self) -> &str {
         match self {
@@ -245,22 +245,22 @@ mod tests {
 
     #[test]
     fn variants_keep_the_colour_of_their_method() {
-        let variant = |number| Origin::Variant { label: "other".into(), method: "srivc".into(), number }.look();
-        let method = Origin::Method("srivc".into()).look();
+        let variant = |number| CurveOrigin::Variant { label: "other".into(), method: "srivc".into(), number }.look();
+        let method = CurveOrigin::Method("srivc".into()).look();
         assert_eq!((variant(0).colour, variant(1).colour), (method.colour, method.colour));
         assert!(variant(0).marker != variant(1).marker && variant(0).dash != variant(1).dash);
     }
 
     #[test]
     fn estimators_outside_differ_in_colour() {
-        let outside = |number| Origin::Variant { label: "other".into(), method: "external".into(), number }.look();
+        let outside = |number| CurveOrigin::Variant { label: "other".into(), method: "external".into(), number }.look();
         assert!(outside(0).colour != outside(1).colour && outside(1).colour != outside(2).colour);
     }
 
     #[test]
     fn unknown_method_has_a_stable_hollow_look() {
-        let look = Origin::Method("ridge".into()).look();
-        assert_eq!(look, Origin::Method("ridge".into()).look());
+        let look = CurveOrigin::Method("ridge".into()).look();
+        assert_eq!(look, CurveOrigin::Method("ridge".into()).look());
         assert!(look.hollow);
     }
 

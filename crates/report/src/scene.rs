@@ -1,7 +1,7 @@
 //! A drawing as a list of shapes in points on the page. Figures fill a scene; [`crate::svg`] writes it out. The list in
 //! between is what lets a frame be drawn after the data it encloses, and what keeps undefined coordinates out.
 
-use crate::clip::{Place, Rect};
+use crate::clip::{PagePoint, Rect};
 use crate::fonts;
 use crate::paint::Paint;
 use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
@@ -37,7 +37,7 @@ pub(crate) enum Anchor {
 
 /// A line of text; `place` is on the base line.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Text {
+pub(crate) struct TextLine {
     pub text: String,
     pub size: f64,
     pub colour: Paint,
@@ -47,7 +47,7 @@ pub(crate) struct Text {
     pub turned: bool,
 }
 
-impl Text {
+impl TextLine {
     pub(crate) fn new(text: impl Into<String>, size: f64) -> Self {
         Self { text: text.into(), size, colour: INK, bold: false, anchor: Anchor::Start, turned: false }
     }
@@ -70,7 +70,7 @@ impl Text {
     }
 
     /// The box around an unturned text at `place`.
-    pub(crate) fn bounds(&self, (x, y): Place) -> Rect {
+    pub(crate) fn bounds(&self, (x, y): PagePoint) -> Rect {
         let w = self.width();
         let left = match self.anchor {
             Anchor::Start => x,
@@ -92,11 +92,11 @@ pub(crate) enum Layer {
 
 /// One thing to draw.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Shape {
-    Line { points: Vec<Place>, stroke: Stroke },
-    Fill { points: Vec<Place>, colour: Paint, opacity: f64 },
-    Disc { centre: Place, radius: f64, colour: Paint, opacity: f64 },
-    Text { place: Place, text: Text },
+pub(crate) enum CanvasShape {
+    Line { points: Vec<PagePoint>, stroke: Stroke },
+    Fill { points: Vec<PagePoint>, colour: Paint, opacity: f64 },
+    Disc { centre: PagePoint, radius: f64, colour: Paint, opacity: f64 },
+    Text { place: PagePoint, text: TextLine },
 }
 
 /// What tells the shapes of one curve from those of another: the colour, and of a line its dash.
@@ -119,8 +119,8 @@ impl Ink {
 
 /// The shapes of one figure.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Scene {
-    shapes: Vec<(Layer, Ink, Shape)>,
+pub(crate) struct Canvas {
+    shapes: Vec<(Layer, Ink, CanvasShape)>,
     /// Names of the key of the figure with what they are drawn with.
     keys: Vec<(Ink, String)>,
     /// A line about every panel, for a page in a browser.
@@ -145,16 +145,16 @@ const STAR: [(f64, f64); 10] = [
 const HULL: [(f64, f64); 7] =
     [(1.0, 0.0), (0.72, 0.19), (0.4, 0.3), (-1.0, 0.3), (-1.0, -0.3), (0.4, -0.3), (0.72, -0.19)];
 
-impl Scene {
+impl Canvas {
     /// The shapes from the bottom layer to the top, each layer in the order of drawing.
     #[cfg(test)]
-    pub(crate) fn shapes(&self) -> Vec<&Shape> {
-        self.told().into_iter().map(|(_, shape)| shape).collect()
+    pub(crate) fn shapes(&self) -> Vec<&CanvasShape> {
+        self.shapes_by_series().into_iter().map(|(_, shape)| shape).collect()
     }
 
     /// The same with the name in the key of what is data; `None` where the key does not tell.
-    pub(crate) fn told(&self) -> Vec<(Option<&str>, &Shape)> {
-        let mut order: Vec<&(Layer, Ink, Shape)> = self.shapes.iter().collect();
+    pub(crate) fn shapes_by_series(&self) -> Vec<(Option<&str>, &CanvasShape)> {
+        let mut order: Vec<&(Layer, Ink, CanvasShape)> = self.shapes.iter().collect();
         order.sort_by_key(|(layer, ..)| *layer);
         let name = |layer, ink| if layer == Layer::Data { self.name(ink) } else { None };
         order.into_iter().map(|(layer, ink, shape)| (name(*layer, *ink), shape)).collect()
@@ -174,8 +174,8 @@ impl Scene {
     }
 
     /// Enters a line about a panel.
-    pub(crate) fn panel(&mut self, told: String) {
-        self.frames.push(told);
+    pub(crate) fn panel(&mut self, line: String) {
+        self.frames.push(line);
     }
 
     /// The lines about all panels.
@@ -183,34 +183,34 @@ impl Scene {
         &self.frames
     }
 
-    pub(crate) fn line(&mut self, layer: Layer, points: impl Into<Vec<Place>>, stroke: Stroke) {
+    pub(crate) fn line(&mut self, layer: Layer, points: impl Into<Vec<PagePoint>>, stroke: Stroke) {
         let points = points.into();
         if points.len() > 1 && finite(&points) {
-            self.shapes.push((layer, Ink::of_line(stroke), Shape::Line { points, stroke }));
+            self.shapes.push((layer, Ink::of_line(stroke), CanvasShape::Line { points, stroke }));
         }
     }
 
-    pub(crate) fn fill(&mut self, layer: Layer, points: impl Into<Vec<Place>>, colour: Paint, opacity: f64) {
+    pub(crate) fn fill(&mut self, layer: Layer, points: impl Into<Vec<PagePoint>>, colour: Paint, opacity: f64) {
         let points = points.into();
         if points.len() > 2 && finite(&points) {
-            self.shapes.push((layer, Ink::of(colour), Shape::Fill { points, colour, opacity }));
+            self.shapes.push((layer, Ink::of(colour), CanvasShape::Fill { points, colour, opacity }));
         }
     }
 
-    pub(crate) fn disc(&mut self, layer: Layer, centre: Place, radius: f64, colour: Paint, opacity: f64) {
+    pub(crate) fn disc(&mut self, layer: Layer, centre: PagePoint, radius: f64, colour: Paint, opacity: f64) {
         if finite(&[centre]) {
-            self.shapes.push((layer, Ink::of(colour), Shape::Disc { centre, radius, colour, opacity }));
+            self.shapes.push((layer, Ink::of(colour), CanvasShape::Disc { centre, radius, colour, opacity }));
         }
     }
 
-    pub(crate) fn text(&mut self, layer: Layer, place: Place, text: Text) {
+    pub(crate) fn text(&mut self, layer: Layer, place: PagePoint, text: TextLine) {
         if finite(&[place]) && !text.text.trim().is_empty() {
-            self.shapes.push((layer, Ink::of(text.colour), Shape::Text { place, text }));
+            self.shapes.push((layer, Ink::of(text.colour), CanvasShape::Text { place, text }));
         }
     }
 
     /// A text on a white ground, for places where lines run underneath.
-    pub(crate) fn text_on_ground(&mut self, layer: Layer, place: Place, text: Text) {
+    pub(crate) fn text_on_ground(&mut self, layer: Layer, place: PagePoint, text: TextLine) {
         let Rect { x, y, w, h } = text.bounds(place);
         let margin = 0.12 * text.size;
         let (left, right) = (x - margin, x + w + margin);
@@ -219,8 +219,8 @@ impl Scene {
     }
 
     /// A ship seen from above, `length` points long, its bow along the unit vector `(dx, dy)`.
-    pub(crate) fn hull(&mut self, layer: Layer, (x, y): Place, (dx, dy): Place, length: f64, colour: Paint) {
-        let outline = |half: f64, beam: f64| -> Vec<Place> {
+    pub(crate) fn hull(&mut self, layer: Layer, (x, y): PagePoint, (dx, dy): PagePoint, length: f64, colour: Paint) {
+        let outline = |half: f64, beam: f64| -> Vec<PagePoint> {
             let corner = |(forward, side): &(f64, f64)| {
                 let (forward, side) = (half * forward, beam * half * side);
                 (x + forward * dx - side * dy, y + forward * dy + side * dx)
@@ -233,10 +233,10 @@ impl Scene {
     }
 
     /// A marker of `radius` points, with a white edge that keeps it apart from lines and neighbours.
-    pub(crate) fn marker(&mut self, layer: Layer, (x, y): Place, radius: f64, look: &Look) {
+    pub(crate) fn marker(&mut self, layer: Layer, (x, y): PagePoint, radius: f64, look: &Look) {
         let first = self.shapes.len();
         let edge = 0.25 * radius;
-        let at = |scale: f64, corners: &[(f64, f64)]| -> Vec<Place> {
+        let at = |scale: f64, corners: &[(f64, f64)]| -> Vec<PagePoint> {
             corners.iter().map(|(dx, dy)| (x + dx * scale * radius, y + dy * scale * radius)).collect()
         };
         let strokes: &[[(f64, f64); 2]] = match look.marker {
@@ -276,7 +276,7 @@ impl Scene {
     }
 }
 
-fn finite(points: &[Place]) -> bool {
+fn finite(points: &[PagePoint]) -> bool {
     points.iter().all(|(x, y)| x.is_finite() && y.is_finite())
 }
 
@@ -286,31 +286,31 @@ mod tests {
 
     #[test]
     fn undefined_coordinates_never_enter() {
-        let mut scene = Scene::default();
+        let mut scene = Canvas::default();
         scene.line(Layer::Data, [(0.0, f64::NAN), (1.0, 1.0)], Stroke::solid(INK, 1.0));
         scene.disc(Layer::Data, (f64::INFINITY, 0.0), 1.0, INK, 1.0);
-        scene.text(Layer::Data, (0.0, f64::NAN), Text::new("a", 8.0));
+        scene.text(Layer::Data, (0.0, f64::NAN), TextLine::new("a", 8.0));
         assert!(scene.shapes().is_empty());
     }
 
     #[test]
     fn data_have_the_name_that_the_key_gives_them_alone() {
-        let mut scene = Scene::default();
+        let mut scene = Canvas::default();
         let (one, other) = (Stroke::solid(INK, 1.0), Stroke::solid(INK, 1.0).dashed(crate::palette::DASHED));
         scene.key(Ink::of_line(one), "one");
         scene.key(Ink::of_line(other), "other");
         scene.line(Layer::Data, [(0.0, 0.0), (1.0, 1.0)], other);
         scene.disc(Layer::Data, (0.0, 0.0), 1.0, INK, 1.0);
         scene.line(Layer::Frame, [(0.0, 0.0), (1.0, 1.0)], one);
-        let names: Vec<Option<&str>> = scene.told().into_iter().map(|(name, _)| name).collect();
+        let names: Vec<Option<&str>> = scene.shapes_by_series().into_iter().map(|(name, _)| name).collect();
         assert_eq!(names, [Some("other"), None, None]);
     }
 
     #[test]
     fn layers_are_sorted() {
-        let mut scene = Scene::default();
-        scene.text(Layer::Note, (0.0, 0.0), Text::new("b", 8.0));
+        let mut scene = Canvas::default();
+        scene.text(Layer::Note, (0.0, 0.0), TextLine::new("b", 8.0));
         scene.disc(Layer::Grid, (0.0, 0.0), 1.0, INK, 1.0);
-        assert!(matches!(scene.shapes()[0], Shape::Disc { .. }));
+        assert!(matches!(scene.shapes()[0], CanvasShape::Disc { .. }));
     }
 }

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::changes::{COLOURS, Changes, colour};
 use crate::paint::Paint;
-use crate::palette::{BEFORE, DIMENSION, GRID, HEADING, INK, Origin, PAPER, RECORD, RUDDER, method_ids};
+use crate::palette::{BEFORE, CurveOrigin, DIMENSION, GRID, HEADING, INK, PAPER, RECORD, RUDDER, method_ids};
 use crate::theme::Theme;
 
 /// Sizes of type that can be asked for, points.
@@ -101,7 +101,7 @@ fn coloured() -> impl Iterator<Item = (&'static str, Paint)> {
         ("before", BEFORE),
         ("dimension", DIMENSION),
     ];
-    parts.into_iter().chain(method_ids().map(|id| (id, Origin::Method(id.to_owned()).look().colour)))
+    parts.into_iter().chain(method_ids().map(|id| (id, CurveOrigin::Method(id.to_owned()).look().colour)))
 }
 
 impl Style {
@@ -169,11 +169,11 @@ impl Style {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::Curve;
+    use crate::curve::PlotCurve;
     use crate::figures::{Layer, PanelRow, Panels, Pen, Plot, Ruler};
 
     fn drawn(style: &Style) -> String {
-        let line = |y: [f64; 3], colour| Layer::line("", Curve::new([0.0, 50.0, 100.0], y), Pen::new(colour));
+        let line = |y: [f64; 3], colour| Layer::line("", PlotCurve::new([0.0, 50.0, 100.0], y), Pen::new(colour));
         let rows = vec![
             (PanelRow::new(Ruler::heading(), 0.28), vec![line([0.0, 3.0, -2.0], HEADING)]),
             (PanelRow::new(Ruler::rudder(), 0.13), vec![line([0.0, 10.0, -10.0], RUDDER)]),

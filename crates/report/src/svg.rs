@@ -4,15 +4,15 @@
 
 use std::fmt::Write as _;
 
-use crate::axis::Axis;
+use crate::axis::PlotAxis;
 use crate::changes::Changes;
-use crate::clip::{Place, Rect};
+use crate::clip::{PagePoint, Rect};
 use crate::fonts::FAMILY_WITH_FALLBACK;
 use crate::markup::{is_markup, runs};
 use crate::paint::Paint;
 use crate::palette::PAPER;
 use crate::printable::is_printable;
-use crate::scene::{Anchor, Scene, Shape, Stroke, Text};
+use crate::scene::{Anchor, Canvas, CanvasShape, Stroke, TextLine};
 
 /// Units to one point on the page: 2.4 to a dot at 600 dpi, so rounding to whole units is never seen.
 pub(crate) const UNITS: f64 = 20.0;
@@ -23,11 +23,11 @@ const MOST_REPEATS: f64 = 5000.0;
 
 /// The scene as an SVG document of `width` x `height` points. What the key names stands in groups of that name, and
 /// empty groups say where the panels are, for a page in a browser.
-pub(crate) fn render(scene: &Scene, width: f64, height: f64, changes: &Changes) -> String {
+pub(crate) fn render(scene: &Canvas, width: f64, height: f64, changes: &Changes) -> String {
     let [across, down] = [width, height].map(|points| units(points).max(1));
     let mut page = Elements { out: String::new(), open: None, changes };
     page.polygon(&[(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)], PAPER, 1.0);
-    for run in scene.told().chunk_by(|one, other| one.0 == other.0) {
+    for run in scene.shapes_by_series().chunk_by(|one, other| one.0 == other.0) {
         if let Some(name) = run[0].0 {
             page.put(&format!("<g data-series=\"{}\">\n", escaped(name)));
         }
@@ -80,21 +80,21 @@ impl Elements<'_> {
         format!("#{red:02X}{green:02X}{blue:02X}")
     }
 
-    fn shape(&mut self, shape: &Shape) {
+    fn shape(&mut self, shape: &CanvasShape) {
         match shape {
-            Shape::Line { points, stroke } => self.line(points, stroke),
-            Shape::Fill { points, colour, opacity } => self.polygon(points, *colour, *opacity),
-            Shape::Disc { centre: (x, y), radius, colour, opacity } => {
+            CanvasShape::Line { points, stroke } => self.line(points, stroke),
+            CanvasShape::Fill { points, colour, opacity } => self.polygon(points, *colour, *opacity),
+            CanvasShape::Disc { centre: (x, y), radius, colour, opacity } => {
                 let (colour, width) = (self.colour(*colour), 2 * units(*radius).max(1));
                 let faint = opacity_of("stroke", *opacity);
                 let style = format!("stroke=\"{colour}\"{faint} stroke-width=\"{width}\" stroke-linecap=\"round\"");
                 self.path(style, &format!("M{} {}h0", units(*x), units(*y)), *opacity < 1.0);
             }
-            Shape::Text { place, text } => self.text(*place, text),
+            CanvasShape::Text { place, text } => self.text(*place, text),
         }
     }
 
-    fn line(&mut self, points: &[Place], stroke: &Stroke) {
+    fn line(&mut self, points: &[PagePoint], stroke: &Stroke) {
         let colour = self.colour(stroke.colour);
         let width = units(stroke.width).max(1);
         let mut style = format!("fill=\"none\" stroke=\"{colour}\"{}", opacity_of("stroke", stroke.opacity));
@@ -119,14 +119,14 @@ impl Elements<'_> {
         self.path(style, &data, stroke.opacity < 1.0);
     }
 
-    fn polygon(&mut self, points: &[Place], colour: Paint, opacity: f64) {
+    fn polygon(&mut self, points: &[PagePoint], colour: Paint, opacity: f64) {
         let corners: Vec<String> = points.iter().map(|(x, y)| format!("{},{}", units(*x), units(*y))).collect();
         let (colour, faint) = (self.colour(colour), opacity_of("fill", opacity));
         self.put(&format!("<polygon fill=\"{colour}\"{faint} points=\"{}\"/>\n", corners.join(" ")));
     }
 
     /// A line of text with its base line at a place.
-    fn text(&mut self, (x, y): Place, text: &Text) {
+    fn text(&mut self, (x, y): PagePoint, text: &TextLine) {
         let (x, y) = (units(x), units(y));
         let size = (10.0 * text.size * UNITS).round() / 10.0;
         let mut element =
@@ -158,9 +158,9 @@ fn opacity_of(ink: &str, opacity: f64) -> String {
 }
 
 /// An empty group that says where a panel is, in units of the view box, and what its axes are: kind, ends, title.
-pub(crate) fn panel(rect: &Rect, x: (&Axis, &str), y: (&Axis, &str)) -> String {
+pub(crate) fn panel(rect: &Rect, x: (&PlotAxis, &str), y: (&PlotAxis, &str)) -> String {
     let [left, top, width, height] = [rect.x, rect.y, rect.w, rect.h].map(units);
-    let [x_axis, y_axis] = [x.0, y.0].map(|axis| escaped(&axis.told()));
+    let [x_axis, y_axis] = [x.0, y.0].map(|axis| escaped(&axis.described()));
     let [x_title, y_title] = [x.1, y.1].map(escaped);
     format!(
         "<g data-panel=\"{left} {top} {width} {height}\" data-x=\"{x_axis}\" data-y=\"{y_axis}\" \
@@ -182,8 +182,8 @@ mod tests {
     use crate::palette::{DASHED, INK};
     use crate::scene::{Layer, Stroke};
 
-    fn drawn(fill: impl FnOnce(&mut Scene)) -> String {
-        let mut scene = Scene::default();
+    fn drawn(fill: impl FnOnce(&mut Canvas)) -> String {
+        let mut scene = Canvas::default();
         fill(&mut scene);
         render(&scene, 100.0, 30.0, &Changes::default())
     }
@@ -219,14 +219,14 @@ mod tests {
 
     #[test]
     fn a_dashed_line_that_fills_an_area_is_solid() {
-        let band: Vec<Place> = (0..4000).map(|i| (0.02 * f64::from(i), f64::from(i % 2) * 29.0)).collect();
+        let band: Vec<PagePoint> = (0..4000).map(|i| (0.02 * f64::from(i), f64::from(i % 2) * 29.0)).collect();
         let svg = drawn(|scene| scene.line(Layer::Data, band, Stroke::solid(INK, 1.0).dashed(DASHED)));
         assert!(!svg.contains("dasharray"));
     }
 
     #[test]
     fn text_is_escaped_and_italic_is_markup() {
-        let text = Text::new(format!("a < b & {}\u{7}\u{fffe}", symbol("ψ")), 8.0);
+        let text = TextLine::new(format!("a < b & {}\u{7}\u{fffe}", symbol("ψ")), 8.0);
         let svg = drawn(|scene| scene.text(Layer::Note, (10.0, 20.0), text));
         assert!(svg.contains("\na &lt; b &amp; <tspan font-style=\"italic\">ψ</tspan>\n"), "{svg}");
         assert!(!svg.contains(['\u{7}', '\u{fffe}', '\u{e000}']) && svg.contains("font-size=\"160\""));

@@ -5,7 +5,7 @@ use crate::number;
 
 /// The steps an axis is divided in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Steps {
+pub enum TickSteps {
     /// 1, 2, 2.5, 5 times a power of ten.
     Decimal,
     /// Seconds: 1, 2, 5, 10, 20, 30 s, then whole minutes' worth.
@@ -19,12 +19,12 @@ const TIME: [f64; 14] = [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 60
 const ANGLE: [f64; 11] = [1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0, 90.0, 180.0];
 
 /// The smallest step that divides `span` into at most `intervals` parts.
-pub(crate) fn nice_step(span: f64, intervals: usize, steps: Steps) -> f64 {
+pub(crate) fn nice_step(span: f64, intervals: usize, steps: TickSteps) -> f64 {
     let wanted = span / intervals.max(1) as f64;
     let listed: &[f64] = match steps {
-        Steps::Decimal => &[],
-        Steps::Time => &TIME,
-        Steps::Angle => &ANGLE,
+        TickSteps::Decimal => &[],
+        TickSteps::Time => &TIME,
+        TickSteps::Angle => &ANGLE,
     };
     // Below one unit seconds and degrees are divided decimally, as everything is beyond the end of the list.
     if wanted > 0.5
@@ -81,18 +81,18 @@ mod tests {
 
     #[test]
     fn steps_are_those_a_reader_counts_in() {
-        assert_eq!(nice_step(240.0, 8, Steps::Time), 30.0);
-        assert_eq!(nice_step(120.0, 6, Steps::Angle), 20.0);
-        assert_eq!(nice_step(100.0, 10, Steps::Decimal), 10.0);
-        assert!((nice_step(0.07, 7, Steps::Decimal) - 0.01).abs() < 1e-15);
-        assert!((nice_step(0.9, 5, Steps::Angle) - 0.2).abs() < 1e-15);
-        assert_eq!(nice_step(80_000.0, 5, Steps::Time), 20_000.0);
+        assert_eq!(nice_step(240.0, 8, TickSteps::Time), 30.0);
+        assert_eq!(nice_step(120.0, 6, TickSteps::Angle), 20.0);
+        assert_eq!(nice_step(100.0, 10, TickSteps::Decimal), 10.0);
+        assert!((nice_step(0.07, 7, TickSteps::Decimal) - 0.01).abs() < 1e-15);
+        assert!((nice_step(0.9, 5, TickSteps::Angle) - 0.2).abs() < 1e-15);
+        assert_eq!(nice_step(80_000.0, 5, TickSteps::Time), 20_000.0);
     }
 
     /// Ranges over twenty decades: never more intervals than allowed, never fewer than a third, ticks inside the range.
     #[test]
     fn chooser_properties() {
-        for steps in [Steps::Decimal, Steps::Time, Steps::Angle] {
+        for steps in [TickSteps::Decimal, TickSteps::Time, TickSteps::Angle] {
             for exponent in -10..10 {
                 for leading in [1.0, 1.3, 2.7, 4.9, 9.99] {
                     for intervals in [3_usize, 5, 8] {

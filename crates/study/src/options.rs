@@ -98,10 +98,10 @@ pub struct ReadingOptions {
     pub trial: Option<usize>,
     /// Use the record from this time on: seconds on its clock (0 is its begin), or a time of day such as 14:03:05
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
-    pub from: Option<Moment>,
+    pub from: Option<TimePoint>,
     /// Use the record until this time
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
-    pub until: Option<Moment>,
+    pub until: Option<TimePoint>,
     /// Length of the ship between perpendiculars, m
     #[arg(long, value_name = "L", value_parser = within([0.1, 1000.0]))]
     pub length_m: Option<f64>,
@@ -122,14 +122,14 @@ impl ReadingOptions {
 
 /// A time in a record.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Moment {
+pub enum TimePoint {
     /// Seconds on the clock of the record.
     Seconds(f64),
     /// What the clock of the ship shows.
     Clock(Stamp, String),
 }
 
-impl FromStr for Moment {
+impl FromStr for TimePoint {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

@@ -9,9 +9,9 @@ use trial::file::{STDIN, called};
 use trial::find::{Kind, Manoeuvre};
 use trial::{Channel, Log, Origin, ReadRecord, Sidecar, Trial};
 
-use crate::options::{Moment, ReadingOptions};
+use crate::options::{ReadingOptions, TimePoint};
 use campaign::answers::TRIALS;
-use campaign::known::Shown;
+use campaign::known::RecordFacts;
 use scenario::failure::{Failure, OnPath};
 use scenario::name;
 
@@ -142,11 +142,11 @@ pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Ve
 }
 
 /// A time on the clock of a record, s.
-fn moment(log: &Log, path: &Path, asked: Option<&Moment>) -> Result<Option<f64>, Failure> {
+fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f64>, Failure> {
     match asked {
         None => Ok(None),
-        Some(Moment::Seconds(seconds)) => Ok(Some(*seconds)),
-        Some(Moment::Clock(stamp, text)) => {
+        Some(TimePoint::Seconds(seconds)) => Ok(Some(*seconds)),
+        Some(TimePoint::Clock(stamp, text)) => {
             let time = log.clock().and_then(|clock| clock.time_of(stamp));
             time.map(Some).ok_or_else(|| {
                 Failure::input(format!(
@@ -270,8 +270,8 @@ fn ship(
 }
 
 /// Says why records that have a speed or positions tell no track.
-pub fn warn_of_no_track(shown: &Shown, warnings: &mut Vec<String>) {
-    warnings.extend(shown.untold().map(|why| {
+pub fn warn_of_no_track(shown: &RecordFacts, warnings: &mut Vec<String>) {
+    warnings.extend(shown.no_track().map(|why| {
         format!("speed loss and drift are not told by these records, and no track can be predicted: {why}")
     }));
 }

@@ -7,7 +7,7 @@ use trial::{Scales, Trial};
 use scenario::failure::Failure;
 
 /// Records as they are analysed together.
-pub struct Together {
+pub struct RescaledRecords {
     /// Records that are fitted, all at the scale of the first.
     pub trials: Vec<Trial>,
     /// Records that are held out, at the same scale.
@@ -19,13 +19,13 @@ pub struct Together {
 /// Brings fitted and held-out records to the scale of the first where they differ.
 ///
 /// Fails where they differ and a record does not declare length and speed.
-pub fn together(trials: &[Trial], others: &[Trial]) -> Result<Together, Failure> {
+pub fn together(trials: &[Trial], others: &[Trial]) -> Result<RescaledRecords, Failure> {
     let scales = Scales::among(trials.iter().chain(others)).map_err(Failure::input)?;
     let at_one = |records: &[Trial]| match &scales {
         Some(scales) => scales.bring_together(records.to_vec()),
         None => records.to_vec(),
     };
-    Ok(Together { trials: at_one(trials), others: at_one(others), scales })
+    Ok(RescaledRecords { trials: at_one(trials), others: at_one(others), scales })
 }
 
 /// Length and speed of a scale in words: "L = 7 m, V = 1.18 m/s".
@@ -33,7 +33,7 @@ pub fn scale_name(Particulars { length, speed }: Particulars) -> String {
     format!("L = {} m, V = {} m/s", significant(length, 3), significant(speed, 3))
 }
 
-impl Together {
+impl RescaledRecords {
     /// What was done to the records, in a sentence; `None` where nothing was.
     pub fn sentence(&self) -> Option<String> {
         let scales = self.scales.as_ref()?;

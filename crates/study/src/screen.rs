@@ -60,7 +60,7 @@ fn coloured(lines: &str) -> String {
 }
 
 /// What a command found, in every form in which it may be asked for.
-pub struct Told<'a> {
+pub struct CommandOutput<'a> {
     /// Words before and behind the table.
     pub words: [&'a str; 2],
     /// The table.
@@ -75,8 +75,8 @@ pub struct Told<'a> {
 /// document stand alone on standard output, and notes go to standard error.
 ///
 /// Fails as [`say`] does.
-pub fn tell(common: &Common, told: &Told, warnings: &[String]) -> Result<(), Failure> {
-    let Told { words: [before, behind], table, notes, document } = told;
+pub fn tell(common: &Common, output: &CommandOutput, warnings: &[String]) -> Result<(), Failure> {
+    let CommandOutput { words: [before, behind], table, notes, document } = output;
     match common.format {
         _ if common.quiet => {}
         Format::Text => say(&format!("{before}\n{}{behind}{notes}", table.to_text()))?,

@@ -12,7 +12,7 @@ use kempf_tests::measured::folder;
 use kempf_tests::stability;
 use kempf_tests::wrapped::without_jumps;
 use report::number::{fixed, significant};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 use study::options::{Common, FigureOptions, Format, ReadingOptions, TraceRequest, Withheld};
 use trace::document::{BeforeAfter, EffectEntry, ErrorsEntry, RecordNoiseEntry};
 use trace::{Document, Rule};
@@ -231,16 +231,16 @@ const KEPT_REPORTS: &str = "## Reports\n\nWhole, with figures:\n\n";
 
 fn errors_table() -> Table {
     Table::new([
-        Column::left("fitted record"),
-        Column::left("found"),
-        Column::decimal("heading before").unit("deg"),
-        Column::decimal("after").unit("deg"),
-        Column::decimal("ratio"),
-        Column::decimal("held out: heading ratio"),
-        Column::decimal("held out: windows of 20 s"),
-        Column::decimal("held out: windows of 60 s"),
-        Column::decimal("held out: inside the band").unit("%"),
-        Column::decimal("held out: width of the band").unit("deg"),
+        TableColumn::left("fitted record"),
+        TableColumn::left("found"),
+        TableColumn::decimal("heading before").unit("deg"),
+        TableColumn::decimal("after").unit("deg"),
+        TableColumn::decimal("ratio"),
+        TableColumn::decimal("held out: heading ratio"),
+        TableColumn::decimal("held out: windows of 20 s"),
+        TableColumn::decimal("held out: windows of 60 s"),
+        TableColumn::decimal("held out: inside the band").unit("%"),
+        TableColumn::decimal("held out: width of the band").unit("deg"),
     ])
 }
 
@@ -350,12 +350,12 @@ fn line(label: String, document: &Document) -> Vec<String> {
 /// What a trace says of records without a zig-zag: a line each, or why there is none.
 fn closed_loop(scratch: &Path) -> Outcome<Table> {
     let mut table = Table::new([
-        Column::left("record"),
-        Column::left("found"),
-        Column::left("verdict"),
-        Column::decimal("heading before").unit("deg"),
-        Column::decimal("after").unit("deg"),
-        Column::left("noise"),
+        TableColumn::left("record"),
+        TableColumn::left("found"),
+        TableColumn::left("verdict"),
+        TableColumn::decimal("heading before").unit("deg"),
+        TableColumn::decimal("after").unit("deg"),
+        TableColumn::left("noise"),
     ]);
     for record in autopilot::ALL {
         let source = folder().join("full_scale_closed_loop").join(record.file);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use campaign::statistics::share;
 use report::number::{MISSING, fixed, significant};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 use ship::angle::to_deg;
 
 use super::Outcome;
@@ -33,19 +33,19 @@ pub fn markdown(truths: &[Truth], outcomes: &[Outcome]) -> String {
 /// A line for every trial.
 pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
     let mut table = Table::new([
-        Column::left("truth"),
-        Column::decimal("noise").unit("deg"),
-        Column::right("trial"),
-        Column::decimal("likelihood ratio"),
-        Column::left("judgement"),
-        Column::left("verdict"),
-        Column::left("named"),
-        Column::left("aliases"),
-        Column::left("times").unit("s"),
-        Column::left("noise named"),
-        Column::left("shape without a name"),
-        Column::decimal("heading before").unit("deg"),
-        Column::decimal("heading after").unit("deg"),
+        TableColumn::left("truth"),
+        TableColumn::decimal("noise").unit("deg"),
+        TableColumn::right("trial"),
+        TableColumn::decimal("likelihood ratio"),
+        TableColumn::left("judgement"),
+        TableColumn::left("verdict"),
+        TableColumn::left("named"),
+        TableColumn::left("aliases"),
+        TableColumn::left("times").unit("s"),
+        TableColumn::left("noise named"),
+        TableColumn::left("shape without a name"),
+        TableColumn::decimal("heading before").unit("deg"),
+        TableColumn::decimal("heading after").unit("deg"),
     ]);
     for outcome in outcomes {
         let answer = outcome.answer.as_ref();
@@ -218,17 +218,17 @@ fn how() -> String {
 /// The ships of one group at both noises.
 fn table(truths: &[Truth], outcomes: &[Outcome], group: Group, counted: &[Counted]) -> Table {
     let mut columns = vec![
-        Column::left("truth"),
-        Column::decimal("noise").unit("deg"),
-        Column::decimal("likelihood ratio"),
-        Column::right("trials"),
-        Column::left("right").unit("%"),
+        TableColumn::left("truth"),
+        TableColumn::decimal("noise").unit("deg"),
+        TableColumn::decimal("likelihood ratio"),
+        TableColumn::right("trials"),
+        TableColumn::left("right").unit("%"),
     ];
-    columns.extend(counted.iter().map(|(heading, _)| Column::right(*heading)));
+    columns.extend(counted.iter().map(|(heading, _)| TableColumn::right(*heading)));
     columns.extend([
-        Column::decimal("before").unit("× noise"),
-        Column::decimal("after").unit("× noise"),
-        Column::left("named"),
+        TableColumn::decimal("before").unit("× noise"),
+        TableColumn::decimal("after").unit("× noise"),
+        TableColumn::left("named"),
     ]);
     let mut table = Table::new(columns);
     for cell in outcomes.chunk_by(|one, other| (one.ship, one.noise_deg) == (other.ship, other.noise_deg)) {
@@ -258,7 +258,7 @@ fn table(truths: &[Truth], outcomes: &[Outcome], group: Group, counted: &[Counte
 
 /// The equations, and what is right to say of them.
 fn equations(truths: &[Truth]) -> Table {
-    let mut table = Table::new([Column::left("truth"), Column::left("equation"), Column::left("right")]);
+    let mut table = Table::new([TableColumn::left("truth"), TableColumn::left("equation"), TableColumn::left("right")]);
     for truth in truths {
         let right = match truth.kind {
             Kind::Listed { right, alias: [] } => right.join(", "),

@@ -1,18 +1,18 @@
 //! Names right of the frame, in place of a key: as near to what they name as they can stand without touching.
 
 use super::panels::{Layer, Panels};
-use crate::clip::Place;
+use crate::clip::PagePoint;
 use crate::palette::RECORD;
 use crate::panel::Panel;
-use crate::scene::{Layer as Height, Scene, Stroke, Text};
+use crate::scene::{Canvas, Layer as Height, Stroke, TextLine};
 use crate::theme::Theme;
 
 /// Free space between the frame and a name, in small-font sizes.
 const GAP: f64 = 0.8;
 
-fn text(layer: &Layer, line: &str, theme: &Theme) -> Text {
+fn text(layer: &Layer, line: &str, theme: &Theme) -> TextLine {
     let colour = if layer.is_quiet() { RECORD } else { layer.colour() };
-    Text { bold: !layer.is_quiet(), ..Text::new(line, theme.small_font).colour(colour) }
+    TextLine { bold: !layer.is_quiet(), ..TextLine::new(line, theme.small_font).colour(colour) }
 }
 
 /// Width of the names with what keeps them clear of the frame, points.
@@ -24,7 +24,7 @@ pub(super) fn room(data: &Panels, theme: &Theme) -> f64 {
 }
 
 /// Where a name points: the rightmost point of its layer in the frame; one without bound is at the edge.
-fn anchor(panel: &Panel, layer: &Layer) -> Option<Place> {
+fn anchor(panel: &Panel, layer: &Layer) -> Option<PagePoint> {
     let place = |pair: (f64, f64)| match pair.1.is_infinite() {
         true => Some((panel.across(pair.0)?, panel.rect.y)),
         false => panel.inside(pair),
@@ -33,13 +33,13 @@ fn anchor(panel: &Panel, layer: &Layer) -> Option<Place> {
 }
 
 /// Writes the names; returns the layers that have no point in the frame.
-pub(super) fn names<'a>(panel: &Panel, scene: &mut Scene, theme: &Theme, layers: &'a [Layer]) -> Vec<&'a Layer> {
+pub(super) fn names<'a>(panel: &Panel, scene: &mut Canvas, theme: &Theme, layers: &'a [Layer]) -> Vec<&'a Layer> {
     let (named, outside): (Vec<_>, Vec<_>) = layers
         .iter()
         .filter(|layer| layer.name.is_some())
         .map(|layer| (layer, anchor(panel, layer)))
         .partition(|(_, anchor)| anchor.is_some());
-    let mut labels: Vec<(Place, &Layer, Vec<&str>)> = (named.into_iter())
+    let mut labels: Vec<(PagePoint, &Layer, Vec<&str>)> = (named.into_iter())
         .filter_map(|(layer, anchor)| Some((anchor?, layer, layer.name.as_deref()?.split('\n').collect())))
         .collect();
     labels.sort_by(|one, other| one.0.1.total_cmp(&other.0.1));

@@ -3,17 +3,17 @@
 //! colour blindness.
 
 use super::panels::Division;
-use crate::axis::Axis;
-use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side};
-use crate::legend::{Entry, Sample};
+use crate::axis::PlotAxis;
+use crate::figure::Drawing;
+use crate::layout::{AxisSide, Grid, Sheet};
+use crate::legend::{KeyEntry, KeySample};
 use crate::number::{self, MISSING, significant};
 use crate::paint::Paint;
 use crate::palette::{DOTTED, Dash, GRID, HEADING, INK, PAPER, SOLID};
 use crate::panel::Panel;
-use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
 use crate::theme::Theme;
-use crate::ticks::Steps;
+use crate::ticks::TickSteps;
 
 /// What stands in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -47,7 +47,7 @@ pub enum Shades {
 
 /// What [`super::Plot::Cells`] draws.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cells {
+pub struct CellMap {
     /// Title above the figure.
     pub title: Option<String>,
     /// Titles of the horizontal and of the vertical axis.
@@ -80,7 +80,7 @@ const VIRIDIS: [Paint; 9] = [
     Paint(253, 231, 37),
 ];
 
-impl Cells {
+impl CellMap {
     fn all(&self) -> impl Iterator<Item = &MapCell> {
         self.panels.iter().flat_map(|(_, rows)| rows).flatten()
     }
@@ -91,12 +91,12 @@ impl Cells {
 }
 
 /// Draws the panels in rows of as many as fit.
-pub(super) fn cells(data: &Cells, theme: &Theme) -> Figure {
+pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
-    let box_of = |dash: Dash| Sample::Line(Stroke::solid(INK, 1.4 * theme.line).dashed(dash));
+    let box_of = |dash: Dash| KeySample::Line(Stroke::solid(INK, 1.4 * theme.line).dashed(dash));
     let outlines = [(Outline::Right, SOLID, "what is missing"), (Outline::Alias, DOTTED, "cannot be told from it")];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
-    sheet.legend(&shown.map(|(_, dash, name)| Entry::new(box_of(dash), *name)).collect::<Vec<_>>());
+    sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(box_of(dash), *name)).collect::<Vec<_>>());
     let count = data.panels.len().max(1);
     let two_lines = data.is_shares() && !theme.is_narrow() && data.all().any(|cell| bracket(cell).is_some());
     let pitch = match (data.is_shares(), theme.is_narrow()) {
@@ -105,9 +105,9 @@ pub(super) fn cells(data: &Cells, theme: &Theme) -> Figure {
         (false, false) => 2.0 * theme.tick_font,
     };
     let height = (data.rows.len().max(1) as f64 + 0.2) * pitch;
-    let column = Side::new(Axis::columns(data.columns.clone()), data.titles[0].clone());
-    let row = (Side::new(Axis::names(data.rows.clone()), data.titles[1].clone()), height);
-    let heads = data.panels.iter().map(|(head, _)| Some(Entry::new(Sample::Nothing, head.clone()?)));
+    let column = AxisSide::new(PlotAxis::columns(data.columns.clone()), data.titles[0].clone());
+    let row = (AxisSide::new(PlotAxis::names(data.rows.clone()), data.titles[1].clone()), height);
+    let heads = data.panels.iter().map(|(head, _)| Some(KeyEntry::new(KeySample::Nothing, head.clone()?)));
     let heads = heads.collect();
     let range = Range::of(data);
     let panels = sheet.grid(Grid { heads, ..Grid::alike(count, across(data, theme).min(count), column, row) });
@@ -140,12 +140,12 @@ fn bar(sheet: &mut Sheet, (division, title): (Division, &str), theme: &Theme, ra
     }
     let value = |along: f64| if range.is_log { 10f64.powf(along) } else { along };
     let axis = match division {
-        Division::Factors => Axis::log_between(value(range.low), value(range.high)),
-        _ => Axis::linear(range.low, range.high, Steps::Decimal),
+        Division::Factors => PlotAxis::log_between(value(range.low), value(range.high)),
+        _ => PlotAxis::linear(range.low, range.high, TickSteps::Decimal),
     };
     let strip = (0.5 * theme.width, 0.4 * theme.width);
-    let row = (Side::new(Axis::names(Vec::new()), ""), 0.9 * theme.small_font);
-    let panels = sheet.grid_within(Grid::new(vec![Side::new(axis, title)], vec![row]), strip);
+    let row = (AxisSide::new(PlotAxis::names(Vec::new()), ""), 0.9 * theme.small_font);
+    let panels = sheet.grid_within(Grid::new(vec![AxisSide::new(axis, title)], vec![row]), strip);
     let Some(panel) = panels.first() else { return };
     let (top, bottom) = (panel.rect.y, panel.rect.bottom());
     for piece in 0..PIECES {
@@ -158,9 +158,9 @@ fn bar(sheet: &mut Sheet, (division, title): (Division, &str), theme: &Theme, ra
 }
 
 /// Panels side by side: three, or as many as leave room for the numbers in the cells.
-fn across(data: &Cells, theme: &Theme) -> usize {
+fn across(data: &CellMap, theme: &Theme) -> usize {
     let widest = |labels: &[String], font: f64| {
-        labels.iter().map(|label| Text::new(label.as_str(), font).width()).fold(0.0, f64::max)
+        labels.iter().map(|label| TextLine::new(label.as_str(), font).width()).fold(0.0, f64::max)
     };
     let values: Vec<String> = data.all().map(written).collect();
     let cell = widest(&values, theme.small_font).max(widest(&data.columns, theme.tick_font)) + 0.5 * theme.tick_font;
@@ -187,7 +187,7 @@ struct Range {
 }
 
 impl Range {
-    fn of(data: &Cells) -> Self {
+    fn of(data: &CellMap) -> Self {
         let is_log = matches!(data.shades, Shades::Range(Division::Factors, _));
         let is_shares = data.is_shares();
         let range = Self { low: 0.0, high: 100.0, is_log, is_shares };
@@ -223,7 +223,7 @@ fn bracket(cell: &MapCell) -> Option<String> {
     Some(format!("{low:.0}–{high:.0}"))
 }
 
-fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (x, y): (usize, usize), (cell, range): (&MapCell, &Range)) {
+fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (x, y): (usize, usize), (cell, range): (&MapCell, &Range)) {
     let corner = |dx: f64, dy: f64| panel.place((x as f64 + dx, y as f64 + dy));
     let (Some((left, top)), Some((right, bottom))) = (corner(-0.5, -0.5), corner(0.5, 0.5)) else { return };
     let corners =
@@ -250,7 +250,7 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (x, y): (usize, usize),
     // Relative luminance (ITU-R BT.709) over white paper decides whether black or white can be read.
     let luminance = (0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)) / 255.0;
     let ink = if 1.0 - opacity * (1.0 - luminance) > 0.5 { INK } else { PAPER };
-    let number = |text: String, size: f64| Text::new(text, size).colour(ink).anchor(Anchor::Middle);
+    let number = |text: String, size: f64| TextLine::new(text, size).colour(ink).anchor(Anchor::Middle);
     let value = match cell.value {
         // A rare one is not none.
         Some(share) if range.is_shares && share < 0.5 => String::from("<1"),

@@ -1,9 +1,9 @@
 //! A panel in which a metre is as long on one axis as on the other: tracks seen from above.
 
 use super::panels::{Layer, Stack};
-use crate::axis::{self, Axis};
-use crate::layout::{Grid, Sheet, Side, fitting_step};
-use crate::ticks::Steps;
+use crate::axis::{self, PlotAxis};
+use crate::layout::{AxisSide, Grid, Sheet, fitting_step};
+use crate::ticks::TickSteps;
 
 /// Free space around the tracks, as a share of the longer side.
 const MARGIN: f64 = 0.05;
@@ -11,7 +11,7 @@ const MARGIN: f64 = 0.05;
 const FARTHEST: f64 = 1e12;
 
 /// Across or up of a pair.
-type Part = fn(&(f64, f64)) -> f64;
+type AxisPart = fn(&(f64, f64)) -> f64;
 
 /// The ends of both axes as the layers want them, and whether one is cut. A layer may leave the range of those that are
 /// not cut by its share of the longer side.
@@ -20,7 +20,7 @@ fn ranges(layers: &[Layer]) -> ([(f64, f64); 2], bool) {
     let of = |layer: &Layer| layer.curve.finite().filter(near).collect::<Vec<_>>();
     let core: Vec<(f64, f64)> = layers.iter().filter(|layer| layer.room.is_none()).flat_map(of).collect();
     let all: Vec<(f64, f64)> = layers.iter().flat_map(of).collect();
-    let parts: [Part; 2] = [|pair| pair.0, |pair| pair.1];
+    let parts: [AxisPart; 2] = [|pair| pair.0, |pair| pair.1];
     let wanted = if core.is_empty() { &all } else { &core };
     let [Some(east), Some(north)] = parts.map(|part| axis::range(wanted.iter().map(part))) else {
         return ([(0.0, 1.0); 2], false);
@@ -50,7 +50,7 @@ pub(super) fn fitted(sheet: &Sheet, stack: &Stack) -> (Grid, f64, bool) {
     let ([east, north], cut) = ranges(layers);
     let around = |(lo, hi): (f64, f64), length: f64| {
         let (middle, half) = ((lo + hi) / 2.0, length / 2.0);
-        Axis::linear(middle - half, middle + half, Steps::Decimal)
+        PlotAxis::linear(middle - half, middle + half, TickSteps::Decimal)
     };
     let title = |ruler: Option<&super::Ruler>| ruler.map_or_else(String::new, |own| own.title.clone());
     let titles = [title(stack.x.first()), title(stack.rows.first().map(|row| &row.y))];
@@ -69,8 +69,8 @@ pub(super) fn fitted(sheet: &Sheet, stack: &Stack) -> (Grid, f64, bool) {
             Some(step) => (across.stepped(step), up.stepped(step)),
             None => (across, up),
         };
-        let row = (Side::new(up, titles[1].clone()), height);
-        (Grid::stack(Side::new(across, titles[0].clone()), vec![row]), width)
+        let row = (AxisSide::new(up, titles[1].clone()), height);
+        (Grid::stack(AxisSide::new(across, titles[0].clone()), vec![row]), width)
     };
     // Longer labels of the vertical axis take from the width, which changes the axis and may change the labels.
     let mut left = 0.0;

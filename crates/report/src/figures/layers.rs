@@ -1,25 +1,25 @@
 //! Draws [`Panels`]: axes over their layers, the layers, and what has to be said of what lies outside.
 
-use super::panels::{AxisMark, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
+use super::panels::{AxisLine, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
 use super::reach::{Extents, INTERVALS, robust};
 use super::shared::{ACROSS_PAD, PAD, asides, record, shaded, zero_line, zero_upright};
 use super::{aside, equal};
-use crate::clip::{self, Place};
-use crate::curve::Curve;
+use crate::clip::{self, PagePoint};
+use crate::curve::PlotCurve;
 use crate::dimension::Dimensions;
-use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side};
-use crate::legend::{Entry, Sample};
+use crate::figure::Drawing;
+use crate::layout::{AxisSide, Grid, Sheet};
+use crate::legend::{KeyEntry, KeySample};
 use crate::number::significant;
 use crate::paint::Paint;
 use crate::palette::{DASHED, INK, Look, SHORT_DASH};
 use crate::panel::Panel;
-use crate::scene::{Anchor, Layer as Height, Scene, Stroke, Text};
+use crate::scene::{Anchor, Canvas, Layer as Height, Stroke, TextLine};
 use crate::theme::Theme;
 
 /// What is said under a figure of what it does not show.
 #[derive(Default)]
-struct Outside {
+struct Unshown {
     /// Whether a layer is cut.
     is_cut: bool,
     /// Dots beyond a panel, at most.
@@ -33,10 +33,10 @@ struct Outside {
 }
 
 /// Draws the stacks below each other, half ones in two columns unless the figure is narrow.
-pub(super) fn panels(data: &Panels, theme: &Theme) -> Figure {
+pub(super) fn panels(data: &Panels, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
-    let mut outside = Outside::default();
+    let mut outside = Unshown::default();
     // Panels of the whole width stand below each other to the point.
     let whole = data.stacks.iter().filter(|stack| !stack.is_half && !stack.equal);
     let left = whole.map(|stack| sheet.left_margin(&grid(stack, theme).0)).fold(0.0, f64::max);
@@ -63,7 +63,7 @@ pub(super) fn panels(data: &Panels, theme: &Theme) -> Figure {
     sheet.finish()
 }
 
-fn remarks(data: &Panels, outside: &Outside) -> Vec<String> {
+fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
     let dots = match outside.dots {
         0 => None,
         1 => Some(String::from("1 point lies beyond a panel, where an arrow is at its edge.")),
@@ -76,8 +76,8 @@ fn remarks(data: &Panels, outside: &Outside) -> Vec<String> {
     [data.note.clone(), cut, dots, names, apart, marks].into_iter().flatten().collect()
 }
 
-fn entries(data: &Panels, theme: &Theme) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = Vec::new();
+fn entries(data: &Panels, theme: &Theme) -> Vec<KeyEntry> {
+    let mut entries: Vec<KeyEntry> = Vec::new();
     for panel in data.stacks.iter().flat_map(|stack| &stack.panels).filter(|_| !data.names_aside) {
         // Where a band lies on another one, that shines through.
         let mut light = 1.0;
@@ -89,10 +89,10 @@ fn entries(data: &Panels, theme: &Theme) -> Vec<Entry> {
             else {
                 continue;
             };
-            entries.extend(layer.sample(theme, 1.0 - light).map(|sample| Entry::new(sample, name.clone())));
+            entries.extend(layer.sample(theme, 1.0 - light).map(|sample| KeyEntry::new(sample, name.clone())));
         }
     }
-    entries.extend(data.said.iter().map(|text| Entry::new(Sample::Nothing, text.clone())));
+    entries.extend(data.said.iter().map(|text| KeyEntry::new(KeySample::Nothing, text.clone())));
     entries
 }
 
@@ -109,7 +109,7 @@ fn columns(stack: &Stack, theme: &Theme) -> usize {
 fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, of: fn((f64, f64)) -> f64, vertical: bool) -> Extents {
     let mut found = Extents::default();
     for layer in layers {
-        let values: Vec<f64> = layer.curves().flat_map(Curve::finite).map(of).collect();
+        let values: Vec<f64> = layer.curves().flat_map(PlotCurve::finite).map(of).collect();
         match (&layer.kind, layer.room) {
             (LayerKind::Cloud(_), _) => {}
             (_, Some(room)) => found.soft.extend(values.into_iter().map(|value| (value, room))),
@@ -146,10 +146,10 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let ruler = &stack.x[if stack.across.is_some() { 0 } else { column }];
         let (axis, cut) = ruler.axis(&data, across_pad(stack));
         is_cut |= cut;
-        Side::new(axis, ruler.title.clone())
+        AxisSide::new(axis, ruler.title.clone())
     };
-    let columns: Vec<Side> = if stack.x.is_empty() { Vec::new() } else { (0..count).map(&mut side).collect() };
-    let rows: Vec<(Side, f64)> = (stack.rows.iter().enumerate())
+    let columns: Vec<AxisSide> = if stack.x.is_empty() { Vec::new() } else { (0..count).map(&mut side).collect() };
+    let rows: Vec<(AxisSide, f64)> = (stack.rows.iter().enumerate())
         .map(|(number, row)| {
             let own = layers(&|index| index / count == number);
             let mut data = extents(own.into_iter(), |pair| pair.1, true);
@@ -157,13 +157,13 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
             data.fixed.extend(row.reference.iter().flat_map(|own| [own.value, own.band[0], own.band[1]]));
             let (axis, cut) = row.y.axis(&data, PAD);
             is_cut |= cut;
-            (Side::new(axis, row.y.title.clone()), theme.tall(row.height))
+            (AxisSide::new(axis, row.y.title.clone()), theme.tall(row.height))
         })
         .collect();
     let grid = match (stack.across, rows.first(), columns.first()) {
         (Some(_), Some((row, height)), Some(column)) => Grid {
             shared_title: Some(row.title.clone()),
-            ..Grid::alike(stack.panels.len(), count, column.clone(), (Side::new(row.axis.clone(), ""), *height))
+            ..Grid::alike(stack.panels.len(), count, column.clone(), (AxisSide::new(row.axis.clone(), ""), *height))
         },
         _ => Grid::new(columns, rows),
     };
@@ -171,7 +171,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
 }
 
 /// Draws a stack into a strip of the page: its left edge, its width and its least left margin.
-fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64), outside: &mut Outside) {
+fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64), outside: &mut Unshown) {
     let theme = sheet.theme;
     let (mut grid, mut cut) = grid(stack, &theme);
     let (mut from, mut width, margin) = strip;
@@ -184,7 +184,7 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     outside.is_cut |= cut;
     let head = |panel: &LayeredPanel| {
         let sample = panel.layers.first().filter(|_| stack.across.is_some()).and_then(|own| own.sample(&theme, 1.0));
-        panel.head.as_ref().map(|head| Entry::new(sample.unwrap_or(Sample::Nothing), head.clone()))
+        panel.head.as_ref().map(|head| KeyEntry::new(sample.unwrap_or(KeySample::Nothing), head.clone()))
     };
     grid.heads = stack.panels.iter().map(head).collect();
     grid.left = Some(margin);
@@ -219,7 +219,7 @@ fn named(layer: &Layer, stack: &Stack, row: &PanelRow) -> String {
 }
 
 /// What lies under the layers.
-fn background(place: &Panel, scene: &mut Scene, theme: &Theme, stack: &Stack, row: &PanelRow) {
+fn background(place: &Panel, scene: &mut Canvas, theme: &Theme, stack: &Stack, row: &PanelRow) {
     if row.zero {
         zero_line(place, scene, theme);
     }
@@ -236,9 +236,9 @@ fn background(place: &Panel, scene: &mut Scene, theme: &Theme, stack: &Stack, ro
 }
 
 /// A line across the frame, its name beside its upper end.
-fn draw_mark(panel: &Panel, scene: &mut Scene, theme: &Theme, mark: &AxisMark) {
+fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine) {
     panel.vertical(scene, Height::Grid, mark.at, Stroke::solid(INK, theme.thin).dashed(SHORT_DASH));
-    let text = Text::new(mark.label.as_str(), theme.small_font);
+    let text = TextLine::new(mark.label.as_str(), theme.small_font);
     let Some(x) = panel.across(mark.at).filter(|x| panel.rect.contains((*x, panel.rect.y))) else { return };
     let gap = 0.4 * theme.small_font;
     let is_right = x + gap + text.width() < panel.rect.right();
@@ -247,7 +247,7 @@ fn draw_mark(panel: &Panel, scene: &mut Scene, theme: &Theme, mark: &AxisMark) {
 }
 
 /// What a small multiple says of what it does not show: how much of its cloud lies outside, or how far a cut line goes.
-fn corner(place: &Panel, scene: &mut Scene, theme: &Theme, panel: &LayeredPanel) {
+fn corner(place: &Panel, scene: &mut Canvas, theme: &Theme, panel: &LayeredPanel) {
     let Some(layer) = panel.layers.first() else { return };
     let rect = place.rect;
     let outside = || layer.curve.finite().filter(|pair| place.inside(*pair).is_none());
@@ -257,18 +257,18 @@ fn corner(place: &Panel, scene: &mut Scene, theme: &Theme, panel: &LayeredPanel)
             (_, 0) => return,
             (all, count) => format!("{count} of {all} outside"),
         };
-        let text = Text::new(note, theme.small_font).anchor(Anchor::End);
+        let text = TextLine::new(note, theme.small_font).anchor(Anchor::End);
         let at = (rect.right() - 0.4 * theme.small_font, rect.bottom() - 0.5 * theme.small_font);
         scene.text_on_ground(Height::Note, at, text);
     } else if let Some(peak) = outside().map(|(_, y)| y.abs()).reduce(f64::max) {
-        let text = Text::new(format!("cut, reaches {}°", significant(peak, 2)), theme.small_font);
+        let text = TextLine::new(format!("cut, reaches {}°", significant(peak, 2)), theme.small_font);
         let at = (rect.right(), rect.y - 0.45 * theme.small_font);
         scene.text(Height::Note, at, text.anchor(Anchor::End));
     }
 }
 
 /// Draws a layer; tells how many dots lie beyond the panel.
-fn draw_layer(sheet: &mut Sheet, place: &Panel, layer: &Layer, theme: &Theme, outside: &mut Outside) -> usize {
+fn draw_layer(sheet: &mut Sheet, place: &Panel, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> usize {
     let scene = &mut sheet.scene;
     match &layer.kind {
         LayerKind::Line(pen) => place.line(scene, layer.curve.pairs(), pen.stroke(theme)),
@@ -297,7 +297,7 @@ fn draw_layer(sheet: &mut Sheet, place: &Panel, layer: &Layer, theme: &Theme, ou
 }
 
 /// Marks points above and below a panel by small arrows at its edge, and counts them.
-fn edges(place: &Panel, curve: &Curve, scene: &mut Scene, size: f64, colour: Paint) -> usize {
+fn edges(place: &Panel, curve: &PlotCurve, scene: &mut Canvas, size: f64, colour: Paint) -> usize {
     let (top, bottom) = (place.rect.y, place.rect.bottom());
     let mut count = 0;
     for (x, y) in curve.finite().filter_map(|pair| place.place(pair)) {
@@ -314,7 +314,7 @@ fn edges(place: &Panel, curve: &Curve, scene: &mut Scene, size: f64, colour: Pai
 }
 
 /// Marks with their intervals, and the line that joins them.
-fn draw_marks(place: &Panel, scene: &mut Scene, theme: &Theme, own: (&Curve, &Marks), outside: &mut Outside) {
+fn draw_marks(place: &Panel, scene: &mut Canvas, theme: &Theme, own: (&PlotCurve, &Marks), outside: &mut Unshown) {
     let (curve, Marks { look, intervals, joined, apart }) = own;
     let mut across: Vec<Option<f64>> = curve.x.iter().map(|x| place.across(*x)).collect();
     if *apart {
@@ -330,8 +330,8 @@ fn draw_marks(place: &Panel, scene: &mut Scene, theme: &Theme, own: (&Curve, &Ma
         (Some(_), false) => 0.9,
         (None, _) => 1.0,
     };
-    let mut line: Vec<Option<Place>> = Vec::new();
-    let mut marks: Vec<(Place, bool)> = Vec::new();
+    let mut line: Vec<Option<PagePoint>> = Vec::new();
+    let mut marks: Vec<(PagePoint, bool)> = Vec::new();
     for (row, (x, &y)) in across.iter().zip(&curve.y).enumerate() {
         // A value without bound, or none at all.
         let up = if y.is_infinite() { Some(y * -1e9) } else { place.up(y) };
@@ -366,7 +366,7 @@ fn draw_marks(place: &Panel, scene: &mut Scene, theme: &Theme, own: (&Curve, &Ma
 }
 
 /// A vertical bar with caps; an end beyond the frame (or at zero on a logarithmic axis) is cut, without cap.
-fn interval(panel: &Panel, scene: &mut Scene, across: f64, [lo, hi]: [f64; 2], (cap, stroke): (f64, Stroke)) {
+fn interval(panel: &Panel, scene: &mut Canvas, across: f64, [lo, hi]: [f64; 2], (cap, stroke): (f64, Stroke)) {
     let rect = panel.rect;
     let high = panel.up(lo.max(hi)).unwrap_or(f64::NEG_INFINITY);
     let low = panel.up(lo.min(hi)).unwrap_or(f64::INFINITY);

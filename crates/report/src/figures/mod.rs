@@ -12,17 +12,18 @@ mod shared;
 mod stored;
 mod zigzag_trial;
 
-pub use cells::{Cells, MapCell, Outline, Shades};
-pub use panels::{AxisMark, Division, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Ruler, Stack};
-pub use reach::Reach;
-pub use rows::{RowItem, RowKind, Rows, RowsColumn};
+pub use cells::{CellMap, MapCell, Outline, Shades};
+pub use panels::{AxisLine, Division, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Ruler, Stack};
+pub use reach::AxisReach;
+pub use rows::{NamedRows, RowItem, RowKind, RowsColumn};
 pub use shared::Reference95;
 pub use stored::{
-    CurveFit, Derivatives, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replay, Replays,
+    CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, ReplayCurves,
+    Replays,
 };
-pub use zigzag_trial::{Mark, Overshoot, Span, ZigzagTrial};
+pub use zigzag_trial::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
 
-use crate::figure::Figure;
+use crate::figure::Drawing;
 use crate::theme::Theme;
 
 /// A figure to draw.
@@ -31,16 +32,16 @@ pub enum Plot {
     /// Layers over numeric axes.
     Panels(Panels),
     /// Named rows.
-    Rows(Rows),
+    Rows(NamedRows),
     /// A map.
-    Cells(Cells),
+    Cells(CellMap),
     /// A zig-zag trial with its characteristic quantities.
     ZigZag(ZigzagTrial),
 }
 
 impl Plot {
     /// Draws it.
-    pub fn draw(&self, theme: &Theme) -> Figure {
+    pub fn draw(&self, theme: &Theme) -> Drawing {
         match self {
             Self::Panels(data) => layers::panels(data, theme),
             Self::Rows(data) => rows::rows(data, theme),
@@ -66,14 +67,14 @@ impl From<Panels> for Plot {
     }
 }
 
-impl From<Rows> for Plot {
-    fn from(data: Rows) -> Self {
+impl From<NamedRows> for Plot {
+    fn from(data: NamedRows) -> Self {
         Self::Rows(data)
     }
 }
 
-impl From<Cells> for Plot {
-    fn from(data: Cells) -> Self {
+impl From<CellMap> for Plot {
+    fn from(data: CellMap) -> Self {
         Self::Cells(data)
     }
 }

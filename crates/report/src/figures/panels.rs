@@ -2,17 +2,17 @@
 //! same one, in rows and columns where they share both, as small multiples where all are alike, side by side where they
 //! have nothing in common. What a figure shows is data; [`super::layers`] draws it.
 
-use super::reach::{Extents, Reach};
+use super::reach::{AxisReach, Extents};
 use super::shared::{Reference95, record_sample};
-use crate::axis::Axis;
-use crate::curve::Curve;
-use crate::legend::Sample;
+use crate::axis::PlotAxis;
+use crate::curve::PlotCurve;
+use crate::legend::KeySample;
 use crate::markup::symbol;
 use crate::paint::Paint;
-use crate::palette::{Dash, HEADING, Look, Origin, QUIET, SOLID};
+use crate::palette::{CurveOrigin, Dash, HEADING, Look, QUIET, SOLID};
 use crate::scene::Stroke;
 use crate::theme::Theme;
-use crate::ticks::Steps;
+use crate::ticks::TickSteps;
 
 /// How an axis is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -38,7 +38,7 @@ pub struct Ruler {
     /// Division.
     pub division: Division,
     /// How far it goes where the data are wild; `None`: all the way.
-    pub reach: Option<Reach>,
+    pub reach: Option<AxisReach>,
 }
 
 impl Ruler {
@@ -74,26 +74,26 @@ impl Ruler {
 
     /// The same axis, as far as so many times the middle extent of the data from a centre.
     pub fn within(self, times: f64, centre: Option<f64>) -> Self {
-        Self { reach: Some(Reach { times, centre, symmetric: false }), ..self }
+        Self { reach: Some(AxisReach { times, centre, symmetric: false }), ..self }
     }
 
     /// The same about zero, as far to one side as to the other.
     pub fn about_zero(self, times: f64) -> Self {
-        Self { reach: Some(Reach { times, centre: Some(0.0), symmetric: true }), ..self }
+        Self { reach: Some(AxisReach { times, centre: Some(0.0), symmetric: true }), ..self }
     }
 
     /// The axis over some data with free space at the ends; and whether something is cut.
-    pub(super) fn axis(&self, data: &Extents, pad: f64) -> (Axis, bool) {
+    pub(super) fn axis(&self, data: &Extents, pad: f64) -> (PlotAxis, bool) {
         let steps = match self.division {
-            Division::Factors => return (Axis::log_covering(data.positive()), false),
-            Division::Percent => return (Axis::linear(-3.0, 103.0, Steps::Decimal), false),
-            Division::Time => Steps::Time,
-            Division::Angle => Steps::Angle,
-            Division::Decimal => Steps::Decimal,
+            Division::Factors => return (PlotAxis::log_covering(data.positive()), false),
+            Division::Percent => return (PlotAxis::linear(-3.0, 103.0, TickSteps::Decimal), false),
+            Division::Time => TickSteps::Time,
+            Division::Angle => TickSteps::Angle,
+            Division::Decimal => TickSteps::Decimal,
         };
         let pad = if self.division == Division::Time { 0.0 } else { pad };
         let (ends, is_cut) = data.ends(self.reach);
-        (Axis::covering(ends.into_iter().flat_map(|(lo, hi)| [lo, hi]), pad, steps), is_cut)
+        (PlotAxis::covering(ends.into_iter().flat_map(|(lo, hi)| [lo, hi]), pad, steps), is_cut)
     }
 }
 
@@ -117,7 +117,7 @@ impl Pen {
     }
 
     /// The line of an origin.
-    pub fn of(origin: &Origin) -> Self {
+    pub fn of(origin: &CurveOrigin) -> Self {
         let look = origin.look();
         Self { dash: look.dash, ..Self::new(look.colour) }
     }
@@ -156,7 +156,7 @@ pub enum LayerKind {
     /// A line through them.
     Line(Pen),
     /// The area between them and another curve, in a colour and as dense as is said.
-    Band(Curve, Paint, f64),
+    Band(PlotCurve, Paint, f64),
     /// A record: dots, or a wide line where it is dense.
     Record,
     /// Small dots. Single ones far from all others do not set the axis: an arrow at its edge stands for them.
@@ -175,7 +175,7 @@ pub struct Layer {
     /// Its name in the key; layers of one name are told once.
     pub name: Option<String>,
     /// The points.
-    pub curve: Curve,
+    pub curve: PlotCurve,
     /// How they are drawn.
     pub kind: LayerKind,
     /// Share of the range of everything else by which it may widen the axes before it is cut; `None`: never cut.
@@ -184,18 +184,18 @@ pub struct Layer {
 
 impl Layer {
     /// A layer that sets the axes.
-    pub fn new(name: impl Into<String>, curve: Curve, kind: LayerKind) -> Self {
+    pub fn new(name: impl Into<String>, curve: PlotCurve, kind: LayerKind) -> Self {
         let name = Some(name.into()).filter(|name| !name.is_empty());
         Self { name, curve, kind, room: None }
     }
 
     /// A line.
-    pub fn line(name: impl Into<String>, curve: Curve, pen: Pen) -> Self {
+    pub fn line(name: impl Into<String>, curve: PlotCurve, pen: Pen) -> Self {
         Self::new(name, curve, LayerKind::Line(pen))
     }
 
     /// The area between two curves.
-    pub fn band(name: impl Into<String>, [lower, upper]: [Curve; 2], colour: Paint, opacity: f64) -> Self {
+    pub fn band(name: impl Into<String>, [lower, upper]: [PlotCurve; 2], colour: Paint, opacity: f64) -> Self {
         Self::new(name, lower, LayerKind::Band(upper, colour, opacity))
     }
 
@@ -203,7 +203,7 @@ impl Layer {
     pub fn marks(name: impl Into<String>, look: Look, points: Vec<(f64, f64, Option<[f64; 2]>)>) -> Self {
         let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|(x, y, _)| (*x, *y)).unzip();
         let intervals = points.into_iter().map(|(.., interval)| interval).collect();
-        Self::new(name, Curve { x, y }, LayerKind::Marks(Marks { look, intervals, joined: None, apart: false }))
+        Self::new(name, PlotCurve { x, y }, LayerKind::Marks(Marks { look, intervals, joined: None, apart: false }))
     }
 
     /// The same marks, joined by a line.
@@ -227,7 +227,7 @@ impl Layer {
         Self { room: Some(room), ..self }
     }
 
-    pub(super) fn curves(&self) -> impl Iterator<Item = &Curve> {
+    pub(super) fn curves(&self) -> impl Iterator<Item = &PlotCurve> {
         let other = if let LayerKind::Band(other, ..) = &self.kind { Some(other) } else { None };
         [&self.curve].into_iter().chain(other)
     }
@@ -248,19 +248,21 @@ impl Layer {
     }
 
     /// How it looks in the key; a band where others lie under it as dense as `shade`.
-    pub(super) fn sample(&self, theme: &Theme, shade: f64) -> Option<Sample> {
+    pub(super) fn sample(&self, theme: &Theme, shade: f64) -> Option<KeySample> {
         Some(match &self.kind {
-            LayerKind::Line(pen) => Sample::Line(pen.stroke(theme)),
+            LayerKind::Line(pen) => KeySample::Line(pen.stroke(theme)),
             LayerKind::Band(_, colour, _) => {
-                Sample::Line(Stroke { opacity: shade, ..Stroke::solid(*colour, 0.8 * theme.small_font) })
+                KeySample::Line(Stroke { opacity: shade, ..Stroke::solid(*colour, 0.8 * theme.small_font) })
             }
             LayerKind::Record if self.curve.finite().next().is_none() => return None,
             LayerKind::Record => record_sample(theme, &self.curve),
-            LayerKind::Dots(colour) | LayerKind::Cloud(colour) => Sample::Dots(*colour),
-            LayerKind::Marks(Marks { look, joined: Some(pen), .. }) => Sample::LineAndMarker(pen.stroke(theme), *look),
-            LayerKind::Marks(Marks { look, .. }) => Sample::Marker(*look),
+            LayerKind::Dots(colour) | LayerKind::Cloud(colour) => KeySample::Dots(*colour),
+            LayerKind::Marks(Marks { look, joined: Some(pen), .. }) => {
+                KeySample::LineAndMarker(pen.stroke(theme), *look)
+            }
+            LayerKind::Marks(Marks { look, .. }) => KeySample::Marker(*look),
             LayerKind::Ships(..) if self.curve.finite().next().is_none() => return None,
-            LayerKind::Ships(colour, _) => Sample::Hull(*colour),
+            LayerKind::Ships(colour, _) => KeySample::Hull(*colour),
         })
     }
 }
@@ -303,7 +305,7 @@ pub struct LayeredPanel {
 
 /// A value of the horizontal axis with a name of its own, such as a limit of a rule.
 #[derive(Debug, Clone, PartialEq)]
-pub struct AxisMark {
+pub struct AxisLine {
     /// The value.
     pub at: f64,
     /// Its name.
@@ -320,7 +322,7 @@ pub struct Stack {
     /// The panels, row by row.
     pub panels: Vec<LayeredPanel>,
     /// Lines from bottom to top.
-    pub marks: Vec<AxisMark>,
+    pub marks: Vec<AxisLine>,
     /// Small multiples, so many side by side: the one axis and the one row are those of all.
     pub across: Option<usize>,
     /// Whether it takes half the width of the figure; two of them stand side by side where there is room.

@@ -5,7 +5,7 @@ use crate::axis;
 
 /// What of wild data an axis shows: so many times the middle extent from a centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reach {
+pub struct AxisReach {
     /// Times the middle extent.
     pub times: f64,
     /// The centre; the middle of the data where there is none.
@@ -48,7 +48,7 @@ impl Extents {
     }
 
     /// Both ends, and whether something soft is cut; `None` where there is nothing.
-    pub(super) fn ends(&self, reach: Option<Reach>) -> (Option<(f64, f64)>, bool) {
+    pub(super) fn ends(&self, reach: Option<AxisReach>) -> (Option<(f64, f64)>, bool) {
         let within = reach.map_or_else(|| self.core.clone(), |reach| self.within(reach));
         let flat = |pairs: &[(f64, f64)]| -> Vec<f64> { pairs.iter().flat_map(|(lo, hi)| [*lo, *hi]).collect() };
         let fixed = self.fixed.iter().copied();
@@ -66,7 +66,7 @@ impl Extents {
             is_cut |= *value < lo - room || *value > hi + room;
         }
         match reach {
-            Some(Reach { symmetric: true, centre, .. }) => {
+            Some(AxisReach { symmetric: true, centre, .. }) => {
                 let centre = centre.unwrap_or(0.0);
                 let half = (ends.0 - centre).abs().max((ends.1 - centre).abs());
                 (Some((centre - half, centre + half)), is_cut)
@@ -76,7 +76,7 @@ impl Extents {
     }
 
     /// What lies within the reach of an axis, and of what lies in it by a part, that part.
-    fn within(&self, Reach { times, centre, .. }: Reach) -> Vec<(f64, f64)> {
+    fn within(&self, AxisReach { times, centre, .. }: AxisReach) -> Vec<(f64, f64)> {
         let middles = self.core.iter().map(|(lo, hi)| 0.5 * (lo + hi));
         let centre = centre.or_else(|| median(middles)).unwrap_or(0.0);
         let extents = self.core.iter().map(|(lo, hi)| (lo - centre).abs().max((hi - centre).abs()));
@@ -129,11 +129,11 @@ mod tests {
         [0.1, 0.101, 0.099, 9.0].into_iter().for_each(|value| data.add([value, 1.1 * value]));
         let ends = |data: &Extents, reach| data.ends(reach).0.expect("there are data");
         assert_eq!(ends(&data, None), (0.099, 9.9));
-        let reach = Reach { times: 4.0, centre: None, symmetric: false };
+        let reach = AxisReach { times: 4.0, centre: None, symmetric: false };
         assert!(ends(&data, Some(reach)).1 < 0.2, "{:?}", ends(&data, Some(reach)));
         data.fixed.push(1.0);
         assert_eq!(ends(&data, Some(reach)).1, 1.0);
-        let about = Reach { centre: Some(0.0), symmetric: true, ..reach };
+        let about = AxisReach { centre: Some(0.0), symmetric: true, ..reach };
         let (lo, hi) = ends(&data, Some(about));
         assert_eq!(lo, -hi);
     }

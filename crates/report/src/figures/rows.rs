@@ -3,16 +3,16 @@
 use super::panels::{Pen, Ruler};
 use super::reach::{Extents, INTERVALS};
 use super::shared::{Reference95, zero_upright};
-use crate::axis::Axis;
-use crate::clip::{Place, Rect};
+use crate::axis::PlotAxis;
+use crate::clip::{PagePoint, Rect};
 use crate::dimension::Dimensions;
-use crate::figure::Figure;
-use crate::layout::{Grid, NAMES, Sheet, Side, wrap};
-use crate::legend::{Entry, Sample};
+use crate::figure::Drawing;
+use crate::layout::{AxisSide, Grid, NAMES, Sheet, wrap};
+use crate::legend::{KeyEntry, KeySample};
 use crate::number::significant;
 use crate::palette::{HEADING, INK, Look, PAPER, RECORD};
 use crate::panel::Panel;
-use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
 use crate::theme::Theme;
 
 /// What stands in a row.
@@ -78,12 +78,12 @@ impl RowItem {
         self.aside.is_none()
     }
 
-    fn sample(&self, theme: &Theme) -> Sample {
+    fn sample(&self, theme: &Theme) -> KeySample {
         match &self.kind {
-            RowKind::Mark(look, ..) | RowKind::Bar(look, _) | RowKind::Violin(look, ..) => Sample::Marker(*look),
-            RowKind::Thin(_) => Sample::Line(Stroke::solid(HEADING, theme.line)),
-            RowKind::Thick(_) => Sample::Line(thick_stroke(theme)),
-            RowKind::Limit(_) => Sample::Upright(Stroke::solid(INK, 1.5 * theme.line)),
+            RowKind::Mark(look, ..) | RowKind::Bar(look, _) | RowKind::Violin(look, ..) => KeySample::Marker(*look),
+            RowKind::Thin(_) => KeySample::Line(Stroke::solid(HEADING, theme.line)),
+            RowKind::Thick(_) => KeySample::Line(thick_stroke(theme)),
+            RowKind::Limit(_) => KeySample::Upright(Stroke::solid(INK, 1.5 * theme.line)),
         }
     }
 
@@ -125,7 +125,7 @@ pub struct RowsColumn {
 
 /// What [`super::Plot::Rows`] draws.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Rows {
+pub struct NamedRows {
     /// Title above the figure.
     pub title: Option<String>,
     /// Names from top to bottom.
@@ -148,7 +148,7 @@ fn thick_stroke(theme: &Theme) -> Stroke {
 
 /// Draws the columns side by side, or above each other when the figure is narrow. What reaches beyond an axis is cut
 /// and marked.
-pub(super) fn rows(data: &Rows, theme: &Theme) -> Figure {
+pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
     let items = || data.columns.iter().flat_map(|column| &column.rows);
@@ -158,8 +158,8 @@ pub(super) fn rows(data: &Rows, theme: &Theme) -> Figure {
     let heights = [0.95 + 1.15 * lines.max().unwrap_or(1).max(1) as f64, 0.62 * stacked as f64 + 1.1];
     let pitch = heights[0].max(heights[1]).max(if is_wide { 2.6 } else { 0.0 }) * theme.tick_font;
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
-    let row = (Side::new(Axis::names(data.names.clone()), ""), height);
-    let sides = data.columns.iter().map(|column| Side::new(axis(column), column.x.title.clone()));
+    let row = (AxisSide::new(PlotAxis::names(data.names.clone()), ""), height);
+    let sides = data.columns.iter().map(|column| AxisSide::new(axis(column), column.x.title.clone()));
     let panels = match theme.is_narrow() {
         true => sides.flat_map(|side| sheet.grid(Grid::stack(side, vec![row.clone()]))).collect(),
         false => sheet.grid(Grid::new(sides.collect(), vec![row])),
@@ -176,12 +176,12 @@ pub(super) fn rows(data: &Rows, theme: &Theme) -> Figure {
     sheet.finish()
 }
 
-fn entries(data: &Rows, theme: &Theme) -> Vec<Entry> {
+fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
     let lines = data.columns.iter().flat_map(|column| &column.lines);
-    let lines = lines.map(|(name, pen, _)| Entry::new(Sample::Line(pen.stroke(theme)), name.clone()));
+    let lines = lines.map(|(name, pen, _)| KeyEntry::new(KeySample::Line(pen.stroke(theme)), name.clone()));
     let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
-    let items = items.filter_map(|item| Some(Entry::new(item.sample(theme), item.name.clone()?)));
-    let mut entries: Vec<Entry> = Vec::new();
+    let items = items.filter_map(|item| Some(KeyEntry::new(item.sample(theme), item.name.clone()?)));
+    let mut entries: Vec<KeyEntry> = Vec::new();
     for entry in lines.chain(items) {
         if entries.iter().all(|known| known.label != entry.label) {
             entries.push(entry);
@@ -190,7 +190,7 @@ fn entries(data: &Rows, theme: &Theme) -> Vec<Entry> {
     entries
 }
 
-fn axis(column: &RowsColumn) -> Axis {
+fn axis(column: &RowsColumn) -> PlotAxis {
     let mut data = Extents::default();
     column.rows.iter().flatten().for_each(|item| item.enter(&mut data));
     data.fixed.extend(column.lines.iter().map(|(.., value)| *value));
@@ -203,11 +203,11 @@ fn axis(column: &RowsColumn) -> Axis {
     let (lo, hi) = data.ends(column.x.reach).0.map_or((0.0, 1.0), |(lo, hi)| (lo.min(0.0), hi.max(0.0)));
     let pad = 0.05 * (hi - lo);
     let (lo, hi) = (if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi });
-    Axis::linear(lo, if lo == hi { 1.0 } else { hi + column.room * (hi - lo) }, crate::ticks::Steps::Decimal)
+    PlotAxis::linear(lo, if lo == hi { 1.0 } else { hi + column.room * (hi - lo) }, crate::ticks::TickSteps::Decimal)
 }
 
 /// Draws the rows of a column; tells whether something lies beyond its axis.
-fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> bool {
+fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> bool {
     if column.zero {
         zero_upright(panel, scene, theme);
     }
@@ -233,7 +233,7 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (column, pitch): (&Rows
             beyond |= draw_item(panel, scene, theme, (item, middle + aside, pitch), stacked < 2);
         }
         if is_estimated && !items.iter().any(RowItem::is_value) {
-            let text = Text::new("no estimate", theme.small_font).anchor(Anchor::Middle).colour(RECORD);
+            let text = TextLine::new("no estimate", theme.small_font).anchor(Anchor::Middle).colour(RECORD);
             let place = (panel.rect.x + panel.rect.w / 2.0, middle + text.centring());
             scene.text_on_ground(Layer::Note, place, text);
         }
@@ -250,14 +250,14 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (column, pitch): (&Rows
 /// Draws an item at its height; tells whether it lies beyond the axis.
 fn draw_item(
     panel: &Panel,
-    scene: &mut Scene,
+    scene: &mut Canvas,
     theme: &Theme,
     (item, y, pitch): (&RowItem, f64, f64),
     is_alone: bool,
 ) -> bool {
     let head = 0.6 * theme.small_font;
     if let Some(words) = &item.text {
-        let text = Text::new(words.as_str(), theme.small_font).anchor(Anchor::End);
+        let text = TextLine::new(words.as_str(), theme.small_font).anchor(Anchor::End);
         let place = (panel.rect.right() - 0.4 * theme.small_font, y + text.centring());
         scene.text_on_ground(Layer::Note, place, text);
     }
@@ -292,7 +292,7 @@ fn draw_item(
 }
 
 /// A mark, or an arrow with its number where it lies beyond the axis; tells whether it does.
-fn mark(panel: &Panel, scene: &mut Scene, theme: &Theme, (look, value, y): (&Look, f64, f64), is_alone: bool) -> bool {
+fn mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, (look, value, y): (&Look, f64, f64), is_alone: bool) -> bool {
     let Rect { x: left, .. } = panel.rect;
     let x = panel.across(value.clamp(-f64::MAX, f64::MAX)).filter(|x| !x.is_nan());
     let Some(x) = x else { return false };
@@ -305,7 +305,7 @@ fn mark(panel: &Panel, scene: &mut Scene, theme: &Theme, (look, value, y): (&Loo
     let tip = edge - direction * 0.2 * theme.small_font;
     Dimensions::head(scene, (tip, y), (direction, 0.0), size, look.colour);
     if is_alone && value.abs() < f64::MAX {
-        let label = Text::new(significant(value, 3), theme.small_font);
+        let label = TextLine::new(significant(value, 3), theme.small_font);
         let place = (tip - direction * 1.3 * size, y + label.centring());
         let anchor = if direction > 0.0 { Anchor::End } else { Anchor::Start };
         scene.text_on_ground(Layer::Note, place, label.anchor(anchor));
@@ -319,7 +319,7 @@ const HALF: f64 = 0.42;
 /// Density, box of the quartiles, whiskers and median; tells whether it reaches beyond the axis.
 fn violin(
     panel: &Panel,
-    scene: &mut Scene,
+    scene: &mut Canvas,
     theme: &Theme,
     (look, density, q): (&Look, &[(f64, f64)], &[f64; 5]),
     (y, pitch): (f64, f64),
@@ -329,7 +329,7 @@ fn violin(
     let Some(places) = places else { return false };
     let inside = |x: f64| x.clamp(rect.x, rect.right());
     let highest = density.iter().map(|(_, height)| *height).fold(0.0, f64::max);
-    let edge = |side: f64| -> Vec<Place> {
+    let edge = |side: f64| -> Vec<PagePoint> {
         let place = |&(value, height): &(f64, f64)| {
             let x = panel.across(value).filter(|x| *x >= rect.x && *x <= rect.right())?;
             Some((x, y + side * HALF * pitch * height / highest))

@@ -4,12 +4,12 @@ use estimation::statistics::upper_median;
 use serde::{Deserialize, Serialize};
 
 use crate::clip::Rect;
-use crate::curve::Curve;
-use crate::legend::Sample;
+use crate::curve::PlotCurve;
+use crate::legend::KeySample;
 use crate::paint::Paint;
 use crate::palette::{INK, RECORD};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke};
+use crate::scene::{Canvas, Layer, Stroke};
 use crate::theme::Theme;
 
 /// Free space above and below the data, as a share of its range.
@@ -22,13 +22,13 @@ pub(super) const ACROSS_PAD: f64 = 0.02;
 const DENSE: usize = 400;
 
 /// The line of a dense record.
-fn dense(heading: &Curve, theme: &Theme) -> Option<Stroke> {
+fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
     let stroke = Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) };
     (heading.finite().count() > DENSE).then_some(stroke)
 }
 
 /// A recorded heading: dots, or a wide line under the fits where the record is dense.
-pub(super) fn record(panel: &Panel, scene: &mut Scene, theme: &Theme, heading: &Curve, size: f64) {
+pub(super) fn record(panel: &Panel, scene: &mut Canvas, theme: &Theme, heading: &PlotCurve, size: f64) {
     match dense(heading, theme) {
         Some(stroke) => panel.line(scene, heading.pairs(), stroke),
         None => panel.dots(scene, heading.finite(), size, RECORD),
@@ -36,15 +36,15 @@ pub(super) fn record(panel: &Panel, scene: &mut Scene, theme: &Theme, heading: &
 }
 
 /// How [`record`] looks in a legend.
-pub(super) fn record_sample(theme: &Theme, heading: &Curve) -> Sample {
-    dense(heading, theme).map_or(Sample::Dots(RECORD), Sample::Line)
+pub(super) fn record_sample(theme: &Theme, heading: &PlotCurve) -> KeySample {
+    dense(heading, theme).map_or(KeySample::Dots(RECORD), KeySample::Line)
 }
 
 /// The area between two curves, as far as it lies in the frame.
-pub(super) fn shaded(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 2], colour: Paint, opacity: f64) {
+pub(super) fn shaded(panel: &Panel, scene: &mut Canvas, [lower, upper]: [&PlotCurve; 2], colour: Paint, opacity: f64) {
     let Rect { x, y, .. } = panel.rect;
     let inside = |(across, up): (f64, f64)| (across.clamp(x, panel.rect.right()), up.clamp(y, panel.rect.bottom()));
-    let edge = |curve: &Curve| -> Vec<(f64, f64)> {
+    let edge = |curve: &PlotCurve| -> Vec<(f64, f64)> {
         curve.finite().filter_map(|pair| panel.place(pair)).map(inside).collect()
     };
     let outline = edge(lower).into_iter().chain(edge(upper).into_iter().rev());
@@ -93,7 +93,7 @@ impl Reference95 {
     }
 
     /// Across a panel whose horizontal axis it belongs to.
-    pub(super) fn vertical(&self, panel: &Panel, scene: &mut Scene, theme: &Theme) {
+    pub(super) fn vertical(&self, panel: &Panel, scene: &mut Canvas, theme: &Theme) {
         let Rect { x, y, .. } = panel.rect;
         let inside = |value: f64| panel.across(value).map(|place| place.clamp(x, panel.rect.right()));
         if let (Some(left), Some(right)) = (inside(self.band[0]), inside(self.band[1])) {
@@ -104,7 +104,7 @@ impl Reference95 {
     }
 
     /// Across a panel whose vertical axis it belongs to.
-    pub(super) fn horizontal(&self, panel: &Panel, scene: &mut Scene, theme: &Theme) {
+    pub(super) fn horizontal(&self, panel: &Panel, scene: &mut Canvas, theme: &Theme) {
         let Rect { x, y, .. } = panel.rect;
         let inside = |value: f64| panel.up(value).map(|place| place.clamp(y, panel.rect.bottom()));
         if let (Some(low), Some(high)) = (inside(self.band[0]), inside(self.band[1])) {
@@ -116,12 +116,12 @@ impl Reference95 {
 }
 
 /// The line errors scatter about where they run across.
-pub(super) fn zero_upright(panel: &Panel, scene: &mut Scene, theme: &Theme) {
+pub(super) fn zero_upright(panel: &Panel, scene: &mut Canvas, theme: &Theme) {
     panel.vertical(scene, Layer::Grid, 0.0, Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) });
 }
 
 /// The line a residual scatters about.
-pub(super) fn zero_line(panel: &Panel, scene: &mut Scene, theme: &Theme) {
+pub(super) fn zero_line(panel: &Panel, scene: &mut Canvas, theme: &Theme) {
     panel.horizontal(scene, Layer::Grid, 0.0, Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) });
 }
 

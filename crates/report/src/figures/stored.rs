@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::panels::{Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Ruler, Stack};
-use super::rows::{RowItem, RowKind, Rows, RowsColumn};
-use crate::curve::Curve;
+use super::rows::{NamedRows, RowItem, RowKind, RowsColumn};
+use crate::curve::PlotCurve;
 use crate::markup::symbol;
 use crate::number::{self, MISSING};
-use crate::palette::{HEADING, INK, Origin, RECORD};
+use crate::palette::{CurveOrigin, HEADING, INK, RECORD};
 
 /// A curve fitted to a heading: how well a Fourier series (or any other) carries the record.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -15,13 +15,13 @@ pub struct CurveFit {
     /// Title above the figure.
     pub title: Option<String>,
     /// Measured heading, degrees over seconds.
-    pub measured: Curve,
+    pub measured: PlotCurve,
     /// Fitted heading, degrees over seconds, dense enough to look smooth.
-    pub fitted: Curve,
+    pub fitted: PlotCurve,
     /// Name of the fitted curve, such as "Fourier series, 5 harmonics".
     pub fitted_name: String,
     /// Measured minus fitted heading, degrees over seconds.
-    pub residual: Curve,
+    pub residual: PlotCurve,
     /// Coefficient of determination of the heading.
     pub r_squared: Option<f64>,
     /// Fundamental of the series, rad/s.
@@ -56,31 +56,31 @@ impl CurveFit {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MotionCurves {
     /// Where the curves come from; decides how they look.
-    pub origin: Origin,
+    pub origin: CurveOrigin,
     /// Name in the legend, when it is not that of the origin.
     pub name: Option<String>,
     /// Heading, degrees over seconds.
-    pub heading: Curve,
+    pub heading: PlotCurve,
     /// Yaw rate, degrees per second over seconds.
-    pub yaw_rate: Curve,
+    pub yaw_rate: PlotCurve,
     /// Yaw acceleration, degrees per second squared over seconds.
-    pub yaw_acceleration: Curve,
+    pub yaw_acceleration: PlotCurve,
 }
 
 /// Headings and their derivatives.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Derivatives {
+pub struct DerivativeCurves {
     /// Title above the figure.
     pub title: Option<String>,
     /// The sources, drawn in this order.
     pub curves: Vec<MotionCurves>,
 }
 
-impl Derivatives {
+impl DerivativeCurves {
     /// Heading, yaw rate and yaw acceleration above each other: what differentiation makes of a small error in the
     /// heading.
     pub fn panels(&self) -> Panels {
-        let row = |y: Ruler, of: fn(&MotionCurves) -> &Curve| {
+        let row = |y: Ruler, of: fn(&MotionCurves) -> &PlotCurve| {
             let layer = |own: &MotionCurves| {
                 let name = own.name.as_deref().unwrap_or_else(|| own.origin.label());
                 Layer::line(name, of(own).clone(), Pen::of(&own.origin))
@@ -98,13 +98,13 @@ impl Derivatives {
 
 /// The heading a method's model gives for the recorded rudder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Replay {
+pub struct ReplayCurves {
     /// The method; decides how its replay looks.
-    pub origin: Origin,
+    pub origin: CurveOrigin,
     /// Replayed heading, degrees over seconds.
-    pub heading: Curve,
+    pub heading: PlotCurve,
     /// Recorded minus replayed heading, degrees over seconds.
-    pub residual: Curve,
+    pub residual: PlotCurve,
     /// Root mean square of the residual, degrees.
     pub rms_deg: Option<f64>,
 }
@@ -115,11 +115,11 @@ pub struct Replays {
     /// Title above the figure.
     pub title: Option<String>,
     /// Recorded heading, degrees over seconds.
-    pub record: Curve,
+    pub record: PlotCurve,
     /// Noise-free heading, degrees over seconds.
-    pub truth: Option<Curve>,
+    pub truth: Option<PlotCurve>,
     /// One replay per method.
-    pub replays: Vec<Replay>,
+    pub replays: Vec<ReplayCurves>,
 }
 
 /// A replay may leave the range of the record by this share of it before it is cut.
@@ -133,12 +133,12 @@ impl Replays {
     /// one failure does not flatten the others.
     pub fn panels(&self) -> Panels {
         let mut upper = vec![Layer::new("record", self.record.clone(), LayerKind::Record)];
-        let truth = |own: &Curve| Layer::line("truth", own.clone(), Pen::of(&Origin::Truth));
+        let truth = |own: &PlotCurve| Layer::line("truth", own.clone(), Pen::of(&CurveOrigin::Truth));
         upper.extend(self.truth.as_ref().map(truth));
         upper.extend(self.replays.iter().map(|own| {
             Layer::line(own.origin.label(), own.heading.clone(), Pen::of(&own.origin)).within(HEADING_ROOM)
         }));
-        let below = |own: &Replay| {
+        let below = |own: &ReplayCurves| {
             let rms = own.rms_deg.filter(|rms| rms.is_finite());
             let rms = rms.map_or_else(|| MISSING.into(), |rms| format!("{}°", number::significant(rms, 2)));
             let solid = Pen::new(own.origin.look().colour).width(0.8);
@@ -176,7 +176,7 @@ pub struct PointEstimate {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodEstimate {
     /// The method; decides how its row looks.
-    pub origin: Origin,
+    pub origin: CurveOrigin,
     /// Gain, 1/s.
     pub k_per_s: Option<PointEstimate>,
     /// Time constant, s.
@@ -210,7 +210,7 @@ const SPREADS: f64 = 7.0;
 
 impl Intervals {
     /// K and T side by side, one row per method.
-    pub fn rows(&self) -> Rows {
+    pub fn rows(&self) -> NamedRows {
         type Estimated = fn(&MethodEstimate) -> Option<PointEstimate>;
         let column = |title: String, of: Estimated, reference: fn(&Reference) -> f64| {
             let row = |own: &MethodEstimate| {
@@ -219,15 +219,15 @@ impl Intervals {
                 };
                 of(own).map(mark).into_iter().collect()
             };
-            let line = |origin: Origin, own: &Option<Reference>| {
+            let line = |origin: CurveOrigin, own: &Option<Reference>| {
                 own.as_ref().map(|own| (origin.label().to_owned(), Pen::of(&origin).width(0.8), reference(own)))
             };
-            let truth = line(Origin::Truth, &self.truth);
+            let truth = line(CurveOrigin::Truth, &self.truth);
             let centre = truth.as_ref().map(|(.., value)| *value);
             RowsColumn {
                 x: Ruler::decimal(title).within(SPREADS, centre),
                 rows: self.estimates.iter().map(row).collect(),
-                lines: truth.into_iter().chain(line(Origin::Published, &self.published)).collect(),
+                lines: truth.into_iter().chain(line(CurveOrigin::Published, &self.published)).collect(),
                 ..RowsColumn::default()
             }
         };
@@ -236,7 +236,7 @@ impl Intervals {
         let lacks = points().any(|own| own.interval.is_none());
         let lacks = lacks.then_some("Without bar: the method gives no interval.");
         let note: Vec<&str> = [has_bars, lacks].into_iter().flatten().collect();
-        Rows {
+        NamedRows {
             title: self.title.clone(),
             names: self.estimates.iter().map(|own| own.origin.label().to_owned()).collect(),
             columns: vec![

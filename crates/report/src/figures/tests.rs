@@ -2,31 +2,31 @@
 //! can be seen, what is cut is said, the same data give the same bytes.
 
 use super::*;
-use crate::curve::Curve;
-use crate::palette::{self, DASHED, INK, Look, Origin};
+use crate::curve::PlotCurve;
+use crate::palette::{self, CurveOrigin, DASHED, INK, Look};
 use crate::svg::UNITS;
-use crate::{Figure, Theme};
+use crate::{Drawing, Theme};
 
 /// A sine of `n` points, `wild` among them.
-fn wave(n: usize, wild: f64, size: f64) -> Curve {
+fn wave(n: usize, wild: f64, size: f64) -> PlotCurve {
     let x: Vec<f64> = (0..n).map(|k| 0.5 * k as f64).collect();
     let y = x.iter().enumerate().map(|(k, x)| if k == 1 { wild } else { size * (x / 20.0).sin() });
-    Curve { y: y.collect(), x }
+    PlotCurve { y: y.collect(), x }
 }
 
-fn methods() -> impl Iterator<Item = Origin> {
-    palette::method_ids().map(|id| Origin::Method(id.to_owned()))
+fn methods() -> impl Iterator<Item = CurveOrigin> {
+    palette::method_ids().map(|id| CurveOrigin::Method(id.to_owned()))
 }
 
 fn zigzag(n: usize, wild: f64) -> ZigzagTrial {
     let curve = wave(n, wild, 25.0);
-    let mark = |t_s: f64| Mark { t_s, heading_deg: 25.0 * (t_s / 20.0).sin() };
+    let mark = |t_s: f64| ZigZagMark { t_s, heading_deg: 25.0 * (t_s / 20.0).sin() };
     let some = |count: usize| if n > 0 { count } else { 0 };
     let overshoots = [
-        Overshoot { execute: mark(10.0), extremum: mark(31.0), angle_deg: 13.0 },
-        Overshoot { execute: mark(wild), extremum: mark(92.0), angle_deg: wild },
+        OvershootMark { execute: mark(10.0), extremum: mark(31.0), angle_deg: 13.0 },
+        OvershootMark { execute: mark(wild), extremum: mark(92.0), angle_deg: wild },
     ];
-    let spans = [Span { from_s: 10.0, to_s: 31.0 }, Span { from_s: 80.0, to_s: wild }];
+    let spans = [TimeSpan { from_s: 10.0, to_s: 31.0 }, TimeSpan { from_s: 80.0, to_s: wild }];
     ZigzagTrial {
         title: Some("a < b".into()),
         heading: curve.clone(),
@@ -35,9 +35,9 @@ fn zigzag(n: usize, wild: f64) -> ZigzagTrial {
         truth: (n > 0).then_some(curve),
         executes: [mark(10.0), mark(90.0), mark(wild)][..some(3)].to_vec(),
         overshoots: overshoots[..some(2)].to_vec(),
-        initial_turning: (n > 0).then_some(Span { from_s: 0.0, to_s: 10.0 }),
+        initial_turning: (n > 0).then_some(TimeSpan { from_s: 0.0, to_s: 10.0 }),
         check_yaw: spans[..some(2)].to_vec(),
-        period: (n > 0).then_some(Span { from_s: 10.0, to_s: 95.0 }),
+        period: (n > 0).then_some(TimeSpan { from_s: 10.0, to_s: 95.0 }),
     }
 }
 
@@ -53,13 +53,13 @@ fn stored(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         ..CurveFit::default()
     };
     let motion = MotionCurves {
-        origin: Origin::Truth,
+        origin: CurveOrigin::Truth,
         name: None,
         heading: curve.clone(),
         yaw_rate: curve.clone(),
         yaw_acceleration: curve.clone(),
     };
-    let replay = |origin| Replay { origin, heading: curve.clone(), residual: curve.clone(), rms_deg: Some(wild) };
+    let replay = |origin| ReplayCurves { origin, heading: curve.clone(), residual: curve.clone(), rms_deg: Some(wild) };
     let point = |value: f64| Some(PointEstimate { value, interval: Some([value - 0.01, value + 0.01 * wild]) });
     let estimate = |(number, origin)| MethodEstimate {
         origin,
@@ -77,7 +77,7 @@ fn stored(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     vec![
         ("zigzag", zigzag(n, wild).into()),
         ("curve fit", fit.panels().into()),
-        ("derivatives", Derivatives { title: None, curves: vec![motion] }.panels().into()),
+        ("derivatives", DerivativeCurves { title: None, curves: vec![motion] }.panels().into()),
         ("replays", Replays { record: curve.clone(), replays, ..Replays::default() }.panels().into()),
         ("intervals", intervals.rows().into()),
     ]
@@ -85,7 +85,7 @@ fn stored(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
 
 /// Panels of every layer, small multiples, and a figure whose names stand aside.
 fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
-    let look = Origin::After.look();
+    let look = CurveOrigin::After.look();
     let points =
         |size: f64| (0..n).map(|k| (k as f64, if k == 1 { wild } else { size }, Some([0.5 * size, wild]))).collect();
     let layers = || {
@@ -93,7 +93,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             Layer::band("95 % band", [wave(n, wild, 0.8), wave(n, 0.1, 1.2)], look.colour, 0.2),
             Layer::new("record", wave(n, 0.2, 1.0), LayerKind::Record),
             Layer::new("rows", wave(n, wild, 1.05), LayerKind::Dots(look.colour)),
-            Layer::line("line", wave(n, wild, 1.0), Pen { dash: DASHED, ..Pen::of(&Origin::Before) }).within(0.5),
+            Layer::line("line", wave(n, wild, 1.0), Pen { dash: DASHED, ..Pen::of(&CurveOrigin::Before) }).within(0.5),
             Layer::marks("shares", look, points(0.7)),
         ]
     };
@@ -105,7 +105,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let stack = |division, is_half| {
         let mut stack = Stack::over(Ruler::new("yaw rate [°/s]", division), vec![(row(division), layers())]);
         stack.panels[0].head = Some("explains 93 %".into());
-        let marks = vec![AxisMark { at: 0.5, label: "period".into() }];
+        let marks = vec![AxisLine { at: 0.5, label: "period".into() }];
         Stack { marks, is_half, zero: true, ..stack }
     };
     let layered = Panels {
@@ -120,9 +120,9 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         cut: Some("Cut.".into()),
         ..Panels::default()
     };
-    let cloud = |(number, origin): (usize, Origin)| {
+    let cloud = |(number, origin): (usize, CurveOrigin)| {
         let count = if number == 6 { 0 } else { n };
-        let ellipse = Curve::contour95(
+        let ellipse = PlotCurve::contour95(
             (0.1, 0.0),
             [[0.1, 0.05], [0.05, 0.1]].map(|row| row.map(|v: f64| v * (1 + number) as f64)),
         );
@@ -135,7 +135,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let ruler = |title: &str| Ruler::decimal(title).about_zero(2.2);
     let clouds = methods().enumerate().map(cloud).collect();
     let clouds = Stack::multiples(3, ruler("error of K [%]"), PanelRow::zeroed(ruler("error of T [%]"), 0.24), clouds);
-    let named = |(number, origin): (usize, Origin)| {
+    let named = |(number, origin): (usize, CurveOrigin)| {
         let marks = Layer::marks(origin.label(), origin.look(), points(1.0 + number as f64));
         if number % 2 == 0 { marks.joined(Pen::of(&origin)) } else { marks.apart() }
     };
@@ -164,7 +164,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let items = |row: usize| {
         let marks =
             methods().map(|own| RowItem::below(own.label(), own.look(), size(row), Some([0.0, 2.0 * size(row)])));
-        let look = Look { hollow: row % 2 == 0, ..Origin::After.look() };
+        let look = Look { hollow: row % 2 == 0, ..CurveOrigin::After.look() };
         let others = [
             RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).softly(),
             RowItem::new("50 %", RowKind::Thick([0.1, size(row)])),
@@ -191,7 +191,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     };
     let names: Vec<String> =
         (0..n.min(5)).map(|row| format!("orders at {row} °/s, a name of a row that is long")).collect();
-    let rows = Rows {
+    let rows = NamedRows {
         title: None,
         names: names.clone(),
         columns: vec![
@@ -205,7 +205,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         interval: Some([80.0, 95.0]),
         outline: if x == y { Some(Outline::Right) } else { (x == y + 1).then_some(Outline::Alias) },
     };
-    let map = |shades: Shades, count: usize| Cells {
+    let map = |shades: Shades, count: usize| CellMap {
         title: Some("a map".into()),
         titles: ["rudder step [°]".into(), "heading step [°]".into()],
         columns: ["0", "0.1", "1"].map(str::to_owned).into(),
@@ -226,7 +226,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     ]
 }
 
-fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
+fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Drawing)> {
     let plots = [stored(n, wild), panels(n, wild), rows_and_maps(n, wild)].concat();
     plots.into_iter().map(|(name, plot)| (name, plot.draw(theme))).collect()
 }
@@ -254,7 +254,7 @@ fn places(svg: &str) -> Vec<(i64, i64)> {
 }
 
 /// What every figure has to keep.
-fn check(name: &str, figure: &Figure) {
+fn check(name: &str, figure: &Drawing) {
     let svg = figure.svg();
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}: undefined coordinate");
     let (width, height) = figure.size();
@@ -289,7 +289,7 @@ fn figures_are_well_formed_whatever_the_data() {
 fn nothing_is_nothing() {
     let theme = Theme::screen();
     check("panels", &Plot::from(Panels::default()).draw(&theme));
-    check("rows", &Plot::from(Rows::default()).draw(&theme));
+    check("rows", &Plot::from(NamedRows::default()).draw(&theme));
     check("zigzag", &Plot::from(ZigzagTrial::default()).draw(&theme));
 }
 
@@ -297,7 +297,7 @@ fn nothing_is_nothing() {
 fn constant_and_undefined_curves_are_drawn() {
     let theme = Theme::screen();
     for y in [0.0, 5.0, f64::NAN, f64::INFINITY, 1e300, -1e-300] {
-        let curve = Curve::new(vec![2.0; 4], vec![y; 4]);
+        let curve = PlotCurve::new(vec![2.0; 4], vec![y; 4]);
         let layer = Layer::new("record", curve.clone(), LayerKind::Record);
         check("constant", &Plot::from(Panels::over_time(vec![(PanelRow::default(), vec![layer])])).draw(&theme));
         let trial = ZigzagTrial { heading: curve.clone(), rudder: curve, ..ZigzagTrial::default() };
@@ -352,8 +352,8 @@ fn labels_carry_symbol_and_unit() {
 
 #[test]
 fn what_runs_off_is_cut_and_says_so() {
-    let replay = |method: &str, size: f64| Replay {
-        origin: Origin::Method(method.into()),
+    let replay = |method: &str, size: f64| ReplayCurves {
+        origin: CurveOrigin::Method(method.into()),
         heading: wave(200, 0.0, 25.0),
         residual: wave(200, 0.0, 25.0 * size),
         rms_deg: Some(size),
@@ -372,13 +372,13 @@ fn what_runs_off_is_cut_and_says_so() {
         Plot::from(data).draw(&Theme::screen()).svg().to_owned()
     };
     let band = |high: f64| {
-        let line = |y: f64| Curve::new([0.0, 1.0, 2.0], [-y, y, 0.0]);
+        let line = |y: f64| PlotCurve::new([0.0, 1.0, 2.0], [-y, y, 0.0]);
         let band = Layer::band("90 %", [line(15.0), line(high)], INK, 0.2).within(1.0);
         drawn(vec![band, Layer::line("ship", line(20.0), Pen::new(INK))], "It is cut.").contains("It is cut.")
     };
     assert!(band(1e4) && !band(25.0));
     let mut wild = wave(400, 0.0, 1.0);
-    let dots = |curve: Curve| drawn(vec![Layer::new("rows", curve, LayerKind::Dots(INK))], "");
+    let dots = |curve: PlotCurve| drawn(vec![Layer::new("rows", curve, LayerKind::Dots(INK))], "");
     assert!(!dots(wild.clone()).contains("beyond a panel"));
     wild.y[200] = 500.0;
     assert!(dots(wild).contains("1 point lies beyond a panel"));
@@ -388,14 +388,14 @@ fn what_runs_off_is_cut_and_says_so() {
 fn what_sets_no_axis_is_an_arrow_at_its_edge() {
     let marks = |name: &str, far: f64| {
         let points = vec![(1.0, 0.1, None), (2.0, far, None)];
-        Layer::marks(name, Origin::After.look(), points).joined(Pen::new(INK))
+        Layer::marks(name, CurveOrigin::After.look(), points).joined(Pen::new(INK))
     };
     let row = PanelRow::new(Ruler::new("rms error of T [%]", Division::Factors), 0.3);
     let layers = vec![marks("output-error", 1.0), marks("least-squares", f64::INFINITY)];
     let data = Panels::of(Stack::over(Ruler::decimal("noise [°]"), vec![(row, layers)]));
     let svg = Plot::from(data).draw(&Theme::screen()).svg().to_owned();
     assert!(!svg.contains("10⁶") && svg.contains(">\n1\n"), "the axis ends with what is worth something");
-    let far = |id: &str, k: f64| Layer::marks(id, Origin::Method(id.into()).look(), vec![(k, 160.0 * k, None)]);
+    let far = |id: &str, k: f64| Layer::marks(id, CurveOrigin::Method(id.into()).look(), vec![(k, 160.0 * k, None)]);
     let answers = vec![far("output-error", 0.1), far("srivc", 0.101), far("least-squares", 0.099), far("x", 9.0)];
     let axis = |title: &str| Ruler::decimal(title).within(4.0, None);
     let stack = Stack::over(axis("K [1/s]"), vec![(PanelRow::new(axis("T [s]"), 0.5), answers)]);
@@ -408,9 +408,9 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
     let turn = |east: f64, north: f64| {
         let angles = || (0..100).map(|k| 0.1 * f64::from(k));
         let x: Vec<f64> = angles().map(|a| east * (1.0 - a.cos())).collect();
-        Curve::new(x, angles().map(|a| north * a.sin()).collect::<Vec<_>>())
+        PlotCurve::new(x, angles().map(|a| north * a.sin()).collect::<Vec<_>>())
     };
-    let still = Curve::new([1e9; 3], [-3.0; 3]);
+    let still = PlotCurve::new([1e9; 3], [-3.0; 3]);
     for theme in [Theme::screen(), Theme::paper(85.0, 300.0).unwrap(), Theme::paper(60.0, 300.0).unwrap()] {
         for curve in [turn(700.0, 800.0), turn(5.0, 900.0), turn(9e4, 1.0), turn(2e-3, 1e-3), still.clone()] {
             let drawn = Layer::line("drawn ships", turn(1e3, 1e3), Pen::pale()).within(0.35);
@@ -420,11 +420,12 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
             let sheet = crate::layout::Sheet::new(&theme, None);
             let (grid, width, _) = equal::fitted(&sheet, &stack);
             let (across, (up, height)) = (&grid.columns[0].axis, &grid.rows[0]);
-            let point = |axis: &crate::axis::Axis, side: f64| side / axis.worth(1.0);
+            let point = |axis: &crate::axis::PlotAxis, side: f64| side / axis.worth(1.0);
             let ratio = point(across, width) / point(&up.axis, *height);
             assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
-            let is_inside =
-                |axis: &crate::axis::Axis, value: f64| axis.fraction(value).is_some_and(|f| (0.0..=1.0).contains(&f));
+            let is_inside = |axis: &crate::axis::PlotAxis, value: f64| {
+                axis.fraction(value).is_some_and(|f| (0.0..=1.0).contains(&f))
+            };
             assert!(curve.finite().all(|(x, y)| is_inside(across, x) && is_inside(&up.axis, y)));
             assert!(sheet.left_margin(&grid) + width < theme.width);
         }
@@ -434,12 +435,12 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
 /// A run of days has thousands of executes; marks on top of each other once made a file that could not be drawn.
 #[test]
 fn a_zig_zag_of_very_many_executes_says_that_it_does_not_mark_them() {
-    let mark = |k: usize| Mark { t_s: 0.05 * k as f64, heading_deg: 10.0 };
+    let mark = |k: usize| ZigZagMark { t_s: 0.05 * k as f64, heading_deg: 10.0 };
     let trial = |count: usize| ZigzagTrial {
         heading: wave(400, 0.0, 25.0),
         rudder: wave(400, 0.0, 25.0),
         executes: (0..count).map(mark).collect(),
-        overshoots: (1..count).map(|k| Overshoot { execute: mark(k), extremum: mark(k), angle_deg: 2.0 }).collect(),
+        overshoots: (1..count).map(|k| OvershootMark { execute: mark(k), extremum: mark(k), angle_deg: 2.0 }).collect(),
         ..ZigzagTrial::default()
     };
     let [few, many] = [12, 3000].map(|count| Plot::from(trial(count)).draw(&Theme::screen()).svg().to_owned());

@@ -5,24 +5,24 @@
 use serde::{Deserialize, Serialize};
 
 use super::panels::Ruler;
-use crate::axis::{self, Axis};
+use crate::axis::{self, PlotAxis};
 use crate::clip::Rect;
-use crate::curve::Curve;
+use crate::curve::PlotCurve;
 use crate::dimension::Dimensions;
-use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side};
-use crate::legend::{Entry, Sample, stroke_of};
+use crate::figure::Drawing;
+use crate::layout::{AxisSide, Grid, Sheet};
+use crate::legend::{KeyEntry, KeySample, stroke_of};
 use crate::markup::symbol;
 use crate::number;
-use crate::palette::{DIMENSION, DOTTED, HEADING, INK, Look, Marker, Origin, RECORD, RUDDER, SOLID};
+use crate::palette::{CurveOrigin, DIMENSION, DOTTED, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
 use crate::panel::Panel;
-use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
 use crate::theme::Theme;
-use crate::ticks::Steps;
+use crate::ticks::TickSteps;
 
 /// A point of the heading curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Mark {
+pub struct ZigZagMark {
     /// Time, s.
     pub t_s: f64,
     /// Heading, degrees.
@@ -31,14 +31,14 @@ pub struct Mark {
 
 /// A stretch of time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Span {
+pub struct TimeSpan {
     /// Begin, s.
     pub from_s: f64,
     /// End, s.
     pub to_s: f64,
 }
 
-impl Span {
+impl TimeSpan {
     fn text(&self) -> String {
         format!("{} s", number::fixed(self.to_s - self.from_s, 1))
     }
@@ -46,11 +46,11 @@ impl Span {
 
 /// How far the heading runs on after the rudder is reversed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Overshoot {
+pub struct OvershootMark {
     /// Where the counter rudder is ordered.
-    pub execute: Mark,
+    pub execute: ZigZagMark,
     /// Where the heading turns back.
-    pub extremum: Mark,
+    pub extremum: ZigZagMark,
     /// The overshoot angle, degrees, positive to either side.
     pub angle_deg: f64,
 }
@@ -61,23 +61,23 @@ pub struct ZigzagTrial {
     /// Title above the figure.
     pub title: Option<String>,
     /// Heading, degrees over seconds.
-    pub heading: Curve,
+    pub heading: PlotCurve,
     /// Whether the heading is drawn as separate points (noisy or widely spaced) and not as a line.
     pub heading_as_points: bool,
     /// Rudder angle, degrees over seconds.
-    pub rudder: Curve,
+    pub rudder: PlotCurve,
     /// Noise-free heading, degrees over seconds.
-    pub truth: Option<Curve>,
+    pub truth: Option<PlotCurve>,
     /// The executes: every order that puts the rudder over.
-    pub executes: Vec<Mark>,
+    pub executes: Vec<ZigZagMark>,
     /// The overshoots in order.
-    pub overshoots: Vec<Overshoot>,
+    pub overshoots: Vec<OvershootMark>,
     /// Initial turning time: from the first execute to the second.
-    pub initial_turning: Option<Span>,
+    pub initial_turning: Option<TimeSpan>,
     /// Times to check yaw: from an execute of counter rudder to the extremum that follows.
-    pub check_yaw: Vec<Span>,
+    pub check_yaw: Vec<TimeSpan>,
     /// A full period of the manoeuvre.
-    pub period: Option<Span>,
+    pub period: Option<TimeSpan>,
 }
 
 /// Most executes that are marked: of more than that neither lines nor figures could be told apart.
@@ -88,7 +88,7 @@ const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: S
 
 /// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn
 /// without its characteristic quantities, and a note says so.
-pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Figure {
+pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Drawing {
     if data.executes.len() > MOST_MARKED {
         let curves = ZigzagTrial {
             title: data.title.clone(),
@@ -103,16 +103,18 @@ pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Figure {
     with_note(data, None, theme)
 }
 
-fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Figure {
+fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
     let height = theme.tall(0.36);
     let curves = [&data.heading, &data.rudder].into_iter().chain(&data.truth);
-    let rudder = Axis::covering(data.rudder.finite().map(|(_, y)| y), 0.12, Steps::Angle);
-    let rows =
-        vec![(heading_side(data, height, theme), height), (Side::new(rudder, Ruler::rudder().title), theme.tall(0.13))];
+    let rudder = PlotAxis::covering(data.rudder.finite().map(|(_, y)| y), 0.12, TickSteps::Angle);
+    let rows = vec![
+        (heading_side(data, height, theme), height),
+        (AxisSide::new(rudder, Ruler::rudder().title), theme.tall(0.13)),
+    ];
     let times = curves.flat_map(|curve| curve.finite().map(|(t, _)| t));
-    let time = Side::new(Axis::covering(times, 0.0, Steps::Time), Ruler::time().title);
+    let time = AxisSide::new(PlotAxis::covering(times, 0.0, TickSteps::Time), Ruler::time().title);
     let panels = sheet.grid(Grid::stack(time, rows));
     let [upper, lower] = &panels[..] else { return sheet.finish() };
 
@@ -128,7 +130,7 @@ fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Figure 
         upper.line(&mut sheet.scene, data.heading.pairs(), Stroke::solid(HEADING, theme.line));
     }
     if let Some(truth) = &data.truth {
-        upper.line(&mut sheet.scene, truth.pairs(), stroke_of(&Origin::Truth, theme));
+        upper.line(&mut sheet.scene, truth.pairs(), stroke_of(&CurveOrigin::Truth, theme));
     }
     lower.line(&mut sheet.scene, data.rudder.pairs(), Stroke::solid(RUDDER, theme.line));
     let values = annotate(data, upper, &mut sheet.scene, theme);
@@ -141,21 +143,21 @@ fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Figure 
     sheet.finish()
 }
 
-fn entries(data: &ZigzagTrial, theme: &Theme) -> Vec<Entry> {
+fn entries(data: &ZigzagTrial, theme: &Theme) -> Vec<KeyEntry> {
     let mut entries = vec![if data.heading_as_points {
-        Entry::new(Sample::Dots(RECORD), format!("recorded heading {}", symbol("ψ")))
+        KeyEntry::new(KeySample::Dots(RECORD), format!("recorded heading {}", symbol("ψ")))
     } else {
-        Entry::new(Sample::Line(Stroke::solid(HEADING, theme.line)), format!("heading {}", symbol("ψ")))
+        KeyEntry::new(KeySample::Line(Stroke::solid(HEADING, theme.line)), format!("heading {}", symbol("ψ")))
     }];
     if data.truth.is_some() {
-        entries.push(Entry::line_of(&Origin::Truth, theme));
+        entries.push(KeyEntry::line_of(&CurveOrigin::Truth, theme));
     }
-    entries.push(Entry::new(Sample::Line(Stroke::solid(RUDDER, theme.line)), format!("rudder {}", symbol("δ"))));
+    entries.push(KeyEntry::new(KeySample::Line(Stroke::solid(RUDDER, theme.line)), format!("rudder {}", symbol("δ"))));
     if !data.executes.is_empty() {
-        entries.push(Entry::new(Sample::Marker(EXECUTE), "execute"));
+        entries.push(KeyEntry::new(KeySample::Marker(EXECUTE), "execute"));
     }
     if !data.overshoots.is_empty() {
-        entries.push(Entry::new(Sample::Marker(EXTREMUM), "heading extremum"));
+        entries.push(KeyEntry::new(KeySample::Marker(EXTREMUM), "heading extremum"));
     }
     entries
 }
@@ -170,7 +172,7 @@ fn has_times(data: &ZigzagTrial) -> bool {
 }
 
 /// The heading axis, with room above and below the curve for overshoot angles and dimension lines.
-fn heading_side(data: &ZigzagTrial, height: f64, theme: &Theme) -> Side {
+fn heading_side(data: &ZigzagTrial, height: f64, theme: &Theme) -> AxisSide {
     let marks = data.overshoots.iter().flat_map(|o| [o.extremum.heading_deg, o.execute.heading_deg]);
     let curves = [&data.heading].into_iter().chain(&data.truth).flat_map(|c| c.finite().map(|(_, y)| y));
     let (lo, hi) = axis::range(curves.chain(marks)).unwrap_or((-1.0, 1.0));
@@ -179,11 +181,14 @@ fn heading_side(data: &ZigzagTrial, height: f64, theme: &Theme) -> Side {
     let above = label + if data.period.is_some() { strip(theme) } else { 0.0 };
     let below = label + if has_times(data) { strip(theme) } else { 0.0 };
     let per_point = (hi - lo) / (height - above - below).max(0.3 * height);
-    Side::new(Axis::linear(lo - below * per_point, hi + above * per_point, Steps::Angle), Ruler::heading().title)
+    AxisSide::new(
+        PlotAxis::linear(lo - below * per_point, hi + above * per_point, TickSteps::Angle),
+        Ruler::heading().title,
+    )
 }
 
 /// Draws overshoots, times and period. Returns the times in words when they did not fit at their lines.
-fn annotate(data: &ZigzagTrial, panel: &Panel, scene: &mut Scene, theme: &Theme) -> Option<String> {
+fn annotate(data: &ZigzagTrial, panel: &Panel, scene: &mut Canvas, theme: &Theme) -> Option<String> {
     let size = theme.small_font;
     let mut draw = Dimensions { scene, theme: *theme };
     for (i, overshoot) in data.overshoots.iter().enumerate() {
@@ -208,7 +213,7 @@ fn annotate(data: &ZigzagTrial, panel: &Panel, scene: &mut Scene, theme: &Theme)
     labels.sort_by(|a, b| a.0.total_cmp(&b.0));
     let base = y - 0.4 * size;
     let full = |(x, name, value): &(f64, String, String)| {
-        Text::new(format!("{name} = {value}"), size).anchor(Anchor::Middle).bounds((*x, base))
+        TextLine::new(format!("{name} = {value}"), size).anchor(Anchor::Middle).bounds((*x, base))
     };
     let boxes: Vec<Rect> = labels.iter().map(full).collect();
     let fits = boxes.windows(2).all(|b| b[0].right() + 0.3 * size < b[1].x)
@@ -224,7 +229,7 @@ fn annotate(data: &ZigzagTrial, panel: &Panel, scene: &mut Scene, theme: &Theme)
 }
 
 /// Vertical dimension line from the heading of the execute to the extremum, with its angle beyond the curve.
-fn overshoot_angle(draw: &mut Dimensions<'_>, panel: &Panel, number: usize, overshoot: &Overshoot) {
+fn overshoot_angle(draw: &mut Dimensions<'_>, panel: &Panel, number: usize, overshoot: &OvershootMark) {
     let (execute, extremum) = (overshoot.execute, overshoot.extremum);
     let Some(peak) = panel.inside((extremum.t_s, extremum.heading_deg)) else { return };
     let Some(start) = panel.inside((execute.t_s, execute.heading_deg)) else { return };
@@ -236,13 +241,19 @@ fn overshoot_angle(draw: &mut Dimensions<'_>, panel: &Panel, number: usize, over
     let text = format!("{name} = {}°", number::fixed(overshoot.angle_deg, 1));
     let size = draw.theme.small_font;
     let beyond = if peak.1 <= foot.1 { -0.65 * size } else { 1.4 * size };
-    let half = Text::new(text.as_str(), size).width() / 2.0 + 0.3 * size;
+    let half = TextLine::new(text.as_str(), size).width() / 2.0 + 0.3 * size;
     let x = peak.0.clamp(panel.rect.x + half, (panel.rect.right() - half).max(panel.rect.x + half));
     draw.label((x, peak.1 + beyond), Anchor::Middle, &text);
 }
 
 /// Horizontal dimension line of a span, with lines to the curve where one of the marked points stands at its end.
-fn time_line(draw: &mut Dimensions<'_>, panel: &Panel, data: &ZigzagTrial, span: &Span, y: f64) -> Option<(f64, f64)> {
+fn time_line(
+    draw: &mut Dimensions<'_>,
+    panel: &Panel,
+    data: &ZigzagTrial,
+    span: &TimeSpan,
+    y: f64,
+) -> Option<(f64, f64)> {
     let inside = |t: f64| panel.across(t).filter(|x| panel.rect.contains((*x, y)));
     let (from, to) = (inside(span.from_s)?, inside(span.to_s)?);
     let marks = data.executes.iter().chain(data.overshoots.iter().flat_map(|o| [&o.execute, &o.extremum]));

@@ -10,7 +10,7 @@ use super::figures::{Images, Room};
 
 /// A heading that can be linked to.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Heading {
+pub(super) struct PageHeading {
     pub level: u8,
     pub id: String,
     pub text: String,
@@ -19,18 +19,18 @@ pub(super) struct Heading {
 /// The body and its headings in their order.
 pub(super) struct Body {
     pub html: String,
-    pub headings: Vec<Heading>,
+    pub headings: Vec<PageHeading>,
 }
 
 /// What a link may lead to; anything else is only its words.
 const LINKS: [&str; 3] = ["https://", "http://", "mailto:"];
 
 /// What is known while a page is read from top to bottom.
-struct Reader<'a, 'm> {
+struct BodyReader<'a, 'm> {
     images: &'a dyn Fn(&str) -> Images,
     room: Room,
     out: Vec<Event<'m>>,
-    headings: Vec<Heading>,
+    headings: Vec<PageHeading>,
     ids: HashSet<String>,
     /// Name of the heading that was passed last.
     section: String,
@@ -45,7 +45,7 @@ struct Reader<'a, 'm> {
 pub(super) fn of(markdown: &str, images: &dyn Fn(&str) -> Images) -> Body {
     let events: Vec<Event> =
         Parser::new_ext(markdown, Options::ENABLE_TABLES | Options::ENABLE_STRIKETHROUGH).collect();
-    let mut reader = Reader {
+    let mut reader = BodyReader {
         images,
         room: Room::new(),
         out: Vec::with_capacity(events.len()),
@@ -80,7 +80,7 @@ fn words(events: &[Event], start: usize) -> (String, usize) {
     (text, events.len())
 }
 
-impl<'m> Reader<'_, 'm> {
+impl<'m> BodyReader<'_, 'm> {
     fn read(&mut self, events: Vec<Event<'m>>) {
         let mut place = 0;
         while place < events.len() {
@@ -141,7 +141,7 @@ impl<'m> Reader<'_, 'm> {
         let level = level as u8;
         self.html(format!("<h{level} id=\"{}\">", escaped(&id)));
         self.section = text.clone();
-        self.headings.push(Heading { level, id, text });
+        self.headings.push(PageHeading { level, id, text });
     }
 
     fn begin_cell(&mut self, is_empty: bool) {

@@ -24,7 +24,7 @@ pub struct Images {
 }
 
 impl Images {
-    /// What [`crate::Figure::write`] has put into a folder under a stem; a file that cannot be read is none, because a
+    /// What [`crate::Drawing::write`] has put into a folder under a stem; a file that cannot be read is none, because a
     /// page can do without a figure.
     pub fn written(folder: &Path, stem: &str) -> Self {
         let file = |kind: &str| folder.join(format!("{stem}.{kind}"));

@@ -8,7 +8,7 @@ mod figures;
 use askama::Template;
 
 use crate::error::ReportError;
-use body::Heading;
+use body::PageHeading;
 
 pub(crate) use escape::escaped;
 pub use figures::Images;
@@ -23,7 +23,7 @@ struct Page<'a> {
     title: &'a str,
     style: &'a str,
     script: &'a str,
-    contents: &'a [Heading],
+    contents: &'a [PageHeading],
     body: &'a str,
 }
 
@@ -36,7 +36,7 @@ struct Page<'a> {
 /// Fails with [`ReportError::Page`] when the page cannot be filled in.
 pub fn page(markdown: &str, images: &dyn Fn(&str) -> Images) -> Result<String, ReportError> {
     let body = body::of(markdown, images);
-    let contents: Vec<Heading> = body.headings.iter().filter(|one| matches!(one.level, 2 | 3)).cloned().collect();
+    let contents: Vec<PageHeading> = body.headings.iter().filter(|one| matches!(one.level, 2 | 3)).cloned().collect();
     let title = body.headings.first().map_or("Report", |first| &first.text);
     let page = Page { title, style: STYLE, script: SCRIPT, contents: &contents, body: &body.html };
     Ok(page.render()?)

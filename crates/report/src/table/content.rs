@@ -9,7 +9,7 @@ use crate::printable::escaped;
 
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Column {
+pub struct TableColumn {
     /// What the column holds.
     pub heading: String,
     /// Its unit, without brackets.
@@ -21,7 +21,7 @@ pub struct Column {
     pub interval: bool,
 }
 
-impl Column {
+impl TableColumn {
     /// A column of words.
     pub fn left(heading: impl Into<String>) -> Self {
         Self { heading: heading.into(), ..Self::default() }
@@ -91,20 +91,20 @@ pub struct Table {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
     /// The columns from left to right.
-    pub columns: Vec<Column>,
+    pub columns: Vec<TableColumn>,
     /// The rows from top to bottom.
     pub rows: Vec<Vec<Option<String>>>,
 }
 
 impl Table {
     /// An empty table.
-    pub fn new(columns: impl Into<Vec<Column>>) -> Self {
+    pub fn new(columns: impl Into<Vec<TableColumn>>) -> Self {
         Self { columns: columns.into(), ..Self::default() }
     }
 
-    /// An empty table with the columns of [`Column::all`].
+    /// An empty table with the columns of [`TableColumn::all`].
     pub fn headed(heads: &str) -> Self {
-        Self::new(Column::all(heads))
+        Self::new(TableColumn::all(heads))
     }
 
     /// The same table with a title.

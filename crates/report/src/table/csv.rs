@@ -125,7 +125,7 @@ fn is_number(text: &str) -> bool {
 mod tests {
     use super::*;
     use crate::number;
-    use crate::table::Column;
+    use crate::table::TableColumn;
 
     #[test]
     fn numbers_can_be_read_back() {
@@ -140,7 +140,8 @@ mod tests {
 
     #[test]
     fn an_interval_is_two_numbers() {
-        let columns = [Column::left("method"), Column::decimal("K").unit("1/s"), Column::interval().unit("1/s")];
+        let columns =
+            [TableColumn::left("method"), TableColumn::decimal("K").unit("1/s"), TableColumn::interval().unit("1/s")];
         let mut table = Table::new(columns);
         table.push(["one", "0.1", "[−0.2, 4×10⁻¹]"]);
         table.push(["two", number::MISSING, number::MISSING]);

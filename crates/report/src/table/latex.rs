@@ -2,7 +2,7 @@
 //! page it is scaled down to the width of the text; what is too long runs over pages, a wide one best in landscape. Any
 //! LaTeX with the packages named in its first line compiles it.
 
-use super::content::{Column, Table};
+use super::content::{Table, TableColumn};
 use super::latex_text::{escape, script, worded};
 use super::width::{Alignment, columns as characters};
 
@@ -25,7 +25,7 @@ impl Table {
         }
         let is_empty = |place: &usize| !self.rows.is_empty() && self.cells_of(*place).all(|cell| cell.is_none());
         let shown = (0..self.columns.len()).filter(|place| !is_empty(place));
-        let set: Vec<Set> = shown.map(|place| Set::new(self, place, &self.columns[place])).collect();
+        let set: Vec<LatexColumn> = shown.map(|place| LatexColumn::new(self, place, &self.columns[place])).collect();
         let formats: Vec<&str> = set.iter().map(|column| column.format.as_str()).collect();
         let (format, head, body) = (formats.join(" "), head(&set), body(&set, self.rows.len()));
         if self.rows.len() > PAGE {
@@ -47,7 +47,7 @@ impl Table {
 }
 
 /// A column as it is set.
-struct Set {
+struct LatexColumn {
     /// The specification in the head of the tabular.
     format: String,
     /// Lines of the heading, the last one next to the cells.
@@ -55,10 +55,10 @@ struct Set {
     cells: Vec<String>,
 }
 
-impl Set {
-    fn new(table: &Table, place: usize, column: &Column) -> Self {
+impl LatexColumn {
+    fn new(table: &Table, place: usize, column: &TableColumn) -> Self {
         let cells: Vec<Option<&str>> = table.rows.iter().map(|row| row.get(place).and_then(Option::as_deref)).collect();
-        let numbers: Vec<Option<Number>> = cells.iter().map(|cell| cell.and_then(Number::parse)).collect();
+        let numbers: Vec<Option<LatexNumber>> = cells.iter().map(|cell| cell.and_then(LatexNumber::parse)).collect();
         let (known, parsed) = (cells.iter().flatten().count(), numbers.iter().flatten().count());
         let is_number = column.alignment != Alignment::Left && parsed > 0 && 2 * parsed >= known;
         let widest = cells.iter().flatten().map(|cell| characters(cell)).max().unwrap_or(0);
@@ -102,7 +102,7 @@ fn wrapped(heading: &str, body: usize) -> Vec<String> {
 }
 
 /// A number as siunitx reads it, and its parts.
-struct Number {
+struct LatexNumber {
     source: String,
     is_negative: bool,
     /// Digits before and behind the decimal point, of the uncertainty and of the power of ten.
@@ -110,7 +110,7 @@ struct Number {
     has_small_power: bool,
 }
 
-impl Number {
+impl LatexNumber {
     /// Reads `−1.25`, `0.1003 ± 0.0007`, `1.3×10⁻⁵` and `(1.23 ± 0.04)×10⁻⁵`.
     fn parse(cell: &str) -> Option<Self> {
         let (mantissa, power) = match cell.split_once("×10") {
@@ -150,7 +150,7 @@ fn decimal(text: &str) -> Option<[usize; 2]> {
 }
 
 /// The `table-format` that has room for all numbers of a column.
-fn table_format<'a>(numbers: impl Iterator<Item = &'a Number> + Clone) -> String {
+fn table_format<'a>(numbers: impl Iterator<Item = &'a LatexNumber> + Clone) -> String {
     let most = |part: usize| numbers.clone().map(|number| number.digits[part]).max().unwrap_or(0);
     let mut format = String::from(if numbers.clone().any(|number| number.is_negative) { "-" } else { "" });
     format += &most(0).to_string();
@@ -168,18 +168,18 @@ fn table_format<'a>(numbers: impl Iterator<Item = &'a Number> + Clone) -> String
 }
 
 /// Rules and heading; lines of a heading end above the cells.
-fn head(set: &[Set]) -> String {
+fn head(set: &[LatexColumn]) -> String {
     let lines = set.iter().map(|column| column.heading.len()).max().unwrap_or(0);
     let mut out = String::from("    \\toprule\n");
     for line in 0..lines {
-        let own = |column: &Set| (line + column.heading.len()).checked_sub(lines);
-        let cell = |column: &Set| own(column).map_or_else(String::new, |line| column.heading[line].clone());
+        let own = |column: &LatexColumn| (line + column.heading.len()).checked_sub(lines);
+        let cell = |column: &LatexColumn| own(column).map_or_else(String::new, |line| column.heading[line].clone());
         out += &format!("    {} \\\\\n", set.iter().map(cell).collect::<Vec<_>>().join(" & "));
     }
     out + "    \\midrule\n"
 }
 
-fn body(set: &[Set], rows: usize) -> String {
+fn body(set: &[LatexColumn], rows: usize) -> String {
     let mut out = String::new();
     for row in 0..rows {
         let cells = set.iter().map(|column| column.cells[row].as_str()).collect::<Vec<_>>().join(" & ");

@@ -1,6 +1,6 @@
 //! A table in Markdown (the GitHub flavour).
 
-use super::content::{Column, Table};
+use super::content::{Table, TableColumn};
 use super::width::{self, Alignment};
 use crate::markdown::text as escape;
 
@@ -19,7 +19,7 @@ fn render(table: &Table) -> String {
         columns: table
             .columns
             .iter()
-            .map(|c| Column { heading: escape(&c.heading), unit: c.unit.as_deref().map(escape), ..c.clone() })
+            .map(|c| TableColumn { heading: escape(&c.heading), unit: c.unit.as_deref().map(escape), ..c.clone() })
             .collect(),
         rows: table.rows.iter().map(|r| r.iter().map(|c| c.as_deref().map(escape)).collect()).collect(),
     };

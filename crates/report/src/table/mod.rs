@@ -10,7 +10,7 @@ mod markdown;
 mod text;
 mod width;
 
-pub use content::{Column, Table};
+pub use content::{Table, TableColumn};
 pub use width::Alignment;
 
 #[cfg(test)]
@@ -18,13 +18,7 @@ mod tests {
     use super::*;
 
     pub(super) fn sample() -> Table {
-        let mut table = Table::new([
-            Column::left("method"),
-            Column::decimal("K").unit("1/s"),
-            Column::decimal("ψ rms").unit("°"),
-            Column::right("n"),
-        ])
-        .titled("Estimates & errors");
+        let mut table = Table::headed("method | .K [1/s] | .ψ rms [°] | >n").titled("Estimates & errors");
         table.push(["output-error", "0.1003 ± 0.0007", "0.10", "271"]);
         table.push(["least_squares", "−0.25", "–", "12"]);
         table.push(["fourier|pub, \"5\"", "12.5", "100.5"]);
@@ -96,8 +90,8 @@ least_squares,-0.25,,12
 
     #[test]
     fn latex_of_wide_tables_is_scaled_and_of_long_ones_over_pages() {
-        let names = (0..12).map(|i| Column::decimal(format!("quantity {i}")).unit("1/s"));
-        let mut table = Table::new([Column::left("method")].into_iter().chain(names).collect::<Vec<_>>());
+        let names = (0..12).map(|i| TableColumn::decimal(format!("quantity {i}")).unit("1/s"));
+        let mut table = Table::new([TableColumn::left("method")].into_iter().chain(names).collect::<Vec<_>>());
         (0..5).for_each(|_| table.push([&["one"][..], &["(1.234 ± 0.012)×10⁻⁵"; 12]].concat()));
         let text = table.to_latex();
         assert!(text.contains("\\begin{adjustbox}{max width=\\linewidth}"), "{text}");
@@ -109,7 +103,7 @@ least_squares,-0.25,,12
 
     #[test]
     fn text_from_outside_is_only_text() {
-        let mut table = Table::new([Column::left("=A1"), Column::left("<b>\u{1b}[31m")]).titled("\u{7}");
+        let mut table = Table::new([TableColumn::left("=A1"), TableColumn::left("<b>\u{1b}[31m")]).titled("\u{7}");
         table.push(["=HYPERLINK(\"http://a\")", "\u{1b}]0;x\n"]);
         table.push(["[2.5, 3]", "<script>|`&lt;"]);
         for text in [table.to_text(), table.to_markdown(), table.to_csv(), table.to_latex()] {
@@ -125,7 +119,7 @@ least_squares,-0.25,,12
 
     #[test]
     fn empty_tables_are_only_headings() {
-        assert_eq!(Table::new([Column::left("a"), Column::decimal("b")]).to_text(), "a  b\n─  ─\n");
+        assert_eq!(Table::new([TableColumn::left("a"), TableColumn::decimal("b")]).to_text(), "a  b\n─  ─\n");
         assert_eq!(Table::default().to_csv(), "\n");
         assert!(Table::default().to_latex().starts_with('%'));
     }

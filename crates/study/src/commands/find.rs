@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use report::number::{MISSING, fixed, optional};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 use serde_json::{Value, json};
 use ship::angle::to_deg;
 use trial::Log;
@@ -97,14 +97,14 @@ fn angles(one: &Manoeuvre) -> [Option<f64>; 2] {
 
 fn table(log: &Log, found: &[Manoeuvre]) -> Table {
     let mut table = Table::new([
-        Column::decimal("--trial"),
-        Column::left("manoeuvre"),
-        Column::decimal("from").unit("s"),
-        Column::decimal("until").unit("s"),
-        Column::left("clock"),
-        Column::decimal("executes"),
-        Column::decimal("rudder").unit("deg"),
-        Column::decimal("heading").unit("deg"),
+        TableColumn::decimal("--trial"),
+        TableColumn::left("manoeuvre"),
+        TableColumn::decimal("from").unit("s"),
+        TableColumn::decimal("until").unit("s"),
+        TableColumn::left("clock"),
+        TableColumn::decimal("executes"),
+        TableColumn::decimal("rudder").unit("deg"),
+        TableColumn::decimal("heading").unit("deg"),
     ]);
     for (number, one) in (1..).zip(found) {
         let clock = log.clock().map(|clock| format!("{} to {}", clock.at(one.from), clock.at(one.until)));

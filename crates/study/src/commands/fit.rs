@@ -11,7 +11,7 @@ use crate::documents::fit::{CURVES, FIT, FitCurves, FitDocument};
 use crate::documents::{self, read_json};
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
-use crate::screen::{self, Told};
+use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::{curve_tables, fit_page};
 use crate::work::fit::{fit, methods};
@@ -46,6 +46,6 @@ pub fn show(into: &ResultFolder, from: &Path, theme: &Theme, common: &Common) ->
     let rest = format!("{}\nresults: {}", fit_page::rest(&document, &curves), into.path().join(FIT).display());
     let head = format!("{}\n", fit_page::headline(&document, &curves));
     let table = fit_page::answers(&document, &curves);
-    let told = Told { words: [&head, ""], table: &table, notes: &rest, document: &text };
-    screen::tell(common, &told, &document.all_warnings())
+    let output = CommandOutput { words: [&head, ""], table: &table, notes: &rest, document: &text };
+    screen::tell(common, &output, &document.all_warnings())
 }

@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use identify::{IdentifierSettings, external, registry};
 use report::number::MISSING;
-use report::{Column, Table};
+use report::{Table, TableColumn};
 use serde_json::json;
 use ship::angle::KNOT;
 use ship::{effects, ships};
@@ -57,7 +57,7 @@ pub fn run(&ListRequest { what }: &ListRequest, common: &Common) -> Result<(), F
 }
 
 fn identifiers() -> Result<Table, Failure> {
-    let mut table = Table::new([Column::left("id"), Column::left("method"), Column::left("settings")]);
+    let mut table = Table::new([TableColumn::left("id"), TableColumn::left("method"), TableColumn::left("settings")]);
     // No program is started by default; the command stands for any.
     let outside = IdentifierSettings::External(external::Settings::new(["python3", "mine.py"]));
     for settings in registry::defaults().into_iter().chain([outside]) {
@@ -75,11 +75,11 @@ fn keys(settings: &IdentifierSettings) -> String {
 
 fn effects() -> Table {
     let mut table = Table::new([
-        Column::left("id"),
-        Column::left("form"),
-        Column::left("keys in a scenario"),
-        Column::left("equation"),
-        Column::left("parameters"),
+        TableColumn::left("id"),
+        TableColumn::left("form"),
+        TableColumn::left("keys in a scenario"),
+        TableColumn::left("equation"),
+        TableColumn::left("parameters"),
     ]);
     for effect in effects::all() {
         let parameters: Vec<String> =
@@ -92,11 +92,11 @@ fn effects() -> Table {
 
 fn ships() -> Table {
     let mut table = Table::new([
-        Column::left("id"),
-        Column::left("ship"),
-        Column::decimal("L").unit("m"),
-        Column::decimal("V").unit("kn"),
-        Column::left("source"),
+        TableColumn::left("id"),
+        TableColumn::left("ship"),
+        TableColumn::decimal("L").unit("m"),
+        TableColumn::decimal("V").unit("kn"),
+        TableColumn::left("source"),
     ]);
     for ship in ships::all() {
         let number = |value: Option<f64>| report::number::optional(value, 1);
@@ -119,8 +119,12 @@ fn ships() -> Table {
 
 /// Keys of a trial whose name begins with `part`, without it.
 fn keys_below(part: &str) -> Table {
-    let mut table =
-        Table::new([Column::left("key"), Column::left("unit"), Column::left("default"), Column::left("meaning")]);
+    let mut table = Table::new([
+        TableColumn::left("key"),
+        TableColumn::left("unit"),
+        TableColumn::left("default"),
+        TableColumn::left("meaning"),
+    ]);
     for ScenarioKey { key, unit, default, meaning } in keys_of_scenario() {
         if let Some(key) = key.strip_prefix(part) {
             // A table shows the marks of code as they are.
@@ -132,7 +136,8 @@ fn keys_below(part: &str) -> Table {
 
 /// What columns may be called.
 fn columns() -> Table {
-    let mut table = Table::new([Column::left("holds"), Column::left("names"), Column::left("understood as well")]);
+    let mut table =
+        Table::new([TableColumn::left("holds"), TableColumn::left("names"), TableColumn::left("understood as well")]);
     let usual = |wanted: &dyn Fn(ColumnMeaning) -> bool| {
         let names: Vec<&str> = names::names().filter(|(_, said)| wanted(*said)).map(|(name, _)| name).collect();
         names.join(", ")
@@ -157,7 +162,7 @@ fn columns() -> Table {
 }
 
 fn sidecar() -> Table {
-    let mut table = Table::new([Column::left("key"), Column::left("value"), Column::left("meaning")]);
+    let mut table = Table::new([TableColumn::left("key"), TableColumn::left("value"), TableColumn::left("meaning")]);
     for Key { key, value, meaning } in sidecar::keys() {
         table.push([&key, &value, &meaning.replace('`', "")]);
     }

@@ -12,7 +12,7 @@ use crate::documents::fit::CURVES;
 use crate::documents::{self, read_json};
 use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
-use crate::screen::{self, Told};
+use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
 use crate::work::predict::{Model, PredictInput, predict};
@@ -85,13 +85,13 @@ pub fn show(
         notes += &format!("\nform:    {}", into.path().join(FORM).display());
     }
     let words = [predict_page::words(predicted), predict_page::rest(predicted)];
-    let told = Told {
+    let output = CommandOutput {
         words: words.each_ref().map(String::as_str),
         table: &predict_tables::figures(predicted),
         notes: &notes,
         document: &text,
     };
-    screen::tell(common, &told, warnings)
+    screen::tell(common, &output, warnings)
 }
 
 /// Where the results go unless a folder is named: after the folder of the model, which has the name of its record.

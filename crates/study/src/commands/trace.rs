@@ -7,12 +7,12 @@ use campaign::folder::ResultFolder;
 use report::Theme;
 use scenario::failure::Failure;
 
-use crate::documents::curves::Curves;
+use crate::documents::curves::TraceCurves;
 use crate::documents::read_json;
 use crate::documents::trace::{TRACE, TraceDocument};
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
-use crate::screen::{self, Told};
+use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::trace_page;
 use crate::work::steady;
@@ -45,11 +45,11 @@ pub fn show(
     warnings: &[String],
 ) -> Result<(), Failure> {
     let (document, text): (TraceDocument, String) = read_json(&from.join(TRACE), "trace")?;
-    let curves = Curves::of(&document, from)?;
+    let curves = TraceCurves::of(&document, from)?;
     write_page(into, &trace_page::page(&document, &curves, steady::of_ship(&document.ship).as_ref()), theme)?;
     let notes = format!("\nresults: {}", into.path().join(TRACE).display());
     let [before, behind] = trace_page::words(&document);
     let table = trace_page::all_errors(&document);
-    let told = Told { words: [&before, &behind], table: &table, notes: &notes, document: &text };
-    screen::tell(common, &told, warnings)
+    let output = CommandOutput { words: [&before, &behind], table: &table, notes: &notes, document: &text };
+    screen::tell(common, &output, warnings)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// Columns of one length, each with its name and unit.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Columns(Vec<(String, Vec<f64>)>);
+pub struct CurveTable(Vec<(String, Vec<f64>)>);
 
 /// Seven significant digits, as few as are needed; empty for what is no number.
 pub fn digits(value: f64) -> String {
@@ -12,7 +12,7 @@ pub fn digits(value: f64) -> String {
     shown.map_or_else(String::new, |value| value.to_string())
 }
 
-impl Columns {
+impl CurveTable {
     /// Adds a column on the right.
     pub fn push(&mut self, name: impl Into<String>, values: Vec<f64>) {
         self.0.push((name.into(), values));
@@ -52,15 +52,15 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read() {
-        let mut columns = Columns::default();
+        let mut columns = CurveTable::default();
         columns.push("t_s", vec![0.0, 0.1 + 0.2]);
         columns.push("heading_deg", vec![f64::NAN, -1.0 / 3.0]);
         let text = columns.text();
         assert_eq!(text, "t_s,heading_deg\n0,\n0.30000000000000004,-0.3333333\n");
-        let read = Columns::read(&text).expect("it was written so");
+        let read = CurveTable::read(&text).expect("it was written so");
         assert_eq!(read["t_s"], [0.0, 0.1 + 0.2]);
         assert!(read["heading_deg"][0].is_nan() && read["heading_deg"][1] == -0.333_333_3);
-        assert_eq!(Columns::read("a,b\n1\n"), None);
-        assert_eq!(Columns::read("a,b\n1,x\n"), None);
+        assert_eq!(CurveTable::read("a,b\n1\n"), None);
+        assert_eq!(CurveTable::read("a,b\n1,x\n"), None);
     }
 }

@@ -10,7 +10,7 @@ use scenario::failure::{Failure, OnPath};
 use ship::angle::{from_deg, to_deg};
 use trial::{Channel, Columns as Channels, Origin, Trial};
 
-use super::columns::Columns;
+use super::columns::CurveTable;
 use super::trace::{RecordEntry, TraceDocument};
 
 /// A record with what the models make of it.
@@ -24,7 +24,7 @@ pub struct TracedRecord {
 }
 
 /// All curves of a trace.
-pub struct Curves {
+pub struct TraceCurves {
     /// The records, in their order.
     pub records: Vec<TracedRecord>,
     /// Tables of the missing moments: over time, and over the channels.
@@ -36,7 +36,7 @@ const MODELS: [&str; 2] = ["before", "after"];
 
 /// The table of a record.
 pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
-    let mut columns = Columns::default();
+    let mut columns = CurveTable::default();
     let degrees = |values: &[f64]| values.iter().copied().map(to_deg).collect::<Vec<f64>>();
     columns.push("t_s", trial.time().to_vec());
     columns.push("heading_deg", degrees(trial.heading()));
@@ -62,7 +62,7 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
 
 /// The record of a table. `None` where the table is not one of [`table`].
 fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
-    let columns = Columns::read(text)?;
+    let columns = CurveTable::read(text)?;
     let radians = |name: &str| columns.get(name).map(|all| all.iter().copied().map(from_deg).collect::<Vec<f64>>());
     let time = columns.get("t_s")?.clone();
     let channels = [
@@ -96,7 +96,7 @@ fn read<T>(text: &str, place: &str, parse: impl FnOnce(&str) -> Option<T>) -> Re
     parse(text).ok_or_else(|| Failure::input(format!("{place}: {again}")))
 }
 
-impl Curves {
+impl TraceCurves {
     /// The curves that a document names, from the files in its folder.
     ///
     /// Fails when one cannot be read.
@@ -112,7 +112,7 @@ impl Curves {
         document: &TraceDocument,
         table: impl Fn(&str) -> Result<(String, String), Failure>,
     ) -> Result<Self, Failure> {
-        let columns = |name: &str| table(name).and_then(|(text, place)| read(&text, &place, Columns::read));
+        let columns = |name: &str| table(name).and_then(|(text, place)| read(&text, &place, CurveTable::read));
         let records = document.records.iter().map(|entry| {
             let (text, place) = table(&entry.curves)?;
             read(&text, &place, |text| record(entry, text))

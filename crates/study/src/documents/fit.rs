@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use campaign::answer::MethodEntry;
 use predict::IdentifiedShip;
-use report::Curve;
+use report::PlotCurve;
 use report::figures::{Replays, ZigzagTrial};
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
@@ -157,7 +157,7 @@ pub struct FitCurves {
     /// The records, first the fitted ones.
     pub records: Vec<FitRecord>,
     /// Of every method with a bounded one the outline of the region that holds K (1/s) and T (s) with 95 %.
-    pub regions: BTreeMap<String, Curve>,
+    pub regions: BTreeMap<String, PlotCurve>,
 }
 
 /// A record with its replays, in degrees.
@@ -176,15 +176,15 @@ pub struct FitRecord {
     /// Record and replays of all methods.
     pub replays: Replays,
     /// The rudder.
-    pub rudder: Curve,
+    pub rudder: PlotCurve,
     /// Headings and rudder angles that are left out or doubtful, where there are some.
-    pub rejected: Option<[Curve; 2]>,
+    pub rejected: Option<[PlotCurve; 2]>,
     /// Yaw rate over heading of the record, where it shows one.
-    pub phase: Option<Curve>,
+    pub phase: Option<PlotCurve>,
     /// Whether that yaw rate is the slope of the smoothed heading.
     pub smoothed: bool,
     /// Yaw rate over heading of the replay of the method that is drawn on its own.
-    pub phase_replay: Option<Curve>,
+    pub phase_replay: Option<PlotCurve>,
 }
 
 /// The entry of a record.

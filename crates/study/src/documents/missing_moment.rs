@@ -5,7 +5,7 @@ use ::trace::missing_moment::{MissingMoment, Over, Panel};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
-use super::columns::Columns;
+use super::columns::CurveTable;
 
 /// The moment of one record in `trace.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -68,7 +68,7 @@ fn degrees(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
 /// The rows: moment with its band, what the explanation makes of it, and every channel that was recorded.
 pub fn over_time(missing: &MissingMoment) -> String {
     let end = |k: usize| degrees((0..missing.time.len()).map(|row| missing.interval(row)[k]));
-    let mut columns = Columns::default();
+    let mut columns = CurveTable::default();
     columns.push("t_s", missing.time.clone());
     columns.push("moment_rudder_deg", degrees(missing.moment.iter().copied()));
     columns.push("sd_rudder_deg", degrees(missing.sd.iter().copied()));
@@ -88,7 +88,7 @@ pub fn over_time(missing: &MissingMoment) -> String {
 /// A curve has mean zero over the rows; here it has the mean of the moment.
 pub fn over_channels(missing: &MissingMoment) -> String {
     let mean = missing.moment.iter().sum::<f64>() / missing.moment.len() as f64;
-    let mut columns = Columns::default();
+    let mut columns = CurveTable::default();
     for panel in &missing.panels {
         let (name, curve) = (column(panel.over).0, &panel.curve);
         columns.push(name, shown(panel.over, &curve.x));

@@ -5,7 +5,7 @@ use ship::Particulars;
 use trial::{Quantity, Scaling};
 
 use crate::records::file_of;
-use crate::scales::Together;
+use crate::scales::RescaledRecords;
 
 /// One number without dimension at every scale.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -69,7 +69,7 @@ impl ScalesEntry {
     /// What is made of the records of every scale, given by their numbers, and of the first scale, at which all are
     /// told; `None` where the fitted records have one scale.
     pub fn compared(
-        together: &Together,
+        together: &RescaledRecords,
         compare: impl FnOnce(&[(Particulars, Vec<usize>)], Particulars) -> Vec<ComparedModel>,
     ) -> Option<Self> {
         let scales = together.scales.as_ref()?;

@@ -19,20 +19,20 @@ pub struct TruthFile {
     cell: String,
     replicate: u64,
     /// K, T and δ_r of the first-order response nearest to the ship; of the ship itself where it is first order.
-    nearest: Option<Indices>,
+    nearest: Option<TrueIndices>,
     /// Those of the ship's own base, where it has effects beside it.
-    own: Option<Indices>,
+    own: Option<TrueIndices>,
     /// What a first-order base lacks in this record.
     missing: Vec<String>,
     /// Drawn values in the units of their keys.
     drawn: BTreeMap<String, f64>,
     /// Times of the orders.
     executes_s: Vec<f64>,
-    motion: Motion,
+    motion: TrueMotion,
 }
 
 #[derive(Debug, Serialize)]
-struct Indices {
+struct TrueIndices {
     #[serde(rename = "K_per_s")]
     k_per_s: f64,
     #[serde(rename = "T_s")]
@@ -42,7 +42,7 @@ struct Indices {
 
 /// The motion without the errors of any instrument.
 #[derive(Debug, Serialize)]
-struct Motion {
+struct TrueMotion {
     t_s: Vec<f64>,
     heading_deg: Vec<f64>,
     yaw_rate_deg_s: Vec<f64>,
@@ -50,7 +50,7 @@ struct Motion {
     speed_m_s: Option<Vec<f64>>,
 }
 
-impl From<FirstOrder> for Indices {
+impl From<FirstOrder> for TrueIndices {
     fn from(response: FirstOrder) -> Self {
         Self { k_per_s: response.K(), t_s: response.T(), delta_r_deg: to_deg(response.rudder_bias) }
     }
@@ -69,12 +69,12 @@ impl TruthFile {
             seed: scenario.seed,
             cell: cell.title(),
             replicate: task.replicate,
-            nearest: truths.nearest.map(Indices::from),
-            own: truths.own.map(Indices::from),
+            nearest: truths.nearest.map(TrueIndices::from),
+            own: truths.own.map(TrueIndices::from),
             missing: specimen.specification.missing.clone(),
             drawn: scenario.draws.iter().cloned().zip(specimen.drawn.iter().copied()).collect(),
             executes_s: truth.executes.iter().map(|execute| execute.time).collect(),
-            motion: Motion {
+            motion: TrueMotion {
                 t_s: truth.time.clone(),
                 heading_deg: degrees(&truth.heading),
                 yaw_rate_deg_s: degrees(&truth.yaw_rate),

@@ -1,11 +1,11 @@
 //! Figures of a benchmark: scores over those of the reference.
 
-use campaign::benchmark::Results;
+use campaign::benchmark::BenchDocument;
 use campaign::benchmark::board::Board;
 use campaign::disk;
 use campaign::folder::ResultFolder;
-use report::figures::{Division, Reference95, RowItem, RowKind, Rows, RowsColumn, Ruler};
-use report::{Origin, PageFigure};
+use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
+use report::{CurveOrigin, PageFigure};
 use scenario::failure::{Failure, OnPath};
 use scenario::name::slug;
 
@@ -35,7 +35,7 @@ pub fn capital(words: &str) -> String {
 }
 
 /// The figures, one for every kind of record.
-pub fn figures(results: &Results) -> Vec<PageFigure> {
+pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
     let figure = |field: &str| {
         let caption = format!(
             "{}: median of the score over that of {} in the same case, with 95 % intervals where there are six independent \
@@ -49,18 +49,18 @@ pub fn figures(results: &Results) -> Vec<PageFigure> {
     results.fields().into_iter().filter_map(figure).collect()
 }
 
-fn origin(method: &str) -> Origin {
+fn origin(method: &str) -> CurveOrigin {
     match method {
         // The floor is no method: grey.
-        campaign::benchmark::method::STRAIGHT_ON => Origin::Series { label: method.to_owned(), number: 2 },
+        campaign::benchmark::method::STRAIGHT_ON => CurveOrigin::Series { label: method.to_owned(), number: 2 },
         campaign::benchmark::method::TRACE_OF_HEADING => {
-            Origin::Variant { label: method.to_owned(), method: scenario::TRACE.to_owned(), number: 0 }
+            CurveOrigin::Variant { label: method.to_owned(), method: scenario::TRACE.to_owned(), number: 0 }
         }
-        method => Origin::Method(method.to_owned()),
+        method => CurveOrigin::Method(method.to_owned()),
     }
 }
 
-fn ratios(results: &Results, field: &str) -> Option<Rows> {
+fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let boards: Vec<_> = results.boards.iter().filter(|board| board.field == field).collect();
     let others: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
     let has_ratios = boards.iter().flat_map(|board| &board.standings).any(|standing| standing.ratio.is_some());
@@ -83,7 +83,7 @@ fn ratios(results: &Results, field: &str) -> Option<Rows> {
             ..RowsColumn::default()
         }
     };
-    Some(Rows {
+    Some(NamedRows {
         title: None,
         names: others.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),

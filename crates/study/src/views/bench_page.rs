@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use campaign::benchmark::Results;
+use campaign::benchmark::BenchDocument;
 use campaign::benchmark::board::FEWEST;
-use campaign::benchmark::cases::{Answer, Case};
+use campaign::benchmark::cases::{BenchCase, CaseAnswer};
 use report::Page;
 
 use super::bench_figures::{capital, figures};
@@ -26,7 +26,7 @@ const FILES: &str = "Made by `study bench`. `bench.json` has every answer and ev
      every answer, `leaderboard.csv` the tables with all their intervals.";
 
 /// `report.md`.
-pub fn page(results: &Results) -> Page {
+pub fn page(results: &BenchDocument) -> Page {
     let definition = &results.definition;
     let mut page = Page::titled(definition.name.as_str());
     page.say(&definition.about);
@@ -61,7 +61,7 @@ pub fn page(results: &Results) -> Page {
 }
 
 /// The leaderboards with their figures.
-fn boards(page: &mut Page, results: &Results) {
+fn boards(page: &mut Page, results: &BenchDocument) {
     let mut before = None;
     for board in &results.boards {
         if before != Some(board.task) {
@@ -103,7 +103,7 @@ fn counted(cases: usize, clusters: usize) -> String {
 }
 
 /// `methods/ID.md`.
-pub fn of_method(results: &Results, method: &str) -> Page {
+pub fn of_method(results: &BenchDocument, method: &str) -> Page {
     let mut page = Page::titled(method);
     page.say(format!("In [{}](../report.md). {READING}", results.definition.name));
     page.part("Every task");
@@ -127,7 +127,7 @@ pub fn of_method(results: &Results, method: &str) -> Page {
 }
 
 /// Failures of a method by kind, task and set: how many, and the first reason.
-fn failures<'a>(results: &'a Results, method: &str) -> BTreeMap<(&'a str, &'a str, &'a str), (usize, String)> {
+fn failures<'a>(results: &'a BenchDocument, method: &str) -> BTreeMap<(&'a str, &'a str, &'a str), (usize, String)> {
     let mut found = BTreeMap::new();
     for case in &results.cases {
         for answer in case.answers.iter().filter(|answer| answer.method == method) {
@@ -139,7 +139,7 @@ fn failures<'a>(results: &'a Results, method: &str) -> BTreeMap<(&'a str, &'a st
     found
 }
 
-fn example(case: &Case, answer: &Answer) -> String {
+fn example(case: &BenchCase, answer: &CaseAnswer) -> String {
     let on = case.trial.map_or_else(|| case.fitted.join(" + "), |trial| format!("trial {trial}"));
     format!("{on}, {}", answer.reason.as_deref().unwrap_or("no reason was given"))
 }

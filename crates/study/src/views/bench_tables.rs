@@ -1,11 +1,11 @@
 //! Tables of a benchmark: leaderboards, sets, answers one by one.
 
-use campaign::benchmark::board::{Board, Figure, SetLine, Share, Standing, by_set};
-use campaign::benchmark::cases::{Case, Naming};
+use campaign::benchmark::board::{Board, LeaderboardRow, ScoreFigure, SetLine, WilsonShare, by_set};
+use campaign::benchmark::cases::{BenchCase, Naming};
 use campaign::benchmark::naming::{NamingLine, total};
-use campaign::benchmark::{Results, Task};
+use campaign::benchmark::{BenchDocument, BenchTask};
 use report::number::{MISSING, fixed, significant};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 
 /// What stands for a figure that an answer which failed decides.
 const FAILED: &str = "failed";
@@ -17,20 +17,20 @@ fn score(value: Option<f64>) -> String {
     value.map_or_else(|| FAILED.to_owned(), |value| significant(value, DIGITS))
 }
 
-fn value(figure: Figure) -> String {
+fn value(figure: ScoreFigure) -> String {
     score(figure.value)
 }
 
-fn ends(figure: Figure) -> String {
+fn ends(figure: ScoreFigure) -> String {
     figure.ci95.map_or_else(|| MISSING.to_owned(), |[low, high]| format!("[{}, {}]", score(low), score(high)))
 }
 
-fn percent(figure: Figure) -> Figure {
+fn percent(figure: ScoreFigure) -> ScoreFigure {
     let times = |value: f64| 100.0 * value;
-    Figure { value: figure.value.map(times), ci95: figure.ci95.map(|ends| ends.map(|end| end.map(times))) }
+    ScoreFigure { value: figure.value.map(times), ci95: figure.ci95.map(|ends| ends.map(|end| end.map(times))) }
 }
 
-fn share(share: Share) -> String {
+fn share(share: WilsonShare) -> String {
     let [low, high] = share.ci95.map(|end| fixed(100.0 * end, 0));
     format!("{} [{low}, {high}]", fixed(100.0 * share.count as f64 / share.of as f64, 0))
 }
@@ -40,32 +40,28 @@ pub fn board_name(board: &Board) -> String {
     format!("{}, {}", board.task.title(), board.field)
 }
 
-fn columns(reference: &str, indices: bool) -> Vec<Column> {
-    let mut columns = vec![
-        Column::left("method"),
-        Column::decimal("median"),
-        Column::left("95 %"),
-        Column::decimal("90 % within"),
-        Column::right("failed"),
-        Column::decimal(format!("over {reference}")),
-        Column::left("95 %"),
-        Column::decimal("better").unit("%"),
-        Column::decimal("mean rank"),
-    ];
-    if indices {
-        columns.extend(Column::all(".intervals hold K [%] | .hold T [%]"));
-    }
-    columns
+/// A number of things, empty where there are none.
+fn count(count: usize) -> String {
+    if count == 0 { String::new() } else { count.to_string() }
 }
 
-fn cells(standing: &Standing, indices: bool) -> Vec<String> {
-    let paired = |figure: Option<Figure>, of: fn(Figure) -> String| figure.map_or_else(|| MISSING.to_owned(), of);
+/// Columns of a board behind those of `first`.
+fn columns(first: &str, reference: &str, indices: bool) -> Vec<TableColumn> {
+    let held = if indices { " | .intervals hold K [%] | .hold T [%]" } else { "" };
+    TableColumn::all(&format!(
+        "{first} | .median | 95 % | .90 % within | >failed | .over {reference} | 95 % | .better [%] | .mean rank{held}"
+    ))
+}
+
+fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
+    let paired =
+        |figure: Option<ScoreFigure>, of: fn(ScoreFigure) -> String| figure.map_or_else(|| MISSING.to_owned(), of);
     let mut cells = vec![
         standing.method.clone(),
         value(standing.median),
         ends(standing.median),
         value(standing.high),
-        if standing.failed == 0 { String::new() } else { standing.failed.to_string() },
+        count(standing.failed),
         paired(standing.ratio, value),
         paired(standing.ratio, ends),
         paired(standing.better.map(percent), |figure| figure.value.map_or_else(String::new, |value| fixed(value, 0))),
@@ -81,22 +77,20 @@ fn cells(standing: &Standing, indices: bool) -> Vec<String> {
 }
 
 /// One board.
-pub fn board(results: &Results, board: &Board) -> Table {
-    let indices = board.task == Task::Indices;
-    let mut table = Table::new(columns(&results.reference, indices));
+pub fn board(results: &BenchDocument, board: &Board) -> Table {
+    let indices = board.task == BenchTask::Indices;
+    let mut table = Table::new(columns("method", &results.reference, indices));
     board.standings.iter().for_each(|standing| table.push(cells(standing, indices)));
     table
 }
 
 /// All boards below each other, for a person.
-pub fn leaderboard(results: &Results) -> Table {
-    let mut columns = columns(&results.reference, true);
-    columns.splice(0..0, [Column::left("task"), Column::left("records"), Column::right("n")]);
-    let mut table = Table::new(columns);
+pub fn leaderboard(results: &BenchDocument) -> Table {
+    let mut table = Table::new(columns("task | records | >n | method", &results.reference, true));
     for board in &results.boards {
         for standing in &board.standings {
             let mut line = vec![board.task.id().to_owned(), board.field.clone(), board.cases.to_string()];
-            line.extend(cells(standing, board.task == Task::Indices));
+            line.extend(cells(standing, board.task == BenchTask::Indices));
             table.push(line);
         }
     }
@@ -104,7 +98,7 @@ pub fn leaderboard(results: &Results) -> Table {
 }
 
 /// All boards with all their numbers, for a program.
-pub fn leaderboard_numbers(results: &Results) -> Table {
+pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
     let mut table = Table::headed(
         "task | records | cases | clusters | method | failed | median | median lower 95 | \
             median upper 95 | 90 % within | 90 % within lower 95 | 90 % within upper 95 | \
@@ -113,9 +107,9 @@ pub fn leaderboard_numbers(results: &Results) -> Table {
             intervals hold T [%]",
     );
     let text = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-    let all = |figure: Option<Figure>| match figure {
+    let all = |figure: Option<ScoreFigure>| match figure {
         None => vec![String::new(); 3],
-        Some(Figure { value, ci95 }) => {
+        Some(ScoreFigure { value, ci95 }) => {
             let [low, high] = ci95.unwrap_or([None; 2]);
             [value, low, high].map(text).to_vec()
         }
@@ -135,63 +129,45 @@ pub fn leaderboard_numbers(results: &Results) -> Table {
     table
 }
 
+/// The median of a set; of one that is not finite, what decides it.
+fn median(own: Option<(f64, usize)>) -> String {
+    own.map_or_else(|| MISSING.to_owned(), |(median, _)| score(Some(median).filter(|median| median.is_finite())))
+}
+
 /// Medians set by set, methods side by side.
-pub fn sets(results: &Results) -> Table {
-    let heads = [Column::left("task"), Column::left("set"), Column::right("n")];
-    let methods = results.methods.iter().map(Column::decimal);
-    let mut table = Table::new(heads.into_iter().chain(methods).collect::<Vec<_>>());
+pub fn sets(results: &BenchDocument) -> Table {
+    let mut columns = TableColumn::all("task | set | >n");
+    columns.extend(results.methods.iter().map(TableColumn::decimal));
+    let mut table = Table::new(columns);
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
-        let cell = |own: &Option<(f64, usize)>| {
-            own.map_or_else(
-                || MISSING.to_owned(),
-                |(median, _)| score(Some(median).filter(|median| median.is_finite())),
-            )
-        };
         let head = [task.id().to_owned(), set, cases.to_string()];
-        table.push(head.into_iter().chain(methods.iter().map(cell)));
+        table.push(head.into_iter().chain(methods.into_iter().map(median)));
     }
     table
 }
 
 /// One method on every set, beside the reference.
-pub fn of_method(results: &Results, method: &str) -> Table {
-    let mut columns = Column::all("task | set | >n | .median | >failed");
+pub fn of_method(results: &BenchDocument, method: &str) -> Table {
+    let mut columns = TableColumn::all("task | set | >n | .median | >failed");
     let place = |label: &str| results.methods.iter().position(|own| own == label);
     let reference = place(&results.reference).filter(|_| method != results.reference);
-    columns.extend(reference.map(|_| Column::decimal(format!("median of {}", results.reference))));
+    columns.extend(reference.map(|_| TableColumn::decimal(format!("median of {}", results.reference))));
     let mut table = Table::new(columns);
     let Some(own) = place(method) else { return table };
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
-        let Some((median, failed)) = methods[own] else { continue };
-        let count = if failed == 0 { String::new() } else { failed.to_string() };
-        let mut line = vec![
-            task.id().to_owned(),
-            set,
-            cases.to_string(),
-            score(Some(median).filter(|median| median.is_finite())),
-            count,
-        ];
-        let other = reference.map(|place| methods[place]);
-        line.extend(other.map(|other| {
-            other.map_or_else(
-                || MISSING.to_owned(),
-                |(median, _)| score(Some(median).filter(|median| median.is_finite())),
-            )
-        }));
-        table.push(line);
+        let Some((_, failed)) = methods[own] else { continue };
+        let line = [task.id().to_owned(), set, cases.to_string(), median(methods[own]), count(failed)];
+        table.push(line.into_iter().chain(reference.map(|place| median(methods[place]))));
     }
     table
 }
 
 /// One method on every board.
-pub fn standings_of(results: &Results, method: &str) -> Table {
-    let mut columns = columns(&results.reference, true);
-    columns[0] = Column::left("task");
-    columns.insert(1, Column::right("n"));
-    let mut table = Table::new(columns);
+pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
+    let mut table = Table::new(columns("task | >n", &results.reference, true));
     for board in &results.boards {
         for (place, standing) in board.standings.iter().enumerate().filter(|(_, own)| own.method == method) {
-            let mut line = cells(standing, board.task == Task::Indices);
+            let mut line = cells(standing, board.task == BenchTask::Indices);
             line[0] = format!("{} ({} of {})", board_name(board), place + 1, board.standings.len());
             line.insert(1, board.cases.to_string());
             table.push(line);
@@ -201,21 +177,18 @@ pub fn standings_of(results: &Results, method: &str) -> Table {
 }
 
 fn naming_table(first: &str) -> Table {
-    let said = Naming::ALL.map(|one| Column::right(one.words()));
-    let heads = [Column::left("method"), Column::left(first), Column::right("n")];
-    let rest = [Column::right("failed"), Column::decimal("named").unit("%")];
-    Table::new(heads.into_iter().chain(said).chain(rest).collect::<Vec<_>>())
+    let said = Naming::ALL.map(Naming::words).join(" | >");
+    Table::headed(&format!("method | {first} | >n | >{said} | >failed | .named [%]"))
 }
 
 fn push_naming(table: &mut Table, line: &NamingLine, set: &str) {
-    let count = |count: usize| if count == 0 { String::new() } else { count.to_string() };
     let head = [line.method.clone(), set.to_owned(), line.named.of.to_string()];
     let rest = [count(line.failed), share(line.named)];
     table.push(head.into_iter().chain(line.counts.map(count)).chain(rest));
 }
 
 /// What methods said of missing effects, all ships together.
-pub fn naming_totals(results: &Results) -> Table {
+pub fn naming_totals(results: &BenchDocument) -> Table {
     let mut table = naming_table("ships");
     for method in &results.methods {
         for (is_missing, ships) in [(true, "that lack one effect"), (false, "that lack nothing")] {
@@ -228,7 +201,7 @@ pub fn naming_totals(results: &Results) -> Table {
 }
 
 /// The same set by set, of one method or of all.
-pub fn naming(results: &Results, method: Option<&str>) -> Table {
+pub fn naming(results: &BenchDocument, method: Option<&str>) -> Table {
     let mut table = naming_table("set");
     let own = results.naming.iter().filter(|line| method.is_none_or(|method| line.method == method));
     own.for_each(|line| push_naming(&mut table, line, &line.set));
@@ -236,7 +209,7 @@ pub fn naming(results: &Results, method: Option<&str>) -> Table {
 }
 
 /// The ranking over all predictions.
-pub fn overall(results: &Results) -> Table {
+pub fn overall(results: &BenchDocument) -> Table {
     let mut table = Table::headed("method | .mean rank | 95 %");
     for (method, rank) in results.overall.iter().flat_map(|overall| &overall.standings) {
         table.push([method.clone(), value(*rank), ends(*rank)]);
@@ -245,10 +218,8 @@ pub fn overall(results: &Results) -> Table {
 }
 
 /// The sets and their records.
-pub fn present(results: &Results) -> Table {
-    let heads = [Column::left("set"), Column::right("trials"), Column::left("record"), Column::left("manoeuvre")];
-    let files = [Column::left("file"), Column::left("SHA-256")];
-    let mut table = Table::new(heads.into_iter().chain(files).collect::<Vec<_>>());
+pub fn present(results: &BenchDocument) -> Table {
+    let mut table = Table::headed("set | >trials | record | manoeuvre | file | SHA-256");
     for set in &results.sets {
         for (place, record) in set.records.iter().enumerate() {
             let first = |text: String| if place == 0 { text } else { String::new() };
@@ -264,7 +235,7 @@ pub fn present(results: &Results) -> Table {
 }
 
 /// One row for every answer.
-pub fn rows(results: &Results) -> Table {
+pub fn rows(results: &BenchDocument) -> Table {
     let mut table = Table::headed(
         "task | records | set | trial | fitted | scored | method | score | K error [%] | \
             T error [%] | K held | T held | missing | said | named | failure",
@@ -272,7 +243,7 @@ pub fn rows(results: &Results) -> Table {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let truth = |value: Option<bool>| value.map_or_else(String::new, |value| value.to_string());
     for case in &results.cases {
-        let Case { task, field, set, trial, fitted, scored, missing, answers } = case;
+        let BenchCase { task, field, set, trial, fitted, scored, missing, answers } = case;
         for answer in answers {
             let errors = answer.errors_percent;
             let named: Vec<String> = answer.named.iter().map(|group| group.join("|")).collect();

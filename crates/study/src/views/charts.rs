@@ -1,16 +1,16 @@
 //! From a summary to figures over the axes of a study: what goes along which axis, what into panels, what is left out.
 
 use report::figures::{
-    AxisMark, Division, Layer, LayeredPanel, PanelRow, Panels, Pen, Plot, Reference95, RowItem, RowKind, Rows,
+    AxisLine, Division, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Plot, Reference95, RowItem, RowKind,
     RowsColumn, Ruler, Stack,
 };
-use report::{Curve, Origin};
+use report::{CurveOrigin, PlotCurve};
 use scenario::TRACE;
 
 use campaign::curves;
 use campaign::design::Design;
 use campaign::statistics::{Statistic, Z95};
-use campaign::summary::{Record, Summary};
+use campaign::summary::{Performance, Summary};
 
 /// What a chart over the axes of a design shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,7 +49,7 @@ impl ErrorMeasure {
     }
 
     /// The figure of one panel.
-    pub fn of(self, record: &Record, panel: usize) -> Option<Statistic> {
+    pub fn of(self, record: &Performance, panel: usize) -> Option<Statistic> {
         let errors = if panel == 0 { &record.k } else { &record.t };
         match self {
             Self::Rms => errors.rms,
@@ -82,7 +82,7 @@ const WORTHLESS: f64 = 100.0;
 const EXACT: f64 = 1e-4;
 
 /// A measure in the cells of one figure, as it can be compared there.
-struct Compared<'a> {
+struct ComparedMethods<'a> {
     design: &'a Design,
     summary: &'a Summary,
     measure: ErrorMeasure,
@@ -94,7 +94,7 @@ struct Compared<'a> {
     methods: Vec<usize>,
 }
 
-impl<'a> Compared<'a> {
+impl<'a> ComparedMethods<'a> {
     /// `None` where nothing can be compared: intervals of a response that is only the nearest one hold no truth.
     fn new(design: &'a Design, summary: &'a Summary, measure: ErrorMeasure, groups: &[ChartGroup]) -> Option<Self> {
         let cells = || groups.iter().flat_map(|group| &group.cells).map(|&cell| &design.cells[cell]);
@@ -114,7 +114,7 @@ impl<'a> Compared<'a> {
         let is_bounded = measure == ErrorMeasure::Rms && cells().all(|cell| cell.bound_percent2.is_some());
         let over_bound = is_bounded && !cells().any(|cell| cell.is_nearest);
         if measure == ErrorMeasure::Failures {
-            methods.retain(|&method| summary.overall[method].record.failed() > 0);
+            methods.retain(|&method| summary.overall[method].failed() > 0);
         }
         Some(Self { design, summary, measure, over_bound, to_nearest, methods })
     }
@@ -200,7 +200,7 @@ pub fn over_axes(design: &Design, summary: &Summary, measure: ErrorMeasure) -> V
     let number = (0..design.axes.len()).rev().filter(has_several).find(is_number);
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
     // A chart without a value, or without a single failure, says nothing.
-    let says_something = |record: &Record| {
+    let says_something = |record: &Performance| {
         let mut figures = (0..measure.panels()).filter_map(|panel| measure.of(record, panel));
         figures.any(|figure| measure != ErrorMeasure::Failures || figure.value > 0.0)
     };
@@ -221,7 +221,7 @@ pub fn over_axes(design: &Design, summary: &Summary, measure: ErrorMeasure) -> V
     };
     let parts = parts.into_iter().filter(|part| part.iter().any(is_worth_it));
     let chart = |part: &[ChartGroup]| {
-        let compared = Compared::new(design, summary, measure, part)?;
+        let compared = ComparedMethods::new(design, summary, measure, part)?;
         let plot = match (number, part) {
             (None, [group]) => Plot::Rows(named(&compared, x, group)),
             _ => Plot::Panels(curves(&compared, x, part)),
@@ -251,12 +251,12 @@ fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
 }
 
 /// How a method is drawn.
-pub fn origin(design: &Design, method: usize) -> Origin {
+pub fn origin(design: &Design, method: usize) -> CurveOrigin {
     curves::origin(&design.methods, &design.methods[method].label)
 }
 
-fn curves(compared: &Compared, x: usize, groups: &[ChartGroup]) -> Panels {
-    let Compared { design, measure, .. } = *compared;
+fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels {
+    let ComparedMethods { design, measure, .. } = *compared;
     let titles = compared.titles();
     let values: Vec<f64> = design.cells.iter().filter_map(|cell| cell.values[x]).collect();
     let positive = || values.iter().copied().filter(|value| *value > 0.0);
@@ -281,8 +281,8 @@ fn curves(compared: &Compared, x: usize, groups: &[ChartGroup]) -> Panels {
         };
         let bound = |&cell: &usize| Some((at(cell)?, compared.shown_bound(cell, panel)?));
         let (bx, by): (Vec<f64>, Vec<f64>) = group.cells.iter().filter_map(bound).unzip();
-        let pen = Pen::of(&Origin::Bound).width(1.3);
-        let bound = (!bx.is_empty()).then(|| Layer::line(Origin::Bound.label(), Curve { x: bx, y: by }, pen));
+        let pen = Pen::of(&CurveOrigin::Bound).width(1.3);
+        let bound = (!bx.is_empty()).then(|| Layer::line(CurveOrigin::Bound.label(), PlotCurve { x: bx, y: by }, pen));
         LayeredPanel {
             head: (panel == 0 && groups.len() > 1).then(|| group.name.clone()),
             layers: compared.methods.iter().filter_map(of_method).chain(bound).collect(),
@@ -296,14 +296,14 @@ fn curves(compared: &Compared, x: usize, groups: &[ChartGroup]) -> Panels {
             .flat_map(|row| groups.iter().map(move |group| (row, group)))
             .map(|(r, g)| panel(r, g))
             .collect(),
-        marks: marks.map(|mark| AxisMark { at: mark.at, label: mark.label.clone() }).collect(),
+        marks: marks.map(|mark| AxisLine { at: mark.at, label: mark.label.clone() }).collect(),
         ..Stack::default()
     };
     Panels { note: compared.note(groups), ..Panels::of(stack) }
 }
 
-fn named(compared: &Compared, x: usize, group: &ChartGroup) -> Rows {
-    let Compared { design, measure, .. } = *compared;
+fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows {
+    let ComparedMethods { design, measure, .. } = *compared;
     let part = std::slice::from_ref(group);
     let column = |(panel, title): (usize, String)| {
         let of = |&cell: &usize| {
@@ -313,7 +313,7 @@ fn named(compared: &Compared, x: usize, group: &ChartGroup) -> Rows {
                 Some(RowItem::below(origin.label(), origin.look(), value, interval))
             };
             let bound = compared.shown_bound(cell, panel);
-            let bound = bound.map(|bound| RowItem::new(Origin::Bound.label(), RowKind::Limit(bound)));
+            let bound = bound.map(|bound| RowItem::new(CurveOrigin::Bound.label(), RowKind::Limit(bound)));
             compared.methods.iter().filter_map(dot).chain(bound).collect()
         };
         RowsColumn {
@@ -324,7 +324,7 @@ fn named(compared: &Compared, x: usize, group: &ChartGroup) -> Rows {
         }
     };
     let rows = format!("Rows: {}.", design.axes[x]);
-    Rows {
+    NamedRows {
         title: None,
         names: group.cells.iter().map(|&cell| design.cells[cell].labels[x].clone()).collect(),
         columns: compared.titles().into_iter().enumerate().map(column).collect(),

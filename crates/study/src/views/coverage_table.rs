@@ -1,7 +1,7 @@
 //! Tables of predictions in a study: whether intervals hold, figure by figure.
 
 use report::number::{fixed, optional, significant};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 
 use super::predict_tables::words;
 use super::tables::head_of_cells;
@@ -11,9 +11,9 @@ use campaign::summary::PredictionSummary;
 /// Every figure of every cell and method.
 pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
     let mut columns = head_of_cells(design);
-    columns.extend(Column::all("method | figure | unit | >trials"));
-    columns.extend(["inside 90 %", "lower 95", "upper 95"].map(|name| Column::decimal(name).unit("%")));
-    columns.extend(["of the ship", "bias", "rms error", "width"].map(|name| Column::decimal(name.to_owned())));
+    columns.extend(TableColumn::all("method | figure | unit | >trials"));
+    let heads = ".inside 90 % [%] | .lower 95 [%] | .upper 95 [%] | .of the ship | .bias | .rms error | .width";
+    columns.extend(TableColumn::all(heads));
     let mut table = Table::new(columns);
     for line in lines {
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
@@ -29,9 +29,8 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
 /// All figures of a cell and a method together: the mean of their shares, and the lowest and the highest of them.
 pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     let mut columns = head_of_cells(design);
-    columns.extend(Column::all("method | >figures | >trials"));
-    columns.extend(["inside 90 %", "lowest", "highest"].map(|name| Column::decimal(name).unit("%")));
-    columns.extend(Column::all("lowest of | highest of"));
+    columns.extend(TableColumn::all("method | >figures | >trials"));
+    columns.extend(TableColumn::all(".inside 90 % [%] | .lowest [%] | .highest [%] | lowest of | highest of"));
     let mut table = Table::new(columns);
     for group in lines.chunk_by(|one, other| (one.cell, one.method) == (other.cell, other.method)) {
         let [first, ..] = group else { continue };

@@ -4,9 +4,9 @@
 use std::fmt::Write as _;
 
 use campaign::folder::ResultFolder;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 use report::figures::Replays;
-use report::{Curve, Origin};
+use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
 use scenario::name::slug;
 
@@ -15,19 +15,19 @@ use crate::documents::columns::digits;
 use crate::documents::fit::FitCurves;
 
 /// A column: its name with its unit, and its values over what the first column holds.
-type Column<'a> = (String, &'a Curve);
+type NamedCurve<'a> = (String, &'a PlotCurve);
 
 /// A name as part of the name of a column.
-fn word(origin: &Origin) -> String {
+fn word(origin: &CurveOrigin) -> String {
     slug(origin.label()).replace('-', "_")
 }
 
-fn finite(curve: &Curve) -> impl Iterator<Item = (f64, f64)> {
+fn finite(curve: &PlotCurve) -> impl Iterator<Item = (f64, f64)> {
     curve.pairs().filter(|(x, y)| x.is_finite() && y.is_finite())
 }
 
 /// All columns over the abscissae that any of them has, which ascend in each; empty where a column has no value.
-fn table(abscissa: &str, columns: &[Column]) -> String {
+fn table(abscissa: &str, columns: &[NamedCurve]) -> String {
     let mut places: Vec<f64> = columns.iter().flat_map(|(_, curve)| finite(curve)).map(|(x, _)| x).collect();
     places.sort_by(f64::total_cmp);
     places.dedup();
@@ -47,7 +47,7 @@ fn table(abscissa: &str, columns: &[Column]) -> String {
 
 /// Record and replays: `t_s`, `heading_deg`, the rudder where it is at hand, the noise-free heading where there is one,
 /// and heading and residual of every method.
-pub fn of_replays(replays: &Replays, rudder: Option<&Curve>) -> String {
+pub fn of_replays(replays: &Replays, rudder: Option<&PlotCurve>) -> String {
     let mut columns = vec![("heading_deg".to_owned(), &replays.record)];
     columns.extend(rudder.map(|rudder| ("rudder_deg".to_owned(), rudder)));
     columns.extend(replays.truth.as_ref().map(|truth| ("true_heading_deg".to_owned(), truth)));
@@ -68,7 +68,7 @@ pub fn write_replays(curves: &FitCurves, folder: &ResultFolder) -> Result<(), Fa
 }
 
 /// Writes the replays of every showcase beside their figure.
-pub fn write_showcases(stored: &Stored, figures: &[StudyFigure], folder: &ResultFolder) -> Result<(), Failure> {
+pub fn write_showcases(stored: &StoredStudy, figures: &[StudyFigure], folder: &ResultFolder) -> Result<(), Failure> {
     for (place, figure) in figures.iter().filter(|(_, figure)| figure.stem.contains("replays")) {
         let FigurePlace::Showcase(index) = place else { continue };
         let showcase = &stored.showcases[*index];
@@ -85,8 +85,8 @@ mod tests {
 
     #[test]
     fn columns_stand_beside_each_other_by_their_abscissae() {
-        let one = Curve::new(vec![0.0, 1.0, 2.0], vec![1.0, f64::NAN, -1.0 / 3.0]);
-        let other = Curve::new(vec![0.5, 1.0], vec![1e-9, 4.0]);
+        let one = PlotCurve::new(vec![0.0, 1.0, 2.0], vec![1.0, f64::NAN, -1.0 / 3.0]);
+        let other = PlotCurve::new(vec![0.5, 1.0], vec![1e-9, 4.0]);
         let text = table("t_s", &[("one_deg".into(), &one), ("other_deg".into(), &other)]);
         assert_eq!(text, "t_s,one_deg,other_deg\n0,1,\n0.5,,0.000000001\n1,,4\n2,-0.3333333,\n");
     }

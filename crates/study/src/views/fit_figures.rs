@@ -5,7 +5,7 @@
 use campaign::answer::MethodEntry;
 use report::figures::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Reference95, Ruler, Stack};
 use report::palette::{BEFORE, Look, Marker, SOLID};
-use report::{Curve, Origin, PageFigure, symbol};
+use report::{CurveOrigin, PageFigure, PlotCurve, symbol};
 use ship::Particulars;
 use trial::Quantity;
 
@@ -54,7 +54,7 @@ fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageF
     figures.push(figure("replays", what, replays.panels().into()));
     figures.extend(phase_replay.as_ref().zip(shown).map(|(own, method)| {
         let what = "yaw rate against heading, of the record and of the replay of one method.";
-        let way = (method.to_owned(), Origin::Method(method.to_owned()), own.clone());
+        let way = (method.to_owned(), CurveOrigin::Method(method.to_owned()), own.clone());
         figure("phase", what, phase_plane(title.clone(), record.phase.clone(), record.smoothed, vec![way]).into())
     }));
     let own = replays.replays.iter().find(|own| shown == Some(own.origin.label()));
@@ -71,7 +71,7 @@ fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageF
 }
 
 /// The record with marks at the readings that are left out or doubtful.
-fn raw(record: &FitRecord, title: String, marks: &[Curve; 2]) -> Panels {
+fn raw(record: &FitRecord, title: String, marks: &[PlotCurve; 2]) -> Panels {
     let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let marks = marks.each_ref().map(|curve| {
         Layer::marks("left out or doubtful", look, curve.pairs().map(|(time, value)| (time, value, None)).collect())
@@ -107,11 +107,11 @@ fn index_plane(title: String, document: &FitDocument, curves: &FitCurves) -> Pan
     let scaled = |x: f64, y: f64| (by_k * x, by_t * y);
     let layers = |entry: &MethodEntry| -> Option<[Option<Layer>; 2]> {
         let own = entry.parameters.as_ref()?;
-        let look = Origin::Method(entry.method.clone()).look();
+        let look = CurveOrigin::Method(entry.method.clone()).look();
         let pen = Pen { dash: look.dash, ..Pen::new(look.colour) };
         let region = curves.regions.get(&entry.method).map(|region| {
             let (x, y) = region.pairs().map(|(k, t)| scaled(k, t)).unzip();
-            Layer::line("", Curve { x, y }, pen)
+            Layer::line("", PlotCurve { x, y }, pen)
         });
         let (k, t) = scaled(own.k_per_s.value, own.t_s.value);
         Some([region, Some(Layer::marks(entry.method.as_str(), look, vec![(k, t, None)]))])
@@ -136,7 +136,7 @@ fn single_records(title: String, all: &SingleRecords, document: &FitDocument) ->
     let ship = document.particulars();
     let joint = document.methods.iter().find(|entry| entry.method == all.method).and_then(|entry| entry.parameters);
     // Points are not joined: a cross or a star would hide its bar.
-    let look = Look { marker: Marker::Circle, ..Origin::Method(all.method.clone()).look() };
+    let look = Look { marker: Marker::Circle, ..CurveOrigin::Method(all.method.clone()).look() };
     let name = format!("{}, every record alone, 95 %", all.method);
     let panel = |of: Of, factor: f64, amplitude: fn(&SingleRecord) -> f64| {
         let point = |own: &SingleRecord| {

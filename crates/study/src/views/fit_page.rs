@@ -9,7 +9,7 @@ use trial::Quantity;
 use super::{fit_figures, method_table, scale_tables};
 use crate::documents::fit::{FitCurves, FitDocument, ZigZagEntry};
 use crate::scales::scale_name;
-use crate::work::every_scale::SPEAKERS;
+use crate::work::every_scale::PREFERRED_METHODS;
 
 const MODEL: &str = "The model is T dr/dt + r = K (δ + δ_r) with the yaw rate r and the rudder δ. *95 %* is the interval that a \
                      method quotes beside its estimate, a dash where it quotes none. *rms ψ* is the root mean square of \
@@ -110,7 +110,7 @@ fn scales(document: &FitDocument) -> Vec<(String, Option<Table>)> {
         parts.push((words, Some(scale_tables::prime_table(&rows))));
     }
     let Some(scales) = &document.scales else { return parts };
-    let speaker = SPEAKERS.iter().find_map(|id| scales.comparisons.iter().find(|one| one.model == *id));
+    let speaker = PREFERRED_METHODS.iter().find_map(|id| scales.comparisons.iter().find(|one| one.model == *id));
     if let Some(model) = speaker.or(scales.comparisons.first()) {
         let words = format!("every scale alone, {}: {}", model.model, scale_tables::sentence(model));
         parts.push((words, Some(scale_tables::table(scales, model))));

@@ -1,9 +1,9 @@
 //! The figure that stands for a study: its finding above it, the last of its rows of panels (T before K), the methods it
 //! is about in colour and the others grey, methods with one line as one.
 
-use report::figures::{Layer, LayerKind, LayeredPanel, Panels, Plot, RowItem, RowKind, Rows};
+use report::figures::{Layer, LayerKind, LayeredPanel, NamedRows, Panels, Plot, RowItem, RowKind};
 use report::palette::QUIET;
-use report::{Curve, Origin};
+use report::{CurveOrigin, PlotCurve};
 
 /// A chart as the figure that stands for a study; `about` are the names of the methods it is about, none: all.
 pub fn of_chart(mut plot: Plot, about: &[String]) -> Plot {
@@ -16,7 +16,7 @@ pub fn of_chart(mut plot: Plot, about: &[String]) -> Plot {
 }
 
 fn is_quiet(name: Option<&String>, about: &[String]) -> bool {
-    let is_method = |name: &String| name != Origin::Bound.label();
+    let is_method = |name: &String| name != CurveOrigin::Bound.label();
     !about.is_empty() && name.is_some_and(|name| is_method(name) && !about.contains(name))
 }
 
@@ -46,7 +46,7 @@ fn of_panels(data: &mut Panels, about: &[String]) {
     }
 }
 
-fn of_rows(data: &mut Rows, about: &[String]) {
+fn of_rows(data: &mut NamedRows, about: &[String]) {
     data.columns.drain(..data.columns.len().saturating_sub(1));
     for RowItem { name, kind, .. } in data.columns.iter_mut().flat_map(|column| &mut column.rows).flatten() {
         if let RowKind::Mark(look, ..) = kind
@@ -61,7 +61,7 @@ fn of_rows(data: &mut Rows, about: &[String]) {
 /// Lines nearer to each other than this share of their values are one.
 const SAME_LINE: f64 = 0.03;
 
-fn is_same(one: &Curve, other: &Curve) -> bool {
+fn is_same(one: &PlotCurve, other: &PlotCurve) -> bool {
     let near = |((x, y), (own_x, own_y)): ((f64, f64), (f64, f64))| {
         x == own_x && (y == own_y || (y - own_y).abs() <= SAME_LINE * y.abs() && y.is_finite())
     };
@@ -79,9 +79,9 @@ fn merge(panels: &mut [LayeredPanel], about: &[String]) {
         }
     }
     names.sort_by_key(|name| about.iter().position(|one| one == name).unwrap_or(about.len()));
-    let own = |panel: &LayeredPanel, name: &String| -> Curve {
+    let own = |panel: &LayeredPanel, name: &String| -> PlotCurve {
         let layer = panel.layers.iter().find(|layer| layer.name.as_ref() == Some(name));
-        layer.map_or_else(Curve::default, |layer| layer.curve.clone())
+        layer.map_or_else(PlotCurve::default, |layer| layer.curve.clone())
     };
     let mut lines: Vec<Vec<String>> = Vec::new();
     for name in names {

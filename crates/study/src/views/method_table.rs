@@ -3,7 +3,7 @@
 
 use identify::StopReason;
 use report::number::{self, MISSING};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 
 use campaign::answer::{MethodEntry, Status};
 use trial::Quantity;
@@ -11,15 +11,15 @@ use trial::Quantity;
 /// One row per method; `validated` names the records of the validation columns.
 pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
     let remarks = entries.iter().any(|entry| !remark(entry).is_empty());
-    let mut columns = vec![Column::left("method")];
+    let mut columns = vec![TableColumn::left("method")];
     for (symbol, unit) in [("K", "1/s"), ("T", "s"), ("δ_r", "deg")] {
-        columns.push(Column::decimal(symbol).unit(unit));
-        columns.push(Column::interval().unit(unit));
+        columns.push(TableColumn::decimal(symbol).unit(unit));
+        columns.push(TableColumn::interval().unit(unit));
     }
-    columns.push(Column::decimal("rms ψ").unit("deg"));
-    columns.extend(validated.iter().map(|name| Column::decimal(format!("on {name}")).unit("deg")));
+    columns.push(TableColumn::decimal("rms ψ").unit("deg"));
+    columns.extend(validated.iter().map(|name| TableColumn::decimal(format!("on {name}")).unit("deg")));
     if remarks {
-        columns.push(Column::left("remark"));
+        columns.push(TableColumn::left("remark"));
     }
     let mut table = Table::new(columns);
     for entry in entries {

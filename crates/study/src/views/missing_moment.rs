@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
 use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
-use report::{Curve, symbol};
+use report::{PlotCurve, symbol};
 
 use crate::documents::missing_moment::MissingMomentEntry;
 
@@ -34,15 +34,15 @@ fn percent(share: Option<f64>) -> String {
 }
 
 /// A table that was read.
-type Table = BTreeMap<String, Vec<f64>>;
+type MomentTable = BTreeMap<String, Vec<f64>>;
 
 /// A column of a table; empty where there is none.
-fn values(table: &Table, name: &str) -> Vec<f64> {
+fn values(table: &MomentTable, name: &str) -> Vec<f64> {
     table.get(name).cloned().unwrap_or_default()
 }
 
 /// The moment with its band, and what the known explanation makes of it.
-fn banded(known: Option<&String>, [middle, lower, upper]: [Curve; 3], explained: Curve) -> Vec<Layer> {
+fn banded(known: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], explained: PlotCurve) -> Vec<Layer> {
     let dashed = Pen { dash: SHORT_DASH, ..Pen::new(RUDDER) };
     let mut layers = vec![
         Layer::band("95 % band", [lower, upper], HEADING, 0.2),
@@ -53,21 +53,21 @@ fn banded(known: Option<&String>, [middle, lower, upper]: [Curve; 3], explained:
 }
 
 /// The figure of one record, from its tables over time and over the channels.
-pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[Table; 2]) -> Panels {
+pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[MomentTable; 2]) -> Panels {
     let known = entry.explanation.as_ref();
     let over = |x: Ruler, height: f64, layers: Vec<Layer>| {
         Stack::over(x, vec![(PanelRow::zeroed(Ruler::decimal("moment [° rudder]"), height), layers)])
     };
-    let over_time = |name: &str| Curve::new(values(time, "t_s"), values(time, name));
+    let over_time = |name: &str| PlotCurve::new(values(time, "t_s"), values(time, name));
     let ends = ["moment_rudder_deg", "lower95_rudder_deg", "upper95_rudder_deg"].map(over_time);
     let mut stacks = vec![over(Ruler::time(), 0.24, banded(known, ends, over_time("explained_rudder_deg")))];
     stacks.extend(entry.over.iter().take(PANELS).map(|own| {
         let name = &own.column;
         let of = |what: &str| values(channels, &format!("{name}_{what}_rudder_deg"));
-        let curve = |y: Vec<f64>| Curve::new(values(channels, name), y);
+        let curve = |y: Vec<f64>| PlotCurve::new(values(channels, name), y);
         let (moment, half) = (of("moment"), of("half_width95"));
         let edge = |side: f64| curve(moment.iter().zip(&half).map(|(m, half)| m + side * half).collect());
-        let rows = Curve::new(values(time, name), values(time, "moment_rudder_deg"));
+        let rows = PlotCurve::new(values(time, name), values(time, "moment_rudder_deg"));
         let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.3)];
         layers.extend(banded(known, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(of("explained"))));
         let mut stack = over(Ruler::decimal(title_of(name)), 0.2, layers);

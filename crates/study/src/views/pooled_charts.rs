@@ -4,11 +4,11 @@
 use campaign::design::Design;
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use report::figures::{
-    Cells, Division, Layer, LayerKind, LayeredPanel, MapCell, PanelRow, Panels, Pen, Reference95, RowItem, RowKind,
-    Rows, RowsColumn, Ruler, Shades, Stack,
+    CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, Reference95, RowItem,
+    RowKind, RowsColumn, Ruler, Shades, Stack,
 };
 use report::palette::DOTTED;
-use report::{Curve, Origin, symbol};
+use report::{CurveOrigin, PlotCurve, symbol};
 
 use super::charts::{ErrorMeasure, origin};
 
@@ -16,7 +16,7 @@ use super::charts::{ErrorMeasure, origin};
 const MAP: usize = 3;
 
 /// Maps of the errors of K, of T and of the validation for a design of two axes: stems, what they show, and the maps.
-pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cells)> {
+pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, CellMap)> {
     let labels = |axis: usize| {
         let mut labels: Vec<String> = Vec::new();
         for cell in &design.cells {
@@ -44,7 +44,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
             let row = |y: usize| (0..columns.len()).map(|x| cell(x, y, method)).collect();
             (Some(design.methods[method].label.clone()), (0..rows.len()).map(row).collect())
         };
-        let map = Cells {
+        let map = CellMap {
             title: None,
             titles: [design.axes[1].clone(), design.axes[0].clone()],
             columns: columns.clone(),
@@ -55,7 +55,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
         };
         (format!("heat-map-{stem}"), title.to_owned(), map)
     };
-    let is_there = |(_, _, map): &(String, String, Cells)| {
+    let is_there = |(_, _, map): &(String, String, CellMap)| {
         map.panels.iter().flat_map(|(_, rows)| rows).flatten().any(|cell| cell.value.is_some())
     };
     let maps = [
@@ -70,14 +70,14 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
 const SPREADS: f64 = 4.0;
 
 /// Distributions of the errors in the cells whose detail was asked for; nothing for fewer than ten trials.
-pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, Rows)> {
-    type Of = fn(&MethodDetail) -> &Option<summary::Violin>;
+pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
+    type Of = fn(&MethodDetail) -> &Option<summary::ErrorDensity>;
     let column = |detail: &CellDetail, title: &str, of: Of| RowsColumn {
         x: Ruler::decimal(title).within(SPREADS, Some(0.0)),
         rows: (detail.methods.iter().enumerate())
             .map(|(method, own)| {
                 let look = origin(design, method).look();
-                let violin = |own: &summary::Violin| RowKind::Violin(look, own.density.clone(), own.quantiles);
+                let violin = |own: &summary::ErrorDensity| RowKind::Violin(look, own.density.clone(), own.quantiles);
                 of(own).as_ref().map(|own| RowItem::new("", violin(own))).into_iter().collect()
             })
             .collect(),
@@ -93,7 +93,7 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, Rows)> {
         let known = columns.iter().flat_map(|column| &column.rows).any(|row| !row.is_empty());
         let names = (0..detail.methods.len()).map(|method| design.methods[method].label.clone()).collect();
         let note = Some(String::from("Box: quartiles and median. Line: 2.5 to 97.5 %."));
-        (trials >= 10 && known).then_some((detail.cell, Rows { title: None, names, columns, note }))
+        (trials >= 10 && known).then_some((detail.cell, NamedRows { title: None, names, columns, note }))
     };
     summary.details.iter().filter_map(of_cell).collect()
 }
@@ -104,16 +104,17 @@ const REACH: f64 = 2.2;
 /// Clouds of errors in the cells whose detail was asked for, and whether there is a bound.
 pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
-        let bound = design.cells[detail.cell].bound_percent2.map(|covariance| Curve::contour95((0.0, 0.0), covariance));
+        let bound =
+            design.cells[detail.cell].bound_percent2.map(|covariance| PlotCurve::contour95((0.0, 0.0), covariance));
         let panel = |(method, own): (usize, &MethodDetail)| {
             let (origin, cloud) = (origin(design, method), own.cloud.as_ref());
             let (x, y) = cloud.map(|cloud| cloud.points.iter().copied().unzip()).unwrap_or_default();
-            let ellipse = cloud.map_or_else(Curve::default, |own| Curve::contour95(own.centre, own.covariance));
+            let ellipse = cloud.map_or_else(PlotCurve::default, |own| PlotCurve::contour95(own.centre, own.covariance));
             let mut layers = vec![
-                Layer::new("", Curve { x, y }, LayerKind::Cloud(origin.look().colour)),
+                Layer::new("", PlotCurve { x, y }, LayerKind::Cloud(origin.look().colour)),
                 Layer::line("", ellipse, Pen::new(origin.look().colour).width(1.3)),
             ];
-            let pen = Pen { dash: DOTTED, ..Pen::of(&Origin::Bound) };
+            let pen = Pen { dash: DOTTED, ..Pen::of(&CurveOrigin::Bound) };
             let name = "Cramér–Rao bound, 95 %";
             layers.extend(bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).within(REACH)));
             LayeredPanel { head: Some(design.methods[method].label.clone()), layers }
@@ -134,7 +135,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
 /// K and T that the reference method finds at the named points of the last axis, over those of the first point, one
 /// series for every point of the other axes; nothing unless some ships are not first order and have no K and T of their
 /// own for all trials.
-pub fn indices(design: &Design, summary: &Summary) -> Option<(Rows, String)> {
+pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)> {
     let last = design.axes.len().checked_sub(1)?;
     let is_named = design.cells.iter().all(|cell| cell.values[last].is_none());
     if !is_named || design.cells.iter().all(|cell| !cell.is_nearest) || !summary.tracing.is_empty() {
@@ -164,7 +165,7 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(Rows, String)> {
             let dot = |(number, (label, cells)): (usize, &(String, Vec<usize>))| {
                 let first = answer(cells[0], panel)?;
                 let own = answer(cells[row], panel)?.times(1.0 / first.value);
-                let origin = Origin::Series { label: label.clone(), number };
+                let origin = CurveOrigin::Series { label: label.clone(), number };
                 Some(RowItem::below(origin.label(), origin.look(), own.value, own.ci95))
             };
             series.iter().enumerate().filter_map(dot).collect()
@@ -172,7 +173,7 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(Rows, String)> {
         let x = Ruler::decimal(format!("{symbol} over that of a {}", names[0]));
         RowsColumn { x, rows: (0..names.len()).map(row).collect(), ..RowsColumn::default() }
     };
-    let rows = Rows {
+    let rows = NamedRows {
         title: None,
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
@@ -183,7 +184,7 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(Rows, String)> {
 
 /// How often 90 % intervals of predictions hold, cell by cell and method by method: the mean over the figures of the
 /// shares of trials, and as a bar the lowest and the highest of them; nothing without predictions.
-pub fn predictions(design: &Design, summary: &Summary) -> Option<Rows> {
+pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     let of = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
     let dot = |cell: usize, method: usize| {
         let lines = || summary.predictions.iter().filter(move |line| (line.cell, line.method) == (cell, method));
@@ -194,7 +195,7 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<Rows> {
         Some(RowItem::below(origin.label(), origin.look(), mean, Some(ends)))
     };
     let row = |cell: usize| (0..design.methods.len()).filter_map(|method| dot(cell, method)).collect();
-    (!summary.predictions.is_empty()).then(|| Rows {
+    (!summary.predictions.is_empty()).then(|| NamedRows {
         title: None,
         names: design.cells.iter().map(|cell| cell.labels.join(", ")).collect(),
         columns: vec![RowsColumn {

@@ -6,9 +6,9 @@ use predict::interval::PredictionInterval;
 use predict::prediction::Bands;
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
-use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, RowItem, RowKind, Rows, RowsColumn, Ruler, Stack};
+use report::figures::{Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler, Stack};
 use report::palette::{BEFORE, HEADING, Look, Marker, SOLID};
-use report::{Curve, Origin, PageFigure};
+use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 use trial::imo::Unit;
@@ -56,16 +56,16 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
         return vec![PageFigure::new(stem, caption, steady_turns(&prediction.curves, document.seen))];
     }
     let passage = prediction.most_probable.as_ref();
-    let steered = passage.map_or_else(Curve::default, |passage| {
+    let steered = passage.map_or_else(PlotCurve::default, |passage| {
         let time: Vec<f64> = (0..passage.rudder.len()).map(|row| passage.time(row)).collect();
-        Curve::new(time, degrees(&passage.rudder))
+        PlotCurve::new(time, degrees(&passage.rudder))
     });
     let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", document.draws);
     let mut figures = vec![PageFigure::new(stem, caption, bands(kind.clone(), &prediction.heading, None, steered))];
     if let (Manoeuvre::ZigZag { .. }, Some(passage)) = (&prediction.kind, passage) {
         let caption = format!("{kind}: yaw rate against heading of the most probable ship.");
         let way = phase_curve(&passage.heading, &passage.yaw_rate);
-        let ways = vec![(String::from("most probable ship"), Origin::After, way)];
+        let ways = vec![(String::from("most probable ship"), CurveOrigin::After, way)];
         figures.push(PageFigure::new(format!("{stem}-phase"), caption, phase_plane(kind.clone(), None, false, ways)));
     }
     if passage.is_some_and(|passage| passage.way.is_some()) {
@@ -80,8 +80,8 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
 const BANDS: [f64; 2] = [0.2, 0.38];
 
 /// Heading with bands and rudder over one time axis; the outer band as far as there is room.
-fn bands(title: String, of: &Bands, recorded: Option<Curve>, rudder_deg: Curve) -> Panels {
-    let curve = |values: Vec<f64>| Curve::new(of.time.as_slice(), values);
+fn bands(title: String, of: &Bands, recorded: Option<PlotCurve>, rudder_deg: PlotCurve) -> Panels {
+    let curve = |values: Vec<f64>| PlotCurve::new(of.time.as_slice(), values);
     let quantile = |place: usize| curve(of.quantiles.iter().map(|row| to_deg(row[place])).collect());
     let band = |name: &str, ends: [usize; 2], opacity| Layer::band(name, ends.map(quantile), HEADING, opacity);
     let mut layers =
@@ -95,20 +95,20 @@ fn bands(title: String, of: &Bands, recorded: Option<Curve>, rudder_deg: Curve) 
 }
 
 fn replay(replayed: &RecordReplay) -> Panels {
-    let recorded = Curve::new(replayed.heading.time.as_slice(), degrees(&replayed.measured));
-    let rudder = Curve::new(replayed.rudder[0].as_slice(), degrees(&replayed.rudder[1]));
+    let recorded = PlotCurve::new(replayed.heading.time.as_slice(), degrees(&replayed.measured));
+    let rudder = PlotCurve::new(replayed.rudder[0].as_slice(), degrees(&replayed.rudder[1]));
     bands(format!("{}, predicted", replayed.name), &replayed.heading, Some(recorded), rudder)
 }
 
 fn track(prediction: &Prediction) -> Panels {
     let curve = |track: &[[f64; 2]]| {
         let (east, north): (Vec<f64>, Vec<f64>) = track.iter().map(|place| (place[1], place[0])).unzip();
-        Curve::new(east, north)
+        PlotCurve::new(east, north)
     };
     let passage = prediction.most_probable.as_ref();
     let own = passage.and_then(|passage| Some(passage.way.as_ref()?.track.as_slice())).unwrap_or_default();
     let step = (own.len() / HEADINGS).max(1);
-    let (mut places, mut headings) = (Curve::default(), Vec::new());
+    let (mut places, mut headings) = (PlotCurve::default(), Vec::new());
     for row in (0..own.len()).step_by(step) {
         places.x.push(own[row][1]);
         places.y.push(own[row][0]);
@@ -128,10 +128,10 @@ fn track(prediction: &Prediction) -> Panels {
 }
 
 /// Predicted quantities as intervals, against what was measured and what is allowed.
-fn intervals(title: &str, unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> Rows {
+fn intervals(title: &str, unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> NamedRows {
     let (names, rows) = rows.into_iter().unzip();
     let x = Ruler::decimal(format!("predicted value [{unit}]"));
-    Rows {
+    NamedRows {
         title: Some(title.to_owned()),
         names,
         columns: vec![RowsColumn { x, rows, zero: true, ..RowsColumn::default() }],

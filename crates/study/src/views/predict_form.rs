@@ -4,7 +4,7 @@ use predict::form::{DECIMALS, FormEntry, STOPPING, TRACK_REACH_LENGTHS};
 use predict::interval::PredictionInterval;
 use report::markdown::text;
 use report::number::{fixed, significant};
-use report::{Column, Page, Table};
+use report::{Page, Table, TableColumn};
 
 use super::bench_figures::capital;
 
@@ -58,7 +58,7 @@ pub fn page(entries: &[FormEntry], remarks: &[String]) -> Page {
     }
     page.part("Test results");
     let heads = ["test", "result", "side", "value", "unit", "IMO criterion", "source"];
-    let mut table = Table::new(heads.map(Column::left));
+    let mut table = Table::new(heads.map(TableColumn::left));
     for entry in entries.iter().filter(|entry| tested.contains(&entry.section.as_str())) {
         table.push([
             entry.section.clone(),

@@ -6,7 +6,7 @@ use predict::steady::SteadyCurve;
 use report::figures::{Division, Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
 use report::palette::{HEADING, PAPER, RECORD, RUDDER, SHORT_DASH};
-use report::{Curve, Origin};
+use report::{CurveOrigin, PlotCurve};
 use ship::angle::to_deg;
 use trial::Trial;
 use trial::zigzag::PhasePlane;
@@ -20,27 +20,27 @@ pub fn degrees(values: &[f64]) -> Vec<f64> {
 /// width of its 95 % band.
 pub struct ModelOverTime {
     /// Whose model.
-    pub origin: Origin,
+    pub origin: CurveOrigin,
     /// RecordReplay heading.
-    pub heading: Curve,
+    pub heading: PlotCurve,
     /// Recorded minus replayed heading.
-    pub residual: Curve,
+    pub residual: PlotCurve,
     /// Its root mean square, degrees.
     pub rms_deg: Option<f64>,
     /// The lower and upper ends of the band about the heading and about no residual.
-    pub band: Option<[[Curve; 2]; 2]>,
+    pub band: Option<[[PlotCurve; 2]; 2]>,
 }
 
 /// How dense the area of a band is.
 const OPACITY: f64 = 0.2;
 
 /// The panel of a rudder.
-pub fn rudder(name: &str, curve: Curve, height: f64) -> (PanelRow, Vec<Layer>) {
+pub fn rudder(name: &str, curve: PlotCurve, height: f64) -> (PanelRow, Vec<Layer>) {
     (PanelRow::zeroed(Ruler::rudder(), height), vec![Layer::line(name, curve, Pen::new(RUDDER))])
 }
 
 /// Heading with models, residuals and rudder over one time axis.
-pub fn over_time(title: String, heading: Curve, rudder_deg: Curve, models: Vec<ModelOverTime>) -> Panels {
+pub fn over_time(title: String, heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOverTime>) -> Panels {
     let mut upper = vec![Layer::new("recorded heading", heading, LayerKind::Record)];
     let mut middle = Vec::new();
     // A band that is wider than everything else is cut at the frame: it would flatten the record.
@@ -76,19 +76,24 @@ fn plane(title: String, x: Ruler, height: f64, layers: Vec<Layer>) -> Panels {
 }
 
 /// Yaw rate over heading of a record, and whether the rate is the slope of its smoothed heading.
-pub fn phase_of(trial: &Trial) -> (Option<Curve>, bool) {
+pub fn phase_of(trial: &Trial) -> (Option<PlotCurve>, bool) {
     let phase = PhasePlane::of(trial);
     let smoothed = phase.as_ref().is_some_and(|phase| phase.smoothed);
     (phase.map(|phase| phase_curve(&phase.heading, &phase.yaw_rate)), smoothed)
 }
 
 /// Yaw rate over heading, degrees.
-pub fn phase_curve(heading: &[f64], yaw_rate: &[f64]) -> Curve {
-    Curve::new(degrees(heading), degrees(yaw_rate))
+pub fn phase_curve(heading: &[f64], yaw_rate: &[f64]) -> PlotCurve {
+    PlotCurve::new(degrees(heading), degrees(yaw_rate))
 }
 
 /// Yaw rate against heading: a record, and the ways of models by their names.
-pub fn phase_plane(title: String, record: Option<Curve>, smoothed: bool, ways: Vec<(String, Origin, Curve)>) -> Panels {
+pub fn phase_plane(
+    title: String,
+    record: Option<PlotCurve>,
+    smoothed: bool,
+    ways: Vec<(String, CurveOrigin, PlotCurve)>,
+) -> Panels {
     let name = if smoothed { "record, slope of its smoothed heading" } else { "record" };
     let record = record.map(|curve| Layer::new(name, curve, LayerKind::Record));
     let ways = ways.into_iter().map(|(name, origin, curve)| Layer::line(name, curve, Pen::of(&origin)));
@@ -108,10 +113,10 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
             false => (f64::NAN, f64::NAN),
         };
         let (x, y): (Vec<f64>, Vec<f64>) = (0..of.rudder.len()).map(place).unzip();
-        Curve::new(x, y)
+        PlotCurve::new(x, y)
     };
     let (rudder, rate) = (to_deg(seen.rudder_rad), to_deg(seen.yaw_rate_rad_s));
-    let edge = |side: f64| Curve::new([-rudder, rudder], [side * rate; 2]);
+    let edge = |side: f64| PlotCurve::new([-rudder, rudder], [side * rate; 2]);
     let mut layers = vec![Layer::band("seen in the records", [edge(-1.0), edge(1.0)], RECORD, 0.2)];
     if let Some((first, rest)) = curves.split_first() {
         let drawn = rest.iter().take(CURVES).map(|ship| curve(ship, &|_| true));
@@ -132,4 +137,26 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     }
     let note = Some(String::from("Outside the grey field the curves are extrapolated."));
     Panels { note, ..plane(String::from("Steady turns"), Ruler::rudder(), 0.42, layers) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_solid_line_is_broken_between_the_ends_of_an_unstable_branch() {
+        let rates = (-4..=4).map(f64::from);
+        let own = SteadyCurve {
+            yaw_rate: rates.clone().map(|rate| 0.01 * rate).collect(),
+            rudder: rates.map(|rate| 0.02 * (0.25 * rate.powi(3) - rate)).collect(),
+        };
+        let data = steady_turns(&[own], ValidityRange { rudder_rad: 0.2, yaw_rate_rad_s: 0.03 });
+        let finite = |name: &str| -> Vec<usize> {
+            let layers = &data.stacks[0].panels[0].layers;
+            let layer = layers.iter().find(|layer| layer.name.as_deref() == Some(name)).expect("it is drawn");
+            (0..9).filter(|&row| layer.curve.x[row].is_finite()).collect()
+        };
+        assert_eq!(finite("most probable ship"), [0, 1, 2, 3, 5, 6, 7, 8]);
+        assert_eq!(finite("unstable branch"), [3, 4, 5]);
+    }
 }

@@ -1,7 +1,7 @@
 //! What was found at each scale beside what was found at all of them together, in words and tables.
 
 use report::number::{MISSING, fixed, uncertain};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 use ship::Particulars;
 use trial::{Quantity, Scaling};
 
@@ -31,14 +31,14 @@ pub fn sentence(model: &ComparedModel) -> String {
 
 /// The table of one model.
 pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
-    let mut columns = Column::all("term | all together");
+    let mut columns = TableColumn::all("term | all together");
     columns.extend(
         scales
             .groups
             .iter()
-            .map(|group| Column::left(scale_name(Particulars { length: group.length_m, speed: group.speed_m_s }))),
+            .map(|group| TableColumn::left(scale_name(Particulars { length: group.length_m, speed: group.speed_m_s }))),
     );
-    columns.extend(Column::all(".difference [sd] | verdict"));
+    columns.extend(TableColumn::all(".difference [sd] | verdict"));
     let mut table = Table::new(columns);
     let number = |quantity: &Quantity| match quantity.value.is_finite() {
         true => uncertain(quantity.value, quantity.sd),

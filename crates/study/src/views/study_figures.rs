@@ -12,7 +12,7 @@ use super::pooled_charts;
 use super::trace_charts as traces;
 use super::tracing_table::has_several;
 use campaign::showcase::Showcase;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 use campaign::summary::{Summary, TraceSummary};
 
 use crate::options::FigureChoice;
@@ -41,7 +41,7 @@ pub const KEY_FIGURE: &str = "hero";
 
 /// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
 /// A name of a figure that there is not is warned of.
-pub fn of(stored: &Stored, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
+pub fn of(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
     let words = &stored.design.words.output;
     let mut figures = all(stored, summary);
     tell_apart(figures.iter_mut().map(|(_, figure)| &mut figure.stem));
@@ -78,7 +78,7 @@ pub fn of(stored: &Stored, summary: &Summary, choice: FigureChoice) -> Vec<Study
 }
 
 /// All figures there are.
-fn all(stored: &Stored, summary: &Summary) -> Vec<StudyFigure> {
+fn all(stored: &StoredStudy, summary: &Summary) -> Vec<StudyFigure> {
     let mut figures = Vec::new();
     for (index, showcase) in stored.showcases.iter().enumerate() {
         figures.extend(of_showcase(&slug(&showcase.title), showcase).map(|own| (FigurePlace::Showcase(index), own)));
@@ -146,7 +146,7 @@ fn stem_of(stem: &str, of: &str) -> String {
 }
 
 /// Figures about what traces named.
-fn of_traces(stored: &Stored, summary: &Summary) -> Vec<PageFigure> {
+fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     // Of several traces the first is drawn: the others are in the tables.
     let lines = first_trace(summary);
@@ -174,7 +174,7 @@ fn of_traces(stored: &Stored, summary: &Summary) -> Vec<PageFigure> {
 }
 
 /// Errors over the axes. What a trace finds has its own figures; of many cells the errors would be a figure each.
-fn of_errors(stored: &Stored, summary: &Summary) -> Vec<PageFigure> {
+fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     let mut figures = Vec::new();
     for measure in ErrorMeasure::ALL {
@@ -190,7 +190,7 @@ fn of_errors(stored: &Stored, summary: &Summary) -> Vec<PageFigure> {
     figures
 }
 
-fn of_all_trials(stored: &Stored, summary: &Summary) -> Vec<PageFigure> {
+fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     let mut figures = Vec::new();
     figures.extend(pooled_charts::predictions(design, summary).map(|data| {

@@ -2,7 +2,7 @@
 
 use campaign::manifest::Manifest;
 use campaign::showcase::Showcase;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 use campaign::summary::Summary;
 use report::{Page, Table, number};
 
@@ -13,8 +13,8 @@ use super::{coverage_table, tables, tracing_table};
 const SHOWN_CELLS: usize = 12;
 
 /// What a person sees: the first trial of every cell in detail, all trials in brief, failures with their reasons.
-pub fn on_screen(stored: &Stored, summary: &Summary) -> String {
-    let Stored { manifest, design, showcases, .. } = stored;
+pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
+    let StoredStudy { manifest, design, showcases, .. } = stored;
     let mut text = format!("{}: {}\n\n", manifest.name, design.words.question.trim());
     for showcase in showcases {
         text += &format!("{}\n{}\n", title(showcase, "first trial"), tables::showcase(showcase).to_text());
@@ -60,8 +60,8 @@ const READING: &str = "*median*, *rms*: median and root mean square error, with 
 /// `report.md`.
 ///
 /// `brief` holds the cells one by one, where a person may read them all.
-pub fn page(stored: &Stored, summary: &Summary, brief: Option<Table>, figures: Vec<StudyFigure>) -> Page {
-    let Stored { manifest, design, showcases, .. } = stored;
+pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figures: Vec<StudyFigure>) -> Page {
+    let StoredStudy { manifest, design, showcases, .. } = stored;
     let words = &design.words;
     let at = |wanted: &dyn Fn(FigurePlace) -> bool| -> Vec<_> {
         figures.iter().filter(|(place, _)| wanted(*place)).map(|(_, figure)| figure.clone()).collect()
@@ -106,8 +106,8 @@ pub fn page(stored: &Stored, summary: &Summary, brief: Option<Table>, figures: V
 }
 
 /// The tables of all trials, and what is said of their columns.
-fn over_all_trials(page: &mut Page, stored: &Stored, summary: &Summary, brief: Option<Table>) {
-    let Stored { design, timings, .. } = stored;
+fn over_all_trials(page: &mut Page, stored: &StoredStudy, summary: &Summary, brief: Option<Table>) {
+    let StoredStudy { design, timings, .. } = stored;
     if design.cells.len() > 1 {
         page.subpart("All cells together");
         page.table(tables::overall(summary, design));

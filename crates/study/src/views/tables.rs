@@ -2,13 +2,13 @@
 
 use report::figures::Reference;
 use report::number::{self, MISSING};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 
 use campaign::design::Design;
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
-use campaign::store::Stored;
-use campaign::summary::{Errors, MethodSummary, PairSummary, Record, Summary};
+use campaign::store::StoredStudy;
+use campaign::summary::{IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use scenario::MethodName;
 
 /// The table of a showcase: the methods, and below them the truth and the published values.
@@ -27,7 +27,7 @@ pub fn showcase(showcase: &Showcase) -> Table {
 /// Every figure of methods in cells, for other programs: `summary.csv`. An interval is two columns.
 pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     let mut columns = head(design);
-    columns.extend(["trials", "failed"].map(Column::right));
+    columns.extend(["trials", "failed"].map(TableColumn::right));
     for index in ["K", "T", "K/T"] {
         columns.extend(ERRORS.iter().flat_map(|(name, unit, _)| with_ends(&format!("{index} {name}"), unit)));
     }
@@ -37,7 +37,7 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
             .zip(["%", "deg", "deg", "deg"])
             .flat_map(|(name, unit)| with_ends(name, unit)),
     );
-    columns.push(Column::decimal("evaluations"));
+    columns.push(TableColumn::decimal("evaluations"));
     let mut table = Table::new(columns);
     for line in lines {
         let record = &line.record;
@@ -56,8 +56,8 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     table
 }
 
-/// A figure of [`Errors`]: its name, unit, and how to get it.
-type ErrorFigure = (&'static str, &'static str, fn(&Errors) -> Option<Statistic>);
+/// A figure of [`IndexErrors`]: its name, unit, and how to get it.
+type ErrorFigure = (&'static str, &'static str, fn(&IndexErrors) -> Option<Statistic>);
 
 const ERRORS: [ErrorFigure; 14] = [
     ("mean error", "%", |errors| errors.mean),
@@ -76,13 +76,13 @@ const ERRORS: [ErrorFigure; 14] = [
     ("sd/bound", "", |errors| errors.sd_over_bound),
 ];
 
-fn head(design: &Design) -> Vec<Column> {
-    head_of_cells(design).into_iter().chain([Column::left("method")]).collect()
+fn head(design: &Design) -> Vec<TableColumn> {
+    head_of_cells(design).into_iter().chain([TableColumn::left("method")]).collect()
 }
 
 /// One column for every axis.
-pub fn head_of_cells(design: &Design) -> Vec<Column> {
-    design.axes.iter().map(|axis| Column::left(axis.clone())).collect()
+pub fn head_of_cells(design: &Design) -> Vec<TableColumn> {
+    design.axes.iter().map(|axis| TableColumn::left(axis.clone())).collect()
 }
 
 fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
@@ -90,9 +90,9 @@ fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
     labels.chain([design.methods[method].label.clone()]).collect()
 }
 
-fn with_ends(name: &str, unit: &'static str) -> [Column; 3] {
+fn with_ends(name: &str, unit: &'static str) -> [TableColumn; 3] {
     ["", " lower 95", " upper 95"].map(|end| {
-        let column = Column::decimal(format!("{name}{end}"));
+        let column = TableColumn::decimal(format!("{name}{end}"));
         if unit.is_empty() { column } else { column.unit(unit) }
     })
 }
@@ -110,28 +110,23 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     let records = || summary.methods.iter().map(|line| &line.record);
     let validated = records().any(|record| record.validation_rmse_deg.is_some());
     let mut columns = head(design);
-    columns.push(Column::right("failed"));
+    columns.push(TableColumn::right("failed"));
     for index in ["K", "T"] {
-        columns.push(Column::decimal(format!("{index} median")).unit("%"));
-        columns.push(Column::decimal(format!("{index} rms")).unit("%"));
-        columns.extend(Column::all("~95 % [%] | >coverage [%] | .sd/bound"));
+        let heads = format!(".{index} median [%] | .{index} rms [%] | ~95 % [%] | >coverage [%] | .sd/bound");
+        columns.extend(TableColumn::all(&heads));
     }
-    if validated {
-        columns.push(Column::decimal("validation").unit("deg"));
-    }
+    columns.extend(validated.then(|| TableColumn::decimal("validation").unit("deg")));
     let mut table = Table::new(columns);
     for line in &summary.methods {
         let mut cells = place(design, line.cell, line.method);
         cells.extend(brief(&line.record));
-        if validated {
-            cells.push(supported(line.record.validation_rmse_deg));
-        }
+        cells.extend(validated.then(|| supported(line.record.validation_rmse_deg)));
         table.push(cells);
     }
     table
 }
 
-fn brief(record: &Record) -> Vec<String> {
+fn brief(record: &Performance) -> Vec<String> {
     let mut cells = vec![format!("{}/{}", record.failed(), record.trials)];
     for errors in [&record.k, &record.t] {
         cells.push(supported(errors.median));
@@ -145,15 +140,9 @@ fn brief(record: &Record) -> Vec<String> {
 
 /// One row per method over all cells.
 pub fn overall(summary: &Summary, design: &Design) -> Table {
-    let mut columns = Column::all("method | >failed");
-    for index in ["K", "T"] {
-        columns.push(Column::decimal(format!("{index} median size")).unit("%"));
-        columns.extend(Column::all("~95 % [%] | .90 % [%] | >coverage [%]"));
-    }
-    columns.push(Column::decimal("validation").unit("deg"));
-    let mut table = Table::new(columns);
-    for (method, overall) in design.methods.iter().zip(&summary.overall) {
-        let record = &overall.record;
+    let of = |index: &str| format!(".{index} median size [%] | ~95 % [%] | .90 % [%] | >coverage [%]");
+    let mut table = Table::headed(&format!("method | >failed | {} | {} | .validation [deg]", of("K"), of("T")));
+    for (method, record) in design.methods.iter().zip(&summary.overall) {
         let mut cells = vec![method.label.clone(), format!("{}/{}", record.failed(), record.trials)];
         for errors in [&record.k, &record.t] {
             cells.push(supported(errors.median_size));
@@ -168,7 +157,7 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
 }
 
 /// [`overall`] with the caption and the label it has in a paper: `summary.tex`.
-pub fn for_paper(summary: &Summary, stored: &Stored) -> Table {
+pub fn for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
     let (name, cells) = (&stored.manifest.name, stored.design.cells.len());
     let of = if cells == 1 { name.clone() } else { format!("{name}, all {cells} cells together") };
     let caption = format!(
@@ -182,7 +171,7 @@ pub fn for_paper(summary: &Summary, stored: &Stored) -> Table {
 /// Every method against the reference on the same trials: `pairs.csv`.
 pub fn pairs(lines: &[PairSummary], reference: &MethodName, design: &Design) -> Table {
     let mut columns = head(design);
-    columns.extend(Column::all("reference | >trials"));
+    columns.extend(TableColumn::all("reference | >trials"));
     for index in ["K", "T"] {
         columns.extend(with_ends(&format!("{index} rms difference"), "%"));
         columns.extend(with_ends(&format!("{index} rms ratio"), ""));
@@ -216,7 +205,7 @@ fn interval(figure: Option<Statistic>) -> String {
 
 /// Reasons of failed trials with their counts, one line a cell and method.
 pub fn failures(summary: &Summary, design: &Design) -> Vec<String> {
-    let line = |cell: usize, method: usize, record: &Record| {
+    let line = |cell: usize, method: usize, record: &Performance| {
         let reasons: Vec<String> =
             record.failures.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
         let place = design.cells[cell].labels.join(", ");

@@ -2,22 +2,22 @@
 
 use std::collections::BTreeSet;
 
-use report::Curve;
-use report::figures::{Cells, Division, Layer, MapCell, Outline, PanelRow, Panels, Pen, Ruler, Shades, Stack};
-use report::palette::{DASHED, DOTTED, Dash, INK, Look, Marker, Origin, SOLID};
+use report::PlotCurve;
+use report::figures::{CellMap, Division, Layer, MapCell, Outline, PanelRow, Panels, Pen, Ruler, Shades, Stack};
+use report::palette::{CurveOrigin, DASHED, DOTTED, Dash, INK, Look, Marker, SOLID};
 use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
 use campaign::statistics::share;
-use campaign::summary::{PROMISED, Promised, TraceSummary};
+use campaign::summary::{CALIBRATION, CalibrationBin, TraceSummary};
 
 /// Name of the row of ships that lack nothing, and of the column of trials in which nothing was named.
 const NOTHING: &str = "nothing";
 
 /// The confusion matrices with their names: a row is what the ships of one or more cells lack, one matrix for every
 /// combination of the other axes where the first decides what is missing, and one for ships that lack several effects.
-pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, Cells)> {
+pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, CellMap)> {
     let rest = |line: &TraceSummary| design.cells[line.cell].labels.get(1..).unwrap_or_default().join(", ");
     let kinds = |lines: &[&TraceSummary]| lines.iter().map(|line| &line.missing).collect::<BTreeSet<_>>().len();
     let mut groups: Vec<(String, Vec<&TraceSummary>)> = Vec::new();
@@ -43,7 +43,7 @@ pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, Cells
     found
 }
 
-fn confusion(design: &Design, lines: &[&TraceSummary]) -> Cells {
+fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     let mut rows: Vec<(String, Vec<&TraceSummary>)> = Vec::new();
     for &line in lines {
         let name = match &line.missing[..] {
@@ -81,7 +81,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> Cells {
     };
     let trials = |lines: &[&TraceSummary]| lines.iter().map(|line| line.trials).sum::<u64>();
     let cells = rows.iter().map(|(_, lines)| columns.iter().map(|id| cell(lines, id)).collect());
-    Cells {
+    CellMap {
         title: None,
         titles: [String::from("named by the trace"), String::new()],
         columns: columns.iter().map(|id| id.replace('_', " ")).collect(),
@@ -111,16 +111,22 @@ const ROWS: f64 = 300.0;
 const PARAMETERS: [u32; 3] = [1, 2, 3];
 
 /// A measured share: where it is drawn, per cent, and its 95 % interval.
-type Share = (f64, f64, Option<[f64; 2]>);
+type MeasuredShare = (f64, f64, Option<[f64; 2]>);
 
 /// Measured shares under their names beside curves of theory.
-fn shares(x: Ruler, y_title: &str, series: Vec<(&str, Vec<Share>)>, theory: Vec<(String, Curve)>) -> Panels {
+fn shares(
+    x: Ruler,
+    y_title: &str,
+    series: Vec<(&str, Vec<MeasuredShare>)>,
+    theory: Vec<(String, PlotCurve)>,
+) -> Panels {
     const DASHES: [Dash; 3] = [SOLID, DASHED, DOTTED];
-    const LOOKS: [(Origin, Marker); 2] = [(Origin::After, Marker::Circle), (Origin::Before, Marker::Square)];
-    let line = |((name, curve), dash): ((String, Curve), Dash)| {
+    const LOOKS: [(CurveOrigin, Marker); 2] =
+        [(CurveOrigin::After, Marker::Circle), (CurveOrigin::Before, Marker::Square)];
+    let line = |((name, curve), dash): ((String, PlotCurve), Dash)| {
         Layer::line(name, curve, Pen { width: 0.9, dash, ..Pen::new(INK) })
     };
-    let marks = |((name, points), (origin, marker)): ((&str, Vec<Share>), (Origin, Marker))| {
+    let marks = |((name, points), (origin, marker)): ((&str, Vec<MeasuredShare>), (CurveOrigin, Marker))| {
         let look = Look { colour: origin.look().colour, marker, dash: SOLID, hollow: false };
         Layer::marks(name, look, points)
     };
@@ -131,7 +137,7 @@ fn shares(x: Ruler, y_title: &str, series: Vec<(&str, Vec<Share>)>, theory: Vec<
 
 /// Power over the expected likelihood ratio, for cells with one missing effect.
 pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
-    let points = |needs_search: bool| -> Vec<Share> {
+    let points = |needs_search: bool| -> Vec<MeasuredShare> {
         let single = lines.iter().filter(|line| line.missing.len() == 1);
         single
             .filter(|line| is_of_time(&line.missing[0]) == needs_search)
@@ -152,7 +158,7 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
             (0..POINTS).map(|k| SMALLEST * (largest / SMALLEST).powf(k as f64 / (POINTS - 1) as f64)).collect();
         let power: Vec<f64> = sizes.iter().map(|&size| 100.0 * exceeds(freedom, size, limit)).collect();
         let plural = if freedom == 1 { "" } else { "s" };
-        (format!("likelihood-ratio test, {freedom} parameter{plural}"), Curve::new(sizes, power))
+        (format!("likelihood-ratio test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
     });
     let x = Ruler::new("expected likelihood ratio against the best first-order response", Division::Factors);
     Some(shares(x, "named [%]", series, theory.into()))
@@ -160,7 +166,7 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
 
 /// Probabilities and how often they came true, for traces of ships whose effects are known; `None` without any.
 pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
-    let points: Vec<Share> = promised(lines)
+    let points: Vec<MeasuredShare> = promised(lines)
         .iter()
         .filter_map(|range| {
             let share = share(range.present, range.effects)?;
@@ -168,17 +174,17 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
             Some((100.0 * range.sum / range.effects as f64, 100.0 * share.value, percent))
         })
         .collect();
-    let diagonal = Curve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
+    let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
     let x = Ruler::new("mean probability given [%]", Division::Percent);
     let theory = vec![(String::from("as promised"), diagonal)];
     (!points.is_empty()).then(|| shares(x, "present [%]", vec![("effects by their probability", points)], theory))
 }
 
 /// Effects by their probability, over all cells.
-pub fn promised(lines: &[TraceSummary]) -> Vec<Promised> {
-    let mut all = vec![Promised::default(); PROMISED.len() - 1];
+pub fn promised(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
+    let mut all = vec![CalibrationBin::default(); CALIBRATION.len() - 1];
     for line in lines {
-        all.iter_mut().zip(&line.promised).for_each(|(all, own)| all.join(own));
+        all.iter_mut().zip(line.calibration).for_each(|(all, own)| *all += own);
     }
     all
 }

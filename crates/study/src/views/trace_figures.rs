@@ -7,19 +7,19 @@ use campaign::curves::curve;
 use estimation::residuals::{GappedSeries, SpectralLine, autocorrelation, spectrum};
 use identify::replay::Replay;
 use report::figures::{
-    AxisMark, Division, Layer, LayerKind, PanelRow, Panels, Pen, RowItem, RowKind, Rows, RowsColumn, Ruler, Stack,
+    AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler, Stack,
 };
 use report::number::{fixed, significant};
 use report::paint::Paint;
 use report::palette::{HEADING, Look, Marker, RECORD, RUDDER, SOLID};
-use report::{Curve, Origin, PageFigure};
+use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
 use super::missing_moment;
 use super::record_figures::{ModelOverTime, degrees, over_time, phase_curve, phase_of, phase_plane};
 use super::trace_tables::{horizon, term};
-use crate::documents::curves::{Curves, TracedRecord};
+use crate::documents::curves::{TraceCurves, TracedRecord};
 use crate::documents::trace::{RecordEntry, TraceDocument, slugs, suffix};
 
 /// Lags of the autocorrelation, at least where the record has them and at most.
@@ -29,7 +29,7 @@ const LAGS: [usize; 2] = [60, 4000];
 const LINE: f64 = 1.06;
 
 /// Every record with the models before and after: the fitted ones, and those that were held out.
-pub fn records(document: &TraceDocument, curves: &Curves) -> [Vec<PageFigure>; 2] {
+pub fn records(document: &TraceDocument, curves: &TraceCurves) -> [Vec<PageFigure>; 2] {
     let names = document.names();
     let (fitted, judged) = document.errors();
     let errors = fitted.iter().chain(judged.iter().filter(|one| one.used == "held out")).map(|one| one.errors);
@@ -47,7 +47,7 @@ pub fn records(document: &TraceDocument, curves: &Curves) -> [Vec<PageFigure>; 2
 }
 
 /// The moment that the base lacks on every fitted record.
-pub fn moments(document: &TraceDocument, curves: &Curves) -> Vec<PageFigure> {
+pub fn moments(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let names = document.names();
     let figure = |(entry, tables): (&crate::documents::missing_moment::MissingMomentEntry, &_)| {
         let number = names.iter().position(|name| *name == entry.record).unwrap_or(0);
@@ -58,7 +58,7 @@ pub fn moments(document: &TraceDocument, curves: &Curves) -> Vec<PageFigure> {
 }
 
 /// The replays in the phase plane, and the residuals of fitted records: held-out ones are judged, not studied.
-pub fn further(document: &TraceDocument, curves: &Curves) -> Vec<PageFigure> {
+pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let names = document.names();
     let mut figures = Vec::new();
     for (number, (RecordEntry { name, held_out, .. }, record)) in
@@ -66,7 +66,7 @@ pub fn further(document: &TraceDocument, curves: &Curves) -> Vec<PageFigure> {
     {
         let suffix = suffix(&names, number);
         let caption = format!("{name}: yaw rate against heading, with the replays of the model before and after.");
-        let way = |(origin, own): (Origin, &Replay)| {
+        let way = |(origin, own): (CurveOrigin, &Replay)| {
             (origin.label().to_owned(), origin, phase_curve(&own.heading, &own.yaw_rate))
         };
         let (own, smoothed) = phase_of(&record.trial);
@@ -82,9 +82,9 @@ pub fn further(document: &TraceDocument, curves: &Curves) -> Vec<PageFigure> {
     figures
 }
 
-fn models(record: &TracedRecord) -> [(Origin, &Replay); 2] {
+fn models(record: &TracedRecord) -> [(CurveOrigin, &Replay); 2] {
     let [before, after] = &record.replays;
-    [(Origin::Before, before), (Origin::After, after)]
+    [(CurveOrigin::Before, before), (CurveOrigin::After, after)]
 }
 
 /// A record with the models before and after.
@@ -99,8 +99,8 @@ fn record_fit(record: &TracedRecord, errors: &BeforeAfter, title: String) -> Pan
     };
     let band = record.band.as_ref().map(|own| [about(own, &|row| after.heading[row]), about(own, &|_| 0.0)]);
     let rms = [errors.before.heading_rmse_deg, errors.after.heading_rmse_deg];
-    let model = |((origin, replay), rms): ((Origin, &Replay), f64)| ModelOverTime {
-        band: band.clone().filter(|_| origin == Origin::After),
+    let model = |((origin, replay), rms): ((CurveOrigin, &Replay), f64)| ModelOverTime {
+        band: band.clone().filter(|_| origin == CurveOrigin::After),
         origin,
         heading: curve(&replay.time, &replay.heading),
         residual: curve(&replay.time, &replay.residual),
@@ -115,8 +115,9 @@ pub fn held_out(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
     let column = |title: String, of: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
         let row = |errors: &BeforeAfter| -> Vec<RowItem> {
-            let pairs = [(Origin::Before, &errors.before), (Origin::After, &errors.after)];
-            let mark = |(origin, own): (Origin, _)| Some(RowItem::below(origin.label(), origin.look(), of(own)?, None));
+            let pairs = [(CurveOrigin::Before, &errors.before), (CurveOrigin::After, &errors.after)];
+            let mark =
+                |(origin, own): (CurveOrigin, _)| Some(RowItem::below(origin.label(), origin.look(), of(own)?, None));
             pairs.into_iter().filter_map(mark).collect()
         };
         let rows = judged.iter().map(|one| row(one.errors)).collect();
@@ -124,7 +125,7 @@ pub fn held_out(document: &TraceDocument) -> Option<PageFigure> {
     };
     let mut columns = vec![column(String::from("whole replay [°]"), &|own| Some(own.heading_rmse_deg))];
     columns.extend(HORIZONS.map(|length| column(format!("every {length:.0} s [°]"), &move |own| horizon(own, length))));
-    let data = Rows {
+    let data = NamedRows {
         title: Some(String::from("Error of the heading on records that were not fitted")),
         names: judged.iter().map(|one| format!("{}, {}", one.name, one.used)).collect(),
         columns,
@@ -185,7 +186,7 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
         column("support −ΔBIC", 0.3, support.collect()),
     ];
     let names = rows.iter().map(|row| row.0.clone()).collect();
-    let data = Rows { title: Some(document.title()), names, columns, note: None };
+    let data = NamedRows { title: Some(document.title()), names, columns, note: None };
     let caption =
         "Probability of every effect with its most probable form, and the support −ΔBIC that it has beside all others.";
     PageFigure::new("evidence", caption, data)
@@ -193,7 +194,7 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
 
 /// The first two overshoots of every zig-zag, which are those that have a limit, with those of both replays; `None`
 /// where no record is a zig-zag.
-pub fn overshoots(document: &TraceDocument, curves: &Curves) -> Option<PageFigure> {
+pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let (mut names, mut rows) = (Vec::new(), Vec::new());
     for (entry, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
         let Ok(zigzag) = ZigZag::of(trial) else { continue };
@@ -206,17 +207,17 @@ pub fn overshoots(document: &TraceDocument, curves: &Curves) -> Option<PageFigur
                 limit.unit == imo::Unit::Degrees && limit.measured.is_some() && limit.name.contains(word)
             });
             // One mark above the other, so that neither hides the other.
-            let mark = |origin: Origin, aside: f64, replay: &Option<ZigZag>| {
+            let mark = |origin: CurveOrigin, aside: f64, replay: &Option<ZigZag>| {
                 let value = replay.as_ref().and_then(of)?;
                 let item = RowItem::new(origin.label(), RowKind::Mark(origin.look(), value, None)).softly();
                 Some(RowItem { aside: Some(aside), ..item })
             };
-            let measured = Look { marker: Marker::Square, ..Origin::Record.look() };
+            let measured = Look { marker: Marker::Square, ..CurveOrigin::Record.look() };
             let items = [
                 Some(RowItem::new("measured", RowKind::Bar(measured, angle))),
                 limit.map(|limit| RowItem::new("IMO limit", RowKind::Limit(limit.limit))),
-                mark(Origin::Before, -0.16, &replays[0]),
-                mark(Origin::After, 0.16, &replays[1]),
+                mark(CurveOrigin::Before, -0.16, &replays[0]),
+                mark(CurveOrigin::After, 0.16, &replays[1]),
             ];
             names.push(format!("{}, {word}", entry.name));
             rows.push(items.into_iter().flatten().collect());
@@ -229,15 +230,15 @@ pub fn overshoots(document: &TraceDocument, curves: &Curves) -> Option<PageFigur
     let title = Some(String::from("Overshoots of the records and of their replays"));
     let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of IMO \
                    MSC.137(76) where one is for this zig-zag.";
-    Some(PageFigure::new("overshoots", caption, Rows { title, names, columns: vec![column], note: None }))
+    Some(PageFigure::new("overshoots", caption, NamedRows { title, names, columns: vec![column], note: None }))
 }
 
 /// The residual before and after from all sides.
 fn residual(record: &TracedRecord, name: &str) -> Panels {
     let trial: &Trial = &record.trial;
     let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);
-    let stack = |x: Ruler, y: Ruler, joined: bool, of: &dyn Fn(&Replay) -> Curve| {
-        let layer = |(origin, replay): (Origin, &Replay)| {
+    let stack = |x: Ruler, y: Ruler, joined: bool, of: &dyn Fn(&Replay) -> PlotCurve| {
+        let layer = |(origin, replay): (CurveOrigin, &Replay)| {
             let colour = origin.look().colour;
             let line = LayerKind::Line(Pen::new(colour).width(0.9));
             Layer::new(origin.label(), of(replay), if joined { line } else { LayerKind::Dots(colour) })
@@ -260,14 +261,14 @@ fn residual(record: &TracedRecord, name: &str) -> Panels {
         let points = autocorrelation(&series, wanted.clamp(LAGS[0], LAGS[1]).min(rows / 2)).into_iter();
         let (lags, values): (Vec<f64>, Vec<f64>) =
             points.map(|one| (one.lag as f64 * series.spacing, one.value)).unzip();
-        Curve::new(lags, values)
+        PlotCurve::new(lags, values)
     };
     let frequency = Ruler::new("frequency [Hz]", Division::Factors);
     let density = Ruler::new("power [°²/Hz]", Division::Factors);
     let spectrum = stack(frequency, density, true, &|replay| power(&series(replay)));
     let mut correlation = stack(Ruler::decimal("lag [s]"), Ruler::decimal("autocorrelation"), true, &lags);
     correlation.rows[0].levels = vec![-band, band];
-    let marks = |at: Option<f64>| at.map(|at| AxisMark { at, label: String::from("period") }).into_iter().collect();
+    let marks = |at: Option<f64>| at.map(|at| AxisLine { at, label: String::from("period") }).into_iter().collect();
     let stacks = vec![
         against("time [s]", &|replay| replay.time.clone()),
         against("heading [°]", &|replay| degrees(&replay.heading)),
@@ -280,14 +281,14 @@ fn residual(record: &TracedRecord, name: &str) -> Panels {
 }
 
 /// Points of a cloud, not more than a figure can show.
-fn thinned(x: Vec<f64>, y: Vec<f64>) -> Curve {
+fn thinned(x: Vec<f64>, y: Vec<f64>) -> PlotCurve {
     let step = x.len().div_ceil(1500).max(1);
     let every = |values: Vec<f64>| values.into_iter().step_by(step).collect::<Vec<f64>>();
-    Curve::new(every(x), every(y))
+    PlotCurve::new(every(x), every(y))
 }
 
 /// Power spectral density of a residual in degrees, neighbouring lines averaged.
-fn power(residual: &GappedSeries) -> Curve {
+fn power(residual: &GappedSeries) -> PlotCurve {
     let count = residual.values.len().max(1) as f64;
     let square = residual.values.iter().map(|e| e * e).sum::<f64>() / count;
     let lines = spectrum(residual);
@@ -305,5 +306,5 @@ fn power(residual: &GappedSeries) -> Curve {
         (frequency, lines.iter().map(|line| line.share).sum::<f64>() / count * square / width)
     });
     let (x, y): (Vec<f64>, Vec<f64>) = points.unzip();
-    Curve::new(x, y)
+    PlotCurve::new(x, y)
 }

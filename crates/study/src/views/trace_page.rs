@@ -10,7 +10,7 @@ use ship::Shown;
 use super::record_figures::steady_turns;
 use super::trace_figures as figures;
 use super::trace_tables as tables;
-use crate::documents::curves::Curves;
+use crate::documents::curves::TraceCurves;
 use crate::documents::trace::TraceDocument;
 use crate::scales::scale_name;
 
@@ -91,7 +91,7 @@ const CANDIDATES: &str = "Visibility is the expected square of the size of an ef
                           candidates: what is small here cannot be seen in these records.";
 
 /// `report.md` with its figures; `turns` are the steady turns of the model.
-pub fn page(document: &TraceDocument, curves: &Curves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
+pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
     let trace = &document.trace;
     let mut page = Page::titled(format!("Trace of {}", document.title()));
     let table = |page: &mut Page, title: &str, table: Table, words: &str| {

@@ -2,8 +2,8 @@
 
 use ::trace::document::{ErrorsEntry, Outcome, ParameterEntry, RecordNoiseEntry, TermEntry};
 use ::trace::replay_errors::HORIZONS;
+use report::Table;
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
-use report::{Column, Table};
 use ship::angle::to_deg;
 use trial::Quantity;
 
@@ -60,15 +60,10 @@ pub fn effects(document: &TraceDocument) -> Table {
 
 /// Errors before and after on some records.
 pub fn errors(records: &[RecordErrors]) -> Table {
-    let mut columns = ["record", "use", "model"].map(Column::left).to_vec();
-    columns.push(Column::decimal("heading").unit("deg"));
-    columns.extend(HORIZONS.map(|length| Column::decimal(format!("every {length:.0} s")).unit("deg")));
-    columns.extend(Column::all(
-        ".yaw rate [deg/s] | .overshoots [deg] | .after/before | .band covers [%] | \
-            .band width [deg]",
-    ));
-    let mut table = Table::new(columns);
-    let three = |value: Option<f64>| value.map_or_else(|| MISSING.into(), |value| significant(value, 3));
+    let horizons = HORIZONS.map(|length| format!(".every {length:.0} s [deg]")).join(" | ");
+    let rest = ".yaw rate [deg/s] | .overshoots [deg] | .after/before | .band covers [%] | .band width [deg]";
+    let mut table = Table::headed(&format!("record | use | model | .heading [deg] | {horizons} | {rest}"));
+    let three = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 3);
     for RecordErrors { name, used, errors } in records {
         let ratio = errors.after.heading_rmse_deg / errors.before.heading_rmse_deg;
         let models = [("before", &errors.before, None), ("after", &errors.after, Some(ratio))];
@@ -105,11 +100,9 @@ pub fn parameters(document: &TraceDocument) -> Table {
     let model = &document.trace.model;
     let remarks = model.parameters.iter().any(|parameter| parameter.at_bound);
     let is_prime = model.indices.prime.is_some();
-    let mut columns = ["parameter", "value", "95 % interval", "unit"].map(Column::left).to_vec();
-    columns.extend(is_prime.then(|| ["prime", "value", "95 % interval"].map(Column::left)).into_iter().flatten());
-    columns.push(Column::left("record"));
-    columns.extend(remarks.then(|| Column::left("remark")));
-    let mut table = Table::new(columns);
+    let prime = if is_prime { " | prime | value | 95 % interval" } else { "" };
+    let remark = if remarks { " | remark" } else { "" };
+    let mut table = Table::headed(&format!("parameter | value | 95 % interval | unit{prime} | record{remark}"));
     let mut push = |symbol: &str, (own, unit): (Quantity, String), prime: Option<Quantity>, rest: [&str; 2]| {
         let mut cells = vec![symbol.to_owned(), uncertain(own.value, own.sd), interval(own.ci95), unit];
         let prime = prime.map(|prime| [primed(symbol), uncertain(prime.value, prime.sd), interval(prime.ci95)]);
@@ -134,7 +127,7 @@ pub fn parameters(document: &TraceDocument) -> Table {
 /// What became of every candidate.
 pub fn candidates(document: &TraceDocument) -> Table {
     let mut table = Table::headed("candidate | form | outcome | .probability | .ΔBIC | p | .visibility");
-    let two = |value: Option<f64>| value.map_or_else(|| MISSING.into(), |value| significant(value, 2));
+    let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
     for one in &document.trace.candidates {
         if one.forms.is_empty() {
             let why = one.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));

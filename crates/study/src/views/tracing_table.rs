@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use report::number::{self, MISSING};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 
 use super::tables::head_of_cells;
 use super::trace_charts::promised;
 use campaign::design::Design;
 use campaign::statistics::{Statistic, share};
-use campaign::summary::{CLEAR, PROMISED, Summary, TraceSummary};
+use campaign::summary::{CALIBRATION, CLEAR, Summary, TraceSummary};
 use scenario::TRACE;
 
 /// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
@@ -20,31 +20,21 @@ use scenario::TRACE;
 pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_digits: bool) -> Table {
     let several = has_several(design);
     let mut columns = head_of_cells(design);
-    if several {
-        columns.push(Column::left("method"));
+    columns.extend(several.then(|| TableColumn::left("method")));
+    columns.extend(TableColumn::all("missing | >trials"));
+    for name in ["all named", "exact", "false names", "named where clear"] {
+        let ends = if all_digits { format!(" | .{name} low [%] | .{name} high [%]") } else { String::new() };
+        columns.extend(TableColumn::all(&format!(".{name} [%]{ends}")));
     }
-    columns.extend(Column::all("missing | >trials"));
-    let shares = ["all named", "exact", "false names", "named where clear"];
-    for name in shares {
-        columns.push(Column::decimal(name).unit("%"));
-        if all_digits {
-            columns.extend(["low", "high"].map(|end| Column::decimal(format!("{name} {end}")).unit("%")));
-        }
-    }
-    columns.push(Column::right(format!("clear (margin above {CLEAR:.0})")));
-    columns.extend(["clean", "traced", "unexplained"].map(Column::right));
-    for what in ["heading", "validation"] {
-        columns.extend(["before", "after"].map(|when| Column::decimal(format!("{what} {when}")).unit("deg")));
-    }
-    columns.push(Column::decimal("expected likelihood ratio"));
-    columns.extend(["band covers", "band covers validation"].map(|name| Column::decimal(name).unit("%")));
-    columns.push(Column::left("named"));
+    columns.push(TableColumn::right(format!("clear (margin above {CLEAR:.0})")));
+    columns.extend(TableColumn::all(
+        ">clean | >traced | >unexplained | .heading before [deg] | .heading after [deg] | .validation before [deg] | \
+         .validation after [deg] | .expected likelihood ratio | .band covers [%] | .band covers validation [%] | named",
+    ));
     let mut table = Table::new(columns);
     for line in lines {
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
-        if several {
-            cells.push(design.methods[line.method].label.clone());
-        }
+        cells.extend(several.then(|| design.methods[line.method].label.clone()));
         cells.push(if line.missing.is_empty() { MISSING.into() } else { line.missing.join(" + ") });
         cells.push(line.trials.to_string());
         for figure in [line.complete_share(), line.exact_share(), line.wrong_share(), line.clear_share()] {
@@ -53,11 +43,11 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
         cells.push(line.clear[0].to_string());
         cells.extend(line.verdicts.map(|count| count.to_string()));
         let records = [summary.reference, line.method].map(|method| summary.record(line.cell, method));
-        let median =
-            |figure: Option<Statistic>| figure.map_or_else(|| MISSING.into(), |f| number::significant(f.value, 3));
-        cells.extend(records.map(|record| median(record.and_then(|record| record.heading_rmse_deg))));
-        cells.extend(records.map(|record| median(record.and_then(|record| record.validation_rmse_deg))));
-        cells.push(line.expected.map_or_else(|| MISSING.into(), |expected| number::significant(expected, 3)));
+        let three = |value: Option<f64>| number::significant(value.unwrap_or(f64::NAN), 3);
+        let value = |figure: Option<Statistic>| figure.map(|figure| figure.value);
+        cells.extend(records.map(|record| three(value(record.and_then(|record| record.heading_rmse_deg)))));
+        cells.extend(records.map(|record| three(value(record.and_then(|record| record.validation_rmse_deg)))));
+        cells.push(three(line.expected));
         let digits = if all_digits { 3 } else { 1 };
         cells.extend(line.band.map(|share| number::optional(share.map(|share| 100.0 * share), digits)));
         let mut named: Vec<(&String, &u64)> = line.named.iter().collect();
@@ -75,7 +65,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Table {
         ">probability from [%] | >to [%] | >effects | .mean probability [%] | .present [%] | \
             .low [%] | .high [%]",
     );
-    for (range, ends) in promised(lines).iter().zip(PROMISED.windows(2)) {
+    for (range, ends) in promised(lines).iter().zip(CALIBRATION.windows(2)) {
         let mean = (range.effects > 0).then(|| 100.0 * range.sum / range.effects as f64);
         let present = share(range.present, range.effects);
         let ends_of = present.and_then(|share| share.ci95);
@@ -106,16 +96,11 @@ pub fn has_several(design: &Design) -> bool {
 /// All cells of one kind together, a line each of every trace: nothing missing, one effect, several, a hull.
 pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
     let several = has_several(design);
-    let method = several.then(|| Column::left("method"));
-    let mut table = Table::new(Vec::from_iter(method.into_iter().chain([
-        Column::left("cells"),
-        Column::right("number"),
-        Column::right("trials"),
-        Column::left("all named [%]"),
-        Column::left("exact [%]"),
-        Column::left("false names [%]"),
-        Column::left("named where clear [%]"),
-    ])));
+    let mut columns = Vec::from_iter(several.then(|| TableColumn::left("method")));
+    columns.extend(TableColumn::all(
+        "cells | >number | >trials | all named [%] | exact [%] | false names [%] | named where clear [%]",
+    ));
+    let mut table = Table::new(columns);
     let kind = |line: &TraceSummary| match line.missing.len() {
         0 => "nothing missing",
         _ if line.wrong_share().is_none() => "a hull",

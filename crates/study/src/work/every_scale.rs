@@ -8,18 +8,18 @@ use trial::{Quantity, Trial};
 
 use crate::documents::scales::{ComparedModel, ComparedTerm, ScalesEntry};
 use crate::outside::Named;
-use crate::scales::Together;
+use crate::scales::RescaledRecords;
 use campaign::answer::MethodEntry;
 
 /// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
 /// first.
-pub const SPEAKERS: [&str; 2] = ["maximum-likelihood", "output-error"];
+pub const PREFERRED_METHODS: [&str; 2] = ["maximum-likelihood", "output-error"];
 
 /// Every method on the records of every scale alone, against its answer for all; `None` where all have one scale.
 pub fn compared(
     methods: &[Named],
     answers: &[(MethodEntry, Option<Estimate>)],
-    together: &Together,
+    together: &RescaledRecords,
 ) -> Option<ScalesEntry> {
     let of_group =
         |records: &[usize]| -> Vec<Trial> { records.iter().map(|&record| together.trials[record].clone()).collect() };

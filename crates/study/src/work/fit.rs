@@ -7,37 +7,37 @@ use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use report::figures::{Replays, ZigzagTrial};
-use report::{Curve, Origin};
+use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
 use ship::angle::to_deg;
 use trial::zigzag::PhasePlane;
 use trial::{Channel, Trial, ZigZag, ZigZagError};
 
-use super::alone;
 use super::every_scale;
+use super::single_records;
 use crate::documents::fit::{FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
 use crate::outside::{self, Named, NamedCommand};
 use crate::records::{file_of, names, warn_of_no_track};
-use crate::scales::{self, Together};
+use crate::scales::{self, RescaledRecords};
 use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
 use campaign::curves::{curve, replay_curves, zigzag_figure};
-use campaign::known::{self, Shown};
+use campaign::known::{self, RecordFacts};
 
 /// What came out.
-pub struct Fit {
+pub struct FitResult {
     /// The records, brought to one scale.
-    pub together: Together,
+    pub together: RescaledRecords,
     /// The answers of the methods.
     pub answers: Vec<(MethodEntry, Option<Estimate>)>,
     /// What other programs read.
     pub document: FitDocument,
 }
 
-impl Fit {
+impl FitResult {
     /// What the figures show of the records and of the answers.
     pub fn curves(&self) -> FitCurves {
-        let Together { trials, others, .. } = &self.together;
+        let RescaledRecords { trials, others, .. } = &self.together;
         let names = names(trials.iter().chain(others).map(Trial::name));
         let records = trials.iter().chain(others).zip(names).enumerate();
         let record = |(number, (trial, name))| self.record(trial, name, number >= trials.len());
@@ -46,7 +46,7 @@ impl Fit {
             let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
             let outline = covariance.outline(&estimate.response)?;
             let (x, y): (Vec<f64>, Vec<f64>) = outline.into_iter().map(|[k, t]| (k, t)).unzip();
-            Some((entry.method.clone(), Curve { x, y }))
+            Some((entry.method.clone(), PlotCurve { x, y }))
         });
         FitCurves { records: records.map(record).collect(), regions: regions.collect() }
     }
@@ -54,7 +54,7 @@ impl Fit {
     fn record(&self, trial: &Trial, name: String, validation: bool) -> FitRecord {
         let phase = |heading: &[f64], rate: &[f64]| {
             let degrees = |values: &[f64]| values.iter().copied().map(to_deg).collect::<Vec<f64>>();
-            Curve::new(degrees(heading), degrees(rate))
+            PlotCurve::new(degrees(heading), degrees(rate))
         };
         let own = PhasePlane::of(trial);
         let title = if validation { format!("{name} (validation)") } else { name.clone() };
@@ -76,7 +76,7 @@ impl Fit {
                 title: Some(title),
                 record: curve(trial.time(), trial.heading()),
                 truth: None,
-                replays: replay_curves(trial, &self.answers, |method| Origin::Method(method.to_owned())),
+                replays: replay_curves(trial, &self.answers, |method| CurveOrigin::Method(method.to_owned())),
             },
             rudder: curve(trial.time(), trial.rudder()),
             rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
@@ -98,7 +98,7 @@ pub fn fit(
     methods: &[Named],
     quiet: bool,
     warnings: &mut Vec<String>,
-) -> Result<Fit, Failure> {
+) -> Result<FitResult, Failure> {
     let together = scales::together(records, others)?;
     let (trials, others) = (&together.trials[..], &together.others[..]);
     let ship = scales::particulars(trials);
@@ -120,7 +120,7 @@ pub fn fit(
     let zigzags: Vec<Result<ZigZag, ZigZagError>> = records.iter().map(ZigZag::of).collect();
     let entries_of_trials: Vec<TrialEntry> =
         records.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag)).collect();
-    let shown = Shown::of(trials).with_motion();
+    let shown = RecordFacts::of(trials).with_motion();
     warn_of_no_track(&shown, warnings);
     let document = FitDocument {
         schema: "fit/1".into(),
@@ -136,11 +136,11 @@ pub fn fit(
         scaling: together.sentence(),
         length_m: ship.map(|ship| ship.length),
         speed_m_s: ship.map(|ship| ship.speed),
-        single_records: alone::of_records(trials, &speakers(methods, &entries)),
+        single_records: single_records::of_records(trials, &speakers(methods, &entries)),
         warnings: warnings.clone(),
         methods: entries,
     };
-    Ok(Fit { together, answers, document })
+    Ok(FitResult { together, answers, document })
 }
 
 /// The named methods of the project with their default settings, all for no name, and outside estimators behind them;
@@ -176,9 +176,9 @@ fn speakers<'a>(methods: &'a [Named], entries: &[MethodEntry]) -> Vec<&'a dyn Id
     let answered: Vec<&str> = entries.iter().filter(has_interval).map(|entry| entry.method.as_str()).collect();
     let answered = methods.iter().filter(|(label, _)| answered.contains(&label.as_str()));
     let mut found: Vec<&dyn Identifier> = answered.map(|(_, method)| method.as_ref()).collect();
-    let rank = |id: &str| every_scale::SPEAKERS.iter().position(|speaker| *speaker == id);
-    found.sort_by_key(|method| rank(method.id()).unwrap_or(every_scale::SPEAKERS.len()));
-    found.truncate(every_scale::SPEAKERS.len());
+    let rank = |id: &str| every_scale::PREFERRED_METHODS.iter().position(|speaker| *speaker == id);
+    found.sort_by_key(|method| rank(method.id()).unwrap_or(every_scale::PREFERRED_METHODS.len()));
+    found.truncate(every_scale::PREFERRED_METHODS.len());
     found
 }
 

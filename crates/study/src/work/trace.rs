@@ -3,18 +3,18 @@
 
 use ::trace::{Analysis, Settings, TraceError};
 use campaign::folder::ResultFolder;
-use campaign::known::{self, Shown};
+use campaign::known::{self, RecordFacts};
 use scenario::failure::{Failure, OnPath};
 use trial::{Channel, Trial};
 
 use super::planned;
-use crate::documents::curves::{self, Curves};
+use crate::documents::curves::{self, TraceCurves};
 use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
 use crate::documents::{self, missing_moment};
 use crate::options::{TraceRequest, Withheld};
 use crate::progress;
 use crate::records::{file_of, names, warn_of_no_track};
-use crate::scales::{self, Together};
+use crate::scales::{self, RescaledRecords};
 
 /// A trace before it is written: its document, and the tables of its curves under the names of their files.
 pub struct Traced {
@@ -25,8 +25,8 @@ pub struct Traced {
 
 impl Traced {
     /// The curves, as whoever reads the files has them.
-    pub fn curves(&self) -> Result<Curves, Failure> {
-        Curves::from_tables(&self.document, |name| {
+    pub fn curves(&self) -> Result<TraceCurves, Failure> {
+        TraceCurves::from_tables(&self.document, |name| {
             let table = self.tables.iter().find(|(own, _)| own == name).map(|(_, text)| text.clone());
             Ok((table.unwrap_or_default(), name.to_owned()))
         })
@@ -57,8 +57,8 @@ pub fn trace(
     busy.finish_and_clear();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let scales = together.sentence();
-    let Together { trials, others: held_out, .. } = together;
-    let shown = Shown::of(&trials).with_motion();
+    let RescaledRecords { trials, others: held_out, .. } = together;
+    let shown = RecordFacts::of(&trials).with_motion();
     warn_of_no_track(&shown, warnings);
     let all = records.iter().chain(others);
     let names = names(trials.iter().chain(&held_out).map(Trial::name));

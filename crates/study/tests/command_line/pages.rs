@@ -39,7 +39,7 @@ fn every_report_has_a_page_for_a_browser() {
 fn a_page_that_is_not_there_is_not_opened() {
     let desk = Desk::new();
     desk.file("old/fit.json", "{}");
-    desk.run(&["report", "old", "--open"]).is_refused(2, &["report.html", "no such page"]);
+    desk.run(&["report", "old", "--open"]).is_refused(2, &["fit.json", "study fit"]);
     desk.file("other/x", "");
     desk.run(&["report", "other", "--open"]).is_refused(2, &["other", "finished study"]);
 }
