@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use scenario::{Cell, MethodName, Scenario, Words, name};
+use scenario::{DesignCell, MethodName, Scenario, Words, name};
 use serde::{Deserialize, Serialize};
 
 /// What tables and figures need of a scenario.
@@ -54,7 +54,7 @@ pub struct CellFacts {
 impl Design {
     /// The design of a scenario of which no trial is stored, and no bound is known.
     pub fn of(scenario: &Scenario) -> Self {
-        let bare = |cell: &Cell| CellFacts {
+        let bare = |cell: &DesignCell| CellFacts {
             labels: cell.labels.clone(),
             values: cell.values.clone(),
             trials: 0..0,

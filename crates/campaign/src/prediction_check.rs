@@ -1,9 +1,9 @@
 //! Manoeuvres predicted from an answer, and the same ship making them: whether intervals hold.
 
 use predict::passage::SimulatedManoeuvre;
-use predict::{IdentifiedShip, Kind, ShipMixture, figures};
+use predict::{IdentifiedShip, ShipMixture, figures, standard};
 use scenario::Predictions;
-use simulate::{Sensors, Simulation, StreamKey};
+use simulate::{Manoeuvre, Sensors, Simulation, StreamKey};
 use trial::Trial;
 
 use crate::known::RecordFacts;
@@ -28,9 +28,12 @@ impl<'a> PredictionCheck<'a> {
         let of_hull = simulation.vessel.particulars().map(|particulars| particulars.length / particulars.speed);
         let timescale = closed.or(of_hull).unwrap_or(ROWS * simulation.recording.period);
         let other = StreamKey { seed: !key.seed, ..*key };
-        let one = |kind: &Kind| {
-            let calm =
-                Simulation { manoeuvre: kind.manoeuvre(timescale)?, sensors: Sensors::default(), ..simulation.clone() };
+        let one = |kind: &Manoeuvre| {
+            let calm = Simulation {
+                manoeuvre: standard::steered(kind, timescale)?,
+                sensors: Sensors::default(),
+                ..simulation.clone()
+            };
             let passage = SimulatedManoeuvre::of(calm, &other, timescale, None).ok()?;
             Some(figures::of(kind, &passage, None))
         };
