@@ -3,7 +3,7 @@
 //! common.
 
 use identify::estimate::Covariance;
-use identify::{Accuracy, Estimate, Identifier, IdentifierSettings, StopReason, Uncertainty, registry};
+use identify::{Estimate, Identifier, IdentifierSettings, StopReason, Uncertainty, registry};
 use kempf_tests::records::{self, Begin, Case};
 use nalgebra::{Matrix3, SymmetricEigen};
 use ship::FirstOrder;
@@ -38,13 +38,13 @@ fn identify(method: &dyn Identifier, trials: &[Trial]) -> Estimate {
 }
 
 /// Whether K, T and δ_r of `found` are those of the truth within what the method promises.
-fn check_promise(id: &str, promise: &Accuracy, found: &FirstOrder, when: &str) {
+fn check_accuracy(id: &str, allowed: [f64; 3], found: &FirstOrder, when: &str) {
     let [k_error, t_error] = [found.K() / truth().K() - 1.0, found.T() / truth().T() - 1.0];
     let bias_error = to_deg(found.rudder_bias - truth().rudder_bias);
-    let why = format!("{id}, {when}: beyond what Identifier::promises() in its file allows:");
-    assert!(k_error.abs() <= promise.K, "{why} K off by {:+.4} %", 100.0 * k_error);
-    assert!(t_error.abs() <= promise.T, "{why} T off by {:+.4} %", 100.0 * t_error);
-    assert!(bias_error.abs() <= promise.rudder_bias_deg, "{why} δ_r off by {bias_error:+.5} deg");
+    let why = format!("{id}, {when}: beyond what Identifier::noise_free_accuracy() in its file allows:");
+    assert!(k_error.abs() <= allowed[0], "{why} K off by {:+.4} %", 100.0 * k_error);
+    assert!(t_error.abs() <= allowed[1], "{why} T off by {:+.4} %", 100.0 * t_error);
+    assert!(bias_error.abs() <= allowed[2], "{why} δ_r off by {bias_error:+.5} deg");
 }
 
 /// Whether two responses are the same within a share of K and T, and of a degree of δ_r.
@@ -75,9 +75,9 @@ fn without_noise_the_ship_is_recovered() {
             for begin in [Begin::Rest, Begin::Mid] {
                 let trial = Case { rudder_deg, heading_deg, begin, ..case() }.trial(0);
                 let found = identify(method.as_ref(), &[trial]).response;
-                check_promise(
+                check_accuracy(
                     method.id(),
-                    &method.promises().whole,
+                    method.noise_free_accuracy().whole,
                     &found,
                     &format!("{rudder_deg}/{heading_deg} {begin:?}"),
                 );
@@ -91,7 +91,7 @@ fn several_trials_of_one_ship_are_taken_together() {
     for method in methods() {
         let trials = [case(), Case { rudder_deg: 20.0, heading_deg: 20.0, begin: Begin::Mid, ..case() }];
         let found = identify(method.as_ref(), &trials.map(|case| case.trial(0))).response;
-        check_promise(method.id(), &method.promises().whole, &found, "two trials");
+        check_accuracy(method.id(), method.noise_free_accuracy().whole, &found, "two trials");
         let [one, other] = noisy();
         let alone = identify(method.as_ref(), std::slice::from_ref(&one));
         let both = identify(method.as_ref(), &[one, other]);
@@ -215,7 +215,7 @@ fn gaps_are_survived() {
             ("rows missing", records::without_rows(&trial, lost)),
         ] {
             let found = identify(method.as_ref(), &[record]).response;
-            check_promise(method.id(), &method.promises().with_gaps, &found, when);
+            check_accuracy(method.id(), method.noise_free_accuracy().with_gaps, &found, when);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::column::dot;
+use crate::column::{dot, gram};
 
 /// Long-run covariance Σ_k w_k Γ_k of scores with Bartlett weights, summed over records.
 ///
@@ -17,6 +17,12 @@ pub fn newey_west<S: AsRef<[Vec<f64>]>>(scores: &[S]) -> DMatrix<f64> {
     for record in scores.iter().map(AsRef::as_ref) {
         let length = bandwidth(record);
         let windows: Vec<Vec<f64>> = record.iter().map(|column| window_sums(column, length)).collect();
+        if let [x, y, z] = &windows[..] {
+            // The usual number, in one pass.
+            let products = gram([x, y, z]);
+            sum += DMatrix::from_fn(3, 3, |i, j| products[i][j] / length as f64);
+            continue;
+        }
         for i in 0..unknowns {
             for j in 0..=i {
                 sum[(i, j)] += dot(&windows[i], &windows[j]) / length as f64;

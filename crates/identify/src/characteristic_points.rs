@@ -21,11 +21,11 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
-use crate::identifier::{Accuracy, Identifier, Promises};
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::samples::Samples;
-use crate::settings::{SettingsError, check_condition_limit};
+use crate::settings::{SettingsError, check_condition_limit, require};
 use found::Analysed;
-use points::{BaseCourse, Points};
+use points::{BaseHeadingOrigin, Points};
 
 /// Which points are used, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -82,18 +82,11 @@ impl Settings {
     ///
     /// Fails when the half width is not positive, an angle is not finite or the condition limit is not above 1.
     pub fn build(self) -> Result<CharacteristicPoints, SettingsError> {
-        let refused = |key, found: f64, expected| Err(SettingsError::new(key, Shown(found), expected));
-        if let Some(half_width) = self.half_width_s
-            && !(half_width > 0.0 && half_width.is_finite())
-        {
-            return refused("half-width-s", half_width, "a positive time");
+        if let Some(width) = self.half_width_s {
+            require(width > 0.0 && width.is_finite(), "half-width-s", Shown(width), "a positive time")?;
         }
         for (key, angle) in [("base-course-deg", self.base_course_deg), ("rudder-bias-deg", self.rudder_bias_deg)] {
-            if let Some(angle) = angle
-                && !angle.is_finite()
-            {
-                return refused(key, angle, "an angle");
-            }
+            angle.map_or(Ok(()), |angle| require(angle.is_finite(), key, Shown(angle), "an angle"))?;
         }
         check_condition_limit(self.condition_limit)?;
         Ok(CharacteristicPoints { settings: self })
@@ -184,12 +177,9 @@ impl Identifier for CharacteristicPoints {
         })
     }
 
-    fn promises(&self) -> Promises {
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
         // Peaks are no parabolas: +0.7 % at the default half width in an independent computation.
-        Promises {
-            whole: Accuracy { K: 0.008, T: 0.008, rudder_bias_deg: 0.008 },
-            with_gaps: Accuracy { K: 0.01, T: 0.01, rudder_bias_deg: 0.02 },
-        }
+        NoiseFreeAccuracy { whole: [0.008, 0.008, 0.008], with_gaps: [0.01, 0.01, 0.02] }
     }
 }
 
@@ -202,9 +192,9 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
 fn warnings(trials: &[Trial], analysed: &[Analysed]) -> Vec<String> {
     let told = |(trial, analysed): (&Trial, &Analysed)| {
         let taken = match analysed.points.base_from {
-            BaseCourse::Given | BaseCourse::Approach => return None,
-            BaseCourse::Zero => "heading 0",
-            BaseCourse::Middle => "the middle of its headings",
+            BaseHeadingOrigin::Given | BaseHeadingOrigin::Approach => return None,
+            BaseHeadingOrigin::Zero => "heading 0",
+            BaseHeadingOrigin::Middle => "the middle of its headings",
         };
         Some(format!(
             "{} has no straight approach: {taken} was taken for the base course; give base-course-deg if it is known",

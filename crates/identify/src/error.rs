@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use estimation::least_squares::Unsolvable;
 use thiserror::Error;
 
 /// A failed identification: a result like any other, it becomes a row of the study.
@@ -105,6 +106,15 @@ pub enum IdentifyError {
         /// Why, on one line that can be printed.
         reason: String,
     },
+}
+
+impl From<Unsolvable> for IdentifyError {
+    fn from(unsolvable: Unsolvable) -> Self {
+        match unsolvable {
+            Unsolvable::TooFewRows { needed, found } => Self::TooFewPoints { what: "equations", needed, found },
+            Unsolvable::Singular { condition, limit } => Self::Singular { condition, limit },
+        }
+    }
 }
 
 /// Most characters of what another program says.

@@ -1,6 +1,6 @@
 //! A method that is another program: it is started once, asked trial by trial in one line of JSON each, and answers in
 //! one line each. What stands in the lines is in [`protocol`], how a program is started, asked and ended in `process`
-//! and `crew`.
+//! and `pool`.
 //!
 //! A program works on one trial at a time, so there are never more processes of a command than threads that ask. An
 //! answer may depend on nothing but its question: then rows do not depend on the number of threads.
@@ -16,15 +16,15 @@ use trial::{Origin, Trial};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 use crate::identifier::{Identifier, Opener, Outside};
-use crate::settings::SettingsError;
-use crew::Crew;
+use crate::settings::{SettingsError, require};
+use pool::ProcessPool;
 
 mod answer;
-mod crew;
 mod place;
+mod pool;
 mod process;
+mod process_error;
 pub mod protocol;
-mod trouble;
 
 pub use answer::{Answer, Errors};
 pub use place::shown;
@@ -74,17 +74,16 @@ impl Settings {
             let found = format!("a list with {:?}", wrong.chars().take(20).collect::<String>());
             return Err(SettingsError::new("command", found, "words that are not blank, of at most 4096 bytes each"));
         }
-        if !TIMEOUTS_S.contains(&timeout_s) {
-            return Err(SettingsError::new("timeout-s", Shown(timeout_s), "a time from 0.01 to 86400 s"));
-        }
-        Ok(External { timeout: Duration::from_secs_f64(timeout_s), crew: Crew::of(command, folder) })
+        let holds = TIMEOUTS_S.contains(&timeout_s);
+        require(holds, "timeout-s", Shown(timeout_s), "a time from 0.01 to 86400 s")?;
+        Ok(External { timeout: Duration::from_secs_f64(timeout_s), pool: ProcessPool::of(command, folder) })
     }
 }
 
 /// An outside estimator with its settings.
 pub struct External {
     timeout: Duration,
-    crew: Arc<Crew>,
+    pool: Arc<ProcessPool>,
 }
 
 impl Identifier for External {
@@ -98,7 +97,7 @@ impl Identifier for External {
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let first = trials.first().ok_or(IdentifyError::NoTrial)?;
-        let mut process = self.crew.take()?;
+        let mut process = self.pool.take()?;
         loop {
             let before = process.answered();
             // The number of a simulated trial is the same whoever asks, so a program may draw by it.
@@ -109,17 +108,17 @@ impl Identifier for External {
             let asked = process.ask(self.timeout, |line| protocol::question(number, trials, line));
             match asked.and_then(|line| protocol::answer(&line, number)) {
                 Ok(answer) => {
-                    self.crew.give_back(process);
+                    self.pool.give_back(process);
                     return answer.map_err(|words| IdentifyError::outside(&words))?.estimate();
                 }
                 // What a process did before must not show in a row: a new one is asked once more.
-                Err(trouble) if before > 0 && trouble.may_be_of_the_past() => {
+                Err(error) if before > 0 && error.may_be_of_the_past() => {
                     process.kill();
-                    process = self.crew.start()?;
+                    process = self.pool.start()?;
                 }
-                Err(trouble) => {
+                Err(error) => {
                     process.kill();
-                    return Err(trouble.into());
+                    return Err(error.into());
                 }
             }
         }
@@ -132,18 +131,18 @@ impl Identifier for External {
 
 impl Outside for External {
     fn command(&self) -> &[String] {
-        self.crew.command()
+        self.pool.command()
     }
 
     fn find(&self) -> Result<(), String> {
-        place::find(self.crew.command(), self.crew.folder())
+        place::find(self.pool.command(), self.pool.folder())
     }
 
     fn log_to(&self, open: Opener) {
-        self.crew.log_to(open);
+        self.pool.log_to(open);
     }
 
     fn end(&self) {
-        self.crew.end();
+        self.pool.end();
     }
 }

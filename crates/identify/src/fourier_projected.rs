@@ -26,12 +26,12 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::fourier::basis::Nested;
 use crate::fourier::fundamental::zero_crossing_period;
-use crate::fourier::regression::{Equations, Response, white_variance};
+use crate::fourier::regression::{Equations, RegressionForm, white_variance};
 use crate::fourier::{self, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUSTED_CONDITION};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Accuracy, Identifier, Promises};
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::samples::Samples;
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, require};
 
 /// Fewest observed rows of a trial.
 const FEWEST_ROWS: usize = 20;
@@ -68,7 +68,7 @@ pub enum Order {
 /// The rudder that enters the equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Rudder {
+pub enum RudderTreatment {
     /// Projected on the basis of the heading.
     #[default]
     Projected,
@@ -85,9 +85,9 @@ pub struct Settings {
     /// How the number of harmonics is chosen.
     pub harmonics: Order,
     /// The rudder in the equations.
-    pub rudder: Rudder,
+    pub rudder: RudderTreatment,
     /// The left side of the regression.
-    pub response: Response,
+    pub response: RegressionForm,
 }
 
 impl Default for Settings {
@@ -95,8 +95,8 @@ impl Default for Settings {
         Self {
             fundamental: Fundamental::RecordAndPeriods(0.5),
             harmonics: Order::Gcv { reach: 4.0 },
-            rudder: Rudder::Projected,
-            response: Response::YawAcceleration,
+            rudder: RudderTreatment::Projected,
+            response: RegressionForm::YawAcceleration,
         }
     }
 }
@@ -105,14 +105,11 @@ impl Settings {
     /// Checks the settings and makes the method.
     pub fn build(self) -> Result<FourierProjected, SettingsError> {
         match self.harmonics {
-            Order::Fixed(harmonics) if harmonics == 0 || harmonics > MOST_HARMONICS => {
-                return Err(SettingsError::new("harmonics.fixed", harmonics, "1 to 64"));
+            Order::Fixed(fixed) => require((1..=MOST_HARMONICS).contains(&fixed), "harmonics.fixed", fixed, "1 to 64"),
+            Order::Gcv { reach } => {
+                require((1.5..=50.0).contains(&reach), "harmonics.reach", Shown(reach), "1.5 to 50")
             }
-            Order::Gcv { reach } if !(1.5..=50.0).contains(&reach) => {
-                return Err(SettingsError::new("harmonics.reach", Shown(reach), "1.5 to 50"));
-            }
-            _ => {}
-        }
+        }?;
         self.fundamental.check()?;
         Ok(FourierProjected { settings: self, most_rows: MOST_ROWS })
     }
@@ -142,13 +139,13 @@ pub struct Curves {
 }
 
 /// The rows of a trial.
-struct Part {
+struct SeriesRows {
     time: Vec<f64>,
     heading: Vec<f64>,
     rudder: Vec<f64>,
 }
 
-impl Part {
+impl SeriesRows {
     fn of(samples: Samples) -> Self {
         let Samples { time, heading, rudder, .. } = samples;
         Self { time, heading, rudder }
@@ -172,7 +169,7 @@ impl Part {
 }
 
 /// What the residual of one heading fit says.
-struct Noise {
+struct ResidualVariance {
     /// Variance of its white part, rad².
     white: f64,
     /// Variance of the residual, rad².
@@ -184,14 +181,14 @@ impl FourierProjected {
     ///
     /// Fails as [`Identifier::identify`] does for a record that cannot be fitted.
     pub fn curves(&self, trial: &Trial) -> Result<Curves, IdentifyError> {
-        let part = Part::of(Samples::new(trial, FEWEST_ROWS)?).averaged(self.most_rows);
+        let part = SeriesRows::of(Samples::new(trial, FEWEST_ROWS)?).averaged(self.most_rows);
         let heading = self.fit(&part)?;
         let rudder = heading.basis.curve(&heading.basis.project(&part.rudder));
         Ok(Curves { heading, rudder, window: [part.time[0], part.time[part.time.len() - 1]] })
     }
 
-    fn fit(&self, part: &Part) -> Result<Fitted, IdentifyError> {
-        let Part { time, heading, .. } = part;
+    fn fit(&self, part: &SeriesRows) -> Result<Fitted, IdentifyError> {
+        let SeriesRows { time, heading, .. } = part;
         let fundamental = &self.settings.fundamental;
         let reach = match self.settings.harmonics {
             Order::Fixed(harmonics) => return accept(fourier::fit(time, heading, harmonics, fundamental)?),
@@ -224,19 +221,21 @@ impl FourierProjected {
     }
 
     /// Adds the equations of one trial and returns what its residual says of the noise.
-    fn add(&self, part: &Part, fitted: &Fitted, equations: &mut Equations) -> Noise {
-        let Part { time, heading, rudder } = part;
+    fn add(&self, part: &SeriesRows, fitted: &Fitted, equations: &mut Equations) -> ResidualVariance {
+        let SeriesRows { time, heading, rudder } = part;
         let residual = &fitted.projection.residual;
         let coefficients = 2 * fitted.basis.harmonics() + 1;
         let squares: f64 = residual.iter().map(|e| e * e).sum();
-        let noise =
-            Noise { white: white_variance(time, residual), residual: squares / (heading.len() - coefficients) as f64 };
+        let noise = ResidualVariance {
+            white: white_variance(time, residual),
+            residual: squares / (heading.len() - coefficients) as f64,
+        };
         let trim = TRIM_SHARE * (time[time.len() - 1] - time[0]);
         let from = time.partition_point(|&t| t < time[0] + trim);
         let to = time.partition_point(|&t| t <= time[time.len() - 1] - trim);
         let rudder = match self.settings.rudder {
-            Rudder::Recorded => rudder,
-            Rudder::Projected => &fitted.basis.values(&fitted.basis.project(rudder).coefficients),
+            RudderTreatment::Recorded => rudder,
+            RudderTreatment::Projected => &fitted.basis.values(&fitted.basis.project(rudder).coefficients),
         };
         equations.add(&fitted.basis, &fitted.projection, from..to, rudder, noise.residual.max(noise.white));
         noise
@@ -256,7 +255,7 @@ impl Identifier for FourierProjected {
         let mut equations = Equations::default();
         let (mut fits, mut noises, mut freedom) = (Vec::new(), Vec::new(), 0.0);
         for samples in Samples::of_all(trials, FEWEST_ROWS)? {
-            let part = Part::of(samples).averaged(self.most_rows);
+            let part = SeriesRows::of(samples).averaged(self.most_rows);
             let fitted = self.fit(&part)?;
             noises.push(self.add(&part, &fitted, &mut equations));
             freedom += part.time.len() as f64 - (2 * fitted.basis.harmonics() + 1) as f64;
@@ -264,8 +263,9 @@ impl Identifier for FourierProjected {
         }
         let solution = equations.solve(self.settings.response, TRUSTED_CONDITION)?;
         let mut diagnostics = fourier::diagnostics(&fits);
-        let worst =
-            |of: fn(&Noise) -> f64| to_deg(noises.iter().fold(0.0f64, |most, noise| most.max(of(noise))).sqrt());
+        let worst = |of: fn(&ResidualVariance) -> f64| {
+            to_deg(noises.iter().fold(0.0f64, |most, noise| most.max(of(noise))).sqrt())
+        };
         diagnostics.extend([
             ("equations", equations.len() as f64),
             ("equations_condition", solution.condition),
@@ -296,12 +296,9 @@ impl Identifier for FourierProjected {
         })
     }
 
-    fn promises(&self) -> Promises {
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
         // A residue of the truncation of r': within half a percent but for the long swings of 10/20.
-        Promises {
-            whole: Accuracy { K: 0.004, T: 0.018, rudder_bias_deg: 0.04 },
-            with_gaps: Accuracy { K: 0.012, T: 0.018, rudder_bias_deg: 0.1 },
-        }
+        NoiseFreeAccuracy { whole: [0.004, 0.018, 0.04], with_gaps: [0.012, 0.018, 0.1] }
     }
 }
 

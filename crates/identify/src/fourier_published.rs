@@ -22,11 +22,11 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Estimate, StopReason, Uncertainty};
-use crate::fourier::triples::{self, Answer, Drawn, Instant, MOST_TRIPLES, Selection};
+use crate::fourier::triples::{self, Answer, Drawn, EquationInstant, MOST_TRIPLES, Selection};
 use crate::fourier::{self, Fitted, Fundamental, MOST_HARMONICS};
-use crate::identifier::{Accuracy, Identifier, Promises};
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::samples::Samples;
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, require};
 
 /// Central share of the record that well-conditioned triples are taken from.
 const INTERIOR_SHARE: f64 = 0.9;
@@ -80,12 +80,8 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings and makes the method.
     pub fn build(self) -> Result<FourierPublished, SettingsError> {
-        if self.harmonics == 0 || self.harmonics > MOST_HARMONICS {
-            return Err(SettingsError::new("harmonics", self.harmonics, "1 to 64"));
-        }
-        if !(1..=MOST_TRIPLES).contains(&self.triples) {
-            return Err(SettingsError::new("triples", self.triples, "1 to 10000"));
-        }
+        require((1..=MOST_HARMONICS).contains(&self.harmonics), "harmonics", self.harmonics, "1 to 64")?;
+        require((1..=MOST_TRIPLES).contains(&self.triples), "triples", self.triples, "1 to 10000")?;
         self.fundamental.check()?;
         Ok(FourierPublished { settings: self })
     }
@@ -110,7 +106,7 @@ impl FourierPublished {
     }
 
     /// The instants of one trial that triples are drawn from.
-    fn instants(&self, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<Instant> {
+    fn instants(&self, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<EquationInstant> {
         let first = trial.observed_rows().next().expect("samples hold at least one observed row");
         let start = trial.time()[first];
         let length = samples.time[samples.len() - 1];
@@ -127,7 +123,7 @@ impl FourierPublished {
                         && rudder_range.at(start + t, RUDDER_REST_S) < from_deg(RUDDER_REST_DEG)
                 }
             })
-            .map(|row| Instant {
+            .map(|row| EquationInstant {
                 rudder: samples.rudder[row],
                 yaw_rate: yaw_rate[row],
                 yaw_acceleration: yaw_acceleration[row],
@@ -207,14 +203,11 @@ impl Identifier for FourierPublished {
         })
     }
 
-    fn promises(&self) -> Promises {
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
         // Eight harmonics truncate r': an independent computation finds a few per cent in K and 11 to 17 % in T. Ten
         // triples scatter about that, and δ_r is the worst of their ratios. The curve is the poorer the fewer headings
         // hold it: with gaps it is off by twice as much.
-        Promises {
-            whole: Accuracy { K: 0.1, T: 0.22, rudder_bias_deg: 0.7 },
-            with_gaps: Accuracy { K: 0.25, T: 0.45, rudder_bias_deg: 1.0 },
-        }
+        NoiseFreeAccuracy { whole: [0.1, 0.22, 0.7], with_gaps: [0.25, 0.45, 1.0] }
     }
 }
 

@@ -1,5 +1,4 @@
-//! What all methods have in common: the trait, and what a method promises beyond it.
-#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
+//! What all methods have in common: the trait, and how near a method comes without noise.
 
 use std::fs::File;
 use std::io;
@@ -62,9 +61,9 @@ pub trait Identifier: Send + Sync {
         None
     }
 
-    /// How near the method comes without noise; what the contract of all methods holds it to.
-    fn promises(&self) -> Promises {
-        Promises::default()
+    /// How near the method comes without noise; the contract of all methods holds it to that.
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
+        NoiseFreeAccuracy::default()
     }
 }
 
@@ -89,35 +88,21 @@ pub trait Outside {
     fn end(&self);
 }
 
-/// Largest errors without noise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Accuracy {
-    /// Of K, as a share.
-    pub K: f64,
-    /// Of T, as a share.
-    pub T: f64,
-    /// Of δ_r, deg.
-    pub rudder_bias_deg: f64,
-}
-
 /// Largest errors that the method itself makes in zig-zags of a ship with K = 0.1 1/s and T = 16.3 s, read every
-/// second.
+/// second without noise: of K and of T as shares, of δ_r in deg.
 ///
 /// The default is that of a method without any error of its own, which takes the corners of the rudder from where the
 /// record has them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Promises {
+pub struct NoiseFreeAccuracy {
     /// From every row.
-    pub whole: Accuracy,
+    pub whole: [f64; 3],
     /// With every seventh row and fifteen rows in a piece lost.
-    pub with_gaps: Accuracy,
+    pub with_gaps: [f64; 3],
 }
 
-impl Default for Promises {
+impl Default for NoiseFreeAccuracy {
     fn default() -> Self {
-        Self {
-            whole: Accuracy { K: 1e-6, T: 1e-6, rudder_bias_deg: 1e-6 },
-            with_gaps: Accuracy { K: 0.001, T: 0.002, rudder_bias_deg: 0.012 },
-        }
+        Self { whole: [1e-6; 3], with_gaps: [0.001, 0.002, 0.012] }
     }
 }

@@ -19,12 +19,12 @@ use trial::Trial;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Accuracy, Identifier, Promises};
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::robust::{judge, newey_west_of_three};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
-use equations::{Piece, SHARED, Solution};
-use noise::Noise;
+use equations::{IntegratedStretch, SHARED, Solution};
+use noise::HeadingNoise;
 
 /// Fewest headings in a stretch between gaps that can say more than its own initial state.
 const FEWEST_IN_PIECE: usize = 4;
@@ -94,7 +94,7 @@ impl Identifier for IntegralLeastSquares {
             return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
         }
         let response = FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: beta / b };
-        let noise = Noise::of(&pieces, &solution);
+        let noise = HeadingNoise::of(&pieces, &solution);
         // δ_r = (b δ_r)/b.
         let to_base = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -beta / (b * b), 1.0 / b) * solution.inverse;
         let base = |matrix: Matrix3<f64>| to_base * matrix * to_base.transpose();
@@ -126,21 +126,21 @@ impl Identifier for IntegralLeastSquares {
         })
     }
 
-    fn promises(&self) -> Promises {
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
         // Where whole rows are lost the rudder between them is a straight line as well. An error of it grows with time
         // in an equation that is integrated twice, while it dies out in a simulation: 0.3 % of T against 0.1 %.
-        Promises { with_gaps: Accuracy { K: 0.001, T: 0.005, rudder_bias_deg: 0.012 }, ..Promises::default() }
+        NoiseFreeAccuracy { with_gaps: [0.001, 0.005, 0.012], ..NoiseFreeAccuracy::default() }
     }
 }
 
 impl IntegralLeastSquares {
     /// The stretches between gaps of all trials that are long enough to be of use.
-    fn stretches<'a>(&self, samples: &'a [Samples]) -> Result<Vec<Piece<'a>>, IdentifyError> {
+    fn stretches<'a>(&self, samples: &'a [Samples]) -> Result<Vec<IntegratedStretch<'a>>, IdentifyError> {
         let mut found = Vec::with_capacity(samples.len());
         for trial in samples {
             let gap = longest_gap(self.settings.longest_gap_s, &trial.time);
             let long_enough = |rows: &Range<usize>| rows.len() >= FEWEST_IN_PIECE;
-            found.extend(pieces(&trial.time, gap).filter(long_enough).map(|rows| Piece::new(trial, rows)));
+            found.extend(pieces(&trial.time, gap).filter(long_enough).map(|rows| IntegratedStretch::new(trial, rows)));
         }
         let equations: usize = found.iter().map(|piece| piece.time.len()).sum();
         // Initial states, the shared parameters, and as many equations left to tell their error from.

@@ -12,12 +12,12 @@ use trial::Trial;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Accuracy, Identifier, Promises};
-use crate::linear::LeastSquares as Solution;
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::robust::newey_west_of_three;
 use crate::samples::Samples;
 use crate::savitzky_golay::{SavitzkyGolay, WindowWeights};
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
+use estimation::least_squares::LeastSquares;
 
 /// Bias of 1/T by noise, as a share, from which on a reader is warned.
 const WARN_OF_BIAS: f64 = 0.02;
@@ -36,7 +36,7 @@ pub enum Signal {
     YawRate,
 }
 
-/// Settings of [`LeastSquares`].
+/// Settings of [`MotionRegression`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
@@ -68,13 +68,13 @@ impl Settings {
     /// Checks the settings and makes the method.
     ///
     /// Fails when window and order do not go together, the gap is not positive or the condition limit is not above 1.
-    pub fn build(self) -> Result<LeastSquares, SettingsError> {
+    pub fn build(self) -> Result<MotionRegression, SettingsError> {
         if let Some(smoothing) = &self.smoothing {
             smoothing.check()?;
         }
         check_longest_gap(self.longest_gap_s)?;
         check_condition_limit(self.condition_limit)?;
-        Ok(LeastSquares { settings: self })
+        Ok(MotionRegression { settings: self })
     }
 }
 
@@ -91,7 +91,7 @@ impl Settings {
 /// [`IdentifyError::TooFewPoints`] when no window fits between gaps, and with [`IdentifyError::NotAShip`] when K/T is
 /// not positive. A negative 1/T is an answer: the ship is course-unstable.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LeastSquares {
+pub struct MotionRegression {
     settings: Settings,
 }
 
@@ -126,7 +126,7 @@ struct NoisePath {
     of_rate_and_error: f64,
 }
 
-impl Identifier for LeastSquares {
+impl Identifier for MotionRegression {
     fn id(&self) -> &'static str {
         "least-squares"
     }
@@ -139,7 +139,7 @@ impl Identifier for LeastSquares {
         let equations = self.equations(trials)?;
         let Equations { minus_rate, rudder, acceleration, .. } = &equations;
         let ones = vec![1.0; acceleration.len()];
-        let solution = Solution::solve(&[minus_rate, rudder, &ones], acceleration, self.settings.condition_limit)?;
+        let solution = LeastSquares::solve(&[minus_rate, rudder, &ones], acceleration, self.settings.condition_limit)?;
         let [a, b, c] = [0, 1, 2].map(|i| solution.parameters[i]);
         if b.is_nan() || b <= 0.0 {
             return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
@@ -193,16 +193,13 @@ impl Identifier for LeastSquares {
         })
     }
 
-    fn promises(&self) -> Promises {
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
         // Central differences over 1 s of a response with T = 16.3 s; around a gap equations are lost.
-        Promises {
-            whole: Accuracy { K: 0.001, T: 0.0015, rudder_bias_deg: 0.004 },
-            with_gaps: Accuracy { K: 0.003, T: 0.003, rudder_bias_deg: 0.02 },
-        }
+        NoiseFreeAccuracy { whole: [0.001, 0.0015, 0.004], with_gaps: [0.003, 0.003, 0.02] }
     }
 }
 
-impl LeastSquares {
+impl MotionRegression {
     fn polynomial(&self) -> &SavitzkyGolay {
         self.settings.smoothing.as_ref().unwrap_or(&SavitzkyGolay::CENTRAL_DIFFERENCES)
     }

@@ -23,7 +23,7 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-use choice::Prepared;
+use choice::PreparedRecords;
 use trial::Trial;
 
 pub use answer::cramer_rao;
@@ -31,14 +31,14 @@ pub use settings::{CompassChoice, MomentChoice, RudderChoice, Settings};
 
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
-use crate::identifier::{Accuracy, Identifier, Promises};
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::settings::{SettingsError, check_iterations};
 
 /// Times, s, of the readings of every record that belong to no ship: single spikes and sentinels such as −999, which
 /// stand alone against what `output-error` leaves of the headings about them. None where more than a tenth of the
 /// readings do: that is noise of another law. Fails as `output-error` does.
 pub fn spikes(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
-    Ok(Prepared::new(&Settings::default(), trials)?.spikes())
+    Ok(PreparedRecords::new(&Settings::default(), trials)?.spikes())
 }
 
 impl Settings {
@@ -65,18 +65,15 @@ impl Identifier for MaximumLikelihood {
     }
 
     /// Without any noise the corners of the rudder between rows are all there is to see, and may pass for a moment.
-    fn promises(&self) -> Promises {
-        Promises {
-            whole: Accuracy { K: 2e-3, T: 3e-3, rudder_bias_deg: 2e-3 },
-            with_gaps: Accuracy { K: 5e-3, T: 1e-2, rudder_bias_deg: 0.02 },
-        }
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
+        NoiseFreeAccuracy { whole: [2e-3, 3e-3, 2e-3], with_gaps: [5e-3, 1e-2, 0.02] }
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }
-        let prepared = choice::Prepared::new(&self.settings, trials)?;
+        let prepared = choice::PreparedRecords::new(&self.settings, trials)?;
         let chosen = prepared.choose(&self.settings)?;
         answer::estimate(trials, chosen)
     }

@@ -18,11 +18,11 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::identifier::Identifier;
 use crate::likelihood::track::{Coefficients, Track};
-use crate::profile::{Profile, Step, invert};
+use crate::profile::{NewtonStep, Profile, invert};
 use crate::robust;
 use crate::samples::track;
 use crate::scan::{self, Fit};
-use crate::settings::{SettingsError, check_iterations};
+use crate::settings::{SettingsError, check_iterations, require};
 
 /// Settings of [`OutputError`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -45,14 +45,12 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings and makes the method.
     pub fn build(self) -> Result<OutputError, SettingsError> {
-        if !(1..=FINEST_GRID).contains(&self.grid_per_decade) {
-            return Err(SettingsError::new("grid-per-decade", self.grid_per_decade, "1 to 1000"));
-        }
+        let per_decade = self.grid_per_decade;
+        require((1..=FINEST_GRID).contains(&per_decade), "grid-per-decade", per_decade, "1 to 1000")?;
         check_iterations("iterations", self.iterations)?;
-        if let Some(smallest) = self.smallest_time_constant_s
-            && !TIME_CONSTANTS.contains(&smallest)
-        {
-            return Err(SettingsError::new("smallest-time-constant-s", Shown(smallest), "a time of 1e-6 to 1e6 s"));
+        if let Some(smallest) = self.smallest_time_constant_s {
+            let holds = TIME_CONSTANTS.contains(&smallest);
+            require(holds, "smallest-time-constant-s", Shown(smallest), "a time of 1e-6 to 1e6 s")?;
         }
         Ok(OutputError { settings: self })
     }
@@ -126,7 +124,7 @@ const SCANNED_ROWS: usize = 200;
 pub(crate) const SIGNIFICANT: f64 = 2.0;
 
 /// A polished minimum of the profiled sum of squares.
-struct Minimum {
+struct PolishedMinimum {
     inverse_time: f64,
     rss: f64,
     stop: StopReason,
@@ -158,12 +156,12 @@ impl OutputError {
     ///
     /// Ends when a step is below the tolerance, promises less than the sum of squares can tell, or leaves no hope to
     /// get below the bar.
-    fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, goal: &Goal) -> Option<Minimum> {
+    fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, goal: &Goal) -> Option<PolishedMinimum> {
         let mut inverse_time = start;
         let mut rss = profile.evaluate(inverse_time)?;
         for iterations in 1..=goal.iterations {
-            let converged = Minimum { inverse_time, rss, stop: StopReason::Converged, iterations };
-            let Step { by: mut step, decrease } = profile.newton_step(inverse_time);
+            let converged = PolishedMinimum { inverse_time, rss, stop: StopReason::Converged, iterations };
+            let NewtonStep { by: mut step, decrease } = profile.newton_step(inverse_time);
             let hopeless = iterations > TRIED && rss - BOLD * decrease > goal.bar;
             if step.abs() <= goal.tolerance * (inverse_time.abs() + resolution) || hopeless {
                 return Some(converged);
@@ -171,7 +169,7 @@ impl OutputError {
             if decrease <= ROUNDING * rss {
                 // The score is known to more digits than the sum of squares: the step is right, whatever the sum does.
                 let last = profile.evaluate(inverse_time + step);
-                return last.map(|rss| Minimum { inverse_time: inverse_time + step, rss, ..converged });
+                return last.map(|rss| PolishedMinimum { inverse_time: inverse_time + step, rss, ..converged });
             }
             let lower = (0..MOST_HALVINGS).find_map(|_| {
                 let lower = profile.evaluate(inverse_time + step).filter(|&lower| lower < rss);
@@ -184,7 +182,7 @@ impl OutputError {
             let Some(lower) = lower else { return Some(converged) };
             (inverse_time, rss) = (inverse_time + step, lower);
         }
-        Some(Minimum { inverse_time, rss, stop: StopReason::IterationLimit, iterations: goal.iterations })
+        Some(PolishedMinimum { inverse_time, rss, stop: StopReason::IterationLimit, iterations: goal.iterations })
     }
 }
 
@@ -211,97 +209,120 @@ impl OutputError {
     /// Fits tracks whose rows are no nearer to each other than usually `finest`, s.
     pub(crate) fn fit(&self, tracks: Vec<Track>, finest: f64) -> Result<Estimate, IdentifyError> {
         let grid = self.grid(&tracks, finest);
-        let trials = tracks.len();
         let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
         // The scan only has to find the valleys, and the first polish their place, for which some rows do; the last
         // takes all.
         let thinned: Vec<Track> = tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect();
-        let scan = scan::fits(&thinned, &grid);
-        let mut coarse = Profile::new(thinned);
-        let mut profile = Profile::new(tracks);
-        let height = |k: usize| {
-            let ship = scan.get(k).copied().flatten().filter(|fit| fit.gain > 0.0);
-            ship.map_or(f64::INFINITY, |fit| fit.rss)
-        };
-        let valleys = (0..grid.len()).filter(|&k| {
-            height(k).is_finite()
-                && (k == 0 || height(k - 1) >= height(k))
-                && (k + 1 == grid.len() || height(k + 1) >= height(k))
-        });
-        let mut valleys: Vec<usize> = valleys.collect();
-        // The deepest first: it tells which of the others are hopeless.
-        valleys.sort_by(|&one, &other| height(one).total_cmp(&height(other)));
+        let scan = RangeScan { fits: scan::fits(&thinned, &grid), grid };
+        let (mut coarse, mut profile) = (Profile::new(thinned), Profile::new(tracks));
+        let valleys = scan.valleys();
         let mut bar = f64::INFINITY;
-        let mut best: Option<Minimum> = None;
-        for &k in &valleys {
-            let place = self.polish(&mut coarse, grid[k], resolution, &Goal { bar, ..COARSE });
+        let mut best: Option<PolishedMinimum> = None;
+        for &start in &valleys {
+            let place = self.polish(&mut coarse, start, resolution, &Goal { bar, ..COARSE });
             if place.as_ref().is_some_and(|place| place.rss > bar) {
                 continue;
             }
             bar = place.as_ref().map_or(bar, |place| bar.min(HOPELESS * place.rss));
-            let start = place.map_or(grid[k], |place| place.inverse_time);
+            let start = place.map_or(start, |place| place.inverse_time);
             if let Some(minimum) = self.polish(&mut profile, start, resolution, &self.goal())
                 && best.as_ref().is_none_or(|so_far| minimum.rss < so_far.rss)
             {
                 best = Some(minimum);
             }
         }
-        let Some(minimum) = best else {
-            return Err(refusal(&scan, &grid, f64::INFINITY));
+        let minimum = best.ok_or_else(|| scan.refusal(f64::INFINITY))?;
+        let mut estimate = scan.estimate(profile, minimum)?;
+        estimate.evaluations += coarse.evaluations();
+        estimate.diagnostics.insert(LOCAL_MINIMA, ("local_minima", valleys.len() as f64));
+        Ok(estimate)
+    }
+}
+
+/// Place of the number of local minima among the diagnostics.
+const LOCAL_MINIMA: usize = 4;
+
+/// The best fits over the range of 1/T.
+struct RangeScan {
+    /// 1/T, 1/s, increasing.
+    grid: Vec<f64>,
+    fits: Vec<Option<Fit>>,
+}
+
+impl RangeScan {
+    /// Places of the local minima of a ship that turns to the side of its rudder. The deepest comes first: it tells which
+    /// of the others are hopeless.
+    fn valleys(&self) -> Vec<f64> {
+        let height = |k: usize| {
+            let ship = self.fits.get(k).copied().flatten().filter(|fit| fit.gain > 0.0);
+            ship.map_or(f64::INFINITY, |fit| fit.rss)
         };
-        let inverse_time = minimum.inverse_time;
+        let last = self.grid.len() - 1;
+        let valleys = (0..=last).filter(|&k| {
+            height(k).is_finite() && (k == 0 || height(k - 1) >= height(k)) && (k == last || height(k + 1) >= height(k))
+        });
+        let mut valleys: Vec<usize> = valleys.collect();
+        valleys.sort_by(|&one, &other| height(one).total_cmp(&height(other)));
+        valleys.into_iter().map(|k| self.grid[k]).collect()
+    }
+
+    /// Why there is no answer: the best fit of the scan, whatever the sign of its K/T, is no ship; or the columns are
+    /// parallel.
+    fn refusal(&self, condition: f64) -> IdentifyError {
+        let fits = self.grid.iter().zip(&self.fits).filter_map(|(&a, fit)| fit.map(|fit| (a, fit)));
+        match fits.min_by(|(_, one), (_, other)| one.rss.total_cmp(&other.rss)) {
+            Some((inverse_time, Fit { gain, .. })) if gain <= 0.0 => IdentifyError::NotAShip { inverse_time, gain },
+            _ => IdentifyError::Singular { condition, limit: CONDITION_LIMIT },
+        }
+    }
+
+    /// The estimate at a minimum.
+    fn estimate(&self, mut profile: Profile, minimum: PolishedMinimum) -> Result<Estimate, IdentifyError> {
+        let PolishedMinimum { inverse_time, rss, stop, iterations } = minimum;
         profile.evaluate(inverse_time);
         let (gain, offset) = profile.steering();
         let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
         // Whichever valley it came from: a minimum may leave the range on the way, or stop where the range ends.
-        let fastest = grid[grid.len() - 1];
+        let fastest = self.grid[self.grid.len() - 1];
         let at_bound = inverse_time.abs() >= fastest * (1.0 - AT_BOUND);
         // A rudder of the wrong sign looks like a ship that is course-unstable with a T of no time at all.
-        if at_bound && let refused @ IdentifyError::NotAShip { .. } = refusal(&scan, &grid, f64::INFINITY) {
+        if at_bound && let refused @ IdentifyError::NotAShip { .. } = self.refusal(f64::INFINITY) {
             return Err(refused);
         }
-
         let information = profile.information(inverse_time);
         let observations = profile.observations();
-        let freedom = observations as f64 - (SHARED + 2 * trials) as f64;
-        let variance = minimum.rss / freedom;
+        let freedom = observations as f64 - (SHARED + 2 * profile.trials()) as f64;
         // Ships that turn the wrong way have their best fit with b > 0 where the rudder hardly counts.
         let (inverse, condition) =
-            invert(&information, CONDITION_LIMIT).map_err(|condition| refusal(&scan, &grid, condition))?;
-        let white = to_response(&(inverse * variance), &response, freedom);
+            invert(&information, CONDITION_LIMIT).map_err(|condition| self.refusal(condition))?;
+        let white = to_response(&(inverse * (rss / freedom)), &response, freedom);
         let gain_sd = white.matrix[(1, 1)].sqrt();
         if gain < SIGNIFICANT * gain_sd {
             return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
         }
-        let scores = profile.scores();
-        // What the fit took from the residual it left: the factor that turns a mean square into the variance above.
-        let long_run = robust::newey_west_of_three(&scores) * (observations as f64 / freedom);
-        let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
         let lag1 = robust::lag1_autocorrelation(profile.residuals());
+        let (evaluations, total) = (profile.evaluations(), profile.total_sum_of_squares());
+        // What the fit took from the residual it left: the factor that turns a mean square into the variance above.
+        let long_run = robust::newey_west_of_three(&profile.into_scores()) * (observations as f64 / freedom);
+        let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
         let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);
-        if response.is_course_unstable() {
-            warnings.push("course-unstable: 1/T is negative, K and T are negative".into());
-        }
+        warnings.extend(response.is_course_unstable().then(|| COURSE_UNSTABLE.into()));
         if at_bound {
-            warnings.push(format!(
-                "T = {} s is at its bound or beyond: the search ends at ±{} s",
-                Shown(response.T()),
-                Shown(1.0 / fastest)
-            ));
+            let (time, end) = (Shown(response.T()), Shown(1.0 / fastest));
+            warnings.push(format!("T = {time} s is at its bound or beyond: the search ends at ±{end} s"));
         }
         Ok(Estimate {
             response,
             uncertainty,
             robust: Some(robust_covariance),
-            stop: if at_bound { StopReason::RangeLimit } else { minimum.stop },
-            evaluations: grid.len() + coarse.evaluations() + profile.evaluations(),
+            stop: if at_bound { StopReason::RangeLimit } else { stop },
+            evaluations: self.grid.len() + evaluations,
             diagnostics: vec![
-                ("heading_rmse_deg", to_deg((minimum.rss / observations as f64).sqrt())),
-                ("r_squared", 1.0 - minimum.rss / profile.total_sum_of_squares()),
+                ("heading_rmse_deg", to_deg((rss / observations as f64).sqrt())),
+                ("r_squared", 1.0 - rss / total),
                 ("condition", condition),
-                ("iterations", minimum.iterations as f64),
-                ("local_minima", valleys.len() as f64),
+                ("iterations", iterations as f64),
                 ("lag1_autocorrelation", lag1),
                 ("degrees_of_freedom", freedom),
             ],
@@ -310,15 +331,8 @@ impl OutputError {
     }
 }
 
-/// Why there is no answer: the best fit of the scan, whatever the sign of its K/T, is no ship; or the columns are
-/// parallel.
-fn refusal(scan: &[Option<Fit>], grid: &[f64], condition: f64) -> IdentifyError {
-    let fits = grid.iter().zip(scan).filter_map(|(&a, fit)| fit.map(|fit| (a, fit)));
-    match fits.min_by(|(_, one), (_, other)| one.rss.total_cmp(&other.rss)) {
-        Some((inverse_time, Fit { gain, .. })) if gain <= 0.0 => IdentifyError::NotAShip { inverse_time, gain },
-        _ => IdentifyError::Singular { condition, limit: CONDITION_LIMIT },
-    }
-}
+/// What is said of a ship whose 1/T is below zero.
+pub(crate) const COURSE_UNSTABLE: &str = "course-unstable: 1/T is negative, K and T are negative";
 
 /// Covariance of (1/T, K/T, δ_r) from that of (1/T, b, b δ_r).
 pub(crate) fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {

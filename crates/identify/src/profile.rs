@@ -8,13 +8,13 @@ use estimation::column::{Removed, dot, gram, project, sum};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
-use crate::likelihood::track::{Coefficients, Columns, Track};
+use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 
 /// Workspace of one trial: columns after projection on the complement of (1, φ₁).
 #[derive(Debug)]
-struct Part {
+struct TrialColumns {
     track: Track,
-    columns: Columns,
+    columns: MotionColumns,
     /// Mean and length of φ₁ before it became a unit column.
     homogeneous: (f64, f64),
     /// What was taken out of G, H and the heading.
@@ -30,7 +30,7 @@ struct Part {
 /// The profiled sum of squares and everything at the point where it was last evaluated.
 #[derive(Debug)]
 pub(crate) struct Profile {
-    parts: Vec<Part>,
+    parts: Vec<TrialColumns>,
     steering: Vector2<f64>,
     /// Point last evaluated and the answer there.
     last: Option<(f64, Option<f64>)>,
@@ -39,7 +39,7 @@ pub(crate) struct Profile {
 
 /// A step of 1/T.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Step {
+pub(crate) struct NewtonStep {
     /// Change of 1/T, 1/s.
     pub by: f64,
     /// Change of the sum of squares that it promises, rad².
@@ -52,9 +52,9 @@ impl Profile {
             .into_iter()
             .map(|track| {
                 let rows = track.len();
-                Part {
+                TrialColumns {
                     track,
-                    columns: Columns::default(),
+                    columns: MotionColumns::default(),
                     homogeneous: (0.0, 0.0),
                     removed: [Removed::default(); 3],
                     heading: vec![0.0; rows],
@@ -102,7 +102,7 @@ impl Profile {
     }
 
     /// Kaufman's step of 1/T from the point last evaluated.
-    pub fn newton_step(&mut self, inverse_time: f64) -> Step {
+    pub fn newton_step(&mut self, inverse_time: f64) -> NewtonStep {
         let information = self.information(inverse_time);
         let score: f64 = self.parts.iter().map(|part| dot(&part.sensitivity, &part.residual)).sum();
         let products = Matrix2::new(information[(1, 1)], information[(1, 2)], information[(2, 1)], information[(2, 2)]);
@@ -110,7 +110,7 @@ impl Profile {
         let explained = solve2(&products, &cross).map_or(0.0, |share| share.dot(&cross));
         let curvature = information[(0, 0)] - explained;
         let by = if curvature > 0.0 { score / curvature } else { 0.0 };
-        Step { by, decrease: by * score }
+        NewtonStep { by, decrease: by * score }
     }
 
     /// JᵀJ of (1/T, b, b δ_r) with the anchors eliminated, at the point last evaluated; times 1/σ² it is the Fisher
@@ -138,12 +138,13 @@ impl Profile {
 
     /// Residual times projected Jacobian, column by column and trial by trial; after
     /// [`information`](Self::information).
-    pub fn scores(&self) -> Vec<[Vec<f64>; 3]> {
-        let of_part = |part: &Part| {
-            let times_residual = |column: &[f64]| column.iter().zip(&part.residual).map(|(x, e)| x * e).collect();
-            [&part.sensitivity, &part.columns.rudder, &part.columns.constant].map(|column| times_residual(column))
+    pub fn into_scores(self) -> Vec<[Vec<f64>; 3]> {
+        let of_trial = |own: TrialColumns| {
+            let mut columns = [own.sensitivity, own.columns.rudder, own.columns.constant];
+            columns.iter_mut().for_each(|column| column.iter_mut().zip(&own.residual).for_each(|(x, e)| *x *= e));
+            columns
         };
-        self.parts.iter().map(of_part).collect()
+        self.parts.into_iter().map(of_trial).collect()
     }
 
     /// Residuals, trial by trial.
@@ -154,6 +155,11 @@ impl Profile {
     /// (b, b δ_r) of the point last evaluated.
     pub fn steering(&self) -> (f64, f64) {
         (self.steering[0], self.steering[1])
+    }
+
+    /// Number of trials.
+    pub fn trials(&self) -> usize {
+        self.parts.len()
     }
 
     /// Observed headings of all trials.
@@ -168,7 +174,7 @@ impl Profile {
 
     /// Σ(ψ − mean)² over all trials, rad².
     pub fn total_sum_of_squares(&self) -> f64 {
-        let of_part = |part: &Part| {
+        let of_part = |part: &TrialColumns| {
             let heading = &part.track.heading;
             let mean = sum(heading) / heading.len() as f64;
             heading.iter().map(|psi| (psi - mean).powi(2)).sum::<f64>()
@@ -177,10 +183,10 @@ impl Profile {
     }
 }
 
-impl Part {
+impl TrialColumns {
     fn project_columns(&mut self, inverse_time: f64) {
         self.track.fill(inverse_time, &mut self.columns);
-        let Columns { homogeneous, rudder, constant, .. } = &mut self.columns;
+        let MotionColumns { homogeneous, rudder, constant, .. } = &mut self.columns;
         let mean = sum(homogeneous) / homogeneous.len() as f64;
         homogeneous.iter_mut().for_each(|x| *x -= mean);
         let length = dot(homogeneous, homogeneous).sqrt();

@@ -8,7 +8,7 @@ use ship::FirstOrder;
 use ship::first_order::State;
 use trial::Trial;
 
-use crate::likelihood::track::{Coefficients, Columns, Track};
+use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 
 /// Condition number above which no initial yaw rate is fitted: it is taken to be zero.
 const CONDITION_LIMIT: f64 = 1e9;
@@ -54,7 +54,7 @@ impl Replay {
 pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     let a = response.inverse_T;
     let track = Track::new(trial);
-    let mut columns = Columns::default();
+    let mut columns = MotionColumns::default();
     track.fill(a, &mut columns);
     let mut coefficients = Coefficients::of(response);
     let forced = columns.rudder.iter().zip(&columns.constant);

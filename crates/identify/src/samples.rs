@@ -43,46 +43,42 @@ impl Samples {
     pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
         check(trial, needed)?;
         let (t, delta, psi) = (trial.time(), trial.rudder(), trial.heading());
-        let rows = trial.len();
         let first = trial.observed_rows().next().unwrap_or(0);
-        let column = || vec![0.0; rows - first];
-        let mut samples = Self {
-            time: column(),
-            heading: column(),
-            rudder: column(),
-            rudder_integral: column(),
-            rudder_double_integral: column(),
-        };
-        let (mut once, mut twice) = (0.0, 0.0);
-        let mut place = 0;
-        let mut corners = trial.rudder_corners().iter().filter(|corner| corner.row >= first).peekable();
-        for row in first..rows {
-            // Integration starts at the first observed row.
-            if row > first {
-                let h = t[row] - t[row - 1];
-                if let Some(Corner { time, before, after, .. }) = corners.next_if(|corner| corner.row + 1 == row) {
+        let rows = trial.len() - first;
+        let (mut once, mut twice) = (Vec::with_capacity(rows), Vec::with_capacity(rows));
+        once.push(0.0);
+        twice.push(0.0);
+        let mut corners = trial.rudder_corners().iter().filter(|corner| corner.row >= first);
+        let mut corner = corners.next();
+        // Integration starts at the first observed row.
+        let (mut integral, mut double) = (0.0, 0.0);
+        for row in first + 1..trial.len() {
+            let h = t[row] - t[row - 1];
+            match corner {
+                Some(&Corner { row: before_row, time, before, after }) if before_row + 1 == row => {
                     let (start, rest, change) = (delta[row - 1], t[row] - time, after - before);
-                    twice += h * once + h * h * (3.0 * start + h * before) / 6.0 + rest.powi(3) * change / 6.0;
-                    once += h * start + 0.5 * (h * h * before + rest * rest * change);
-                } else {
-                    twice += h * once + h * h * (2.0 * delta[row - 1] + delta[row]) / 6.0;
-                    once += 0.5 * h * (delta[row - 1] + delta[row]);
+                    double += h * integral + h * h * (3.0 * start + h * before) / 6.0 + rest.powi(3) * change / 6.0;
+                    integral += h * start + 0.5 * (h * h * before + rest * rest * change);
+                    corner = corners.next();
+                }
+                _ => {
+                    double += h * integral + h * h * (2.0 * delta[row - 1] + delta[row]) / 6.0;
+                    integral += 0.5 * h * (delta[row - 1] + delta[row]);
                 }
             }
-            if psi[row].is_finite() {
-                samples.time[place] = t[row] - t[first];
-                samples.heading[place] = psi[row];
-                samples.rudder[place] = delta[row];
-                samples.rudder_integral[place] = once;
-                samples.rudder_double_integral[place] = twice;
-                place += 1;
+            once.push(integral);
+            twice.push(double);
+        }
+        let time = t[first..].iter().map(|time| time - t[first]).collect();
+        let mut columns = [time, psi[first..].to_vec(), delta[first..].to_vec(), once, twice];
+        if psi[first..].iter().any(|psi| !psi.is_finite()) {
+            for column in &mut columns {
+                let mut own = psi[first..].iter();
+                column.retain(|_| own.next().is_some_and(|psi| psi.is_finite()));
             }
         }
-        let Self { time, heading, rudder, rudder_integral, rudder_double_integral } = &mut samples;
-        for column in [time, heading, rudder, rudder_integral, rudder_double_integral] {
-            column.truncate(place);
-        }
-        Ok(samples)
+        let [time, heading, rudder, rudder_integral, rudder_double_integral] = columns;
+        Ok(Self { time, heading, rudder, rudder_integral, rudder_double_integral })
     }
 
     /// Samples of every trial, or the first reason why there are none.
@@ -96,11 +92,6 @@ impl Samples {
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.time.len()
-    }
-
-    /// Whether there are no rows.
-    pub fn is_empty(&self) -> bool {
-        self.time.is_empty()
     }
 }
 

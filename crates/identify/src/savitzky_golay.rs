@@ -6,7 +6,7 @@ use std::ops::Range;
 use nalgebra::{Cholesky, Const, Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, require};
 
 /// Highest order of a local polynomial.
 pub const HIGHEST_ORDER: usize = 5;
@@ -40,21 +40,11 @@ impl SavitzkyGolay {
     /// Fails when the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or holds so
     /// many that nothing of a manoeuvre is left.
     pub fn check(&self) -> Result<(), SettingsError> {
-        if !(2..=HIGHEST_ORDER).contains(&self.order) {
-            return Err(SettingsError { key: "order", found: self.order.to_string(), expected: "2, 3, 4 or 5" });
-        }
-        if self.window_samples.is_multiple_of(2) || self.window_samples <= self.order {
-            let found = self.window_samples.to_string();
-            return Err(SettingsError { key: "window-samples", found, expected: "an odd number above the order" });
-        }
-        if self.window_samples > WIDEST_WINDOW {
-            return Err(SettingsError {
-                key: "window-samples",
-                found: self.window_samples.to_string(),
-                expected: "at most 10001",
-            });
-        }
-        Ok(())
+        let Self { window_samples: rows, order } = *self;
+        require((2..=HIGHEST_ORDER).contains(&order), "order", order, "2, 3, 4 or 5")?;
+        let holds = !rows.is_multiple_of(2) && rows > order;
+        require(holds, "window-samples", rows, "an odd number above the order")?;
+        require(rows <= WIDEST_WINDOW, "window-samples", rows, "at most 10001")
     }
 
     /// Rows of the window around row `k`; `None` when it does not fit into `len` rows.

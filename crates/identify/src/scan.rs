@@ -8,7 +8,7 @@ use estimation::column::{dot, sum};
 use nalgebra::{Matrix2, Vector2};
 use ship::first_order::Transition;
 
-use crate::likelihood::track::{Step, Track, differs, is_backward};
+use crate::likelihood::track::{Track, TrackStep, differs, is_backward};
 use crate::profile::solve2;
 
 /// Values of 1/T side by side.
@@ -27,7 +27,8 @@ pub(crate) struct Fit {
 
 /// The best fit for every value of `inverse_time` (1/s), in increasing order; `None` where the columns are dependent.
 ///
-/// Every row of the tracks has to be observed.
+/// Every row of the tracks has to be observed, and their rudder to have no corners between rows, as in
+/// [thinned](Track::thinned) ones.
 pub(crate) fn fits(tracks: &[Track], inverse_time: &[f64]) -> Vec<Option<Fit>> {
     let centred: Vec<Vec<f64>> = tracks.iter().map(|track| centred(&track.heading)).collect();
     let squares: f64 = centred.iter().map(|heading| dot(heading, heading)).sum();
@@ -139,8 +140,7 @@ impl estimation::lanes::Kernel for Sweep<'_> {
         let (mut decay, mut phi1, mut phi2, mut phi3) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let rudder = track.rudder();
         let backward = is_backward(inverse_time[0]);
-        for k in 0..track.steps() {
-            let Step { from, to, length: step, rudder_rate: rate, bend } = track.step(k, backward);
+        for TrackStep { from, to, length: step, rudder_rate: rate, .. } in track.steps(backward) {
             if differs(length, step) {
                 length = step;
                 for lane in 0..LANES {
@@ -157,13 +157,6 @@ impl estimation::lanes::Kernel for Sweep<'_> {
                 g_rate[lane] = decay[lane] * g_rate[lane] + (phi1[lane] * delta + phi2[lane] * rate);
                 h[lane] += phi1[lane] * h_rate[lane] + phi2[lane];
                 h_rate[lane] = decay[lane] * h_rate[lane] + phi1[lane];
-            }
-            if let Some(bend) = bend {
-                for lane in 0..LANES {
-                    let [heading, yaw_rate] = bend.response(inverse_time[lane]);
-                    g[lane] += heading;
-                    g_rate[lane] += yaw_rate;
-                }
             }
             for lane in 0..LANES {
                 sums.f[lane] += f[lane];

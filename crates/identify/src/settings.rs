@@ -25,24 +25,27 @@ impl SettingsError {
 /// Most steps of an iteration: what has not settled in a thousand never does.
 pub(crate) const MOST_ITERATIONS: usize = 1000;
 
-/// Refuses a number of iterations that is none, or has no end.
-pub(crate) fn check_iterations(key: &'static str, iterations: usize) -> Result<(), SettingsError> {
-    let holds = (1..=MOST_ITERATIONS).contains(&iterations);
-    if holds { Ok(()) } else { Err(SettingsError::new(key, iterations, "1 to 1000")) }
+/// Refuses a setting of which something does not hold, with what would be accepted; the value found is made text only then.
+pub(crate) fn require(
+    holds: bool,
+    key: &'static str,
+    found: impl ToString,
+    expected: &'static str,
+) -> Result<(), SettingsError> {
+    if holds { Ok(()) } else { Err(SettingsError::new(key, found, expected)) }
 }
 
-/// Refuses a `condition-limit` that no equations can keep.
+/// Refuses a number of iterations that is none, or has no end.
+pub(crate) fn check_iterations(key: &'static str, iterations: usize) -> Result<(), SettingsError> {
+    require((1..=MOST_ITERATIONS).contains(&iterations), key, iterations, "1 to 1000")
+}
+
+/// Refuses a `condition-limit` that no equations can keep, and one that is no number.
 pub(crate) fn check_condition_limit(limit: f64) -> Result<(), SettingsError> {
-    // Written so that NaN is refused too.
-    if limit > 1.0 { Ok(()) } else { Err(SettingsError::new("condition-limit", Shown(limit), "a number above 1")) }
+    require(limit > 1.0, "condition-limit", Shown(limit), "a number above 1")
 }
 
 /// Refuses a `longest-gap-s` that is no time.
 pub(crate) fn check_longest_gap(gap_s: Option<f64>) -> Result<(), SettingsError> {
-    match gap_s {
-        Some(gap) if gap.is_nan() || gap <= 0.0 => {
-            Err(SettingsError::new("longest-gap-s", Shown(gap), "a positive time"))
-        }
-        _ => Ok(()),
-    }
+    gap_s.map_or(Ok(()), |gap| require(gap > 0.0, "longest-gap-s", Shown(gap), "a positive time"))
 }

@@ -5,7 +5,8 @@
 use std::sync::{Arc, OnceLock};
 
 use resvg::usvg::fontdb::Database;
-use ttf_parser::Face;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::{FontRef, MetadataProvider};
 
 use crate::markup::is_markup;
 
@@ -15,6 +16,9 @@ pub(crate) const FAMILY: &str = "DejaVu Sans";
 /// What an SVG viewer is asked for. Verdana comes second because its widths are nearest to those of DejaVu Sans, with
 /// which the labels are measured.
 pub(crate) const FAMILY_WITH_FALLBACK: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
+
+/// Units of the font in an em.
+const UNITS_PER_EM: f64 = 2048.0;
 
 static REGULAR: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");
 static BOLD: &[u8] = include_bytes!("../fonts/DejaVuSans-Bold-subset.ttf");
@@ -37,14 +41,15 @@ pub(crate) fn database() -> Arc<Database> {
 
 /// Width of `text` in points at `size` points. Italic is as wide as upright in this family.
 pub(crate) fn text_width(text: &str, size: f64, bold: bool) -> f64 {
-    static FACES: OnceLock<[Face; 2]> = OnceLock::new();
-    let faces = FACES.get_or_init(|| {
-        [REGULAR, BOLD].map(|bytes| Face::parse(bytes, 0).expect("the embedded font is a valid TrueType file"))
+    static FONTS: OnceLock<[FontRef; 2]> = OnceLock::new();
+    let fonts = FONTS.get_or_init(|| {
+        [REGULAR, BOLD].map(|bytes| FontRef::new(bytes).expect("the embedded font is a valid TrueType file"))
     });
-    let face = &faces[usize::from(bold)];
-    let advance = |c: char| face.glyph_hor_advance(face.glyph_index(c).unwrap_or_default()).unwrap_or(0);
+    let font = &fonts[usize::from(bold)];
+    let (glyphs, metrics) = (font.charmap(), font.glyph_metrics(Size::unscaled(), LocationRef::default()));
+    let advance = |c: char| metrics.advance_width(glyphs.map(c).unwrap_or_default()).unwrap_or(0.0);
     let visible = text.chars().filter(|c| !is_markup(*c) && !is_combining(*c));
-    visible.map(|c| f64::from(advance(c))).sum::<f64>() / f64::from(face.units_per_em()) * size
+    visible.map(|c| f64::from(advance(c))).sum::<f64>() / UNITS_PER_EM * size
 }
 
 fn is_combining(c: char) -> bool {

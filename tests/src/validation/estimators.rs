@@ -1,8 +1,8 @@
 //! The published Fourier method, its mended steps and the methods it is held against, on the published window.
 
 use identify::fourier::Fundamental;
-use identify::fourier::regression::Response;
-use identify::fourier_projected::{Order, Rudder};
+use identify::fourier::regression::RegressionForm;
+use identify::fourier_projected::{Order, RudderTreatment};
 use identify::fourier_published::Aggregation;
 use identify::savitzky_golay::SavitzkyGolay;
 use identify::{
@@ -33,7 +33,7 @@ fn published() -> Vec<Published> {
             fundamental: Fundamental::Global,
             harmonics: Order::Fixed(8),
             rudder,
-            response: Response::YawRate,
+            response: RegressionForm::YawRate,
             ..Default::default()
         })
     };
@@ -52,7 +52,7 @@ fn published() -> Vec<Published> {
         },
         Published {
             name: "all samples, rudder as recorded",
-            settings: projected(Rudder::Recorded),
+            settings: projected(RudderTreatment::Recorded),
             lines: &[
                 (10., 10., 0.0, -6.5, -7.4),
                 (10., 20., 0.0, -7.0, -7.1),
@@ -63,7 +63,7 @@ fn published() -> Vec<Published> {
         },
         Published {
             name: "all samples, rudder projected",
-            settings: projected(Rudder::Projected),
+            settings: projected(RudderTreatment::Projected),
             lines: &[
                 (10., 10., 0.0, 0.11, 0.37),
                 (10., 20., 0.0, 0.06, 0.12),

@@ -1,9 +1,9 @@
 //! The Fourier fit of the heading and what follows from it, without noise, against an independent computation.
 
 use identify::Identifier;
-use identify::fourier::regression::Response;
+use identify::fourier::regression::RegressionForm;
 use identify::fourier::{self, Fundamental};
-use identify::fourier_projected::{Order, Rudder, Settings};
+use identify::fourier_projected::{Order, RudderTreatment, Settings};
 use trial::Trial;
 
 use super::{Check, Section, Tolerance};
@@ -26,11 +26,11 @@ const FITS: [Fit; 7] = [
 ];
 
 /// A regression on all samples: rudder, heading (deg), rudder in the equations, K (1/s), T (s).
-const REGRESSIONS: [(f64, f64, Rudder, f64, f64); 4] = [
-    (10., 20., Rudder::Recorded, 0.0930, 15.15),
-    (10., 20., Rudder::Projected, 0.1001, 16.32),
-    (10., 10., Rudder::Recorded, 0.0935, 15.09),
-    (10., 10., Rudder::Projected, 0.1001, 16.36),
+const REGRESSIONS: [(f64, f64, RudderTreatment, f64, f64); 4] = [
+    (10., 20., RudderTreatment::Recorded, 0.0930, 15.15),
+    (10., 20., RudderTreatment::Projected, 0.1001, 16.32),
+    (10., 10., RudderTreatment::Recorded, 0.0935, 15.09),
+    (10., 10., RudderTreatment::Projected, 0.1001, 16.36),
 ];
 
 /// What the fundamental of an independent search may differ by, rad/s: stated with the anchors.
@@ -71,12 +71,12 @@ pub fn section() -> Section {
             fundamental: Fundamental::Global,
             harmonics: Order::Fixed(HARMONICS),
             rudder: side,
-            response: Response::YawRate,
+            response: RegressionForm::YawRate,
             ..Settings::default()
         };
         let method = settings.build().expect("valid settings");
         let found = method.identify(&[record(rudder, heading, Begin::Mid)]).expect("a zig-zag is identified").response;
-        let name = if side == Rudder::Recorded { "recorded rudder" } else { "rudder projected on the same basis" };
+        let name = if side == RudderTreatment::Recorded { "recorded rudder" } else { "rudder projected on the same basis" };
         for (symbol, published, decimals, ours, unit) in [("K", k, 4, found.K(), "1/s"), ("T", t, 2, found.T(), "s")] {
             checks.push(Check::new(
                 format!("fourier/{rudder}-{heading}/{name}/{symbol}"),

@@ -1,7 +1,7 @@
 //! The bound where the compass has a white and a coloured error at once, which the likelihood of the methods does not
 //! have: the sensitivities of the heading, made white by the filter of those two errors.
 
-use identify::likelihood::track::{Coefficients, Columns, Track, is_backward};
+use identify::likelihood::track::{Coefficients, MotionColumns, Track, is_backward};
 use nalgebra::{Matrix3, Matrix5};
 use ship::FirstOrder;
 use ship::first_order::State;
@@ -30,10 +30,10 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &Com
     if is_backward(a) {
         coefficients.anchor = track.last_state_from(a, &coefficients);
     }
-    let (mut columns, mut by_inverse_time) = (Columns::default(), Vec::new());
+    let (mut columns, mut by_inverse_time) = (MotionColumns::default(), Vec::new());
     track.fill(a, &mut columns);
     track.sensitivity(a, &coefficients, &mut by_inverse_time);
-    let Columns { homogeneous, rudder, constant, .. } = columns;
+    let MotionColumns { homogeneous, rudder, constant, .. } = columns;
     let mut sensitivities = [by_inverse_time, rudder, constant, vec![1.0; track.len()], homogeneous];
     let times: Vec<f64> = track.observed().iter().map(|&row| track.time()[row]).collect();
     whiten(&times, error, &mut sensitivities);

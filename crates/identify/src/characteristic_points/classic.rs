@@ -2,10 +2,10 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 
-use super::found::{Analysed, Found};
+use super::found::{Analysed, PointsFit};
 use super::points::{Point, Points};
 use crate::error::IdentifyError;
-use crate::linear::LeastSquares;
+use estimation::least_squares::LeastSquares;
 
 /// The points one trial contributes.
 struct Used<'a> {
@@ -34,14 +34,14 @@ impl Interval {
     }
 
     /// K (∫δ + δ_r Δt) − Δψ, which is T r.
-    fn rate_moment(&self, gain: &Gain) -> f64 {
+    fn rate_moment(&self, gain: &GainFit) -> f64 {
         gain.gain * self.rudder + gain.gain_bias * self.duration - self.heading
     }
 }
 
 /// K, K δ_r and their covariance.
 #[derive(Debug)]
-struct Gain {
+struct GainFit {
     gain: f64,
     gain_bias: f64,
     /// Covariance of (K, K δ_r) and its degrees of freedom.
@@ -55,7 +55,7 @@ pub(super) fn identify(
     bias: Option<f64>,
     condition_limit: f64,
     three_peaks: bool,
-) -> Result<Found, IdentifyError> {
+) -> Result<PointsFit, IdentifyError> {
     let used = trials
         .iter()
         .map(|trial| if three_peaks { first_three_peaks(&trial.points) } else { Ok(all(&trial.points)) })
@@ -68,7 +68,7 @@ pub(super) fn identify(
         .iter()
         .flat_map(|trial| trial.crossings.iter().filter_map(|crossing| to_crossing(trial.still, crossing)))
         .collect();
-    let gain = Gain::of(&swings, bias, condition_limit)?;
+    let gain = GainFit::of(&swings, bias, condition_limit)?;
     let flat: Vec<Interval> = swings.into_iter().flatten().collect();
     let squares: f64 = rises.iter().map(|rise| rise.rate * rise.rate).sum();
     if rises.is_empty() {
@@ -76,7 +76,7 @@ pub(super) fn identify(
     }
     // The ratio of sums is steadier than the mean of ratios: it weighs by r².
     let time = rises.iter().map(|rise| rise.rate_moment(&gain) * rise.rate).sum::<f64>() / squares;
-    Ok(Found {
+    Ok(PointsFit {
         parameters: [gain.gain, gain.gain_bias, time],
         covariance: covariance(&gain, &rises, time, squares),
         diagnostics: diagnostics(&flat, &rises, &gain),
@@ -105,7 +105,7 @@ fn to_crossing(still: &[Point], crossing: &Point) -> Option<Interval> {
     Some(Interval::between(from, crossing))
 }
 
-impl Gain {
+impl GainFit {
     fn of(swings: &[Vec<Interval>], bias: Option<f64>, condition_limit: f64) -> Result<Self, IdentifyError> {
         let flat = || swings.iter().flatten();
         let count = flat().count();
@@ -165,7 +165,12 @@ fn difference_covariance(
     (expected > 0.0).then(|| inverse * spread * inverse * (solution.rss / expected))
 }
 
-fn covariance(gain: &Gain, rises: &[Interval], time: f64, squares: f64) -> Result<(Matrix3<f64>, f64), &'static str> {
+fn covariance(
+    gain: &GainFit,
+    rises: &[Interval],
+    time: f64,
+    squares: f64,
+) -> Result<(Matrix3<f64>, f64), &'static str> {
     let (of_gain, gain_freedom) = gain.covariance.ok_or("no more swings than unknowns")?;
     let time_freedom = rises.len() as f64 - 1.0;
     if time_freedom < 1.0 {
@@ -189,7 +194,7 @@ fn covariance(gain: &Gain, rises: &[Interval], time: f64, squares: f64) -> Resul
 
 /// K and T of the swings to either side apart, K without the first swing, scatter of T; what does not exist is left
 /// out.
-fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &Gain) -> Vec<(&'static str, f64)> {
+fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &GainFit) -> Vec<(&'static str, f64)> {
     let gain_of = |swings: &[Interval], chosen: &dyn Fn(&Interval) -> bool| {
         let chosen: Vec<&Interval> = swings.iter().filter(|swing| chosen(swing)).collect();
         let squares: f64 = chosen.iter().map(|swing| swing.rudder * swing.rudder).sum();
@@ -229,7 +234,7 @@ mod tests {
         let swing = |rudder, heading| Interval { duration: 20.0, rudder, heading, rate: 0.0 };
         let swings = [swing(3.0, 0.3), swing(0.0, -0.1), swing(0.0, 0.05)];
         let rises = [Interval { rate: 0.01, ..swing(1.0, 0.1) }];
-        let gain = Gain { gain: 0.1, gain_bias: 0.0, covariance: None, condition: 1.0 };
+        let gain = GainFit { gain: 0.1, gain_bias: 0.0, covariance: None, condition: 1.0 };
         let found = diagnostics(&swings, &rises, &gain);
         assert!(found.iter().all(|(_, value)| value.is_finite()), "{found:?}");
         assert!(!found.iter().any(|(name, _)| *name == "K_without_first_swing_per_s"), "{found:?}");

@@ -4,11 +4,11 @@
 
 use nalgebra::Matrix3;
 
-use super::found::{Analysed, Found};
+use super::found::{Analysed, PointsFit};
 use super::points::rudder_integral;
 use crate::error::IdentifyError;
-use crate::linear::LeastSquares;
 use crate::savitzky_golay::local_polynomial;
+use estimation::least_squares::LeastSquares;
 
 /// Columns of T, K, K δ_r and the right-hand side.
 #[derive(Debug, Default)]
@@ -39,7 +39,7 @@ pub(super) fn identify_spread(
     trials: &[Analysed],
     bias: Option<f64>,
     condition_limit: f64,
-) -> Result<Found, IdentifyError> {
+) -> Result<PointsFit, IdentifyError> {
     let mut equations = Equations::default();
     for trial in trials {
         let (width, last) = (trial.points.half_width, trial.samples.time[trial.samples.len() - 1]);
@@ -63,7 +63,7 @@ pub(super) fn identify_at_vertices(
     trials: &[Analysed],
     bias: Option<f64>,
     condition_limit: f64,
-) -> Result<Found, IdentifyError> {
+) -> Result<PointsFit, IdentifyError> {
     let mut equations = Equations::default();
     for trial in trials {
         let [start_heading, start_rate] = if trial.points.from_rest {
@@ -83,7 +83,7 @@ pub(super) fn identify_at_vertices(
         equations.ends.push(equations.heading.len());
     }
     let found = equations.solve(&[], bias, condition_limit)?;
-    Ok(Found { covariance: Err("all of T rests on one slope, whose error no residual shows"), ..found })
+    Ok(PointsFit { covariance: Err("all of T rests on one slope, whose error no residual shows"), ..found })
 }
 
 impl Equations {
@@ -100,7 +100,7 @@ impl Equations {
         (0..self.heading.len()).map(|row| if (start..self.ends[trial]).contains(&row) { 1.0 } else { 0.0 }).collect()
     }
 
-    fn solve(self, origins: &[Vec<f64>], bias: Option<f64>, condition_limit: f64) -> Result<Found, IdentifyError> {
+    fn solve(self, origins: &[Vec<f64>], bias: Option<f64>, condition_limit: f64) -> Result<PointsFit, IdentifyError> {
         let mut columns: Vec<&[f64]> = vec![&self.rudder, &self.time_constant];
         if bias.is_none() {
             columns.push(&self.duration);
@@ -123,7 +123,7 @@ impl Equations {
             };
             (Matrix3::from_fn(entry), solution.degrees_of_freedom)
         });
-        Ok(Found {
+        Ok(PointsFit {
             parameters: [gain, gain_bias, time],
             covariance,
             diagnostics: vec![("condition", solution.condition), ("equations", self.heading.len() as f64)],

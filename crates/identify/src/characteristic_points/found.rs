@@ -14,7 +14,7 @@ pub(super) struct Analysed {
 
 /// What a variant finds, in the parameters of the integrated equation.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(super) struct PointsFit {
     /// K (1/s), K δ_r (rad/s), T (s).
     pub(super) parameters: [f64; 3],
     /// Their covariance and degrees of freedom, or why there is none.

@@ -22,7 +22,7 @@ const FEWEST_INTERVALS: f64 = 3.0;
 
 /// Where a base course comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BaseCourse {
+pub enum BaseHeadingOrigin {
     /// The settings.
     Given,
     /// The mean heading before the first execute.
@@ -58,7 +58,7 @@ pub struct Points {
     /// Base course, rad.
     pub base: f64,
     /// Where it comes from.
-    pub base_from: BaseCourse,
+    pub base_from: BaseHeadingOrigin,
     /// Half width of the fits, s.
     pub half_width: f64,
 }
@@ -85,11 +85,11 @@ impl Points {
         let approach = approach(samples, base, (lo, hi));
         let mean = |rows: Range<usize>| samples.heading[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
         let (base, base_from) = match (base, &approach) {
-            (Some(base), _) => (base, BaseCourse::Given),
-            (None, Some(rows)) => (mean(rows.clone()), BaseCourse::Approach),
+            (Some(base), _) => (base, BaseHeadingOrigin::Given),
+            (None, Some(rows)) => (mean(rows.clone()), BaseHeadingOrigin::Approach),
             // Zero between the quarter points of the headings may well be the base course.
-            (None, None) if (lo + hi).abs() < 0.5 * (hi - lo) => (0.0, BaseCourse::Zero),
-            (None, None) => (0.5 * (lo + hi), BaseCourse::Middle),
+            (None, None) if (lo + hi).abs() < 0.5 * (hi - lo) => (0.0, BaseHeadingOrigin::Zero),
+            (None, None) => (0.5 * (lo + hi), BaseHeadingOrigin::Middle),
         };
         let off_course: Vec<f64> = samples.heading.iter().map(|heading| heading - base).collect();
         let interval = time[time.len() - 1] / (time.len() - 1) as f64;

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::trouble::Trouble;
+use super::process_error::ProcessError;
 
 /// Most bytes of an answer.
 const MOST_BYTES: usize = 4 << 20;
@@ -95,26 +95,26 @@ impl Process {
     }
 
     /// Asks what `write` writes and waits for the line of the answer, without its end.
-    pub fn ask(&mut self, timeout: Duration, write: impl FnOnce(&mut Vec<u8>)) -> Result<Vec<u8>, Trouble> {
+    pub fn ask(&mut self, timeout: Duration, write: impl FnOnce(&mut Vec<u8>)) -> Result<Vec<u8>, ProcessError> {
         let (Some(mut exchange), Some(questions)) = (self.idle.take(), &self.questions) else {
-            return Err(Trouble::Ended(None));
+            return Err(ProcessError::Ended(None));
         };
         exchange.question.clear();
         write(&mut exchange.question);
         exchange.answer.clear();
         if questions.send(exchange).is_err() {
-            return Err(Trouble::Ended(self.status()));
+            return Err(ProcessError::Ended(self.status()));
         }
         let mut exchange = match self.answers.recv_timeout(timeout) {
             Ok(exchange) => exchange,
-            Err(RecvTimeoutError::Timeout) => return Err(Trouble::Silent(timeout)),
-            Err(RecvTimeoutError::Disconnected) => return Err(Trouble::Ended(self.status())),
+            Err(RecvTimeoutError::Timeout) => return Err(ProcessError::Silent(timeout)),
+            Err(RecvTimeoutError::Disconnected) => return Err(ProcessError::Ended(self.status())),
         };
         if exchange.answer.len() > MOST_BYTES {
-            return Err(Trouble::TooLong { most: MOST_BYTES });
+            return Err(ProcessError::TooLong { most: MOST_BYTES });
         }
         if exchange.read.is_err() || exchange.answer.pop_if(|last| *last == b'\n').is_none() {
-            return Err(Trouble::Ended(self.status()));
+            return Err(ProcessError::Ended(self.status()));
         }
         self.answered += 1;
         let answer = std::mem::take(&mut exchange.answer);

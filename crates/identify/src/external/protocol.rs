@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use trial::Trial;
 
 use super::answer::{Answer, Errors};
-use super::trouble::Trouble;
+use super::process_error::ProcessError;
 
 #[derive(Serialize)]
 struct Record<'a> {
@@ -33,13 +33,13 @@ struct Record<'a> {
     heading_rad: &'a [f64],
     rudder_rad: &'a [f64],
     yaw_rate_rad_s: Option<&'a [f64]>,
-    noise: Noise,
+    noise: DeclaredNoise,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     also: Vec<Record<'a>>,
 }
 
 #[derive(Serialize)]
-struct Noise {
+struct DeclaredNoise {
     heading_rad: Option<f64>,
     rudder_rad: Option<f64>,
 }
@@ -53,7 +53,7 @@ impl<'a> Record<'a> {
             heading_rad: trial.heading(),
             rudder_rad: trial.rudder(),
             yaw_rate_rad_s: trial.yaw_rate(),
-            noise: Noise { heading_rad: heading, rudder_rad: rudder },
+            noise: DeclaredNoise { heading_rad: heading, rudder_rad: rudder },
             also: Vec::new(),
         }
     }
@@ -90,19 +90,23 @@ struct Deviations {
 /// Reads the answer to the question with this number; the inner failure is that of the estimator, in its words.
 ///
 /// Fails when the line is no answer to it: no JSON, another number, no K or no T.
-pub fn answer(line: &[u8], number: u64) -> Result<Result<Answer, String>, Trouble> {
+pub fn answer(line: &[u8], number: u64) -> Result<Result<Answer, String>, ProcessError> {
     let reply = read(line)?;
     match reply.trial {
         Some(own) if own == number as f64 => {}
-        Some(other) => return Err(Trouble::Nonsense(format!("an answer to trial {other} where {number} was asked"))),
-        None => return Err(Trouble::Nonsense("an answer without the number of its trial".to_owned())),
+        Some(other) => {
+            return Err(ProcessError::Nonsense(format!("an answer to trial {other} where {number} was asked")));
+        }
+        None => return Err(ProcessError::Nonsense("an answer without the number of its trial".to_owned())),
     }
     if let Some(words) = reply.failed {
         return Ok(Err(words));
     }
     let needed = |name: &str, value: Option<f64>| {
         let is_number = |value: &f64| value.is_finite();
-        value.filter(is_number).ok_or_else(|| Trouble::Nonsense(format!("{name} is missing or is no finite number")))
+        value
+            .filter(is_number)
+            .ok_or_else(|| ProcessError::Nonsense(format!("{name} is missing or is no finite number")))
     };
     let (K, T) = (needed("K_per_s", reply.K_per_s)?, needed("T_s", reply.T_s)?);
     Ok(Ok(Answer { K, T, rudder_bias: reply.delta_r_rad.unwrap_or(0.0), errors: errors(&reply.covariance, reply.sd) }))
@@ -121,10 +125,10 @@ fn errors(covariance: &Option<[[Option<f64>; 3]; 3]>, sd: Option<Deviations>) ->
     }
 }
 
-fn read(line: &[u8]) -> Result<Reply, Trouble> {
+fn read(line: &[u8]) -> Result<Reply, ProcessError> {
     let refuse = |error: serde_json::Error| match error.is_data() {
-        true => Trouble::Nonsense(format!("not an answer: {error}")),
-        false => Trouble::Nonsense(format!("not JSON: {}", String::from_utf8_lossy(line))),
+        true => ProcessError::Nonsense(format!("not an answer: {error}")),
+        false => ProcessError::Nonsense(format!("not JSON: {}", String::from_utf8_lossy(line))),
     };
     match serde_json::from_slice(line) {
         // Many a library writes NaN where JSON has only null.

@@ -23,12 +23,12 @@ pub struct Nested {
     rows: usize,
     /// X, or the two halves of it, column by column.
     columns: Vec<Vec<f64>>,
-    parts: Vec<Part>,
+    parts: Vec<OrthogonalPart>,
 }
 
 /// Columns of X that are orthogonal to all others.
 #[derive(Debug, Clone)]
-struct Part {
+struct OrthogonalPart {
     /// Which, in rising order.
     places: Vec<usize>,
     qr: QR<f64, Dyn, Dyn>,
@@ -54,7 +54,7 @@ pub struct Projection {
     pub r_squared: f64,
 }
 
-impl Part {
+impl OrthogonalPart {
     fn new(places: Vec<usize>, columns: &[Vec<f64>]) -> Self {
         let values: Vec<f64> = places.iter().flat_map(|&place| &columns[place]).copied().collect();
         let qr = DMatrix::from_vec(columns[0].len(), places.len(), values).qr();
@@ -106,9 +106,9 @@ impl Nested {
         let parts = if folded {
             let [even, odd] =
                 [places(|place| place == 0 || place % 2 == 1), places(|place| place > 0 && place % 2 == 0)];
-            [even, odd].into_iter().map(|places| Part::new(places, &columns)).collect()
+            [even, odd].into_iter().map(|places| OrthogonalPart::new(places, &columns)).collect()
         } else {
-            vec![Part::new(places(|_| true), &columns)]
+            vec![OrthogonalPart::new(places(|_| true), &columns)]
         };
         Ok(Self { fundamental, harmonics, centre, rows, columns, parts })
     }
@@ -127,7 +127,7 @@ impl Nested {
 
     /// The basis with the first `harmonics` of its harmonics, at least one where there are any.
     pub fn basis(self, harmonics: usize) -> Basis {
-        let triangle = |part: &Part| {
+        let triangle = |part: &OrthogonalPart| {
             let width = part.places(harmonics).len();
             part.qr.r().view((0, 0), (width, width)).into_owned().svd(true, true)
         };
@@ -200,7 +200,7 @@ impl Basis {
     }
 
     /// The parts of the series with the places of their columns in this basis and the decomposition of their triangle.
-    fn parts(&self) -> impl Iterator<Item = (&Part, &[usize], &SVD<f64, Dyn, Dyn>)> {
+    fn parts(&self) -> impl Iterator<Item = (&OrthogonalPart, &[usize], &SVD<f64, Dyn, Dyn>)> {
         self.series.parts.iter().zip(&self.svd).map(|(part, svd)| (part, part.places(self.harmonics), svd))
     }
 

@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 use super::profile::Profile;
 use crate::error::IdentifyError;
 use crate::estimate::StopReason;
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, require};
 
 /// How the fundamental is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -34,7 +34,7 @@ pub enum Fundamental {
 
 /// A fundamental and how it was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Choice {
+pub struct ChosenFundamental {
     /// w, rad/s.
     pub fundamental: f64,
     /// Why the search stopped.
@@ -59,21 +59,18 @@ const DESCENT_STEP: f64 = 0.15;
 impl Fundamental {
     /// Refuses settings that cannot mean anything.
     pub fn check(&self) -> Result<(), SettingsError> {
-        match self {
-            Self::RecordAndPeriods(x) if !(*x >= 0.0 && *x <= 2.0) => {
-                Err(SettingsError::new("fundamental.record-and-periods", Shown(*x), "0 to 2 periods"))
-            }
-            _ => Ok(()),
-        }
+        let Self::RecordAndPeriods(periods) = self else { return Ok(()) };
+        let holds = (0.0..=2.0).contains(periods);
+        require(holds, "fundamental.record-and-periods", Shown(*periods), "0 to 2 periods")
     }
 
     /// Chooses w for `heading` (rad) at `time` (s, increasing), to be used with `harmonics` harmonics.
     ///
     /// Fails with [`IdentifyError::TooFewPoints`] when a rule that needs the zig-zag period finds fewer than two
     /// crossings.
-    pub fn choose(&self, time: &[f64], heading: &[f64], harmonics: usize) -> Result<Choice, IdentifyError> {
+    pub fn choose(&self, time: &[f64], heading: &[f64], harmonics: usize) -> Result<ChosenFundamental, IdentifyError> {
         let length = time[time.len() - 1] - time[0];
-        let direct = |fundamental| Choice { fundamental, stop: StopReason::Direct, evaluations: 0 };
+        let direct = |fundamental| ChosenFundamental { fundamental, stop: StopReason::Direct, evaluations: 0 };
         let peak = || peak_of_transform(time, heading);
         Ok(match self {
             Self::RecordAndPeriods(periods) => direct(TAU / (length + periods * zero_crossing_period(time, heading)?)),
@@ -86,17 +83,17 @@ impl Fundamental {
 }
 
 /// Local searches from every start (rad/s), the lowest RSS kept.
-fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) -> Choice {
+fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
     let length = time[time.len() - 1] - time[0];
     let mut profile = Profile::new(time, heading, harmonics);
-    let ends: Vec<(f64, Choice)> =
+    let ends: Vec<(f64, ChosenFundamental)> =
         starts.iter().map(|&start| descend(&mut profile, start, length, harmonics)).collect();
     let (_, choice) = ends.into_iter().min_by(|one, other| one.0.total_cmp(&other.0)).expect("there is a start");
-    Choice { evaluations: profile.evaluations(), ..choice }
+    ChosenFundamental { evaluations: profile.evaluations(), ..choice }
 }
 
 /// Walks downhill from `from` in steps too small to leave a basin, then closes in on the minimum.
-fn descend(profile: &mut Profile, from: f64, length: f64, harmonics: usize) -> (f64, Choice) {
+fn descend(profile: &mut Profile, from: f64, length: f64, harmonics: usize) -> (f64, ChosenFundamental) {
     let step = DESCENT_STEP * PI / (harmonics as f64 * length);
     let (floor, ceiling) = (FEWEST_PERIODS * TAU / length, from.max(TAU / length) * 2.0);
     let start = from.max(floor);
@@ -109,7 +106,7 @@ fn descend(profile: &mut Profile, from: f64, length: f64, harmonics: usize) -> (
     loop {
         let next = at(steps + 1);
         if next < floor || next > ceiling {
-            return (value, Choice { fundamental: at(steps), stop: StopReason::RangeLimit, evaluations: 0 });
+            return (value, ChosenFundamental { fundamental: at(steps), stop: StopReason::RangeLimit, evaluations: 0 });
         }
         let ahead = walk.next_rss();
         if ahead >= value || ahead.is_nan() {
@@ -119,7 +116,7 @@ fn descend(profile: &mut Profile, from: f64, length: f64, harmonics: usize) -> (
     }
     let (behind, ahead) = (at(steps - 1), at(steps + 1));
     let (fundamental, rss) = close_in(profile, behind.min(ahead), at(steps), behind.max(ahead), value);
-    (rss, Choice { fundamental, stop: StopReason::Converged, evaluations: 0 })
+    (rss, ChosenFundamental { fundamental, stop: StopReason::Converged, evaluations: 0 })
 }
 
 /// Minimum of RSS between `lo` and `hi` from an inner point `middle` with RSS `value`: Brent (1973), parabolas with
@@ -176,7 +173,7 @@ fn close_in(profile: &mut Profile, lo: f64, middle: f64, hi: f64, value: f64) ->
 }
 
 /// The lowest RSS on a grid of fundamentals, closed in on.
-fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> Choice {
+fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
     let length = time[time.len() - 1] - time[0];
     let peak = peak_of_transform(time, heading);
     let lowest = (FEWEST_PERIODS * TAU / length).max(LEAST_REACH * peak / harmonics as f64);
@@ -189,7 +186,7 @@ fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> Choice {
     let at = |k: usize| lowest + k as f64 * step;
     let (lo, hi) = (at(best.saturating_sub(1)), at((best + 1).min(last)));
     let (fundamental, _) = close_in(&mut profile, lo, at(best), hi, rss[best]);
-    Choice { fundamental, stop, evaluations: profile.evaluations() }
+    ChosenFundamental { fundamental, stop, evaluations: profile.evaluations() }
 }
 
 /// Angular frequency, rad/s, of the highest peak of the transform of the heading about its mean, from one period a

@@ -13,13 +13,13 @@
 //! | triples of instants, eq. (10) of the paper | [`triples`] |
 //! | regression on a pair of projected signals | [`regression`] |
 
-pub mod basis;
+pub(crate) mod basis;
 mod curve;
-pub mod fundamental;
+pub(crate) mod fundamental;
 mod nodes;
 mod profile;
 pub mod regression;
-pub mod triples;
+pub(crate) mod triples;
 
 pub use basis::{Basis, Projection};
 pub use curve::FourierFit;

@@ -11,7 +11,7 @@ use ship::FirstOrder;
 
 use super::basis::{Basis, Projection};
 use crate::error::IdentifyError;
-use crate::linear::LeastSquares;
+use estimation::least_squares::LeastSquares;
 
 /// The side of the equation of motion that the other terms are regressed on.
 ///
@@ -19,7 +19,7 @@ use crate::linear::LeastSquares;
 /// its signal than that of r', by about the highest frequency of the series over that of the zig-zag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Response {
+pub enum RegressionForm {
     /// r' = −(1/T) r + (K/T) δ + (K/T) δ_r: the less biased of the two.
     #[default]
     YawAcceleration,
@@ -107,7 +107,7 @@ impl Equations {
     /// Fails with [`IdentifyError::Singular`] when the condition number of the scaled equations exceeds
     /// `condition_limit`, with [`IdentifyError::TooFewPoints`] below three equations, and with
     /// [`IdentifyError::NotAShip`] when K/T is not positive.
-    pub fn solve(&self, response: Response, condition_limit: f64) -> Result<Solution, IdentifyError> {
+    pub fn solve(&self, response: RegressionForm, condition_limit: f64) -> Result<Solution, IdentifyError> {
         let one = vec![1.0; self.len()];
         let (left, right) = self.sides(response);
         let minus_right: Vec<f64> = right.iter().map(|x| -x).collect();
@@ -116,8 +116,8 @@ impl Equations {
         let (p, q, s) = (parameters[0], parameters[1], parameters[2]);
         // (1/T, K/T, δ_r) and its derivative by the parameters.
         let (a, b, to_response) = match response {
-            Response::YawAcceleration => (p, q, [RowVector3::new(1.0, 0.0, 0.0), RowVector3::new(0.0, 1.0, 0.0)]),
-            Response::YawRate => {
+            RegressionForm::YawAcceleration => (p, q, [RowVector3::new(1.0, 0.0, 0.0), RowVector3::new(0.0, 1.0, 0.0)]),
+            RegressionForm::YawRate => {
                 let by_T = -1.0 / (p * p);
                 (1.0 / p, q / p, [RowVector3::new(by_T, 0.0, 0.0), RowVector3::new(q * by_T, 1.0 / p, 0.0)])
             }
@@ -139,10 +139,10 @@ impl Equations {
     }
 
     /// Left side y and regressor x of y = −p x + q δ + s.
-    fn sides(&self, response: Response) -> (&[f64], &[f64]) {
+    fn sides(&self, response: RegressionForm) -> (&[f64], &[f64]) {
         match response {
-            Response::YawAcceleration => (&self.yaw_acceleration, &self.yaw_rate),
-            Response::YawRate => (&self.yaw_rate, &self.yaw_acceleration),
+            RegressionForm::YawAcceleration => (&self.yaw_acceleration, &self.yaw_rate),
+            RegressionForm::YawRate => (&self.yaw_rate, &self.yaw_acceleration),
         }
     }
 
@@ -150,14 +150,14 @@ impl Equations {
     ///
     /// d(Zᵀe) = Zᵀ(dy + p dx) − (eᵀdx, 0, 0)ᵀ: the noise of the equations, and the noise of the regressor against what
     /// the truncated series leaves of them. dx and dy are linear in the coefficients, whose covariance is σ²(XᵀX)⁻¹.
-    fn spread_of_moments(&self, response: Response, parameters: &Vector3<f64>) -> Matrix3<f64> {
+    fn spread_of_moments(&self, response: RegressionForm, parameters: &Vector3<f64>) -> Matrix3<f64> {
         let (p, q, s) = (parameters[0], parameters[1], parameters[2]);
         let mut total = Matrix3::zeros();
         for Block { moments: [by_rate, by_acceleration], covariance } in &self.trials {
             // Places of y and x among the signals.
             let (dy, dx, y, x) = match response {
-                Response::YawAcceleration => (by_acceleration, by_rate, 1, 0),
-                Response::YawRate => (by_rate, by_acceleration, 0, 1),
+                RegressionForm::YawAcceleration => (by_acceleration, by_rate, 1, 0),
+                RegressionForm::YawRate => (by_rate, by_acceleration, 0, 1),
             };
             let with_equation = |signal: usize| &dy[signal] + p * &dx[signal];
             let with_rest = &dx[y] + p * &dx[x] - q * &dx[RUDDER] - s * &dx[ONE];
@@ -196,7 +196,7 @@ mod tests {
         let case = Case { bias_deg: 1.0, ..Case::default() };
         let Truth { yaw_rate, yaw_acceleration, rudder, .. } = case.truth();
         let equations = Equations { yaw_acceleration, yaw_rate, rudder, trials: Vec::new() };
-        for response in [Response::YawAcceleration, Response::YawRate] {
+        for response in [RegressionForm::YawAcceleration, RegressionForm::YawRate] {
             let found = equations.solve(response, 1e4).expect("well conditioned").response;
             assert_relative_eq!(found.K(), case.K, max_relative = 1e-9);
             assert_relative_eq!(found.T(), case.T, max_relative = 1e-9);

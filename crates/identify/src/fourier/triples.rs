@@ -38,7 +38,7 @@ pub enum Selection {
 
 /// An instant at which the equation of motion may be written.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Instant {
+pub struct EquationInstant {
     /// Rudder δ, rad.
     pub rudder: f64,
     /// Yaw rate r, rad/s.
@@ -77,7 +77,12 @@ pub struct Drawn {
 ///
 /// Fails with [`IdentifyError::TooFewPoints`] when there are fewer than three instants or `count` triples do not come
 /// together in a thousand draws each.
-pub fn draw(instants: &[Instant], selection: Selection, count: usize, seed: u64) -> Result<Drawn, IdentifyError> {
+pub fn draw(
+    instants: &[EquationInstant],
+    selection: Selection,
+    count: usize,
+    seed: u64,
+) -> Result<Drawn, IdentifyError> {
     if instants.len() < 3 {
         let what = "instants with the rudder at rest";
         return Err(IdentifyError::TooFewPoints { what, needed: 3, found: instants.len() });
@@ -112,10 +117,10 @@ pub fn draw(instants: &[Instant], selection: Selection, count: usize, seed: u64)
 
 /// The answer of three instants; `None` when they lie on a line in the plane of rudder and r' (to rounding), both
 /// measured in `scale` (standard deviations of r' and δ).
-pub fn solve(triple: &[Instant; 3], scale: [f64; 2]) -> Option<Answer> {
+pub fn solve(triple: &[EquationInstant; 3], scale: [f64; 2]) -> Option<Answer> {
     let [first, second, third] = triple;
     // Differences against the third instant eliminate K δ_r.
-    let difference = |i: &Instant| {
+    let difference = |i: &EquationInstant| {
         (i.yaw_acceleration - third.yaw_acceleration, i.yaw_rate - third.yaw_rate, i.rudder - third.rudder)
     };
     let ((a1, r1, d1), (a2, r2, d2)) = (difference(first), difference(second));
@@ -129,7 +134,7 @@ pub fn solve(triple: &[Instant; 3], scale: [f64; 2]) -> Option<Answer> {
 }
 
 /// Condition number of the three equations with scaled columns.
-fn condition(triple: &[Instant; 3], scale: [f64; 2]) -> f64 {
+fn condition(triple: &[EquationInstant; 3], scale: [f64; 2]) -> f64 {
     let rows = Matrix3::from_fn(|row, column| match column {
         0 => triple[row].yaw_acceleration / scale[0],
         1 => triple[row].rudder / scale[1],
@@ -140,7 +145,7 @@ fn condition(triple: &[Instant; 3], scale: [f64; 2]) -> f64 {
     values.max() / values.min()
 }
 
-fn deviation(instants: &[Instant], of: impl Fn(&Instant) -> f64) -> f64 {
+fn deviation(instants: &[EquationInstant], of: impl Fn(&EquationInstant) -> f64) -> f64 {
     let count = instants.len() as f64;
     let mean = instants.iter().map(&of).sum::<f64>() / count;
     (instants.iter().map(|i| (of(i) - mean).powi(2)).sum::<f64>() / count).sqrt()
@@ -152,10 +157,10 @@ mod tests {
     use crate::testing::Case;
     use approx::{assert_abs_diff_eq, assert_relative_eq};
 
-    fn exact(case: &Case) -> Vec<Instant> {
+    fn exact(case: &Case) -> Vec<EquationInstant> {
         let truth = case.truth();
         (0..truth.time.len())
-            .map(|row| Instant {
+            .map(|row| EquationInstant {
                 rudder: truth.rudder[row],
                 yaw_rate: truth.yaw_rate[row],
                 yaw_acceleration: truth.yaw_acceleration[row],

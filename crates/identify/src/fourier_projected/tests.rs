@@ -19,12 +19,12 @@ fn zigzag(rudder_deg: f64, heading_deg: f64) -> Case {
 }
 
 /// The settings of the published method, samples instead of triples.
-fn plain(rudder: Rudder) -> Settings {
+fn plain(rudder: RudderTreatment) -> Settings {
     Settings {
         fundamental: Fundamental::Global,
         harmonics: Order::Fixed(8),
         rudder,
-        response: Response::YawRate,
+        response: RegressionForm::YawRate,
         ..Settings::default()
     }
 }
@@ -34,10 +34,10 @@ fn plain(rudder: Rudder) -> Settings {
 #[test]
 fn least_squares_with_raw_and_projected_rudder_give_the_known_values() {
     for (case, rudder, gain, time_constant) in [
-        (zigzag(10.0, 20.0), Rudder::Recorded, 0.0930, 15.15),
-        (zigzag(10.0, 20.0), Rudder::Projected, 0.1001, 16.32),
-        (zigzag(10.0, 10.0), Rudder::Recorded, 0.0935, 15.09),
-        (zigzag(10.0, 10.0), Rudder::Projected, 0.1001, 16.36),
+        (zigzag(10.0, 20.0), RudderTreatment::Recorded, 0.0930, 15.15),
+        (zigzag(10.0, 20.0), RudderTreatment::Projected, 0.1001, 16.32),
+        (zigzag(10.0, 10.0), RudderTreatment::Recorded, 0.0935, 15.09),
+        (zigzag(10.0, 10.0), RudderTreatment::Projected, 0.1001, 16.36),
     ] {
         let response = estimate(plain(rudder), &case).response;
         assert_relative_eq!(response.K(), gain, max_relative = 0.01);
@@ -76,7 +76,7 @@ fn reported_errors_are_those_of_repetition() {
     for (settings, noise_deg) in [
         (Settings::default(), 0.1),
         (Settings { harmonics: Order::Fixed(8), ..Settings::default() }, 0.5),
-        (plain(Rudder::Projected), 0.1),
+        (plain(RudderTreatment::Projected), 0.1),
     ] {
         let method = build(settings);
         let mut columns: [Vec<[f64; 2]>; 3] = Default::default();
@@ -184,7 +184,7 @@ fn truncation_is_told_from_noise() {
 #[test]
 fn an_ill_conditioned_basis_is_refused() {
     let case = Case { start: Start::Rest, ..zigzag(10.0, 20.0) };
-    let error = build(plain(Rudder::Projected)).identify(&[case.trial()]).expect_err("condition 1.4e6");
+    let error = build(plain(RudderTreatment::Projected)).identify(&[case.trial()]).expect_err("condition 1.4e6");
     assert!(matches!(error, IdentifyError::Singular { condition, limit } if condition > 1e5 && limit == 1e4));
 }
 

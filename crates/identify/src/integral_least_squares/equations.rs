@@ -16,13 +16,13 @@ const WIDTH: usize = SHARED + 1;
 
 /// One stretch without a gap: its times and the columns of its equations.
 #[derive(Debug)]
-pub(super) struct Piece<'a> {
+pub(super) struct IntegratedStretch<'a> {
     pub(super) time: &'a [f64],
     /// The columns of a, b, b δ_r (rad s, rad s², s²) and the heading (rad).
     pub(super) columns: [Vec<f64>; WIDTH],
 }
 
-impl<'a> Piece<'a> {
+impl<'a> IntegratedStretch<'a> {
     /// Takes the rows of a stretch with origins of its own: what is linear in time belongs to the initial state, so
     /// that nothing but lost digits depends on them.
     pub(super) fn new(samples: &'a Samples, range: Range<usize>) -> Self {
@@ -98,7 +98,7 @@ pub(super) struct Solution {
 
 impl Solution {
     /// Solves, and leaves the rows of the pieces projected.
-    pub(super) fn of(pieces: &mut [Piece], condition_limit: f64) -> Result<Self, IdentifyError> {
+    pub(super) fn of(pieces: &mut [IntegratedStretch], condition_limit: f64) -> Result<Self, IdentifyError> {
         let (mut lengths, mut products) = (Vector3::zeros(), Matrix4::zeros());
         for piece in pieces {
             piece.project(&mut lengths, &mut products);

@@ -3,11 +3,11 @@
 use estimation::column::{dot, gram};
 use nalgebra::Matrix3;
 
-use super::equations::{Piece, SHARED, Solution};
+use super::equations::{IntegratedStretch, SHARED, Solution};
 
 /// Heading noise found in the residual and its way into the parameters.
 #[derive(Debug)]
-pub(super) struct Noise {
+pub(super) struct HeadingNoise {
     /// Variance of the heading noise, rad²; `None` without degrees of freedom.
     pub variance: Option<f64>,
     /// Equations less unknowns.
@@ -23,9 +23,9 @@ pub(super) struct Noise {
     pub scores: Vec<[Vec<f64>; SHARED]>,
 }
 
-impl Noise {
+impl HeadingNoise {
     /// From projected pieces and their solution.
-    pub fn of(pieces: &[Piece], solution: &Solution) -> Self {
+    pub fn of(pieces: &[IntegratedStretch], solution: &Solution) -> Self {
         let count: usize = pieces.iter().map(|piece| piece.time.len()).sum();
         let degrees_of_freedom = count as f64 - (SHARED + 2 * pieces.len()) as f64;
         let (mut squares, mut products) = (0.0, 0.0);
@@ -49,7 +49,7 @@ impl Noise {
 }
 
 /// Solves e = n + a ∫n (trapezoid) for n, in the direction of time in which errors die out.
-fn heading_noise(piece: &Piece, solution: &Solution) -> Vec<f64> {
+fn heading_noise(piece: &IntegratedStretch, solution: &Solution) -> Vec<f64> {
     let [a, b, beta] = solution.parameters.into();
     let [x0, x1, x2, y] = &piece.columns;
     let columns = y.iter().zip(x0.iter().zip(x1.iter().zip(x2)));
@@ -83,7 +83,7 @@ fn heading_noise(piece: &Piece, solution: &Solution) -> Vec<f64> {
 ///
 /// A heading enters its own equation with weight 1 + a h/2 and every later one with a (h + h')/2, where h and h' are
 /// the intervals before and after it; hence one pass backwards with the sum of the later columns.
-fn influences(piece: &Piece, solution: &Solution) -> [Vec<f64>; SHARED] {
+fn influences(piece: &IntegratedStretch, solution: &Solution) -> [Vec<f64>; SHARED] {
     let half_a = 0.5 * solution.parameters[0];
     let [x0, x1, x2, _] = &piece.columns;
     let rows = piece.time.len();

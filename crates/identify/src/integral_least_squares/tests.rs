@@ -4,8 +4,8 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use ship::angle::from_deg;
 
 use super::*;
-use crate::linear::LeastSquares;
 use crate::testing::{Case, Start, record};
+use estimation::least_squares::LeastSquares;
 
 fn identify(trials: &[Trial]) -> Estimate {
     Settings::default().build().expect("valid").identify(trials).expect("identifiable")
@@ -112,7 +112,7 @@ fn normal_equations_agree_with_singular_values() {
     let heading = trial.heading().iter().map(|psi| psi + from_deg(350.0)).collect();
     let trial = record("base course", trial.time().to_vec(), heading, trial.rudder().to_vec());
     let samples = Samples::new(&trial, 8).expect("valid");
-    let piece = Piece::new(&samples, 0..samples.len());
+    let piece = IntegratedStretch::new(&samples, 0..samples.len());
     let columns = piece.columns;
     let one = vec![1.0; samples.len()];
     let reference =

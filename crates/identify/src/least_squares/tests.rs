@@ -15,7 +15,7 @@ fn gyro() -> Settings {
     Settings { signal: Signal::YawRate, ..Settings::default() }
 }
 
-fn method(settings: Settings) -> LeastSquares {
+fn method(settings: Settings) -> MotionRegression {
     settings.build().expect("valid settings")
 }
 

@@ -6,7 +6,7 @@ use estimation::with_states;
 use trial::noise_model::Moment;
 
 use super::parameters::{NoiseParameters, NoiseVector};
-use super::schedule::{Instrument, Schedule};
+use super::schedule::{ReadingKind, Schedule};
 use super::transition::step;
 
 /// The system of some noise on a schedule, with variances of the initial heading and yaw rate in units of that of the
@@ -34,11 +34,11 @@ fn system<R: Real, const N: usize>(
         Sensor { state: 1, beside: None, variance: parameters.gyro * parameters.gyro },
     ];
     let steps: Vec<Step<R, N>> = schedule.spans.iter().map(|span| step(parameters, span)).collect();
-    let reading = |reading: &super::schedule::Reading| Reading {
+    let reading = |reading: &super::schedule::ScheduledReading| Reading {
         step: reading.step,
         sensor: match reading.of {
-            Instrument::Heading => 0,
-            Instrument::YawRate => 1,
+            ReadingKind::Heading => 0,
+            ReadingKind::YawRate => 1,
         },
     };
     System { steps, sensors, readings: schedule.readings.iter().map(reading).collect(), initial: covariance }

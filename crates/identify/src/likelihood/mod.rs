@@ -28,7 +28,7 @@ use trial::noise_model::NoiseModel;
 pub use filter::{differentiated, whitener};
 pub use parameters::{NoiseParameters, NoiseVector};
 pub use schedule::Schedule;
-pub use track::{Columns, Track};
+pub use track::{MotionColumns, Track};
 
 /// Log-likelihood of the headings of a trial (and of its yaw rates, where `noise` has a gyro) for a known ship and
 /// known noise.
@@ -44,7 +44,7 @@ pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, init
     let unit = noise.heading_sd;
     let filter = whitener(&schedule, &parameters, initial_sd.map(|sd| (sd / unit).powi(2)));
     // The columns are from rest at the first row, where the prior stands.
-    let mut columns = Columns::default();
+    let mut columns = MotionColumns::default();
     track.fill_from_first(ship.inverse_T, &mut columns);
     let offset = ship.K_over_T * ship.rudder_bias;
     let motion = |forced: &[f64], turned: &[f64]| -> Vec<f64> {

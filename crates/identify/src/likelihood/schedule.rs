@@ -4,7 +4,7 @@ use super::track::{Track, differs};
 
 /// What is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Instrument {
+pub enum ReadingKind {
     /// The compass.
     Heading,
     /// The gyro.
@@ -13,11 +13,11 @@ pub enum Instrument {
 
 /// A reading.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reading {
+pub struct ScheduledReading {
     /// The kind of step that leads to it; `None` when no time passes.
     pub step: Option<usize>,
     /// The instrument.
-    pub of: Instrument,
+    pub of: ReadingKind,
 }
 
 /// Time from one reading to the next, in pieces between rows of the rudder.
@@ -44,7 +44,7 @@ pub struct Schedule {
     /// The kinds of steps.
     pub spans: Vec<Span>,
     /// The readings.
-    pub readings: Vec<Reading>,
+    pub readings: Vec<ScheduledReading>,
     /// For every reading, its number among those of its instrument.
     numbers: Vec<usize>,
 }
@@ -74,12 +74,12 @@ impl Schedule {
             last = Some(row);
             let both = headings.peek() == rates.peek();
             if headings.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading { step, of: Instrument::Heading });
+                schedule.readings.push(ScheduledReading { step, of: ReadingKind::Heading });
                 schedule.numbers.push(heading);
                 heading += 1;
             }
             if rates.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading { step: step.filter(|_| !both), of: Instrument::YawRate });
+                schedule.readings.push(ScheduledReading { step: step.filter(|_| !both), of: ReadingKind::YawRate });
                 schedule.numbers.push(rate);
                 rate += 1;
             }
@@ -102,9 +102,9 @@ impl Schedule {
         if self.readings.len() == heading.len() {
             return heading.to_vec();
         }
-        let of = |(reading, &number): (&Reading, &usize)| match reading.of {
-            Instrument::Heading => heading[number],
-            Instrument::YawRate => yaw_rate[number],
+        let of = |(reading, &number): (&ScheduledReading, &usize)| match reading.of {
+            ReadingKind::Heading => heading[number],
+            ReadingKind::YawRate => yaw_rate[number],
         };
         self.readings.iter().zip(&self.numbers).map(of).collect()
     }

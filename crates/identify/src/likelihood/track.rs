@@ -18,8 +18,10 @@ const SAME_STEP: f64 = 1e-9;
 pub struct Track {
     time: Vec<f64>,
     rudder: Vec<f64>,
-    /// Interval after every row but the last, and the rudder rate in it; s and rad/s.
+    /// What lies between a row and the next.
     intervals: Vec<Interval>,
+    /// Corners of the rudder between rows, in order.
+    corners: Vec<CornerAfterRow>,
     /// Rows that have a heading, in order.
     observed: Vec<usize>,
     /// Heading of the observed rows, rad.
@@ -37,13 +39,21 @@ struct Interval {
     length: f64,
     /// Rudder rate, rad/s; with a corner, that before it.
     rudder_rate: f64,
-    /// Time from the row to a corner of the rudder, s, and the rudder rate after it, rad/s.
-    corner: Option<(f64, f64)>,
+}
+
+/// A corner of the rudder between a row and the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct CornerAfterRow {
+    row: usize,
+    /// Time from the row to it, s.
+    after: f64,
+    /// Rudder rate behind it, rad/s.
+    rudder_rate: f64,
 }
 
 /// A step from one row to the next, in either direction of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub struct TrackStep {
     /// The row before.
     pub from: usize,
     /// The row after.
@@ -76,7 +86,7 @@ impl Bend {
 
 /// The columns beside the constant one, at the observed rows.
 #[derive(Debug, Clone, Default)]
-pub struct Columns {
+pub struct MotionColumns {
     /// φ₁(t − t₁), s.
     pub homogeneous: Vec<f64>,
     /// G, rad s².
@@ -132,9 +142,10 @@ impl Track {
         let time = trial.time();
         let mut track = Self::of(time[first..=last].to_vec(), trial.rudder()[first..=last].to_vec(), observed, heading);
         for corner in trial.rudder_corners().iter().filter(|corner| (first..last).contains(&corner.row)) {
-            let interval = &mut track.intervals[corner.row - first];
-            interval.rudder_rate = corner.before;
-            interval.corner = Some((corner.time - time[corner.row], corner.after));
+            let row = corner.row - first;
+            track.intervals[row].rudder_rate = corner.before;
+            let (after, rudder_rate) = (corner.time - time[corner.row], corner.after);
+            track.corners.push(CornerAfterRow { row, after, rudder_rate });
         }
         track
     }
@@ -142,10 +153,11 @@ impl Track {
     fn of(time: Vec<f64>, rudder: Vec<f64>, observed: Vec<usize>, heading: Vec<f64>) -> Self {
         let interval = |(t, delta): (&[f64], &[f64])| {
             let length = t[1] - t[0];
-            Interval { length, rudder_rate: (delta[1] - delta[0]) / length, corner: None }
+            Interval { length, rudder_rate: (delta[1] - delta[0]) / length }
         };
         let intervals = time.windows(2).zip(rudder.windows(2)).map(interval).collect();
-        Self { time, rudder, intervals, observed, heading, observed_rates: Vec::new(), rates: Vec::new() }
+        let (corners, observed_rates, rates) = (Vec::new(), Vec::new(), Vec::new());
+        Self { time, rudder, intervals, corners, observed, heading, observed_rates, rates }
     }
 
     /// The same with the yaw rates of its trial, if they are to be used.
@@ -206,25 +218,31 @@ impl Track {
         self.time[self.time.len() - 1] - self.time[0]
     }
 
-    /// Number of steps between rows.
+    /// The steps from the anchor away.
     #[inline(always)]
-    pub fn steps(&self) -> usize {
-        self.intervals.len()
-    }
-
-    /// The `k`-th step from the anchor away.
-    #[inline(always)]
-    pub fn step(&self, k: usize, backward: bool) -> Step {
-        let row = if backward { self.intervals.len() - 1 - k } else { k };
-        let Interval { length, rudder_rate, corner } = self.intervals[row];
-        if backward {
-            let bend = corner.map(|(at, after)| Bend { rest: -at, change: rudder_rate - after });
-            let rudder_rate = corner.map_or(rudder_rate, |(_, after)| after);
-            Step { from: row + 1, to: row, length: -length, rudder_rate, bend }
-        } else {
-            let bend = corner.map(|(at, after)| Bend { rest: length - at, change: after - rudder_rate });
-            Step { from: row, to: row + 1, length, rudder_rate, bend }
-        }
+    pub fn steps(&self, backward: bool) -> impl Iterator<Item = TrackStep> {
+        let (rows, count) = (self.intervals.len(), self.corners.len());
+        let corner_at = move |passed: usize| {
+            (passed < count).then(|| self.corners[if backward { count - 1 - passed } else { passed }])
+        };
+        let (mut passed, mut next) = (0, corner_at(0));
+        (0..rows).map(move |k| {
+            let row = if backward { rows - 1 - k } else { k };
+            let Interval { length, rudder_rate } = self.intervals[row];
+            let corner = next.filter(|corner| corner.row == row);
+            if corner.is_some() {
+                passed += 1;
+                next = corner_at(passed);
+            }
+            if backward {
+                let bend = corner.map(|own| Bend { rest: -own.after, change: rudder_rate - own.rudder_rate });
+                let rudder_rate = corner.map_or(rudder_rate, |own| own.rudder_rate);
+                TrackStep { from: row + 1, to: row, length: -length, rudder_rate, bend }
+            } else {
+                let bend = corner.map(|own| Bend { rest: length - own.after, change: own.rudder_rate - rudder_rate });
+                TrackStep { from: row, to: row + 1, length, rudder_rate, bend }
+            }
+        })
     }
 
     fn anchor_row(&self, backward: bool) -> usize {
@@ -232,18 +250,18 @@ impl Track {
     }
 
     /// Fills the columns for a = `inverse_time`, 1/s.
-    pub fn fill(&self, inverse_time: f64, columns: &mut Columns) {
+    pub fn fill(&self, inverse_time: f64, columns: &mut MotionColumns) {
         self.fill_from(is_backward(inverse_time), inverse_time, columns);
     }
 
     /// The same with the anchor at the first row, whatever the sign of a.
-    pub fn fill_from_first(&self, inverse_time: f64, columns: &mut Columns) {
+    pub fn fill_from_first(&self, inverse_time: f64, columns: &mut MotionColumns) {
         self.fill_from(false, inverse_time, columns);
     }
 
-    fn fill_from(&self, backward: bool, inverse_time: f64, columns: &mut Columns) {
+    fn fill_from(&self, backward: bool, inverse_time: f64, columns: &mut MotionColumns) {
         let (rows, anchor) = (self.time.len(), self.anchor_row(backward));
-        let Columns { homogeneous, rudder, constant, rates } = columns;
+        let MotionColumns { homogeneous, rudder, constant, rates } = columns;
         for column in [&mut *homogeneous, rudder, constant] {
             column.resize(rows, 0.0);
             column[anchor] = 0.0;
@@ -278,8 +296,7 @@ impl Track {
     fn motions(&self, inverse_time: f64, backward: bool, mut visit: impl FnMut(usize, [f64; 4], [f64; 4])) {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
         let mut step = Transition::new(inverse_time, 0.0);
-        for k in 0..self.steps() {
-            let Step { from, to, length, rudder_rate: rate, bend } = self.step(k, backward);
+        for TrackStep { from, to, length, rudder_rate: rate, bend } in self.steps(backward) {
             if differs(step.h, length) {
                 step = Transition::new(inverse_time, length);
             }
@@ -332,8 +349,7 @@ impl Track {
         // The change of the motion and the motion itself, side by side.
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
-        for k in 0..self.steps() {
-            let Step { from, to, length, rudder_rate: rate, bend } = self.step(k, backward);
+        for TrackStep { from, to, length, rudder_rate: rate, bend } in self.steps(backward) {
             if differs(step.value.h, length) {
                 step = TangentTransition::new(inverse_time, length);
             }
@@ -368,8 +384,7 @@ impl Track {
         let mut state = coefficients.anchor;
         states[self.anchor_row(backward)] = state;
         let mut step = Transition::new(inverse_time, 0.0);
-        for k in 0..self.steps() {
-            let Step { from, to, length, rudder_rate, bend } = self.step(k, backward);
+        for TrackStep { from, to, length, rudder_rate, bend } in self.steps(backward) {
             if differs(step.h, length) {
                 step = Transition::new(inverse_time, length);
             }
@@ -384,8 +399,7 @@ impl Track {
     /// State at the last row for coefficients anchored at the first, stepping forward whatever the sign of a.
     pub fn last_state_from(&self, inverse_time: f64, coefficients: &Coefficients) -> State {
         let mut state = coefficients.anchor;
-        for k in 0..self.steps() {
-            let Step { from, length, rudder_rate, bend, .. } = self.step(k, false);
+        for TrackStep { from, length, rudder_rate, bend, .. } in self.steps(false) {
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
             state = Transition::new(inverse_time, length).advance(state, u0, coefficients.gain * rudder_rate);
             bent(&mut state, bend, inverse_time, coefficients.gain);

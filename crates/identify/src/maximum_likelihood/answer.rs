@@ -7,14 +7,15 @@ use ship::{FirstOrder, Shown};
 use trial::Trial;
 
 use super::choice::Chosen;
+use super::outliers::Suspects;
 use super::point::{Point, Record, SHARED};
-use super::search::Found;
+use super::search::Maximum;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::RUDDER;
 use crate::likelihood::track::{Coefficients, Track, is_backward};
-use crate::output_error::{CONDITION_LIMIT, SIGNIFICANT, to_response};
+use crate::output_error::{CONDITION_LIMIT, COURSE_UNSTABLE, SIGNIFICANT, to_response};
 use crate::profile::invert;
 use crate::robust;
 use trial::noise_model::{Moment, NoiseModel};
@@ -45,7 +46,7 @@ fn covariance(information: &DMatrix<f64>) -> Result<(Matrix3<f64>, f64), f64> {
 
 /// Degrees of freedom of the variances of K, T and δ_r, the fewest of the three: what the sizes of the noise are not
 /// known to makes the variances uncertain, dof = 2/Var(log v) (Satterthwaite 1946; Kenward and Roger 1997).
-fn degrees_of_freedom(records: &[Record], found: &Found) -> f64 {
+fn degrees_of_freedom(records: &[Record], found: &Maximum) -> f64 {
     let Point { inverse_time, gain, offset, ref places, ref parts, .. } = found.point;
     let motion = |number: usize, place: &NoiseVector| {
         let part = &parts[number];
@@ -102,9 +103,25 @@ fn degrees_of_freedom(records: &[Record], found: &Found) -> f64 {
     2.0 / variance.into_iter().fold(0.0, f64::max)
 }
 
+/// Covariance of (1/T, b, b δ_r) and degrees of freedom of its variances, with the doubt which noise it is: the value is
+/// that of the most likely one.
+fn doubt(chosen: &Chosen, freedom: f64) -> (Matrix3<f64>, f64) {
+    let of = |point: &Point| Vector3::new(point.inverse_time, point.gain, point.offset);
+    let here = of(&chosen.found[0].1.point);
+    let (mut doubt, mut weights, mut per_freedom) = (Matrix3::zeros(), 0.0, 0.0);
+    for (weight, other) in &chosen.found {
+        let Ok((own, _)) = covariance(&other.linearised.information) else { continue };
+        let apart = of(&other.point) - here;
+        doubt += (own + apart * apart.transpose()) * *weight;
+        weights += weight;
+        per_freedom += weight / degrees_of_freedom(&chosen.records, other).min(freedom);
+    }
+    (doubt / weights, weights / per_freedom)
+}
+
 /// The estimate of a chosen noise.
 pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, IdentifyError> {
-    let Chosen { records, found: all, outliers, too_many, tried, evaluations, at_bound } = chosen;
+    let Chosen { records, found: all, at_bound, .. } = &chosen;
     let found = &all[0].1;
     let Point { inverse_time, gain, offset, deviance, ref places, ref parts, .. } = found.point;
     let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
@@ -113,17 +130,8 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
     let freedom = readings as f64 - (SHARED + 2 * trials.len() + jumps) as f64;
     let singular = |condition| IdentifyError::Singular { condition, limit: CONDITION_LIMIT };
     let (inverse, condition) = covariance(&found.linearised.information).map_err(singular)?;
-    // The value is that of the most likely noise; its error holds the doubt which noise it is.
-    let here = Vector3::new(inverse_time, gain, offset);
-    let (mut doubt, mut weights, mut per_freedom) = (Matrix3::zeros(), 0.0, 0.0);
-    for (weight, other) in &all {
-        let Ok((own, _)) = covariance(&other.linearised.information) else { continue };
-        let apart = Vector3::new(other.point.inverse_time, other.point.gain, other.point.offset) - here;
-        doubt += (own + apart * apart.transpose()) * *weight;
-        weights += weight;
-        per_freedom += weight / degrees_of_freedom(&records, other).min(freedom);
-    }
-    let white = to_response(&(doubt / weights), &response, weights / per_freedom);
+    let (with_doubt, degrees_of_freedom) = doubt(&chosen, freedom);
+    let white = to_response(&with_doubt, &response, degrees_of_freedom);
     let gain_sd = white.matrix[(1, 1)].sqrt();
     if gain < SIGNIFICANT * gain_sd {
         return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
@@ -135,81 +143,21 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
     let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
     let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.innovations.as_slice()));
     let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, readings);
-
     let mut warnings = Vec::from_iter(warning);
-    if response.is_course_unstable() {
-        warnings.push("course-unstable: 1/T is negative, K and T are negative".into());
-    }
-    if at_bound {
-        warnings.push(format!("T = {} s is at its bound or beyond", Shown(response.T())));
-    }
-    let noises: Vec<NoiseModel> = records
-        .iter()
-        .zip(places.iter().zip(parts))
+    warnings.extend(response.is_course_unstable().then(|| COURSE_UNSTABLE.into()));
+    warnings.extend(at_bound.then(|| format!("T = {} s is at its bound or beyond", Shown(response.T()))));
+    let noises: Vec<NoiseModel> = (records.iter().zip(places.iter().zip(parts)))
         .map(|(record, (place, part))| place.noise(gain, part.variance.sqrt(), record.has_gyro()))
         .collect();
-    for (trial, noise) in trials.iter().zip(&noises) {
-        warnings.extend(described(trial, noise, gain));
-    }
-    for ((trial, record), found) in trials.iter().zip(&records).zip(&outliers) {
-        let times = |rows: &[usize]| {
-            let shown: Vec<String> =
-                rows.iter().take(LISTED).map(|&row| format!("{}", Shown(record.track.time()[row]))).collect();
-            format!("{}{}", shown.join(", "), if rows.len() > LISTED { ", …" } else { "" })
-        };
-        if !found.spikes.is_empty() {
-            let (count, name) = (found.spikes.len(), trial.name());
-            warnings.push(format!(
-                "{name}: {count} headings stand alone and are left out, at t = {} s",
-                times(&found.spikes)
-            ));
-        }
-        if !found.jumps.is_empty() {
-            let name = trial.name();
-            warnings.push(format!(
-                "{name}: the heading jumps and stays off at t = {} s; the jumps are estimated",
-                times(&found.jumps)
-            ));
-        }
-    }
-    if too_many {
-        warnings.push("more than a tenth of the headings stand alone: none is left out, look at the compass".into());
-    }
-    let count = |of: fn(&super::outliers::Suspects) -> usize| outliers.iter().map(of).sum::<usize>() as f64;
+    warnings.extend(trials.iter().zip(&noises).filter_map(|(trial, noise)| described(trial, noise, gain)));
+    warnings.extend(of_outliers(trials, &chosen));
     let mut diagnostics = vec![
         ("log_likelihood", -0.5 * deviance),
         ("condition", condition),
         ("lag1_autocorrelation", lag1),
-        ("degrees_of_freedom", weights / per_freedom),
-        ("heading_sd_deg", to_deg(noises[0].heading_sd)),
-        ("left_out", count(|found| found.spikes.len())),
-        ("jumps", count(|found| found.jumps.len())),
+        ("degrees_of_freedom", degrees_of_freedom),
     ];
-    diagnostics.extend(noises[0].heading_correlation.map(|time| ("heading_correlation_s", time)));
-    diagnostics.extend(noises[0].yaw_rate_sd.map(|sd| ("yaw_rate_sd_deg_s", to_deg(sd))));
-    let level = to_deg(noises[0].moment_level / gain);
-    match noises[0].moment {
-        Moment::None => {}
-        Moment::White => diagnostics.push(("white_moment_rudder_deg_root_s", level)),
-        Moment::Walk => diagnostics.push(("moment_walk_rudder_deg_per_root_s", level)),
-        Moment::OrnsteinUhlenbeck => {
-            diagnostics.push(("gusts_sd_rudder_deg", level));
-            diagnostics.push(("gusts_correlation_s", noises[0].moment_correlation));
-        }
-    }
-    if noises[0].rudder_sd > 0.0 {
-        diagnostics.push(("rudder_sd_deg", to_deg(noises[0].rudder_sd)));
-    }
-    let lowest = tried.iter().map(|(_, bic)| *bic).fold(f64::INFINITY, f64::min);
-    for (kind, name) in [
-        (Moment::None, "bic_none"),
-        (Moment::White, "bic_white"),
-        (Moment::Walk, "bic_walk"),
-        (Moment::OrnsteinUhlenbeck, "bic_ornstein_uhlenbeck"),
-    ] {
-        let best = tried.iter().filter(|(moment, _)| *moment == kind).map(|(_, bic)| *bic).min_by(f64::total_cmp);
-        diagnostics.extend(best.map(|bic| (name, bic - lowest)));
-    }
+    diagnostics.extend(of_noise(&noises[0], gain, &chosen));
     Ok(Estimate {
         response,
         uncertainty,
@@ -219,10 +167,67 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
             (false, true) => StopReason::Converged,
             (false, false) => StopReason::IterationLimit,
         },
-        evaluations,
+        evaluations: chosen.evaluations,
         diagnostics,
         warnings,
     })
+}
+
+/// What a reader should know of readings that belong to no ship.
+fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for ((trial, record), found) in trials.iter().zip(&chosen.records).zip(&chosen.outliers) {
+        let (name, time) = (trial.name(), record.track.time());
+        let times = |rows: &[usize]| {
+            let shown: Vec<String> = rows.iter().take(LISTED).map(|&row| Shown(time[row]).to_string()).collect();
+            format!("{}{}", shown.join(", "), if rows.len() > LISTED { ", …" } else { "" })
+        };
+        if !found.spikes.is_empty() {
+            let (count, times) = (found.spikes.len(), times(&found.spikes));
+            warnings.push(format!("{name}: {count} headings stand alone and are left out, at t = {times} s"));
+        }
+        if !found.jumps.is_empty() {
+            let times = times(&found.jumps);
+            warnings.push(format!("{name}: the heading jumps and stays off at t = {times} s; the jumps are estimated"));
+        }
+    }
+    if chosen.too_many {
+        warnings.push("more than a tenth of the headings stand alone: none is left out, look at the compass".into());
+    }
+    warnings
+}
+
+/// Figures of the noise of the first record, of the outliers, and of the kinds of moment that were fitted.
+fn of_noise(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'static str, f64)> {
+    let count = |of: fn(&Suspects) -> usize| chosen.outliers.iter().map(of).sum::<usize>() as f64;
+    let mut diagnostics = vec![
+        ("heading_sd_deg", to_deg(noise.heading_sd)),
+        ("left_out", count(|found| found.spikes.len())),
+        ("jumps", count(|found| found.jumps.len())),
+    ];
+    diagnostics.extend(noise.heading_correlation.map(|time| ("heading_correlation_s", time)));
+    diagnostics.extend(noise.yaw_rate_sd.map(|sd| ("yaw_rate_sd_deg_s", to_deg(sd))));
+    let level = to_deg(noise.moment_level / gain);
+    match noise.moment {
+        Moment::None => {}
+        Moment::White => diagnostics.push(("white_moment_rudder_deg_root_s", level)),
+        Moment::Walk => diagnostics.push(("moment_walk_rudder_deg_per_root_s", level)),
+        Moment::OrnsteinUhlenbeck => {
+            diagnostics.extend([("gusts_sd_rudder_deg", level), ("gusts_correlation_s", noise.moment_correlation)]);
+        }
+    }
+    diagnostics.extend((noise.rudder_sd > 0.0).then(|| ("rudder_sd_deg", to_deg(noise.rudder_sd))));
+    let lowest = chosen.tried.iter().map(|(_, bic)| *bic).fold(f64::INFINITY, f64::min);
+    for (kind, name) in [
+        (Moment::None, "bic_none"),
+        (Moment::White, "bic_white"),
+        (Moment::Walk, "bic_walk"),
+        (Moment::OrnsteinUhlenbeck, "bic_ornstein_uhlenbeck"),
+    ] {
+        let own = chosen.tried.iter().filter(|(moment, _)| *moment == kind).map(|(_, bic)| *bic);
+        diagnostics.extend(own.min_by(f64::total_cmp).map(|bic| (name, bic - lowest)));
+    }
+    diagnostics
 }
 
 /// What is random beside a white compass error, in words.

@@ -5,13 +5,13 @@ use trial::Trial;
 
 use super::outliers::{self, LARGEST_SHARE, Suspects};
 use super::point::{Point, Record, evaluate};
-use super::search::{Found, Ranges, Search, gyro_start};
+use super::search::{Maximum, Ranges, Search, gyro_start};
 use super::settings::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS, RUDDER};
-use crate::likelihood::track::{Coefficients, Columns, Track};
+use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 use crate::output_error::{self, CONDITION_LIMIT, FEWEST_ROWS};
 use crate::replay::best_start;
 use crate::robust;
@@ -37,7 +37,7 @@ const SEEN: f64 = 2.0;
 const LOOKED_AT: usize = 200;
 
 /// Records ready to be fitted, with the answer of `output-error` to begin with.
-pub(super) struct Prepared {
+pub(super) struct PreparedRecords {
     records: Vec<Record>,
     start: FirstOrder,
     pub outliers: Vec<Suspects>,
@@ -49,7 +49,7 @@ pub(super) struct Prepared {
 pub(super) struct Chosen {
     pub records: Vec<Record>,
     /// The kinds of noise that cannot be told apart, with their weights, the most likely first.
-    pub found: Vec<(f64, Found)>,
+    pub found: Vec<(f64, Maximum)>,
     /// Spikes and jumps of every record, by row of its track.
     pub outliers: Vec<Suspects>,
     /// Whether there were too many spikes to leave them out.
@@ -61,7 +61,7 @@ pub(super) struct Chosen {
     pub at_bound: bool,
 }
 
-impl Prepared {
+impl PreparedRecords {
     /// Takes the records, looks for outliers, and fits `output-error` to the rest. Fails as it does.
     pub fn new(settings: &Settings, trials: &[Trial]) -> Result<Self, IdentifyError> {
         let whole = trials.iter().map(|trial| track(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
@@ -159,8 +159,9 @@ impl Prepared {
         };
         let tried = all.iter().map(|(bic, found)| (found.point.places[0].moment, *bic)).collect();
         let sum: f64 = all.iter().map(|(bic, _)| (-0.5 * (bic - lowest)).exp()).sum();
-        let weigh = |(bic, found): (f64, Found)| ((-0.5 * (bic - lowest)).exp() / sum, found);
-        let found: Vec<(f64, Found)> = all.into_iter().map(weigh).filter(|(weight, _)| *weight > NEGLIGIBLE).collect();
+        let weigh = |(bic, found): (f64, Maximum)| ((-0.5 * (bic - lowest)).exp() / sum, found);
+        let found: Vec<(f64, Maximum)> =
+            all.into_iter().map(weigh).filter(|(weight, _)| *weight > NEGLIGIBLE).collect();
         let end = found[0].1.point.inverse_time;
         let at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
         Ok(Chosen { records, found, outliers: kept, too_many, tried, evaluations: spent, at_bound })
@@ -172,7 +173,7 @@ impl Prepared {
 fn left_over(track: &Track, fitted: Option<&Estimate>, known: &[usize]) -> Vec<f64> {
     let Some(estimate) = fitted else { return track.heading.clone() };
     let ship = estimate.response;
-    let mut columns = Columns::default();
+    let mut columns = MotionColumns::default();
     track.fill(ship.inverse_T, &mut columns);
     let Coefficients { gain, offset, .. } = Coefficients::of(&ship);
     let forced = columns.rudder.iter().zip(&columns.constant);
@@ -214,10 +215,10 @@ fn bic(records: &[Record], point: &Point) -> f64 {
     point.restricted + noise as f64 * (readings as f64).ln()
 }
 
-/// Fits of all kinds of noise, the lowest BIC first.
-type Ranked = Vec<(f64, Found)>;
+/// Fits of all kinds of noise, each behind its BIC.
+type Ranked = Vec<(f64, Maximum)>;
 
-/// Fits every kind of noise that the settings allow.
+/// Fits every kind of noise that the settings allow, the lowest BIC first.
 fn contest(
     records: &[Record],
     ranges: &[Ranges],
@@ -229,10 +230,39 @@ fn contest(
     let coarse: Option<Vec<Record>> = records.iter().map(|record| record.thinned(LOOKED_AT)).collect();
     let iterations = settings.iterations;
     let mut search = Search { records, ranges, coarse: coarse.as_deref(), iterations, evaluations: 0 };
-    let kinds = settings.moment.kinds();
+    let mut all = of_moments(&mut search, settings.moment.kinds(), a, none);
+    let froms = with_memory(&all, settings.compass);
+    if settings.compass == CompassChoice::Coloured {
+        all.clear();
+    }
+    for (a, places) in froms {
+        let starts = search.spread(a, &places, COMPASS);
+        all.extend(highest(&mut search, starts));
+    }
+    // Under the noise that was found another 1/T may be better.
+    if let Some((_, found)) = lowest(&all) {
+        let elsewhere = asked_again(&mut search, found.point.inverse_time, &found.point.places);
+        if elsewhere.as_ref().is_some_and(|point| point.deviance < found.point.deviance) {
+            let found = elsewhere.and_then(|better| search.maximise(better));
+            all.extend(found.map(|found| (bic(records, &found.point), found)));
+        }
+    }
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    *evaluations += search.evaluations;
+    all
+}
+
+/// The largest likelihood from the best of some starts, behind its BIC.
+fn highest(search: &mut Search, starts: Vec<(f64, Vec<NoiseVector>)>) -> Option<(f64, Maximum)> {
+    let start = search.best(starts, |point| point.restricted)?;
+    let found = search.maximise(start)?;
+    Some((bic(search.records, &found.point), found))
+}
+
+/// Fits with every kind of moment.
+fn of_moments(search: &mut Search, kinds: &[Moment], a: f64, none: &[NoiseVector]) -> Ranked {
     let mut none = none.to_vec();
-    let mut all: Vec<(f64, Found)> = Vec::new();
-    let ranked = |found: Option<Found>| found.map(|found| (bic(records, &found.point), found));
+    let mut all: Ranked = Vec::new();
     // Gusts begin where a white moment and a walk end.
     let (mut white, mut walk) = (None, None);
     for kind in [Moment::None, Moment::White, Moment::Walk, Moment::OrnsteinUhlenbeck] {
@@ -252,61 +282,44 @@ fn contest(
             Moment::White | Moment::Walk => search.levels(a, &none, kind),
             Moment::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
         };
-        let found = search.best(starts, |point| point.restricted).and_then(|start| search.maximise(start));
+        let found = highest(search, starts);
+        let point = found.as_ref().map(|(_, found)| &found.point);
         match kind {
-            Moment::White => white = found.as_ref().map(|found| found.point.clone()),
-            Moment::Walk => walk = found.as_ref().map(|found| found.point.clone()),
+            Moment::White => white = point.cloned(),
+            Moment::Walk => walk = point.cloned(),
             // What is known of the other noises by then.
-            Moment::None => none = found.as_ref().map_or(none, |found| found.point.places.clone()),
+            Moment::None => none = point.map_or(none, |point| point.places.clone()),
             Moment::OrnsteinUhlenbeck => {}
         }
-        all.extend(ranked(found).filter(|_| kinds.contains(&kind)));
+        all.extend(found.filter(|_| kinds.contains(&kind)));
     }
-    // A compass error with a memory is looked for where innovations have one: beside the best noise, and alone, since a
-    // white moment may be large enough to make anything white.
-    let has_memory = |found: &Found| {
+    all
+}
+
+/// 1/T and noises with which a compass error with a memory is looked for: where innovations have one, beside the best
+/// noise, and alone, since a white moment may be large enough to make anything white.
+fn with_memory(all: &Ranked, compass: CompassChoice) -> Vec<(f64, Vec<NoiseVector>)> {
+    let has_memory = |found: &&Maximum| {
         let readings: usize = found.point.parts.iter().map(|part| part.readings).sum();
         let whites = found.point.parts.iter().map(|part| part.innovations.as_slice());
-        match settings.compass {
+        match compass {
             CompassChoice::Chosen => robust::lag1_autocorrelation(whites).abs() > 3.0 / (readings as f64).sqrt(),
             CompassChoice::White => false,
             CompassChoice::Coloured => true,
         }
     };
-    let best = lowest(&all).map(|(_, found)| found);
-    let alone = all.iter().map(|(_, found)| found).find(|found| found.point.places[0].moment == Moment::None);
-    let alone = alone.filter(|_| best.is_some_and(|best| best.point.places[0].moment != Moment::None));
-    let froms: Vec<(f64, Vec<NoiseVector>)> = [best, alone]
-        .into_iter()
-        .flatten()
-        .filter(|found| has_memory(found))
-        .map(|found| {
-            let coloured = found.point.places.iter().map(|place| NoiseVector { coloured: true, ..*place });
-            (found.point.inverse_time, coloured.collect())
-        })
-        .collect();
-    if settings.compass == CompassChoice::Coloured {
-        all.clear();
-    }
-    for (a, places) in froms {
-        let starts = search.spread(a, &places, COMPASS);
-        let found = search.best(starts, |point| point.restricted).and_then(|start| search.maximise(start));
-        all.extend(ranked(found));
-    }
-    // Under the noise that was found another 1/T may be better.
-    if let Some((_, found)) = lowest(&all) {
-        let elsewhere = asked_again(&mut search, found.point.inverse_time, &found.point.places);
-        if elsewhere.as_ref().is_some_and(|point| point.deviance < found.point.deviance) {
-            let found = elsewhere.and_then(|better| search.maximise(better));
-            all.extend(ranked(found));
-        }
-    }
-    all.sort_by(|one, other| one.0.total_cmp(&other.0));
-    *evaluations += search.evaluations;
-    all
+    let is_plain = |found: &Maximum| found.point.places[0].moment == Moment::None;
+    let best = lowest(all).map(|(_, found)| found);
+    let alone = all.iter().map(|(_, found)| found).find(|found| is_plain(found));
+    let alone = alone.filter(|_| best.is_some_and(|best| !is_plain(best)));
+    let coloured = |found: &Maximum| {
+        let places = found.point.places.iter().map(|place| NoiseVector { coloured: true, ..*place });
+        (found.point.inverse_time, places.collect())
+    };
+    [best, alone].into_iter().flatten().filter(has_memory).map(coloured).collect()
 }
 
-fn lowest(all: &[(f64, Found)]) -> Option<&(f64, Found)> {
+fn lowest(all: &[(f64, Maximum)]) -> Option<&(f64, Maximum)> {
     all.iter().min_by(|one, other| one.0.total_cmp(&other.0))
 }
 

@@ -59,13 +59,13 @@ pub(super) fn find(whole: &Track, residual: &[f64], known: &[usize]) -> Suspects
     let rows = whole.observed();
     let mut kept: Vec<usize> = (0..residual.len()).collect();
     let most = (LARGEST_SHARE * residual.len() as f64).ceil() as usize + 1;
-    let before = deviations(residual, &kept).into_iter().filter_map(|[before, _]| before);
-    let one_sided: Vec<f64> = before.map(|side| side.distance).collect();
+    let mut sides = deviations(residual, &kept);
+    let one_sided: Vec<f64> = sides.iter().filter_map(|[before, _]| before.map(|side| side.distance)).collect();
     let limit = (SPIKE * NORMAL * middle(&mut magnitudes(&one_sided))).max(floor);
     let mut spikes = Vec::new();
     let mut grossest = 0.0_f64;
     while spikes.len() < most {
-        let distances = deviations(residual, &kept).into_iter().map(apart).enumerate();
+        let distances = sides.iter().copied().map(apart).enumerate();
         let far = distances.filter(|(_, distance)| *distance > limit);
         let Some((place, distance)) = far.max_by(|one, other| one.1.total_cmp(&other.1)) else { break };
         let row = rows[kept[place]];
@@ -76,6 +76,7 @@ pub(super) fn find(whole: &Track, residual: &[f64], known: &[usize]) -> Suspects
             grossest = grossest.max(distance);
         }
         kept.remove(place);
+        sides = deviations(residual, &kept);
         spikes.push(row);
     }
     spikes.sort_unstable();
@@ -84,7 +85,7 @@ pub(super) fn find(whole: &Track, residual: &[f64], known: &[usize]) -> Suspects
 
 /// A reading held against its neighbours on one side, rad.
 #[derive(Debug, Clone, Copy)]
-struct Side {
+struct Neighbours {
     /// The reading less their median.
     distance: f64,
     /// Median of their distances from their median.
@@ -93,7 +94,7 @@ struct Side {
 
 /// How far a reading stands from both sides, rad: where the level changes it is near to one of them, on a slope it is
 /// between them. At an end of the record there is one side, and a slope is told by the spread of the neighbours.
-fn apart(sides: [Option<Side>; 2]) -> f64 {
+fn apart(sides: [Option<Neighbours>; 2]) -> f64 {
     match sides {
         [Some(before), Some(after)] if before.distance * after.distance > 0.0 => {
             before.distance.abs().min(after.distance.abs())
@@ -104,13 +105,13 @@ fn apart(sides: [Option<Side>; 2]) -> f64 {
 }
 
 /// Every reading held against its neighbours before and after.
-fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<Side>; 2]> {
+fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<Neighbours>; 2]> {
     let against = |k: usize, side: std::ops::Range<usize>| {
         let mut around: Vec<f64> = side.map(|other| residual[kept[other]]).collect();
         (around.len() >= FEWEST).then(|| {
             let level = middle(&mut around);
             around.iter_mut().for_each(|value| *value = (*value - level).abs());
-            Side { distance: residual[kept[k]] - level, spread: middle(&mut around) }
+            Neighbours { distance: residual[kept[k]] - level, spread: middle(&mut around) }
         })
     };
     (0..kept.len())

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
 use crate::likelihood::parameters::RUDDER;
-use crate::likelihood::track::{Coefficients, Columns, Track};
+use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 use crate::likelihood::{NoiseParameters, NoiseVector, Schedule, whitener};
 use crate::profile::solve2;
 use estimation::kalman::Whitener;
@@ -38,7 +38,7 @@ pub(super) struct Record {
 
 /// Columns of one record before they are white: motions of its own start and jumps, responses to rudder and constant,
 /// and the readings.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Raw {
     pub own: Vec<Vec<f64>>,
     pub rest: [Vec<f64>; 3],
@@ -67,7 +67,7 @@ pub(super) struct ByTime {
 
 /// What a record says at a point.
 #[derive(Debug, Clone)]
-pub(super) struct Part {
+pub(super) struct RecordAtPoint {
     /// Variance of the compass error, rad².
     pub variance: f64,
     /// Number of readings.
@@ -79,7 +79,6 @@ pub(super) struct Part {
     pub innovations: Vec<f64>,
     /// Products of what changes with 1/T, b and b δ_r.
     pub motion: Matrix3<f64>,
-    pub raw: Raw,
     pub white: White,
     pub by_time: ByTime,
 }
@@ -95,7 +94,7 @@ pub(super) struct Point {
     /// b = K/T, 1/s², and b δ_r, rad/s².
     pub gain: f64,
     pub offset: f64,
-    pub parts: Vec<Part>,
+    pub parts: Vec<RecordAtPoint>,
 }
 
 impl Record {
@@ -141,10 +140,10 @@ impl Record {
     }
 
     /// The columns for a value of 1/T.
-    fn raw(&self, inverse_time: f64) -> Raw {
-        let mut columns = Columns::default();
+    pub fn raw(&self, inverse_time: f64) -> Raw {
+        let mut columns = MotionColumns::default();
         self.track.fill(inverse_time, &mut columns);
-        let Columns { homogeneous, rudder, constant, rates } = &columns;
+        let MotionColumns { homogeneous, rudder, constant, rates } = &columns;
         let ones = self.stacked(&vec![1.0; homogeneous.len()], &vec![0.0; self.track.rates.len()]);
         let mut own = vec![ones, self.stacked(homogeneous, &rates.homogeneous)];
         own.extend(self.jumps.iter().map(|&jump| self.step_at(jump)));
@@ -176,7 +175,7 @@ impl Record {
         coefficients: &Coefficients,
     ) -> Option<Matrix3<f64>> {
         let parameters: NoiseParameters<f64> = place.parameters(inverse_time, self.has_gyro());
-        let white = White::new(&self.raw(inverse_time), whitener(&self.schedule, &parameters, [0.0; 2]))?;
+        let white = White::new(self.raw(inverse_time), whitener(&self.schedule, &parameters, [0.0; 2]))?;
         let by_time = self.by_time(&white, inverse_time, coefficients);
         let products = white.motion(&by_time);
         products.iter().all(|value| value.is_finite()).then_some(products)
@@ -198,8 +197,8 @@ pub(super) fn take_out(unit: &[f64], column: &mut [f64]) -> f64 {
 
 impl White {
     /// `None` when a column is not finite.
-    fn new(raw: &Raw, filter: Whitener) -> Option<Self> {
-        let Raw { mut own, mut rest } = raw.clone();
+    fn new(raw: Raw, filter: Whitener) -> Option<Self> {
+        let Raw { mut own, mut rest } = raw;
         let (first, jumps) = own.split_at_mut(2);
         let [one, two] = first else { return None };
         let [three, four, five] = &mut rest;
@@ -304,13 +303,11 @@ fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
 pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[NoiseVector]) -> Option<Point> {
     let columns = |(record, place): (&Record, &NoiseVector)| {
         let parameters: NoiseParameters<f64> = place.parameters(inverse_time, record.has_gyro());
-        let raw = record.raw(inverse_time);
-        let white = White::new(&raw, whitener(&record.schedule, &parameters, [0.0; 2]))?;
-        Some((raw, white))
+        White::new(record.raw(inverse_time), whitener(&record.schedule, &parameters, [0.0; 2]))
     };
-    let columns = records.iter().zip(places).map(columns).collect::<Option<Vec<_>>>()?;
+    let columns = records.iter().zip(places).map(columns).collect::<Option<Vec<White>>>()?;
     let all: usize = records.iter().map(Record::len).sum();
-    let weight = |((record, place), (_, white)): ((&Record, &NoiseVector), &(Raw, White))| {
+    let weight = |((record, place), white): ((&Record, &NoiseVector), &White)| {
         let readings = record.len() as f64;
         let fitted = record.own() as f64 + SHARED as f64 * readings / all as f64;
         let [rudder, constant, measured] = &white.rest;
@@ -327,8 +324,7 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[NoiseVec
     let (mut deviance, mut determinant) = (0.0, 0.0);
     let mut motion = Matrix3::zeros();
     let mut parts = Vec::with_capacity(records.len());
-    for ((((raw, white), weight), &variance), record) in columns.into_iter().zip(&weights).zip(&variances).zip(records)
-    {
+    for (((white, weight), &variance), record) in columns.into_iter().zip(&weights).zip(&variances).zip(records) {
         let constant = (2.0 * std::f64::consts::PI * variance).ln();
         deviance += weight.readings * constant + weight.square(gain, offset) / variance + white.filter.log_variance;
         let (anchor, jumps) = white.start(gain, offset)?;
@@ -339,7 +335,7 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[NoiseVec
         let own = white.motion(&by_time);
         motion += own / variance;
         let (readings, innovations) = (record.len(), white.residual(gain, offset));
-        parts.push(Part { variance, readings, anchor, jumps, innovations, motion: own, raw, white, by_time });
+        parts.push(RecordAtPoint { variance, readings, anchor, jumps, innovations, motion: own, white, by_time });
     }
     let restricted = deviance + determinant + motion.determinant().ln();
     let ship = gain > 0.0 && restricted.is_finite();

@@ -78,7 +78,7 @@ pub(super) struct Search<'a> {
 }
 
 /// The end of a search.
-pub(super) struct Found {
+pub(super) struct Maximum {
     pub point: Point,
     pub linearised: Linearised,
     pub converged: bool,
@@ -154,7 +154,7 @@ impl Search<'_> {
     ///
     /// 1/T follows the likelihood and the noise the restricted one, so steps need not lower the latter to the last
     /// digit.
-    pub fn maximise(&mut self, start: Point) -> Option<Found> {
+    pub fn maximise(&mut self, start: Point) -> Option<Maximum> {
         let mut point = start;
         let mut linearised = linearise(self.records, &point)?;
         let mut free = self.free(&point, &linearised.score);
@@ -162,12 +162,12 @@ impl Search<'_> {
         for _ in 0..self.iterations {
             let score = picked(&linearised.score, &free);
             let Some(step) = inverse.as_ref().map(|inverse| -(inverse * &score)) else {
-                return Some(Found { point, linearised, converged: false });
+                return Some(Maximum { point, linearised, converged: false });
             };
             let promise = -step.dot(&score);
             let settled = if free.len() > 1 { PROMISE } else { PROMISE_ALONE };
             if promise <= settled {
-                return Some(Found { point, linearised, converged: true });
+                return Some(Maximum { point, linearised, converged: true });
             }
             let longest = step.iter().skip(1).fold(0.0_f64, |most, by| most.max(by.abs()));
             let mut share = if longest > LONGEST_STEP { LONGEST_STEP / longest } else { 1.0 };
@@ -182,7 +182,7 @@ impl Search<'_> {
             });
             let Some(lower) = lower else {
                 // No step downhill is left: a minimum to rounding.
-                return Some(Found { point, linearised, converged: promise < SLACK });
+                return Some(Maximum { point, linearised, converged: promise < SLACK });
             };
             point = lower;
             linearised = linearise(self.records, &point)?;
@@ -194,7 +194,7 @@ impl Search<'_> {
                 free = now;
             }
         }
-        Some(Found { point, linearised, converged: false })
+        Some(Maximum { point, linearised, converged: false })
     }
 
     /// Where in the score the unknowns are that may move: an entry at the end of its range only if it leads back.

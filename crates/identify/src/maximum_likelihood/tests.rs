@@ -4,7 +4,7 @@ use ship::angle::{from_deg, to_deg};
 use statrs::distribution::{ContinuousCDF, Normal};
 use trial::{Channel, Columns, Noise, Origin};
 
-use super::choice::Prepared;
+use super::choice::PreparedRecords;
 use super::point::{Record, evaluate};
 use super::score::linearise;
 use trial::noise_model::{Moment, NoiseModel};
@@ -275,7 +275,7 @@ fn settings_are_checked_and_prepared() {
     let error = Settings { iterations: 0, ..Settings::default() }.build().expect_err("nothing to do");
     assert_eq!(error.key, "iterations");
     let trial = noisy().trial();
-    let prepared = Prepared::new(&Settings::default(), std::slice::from_ref(&trial)).expect("a start");
+    let prepared = PreparedRecords::new(&Settings::default(), std::slice::from_ref(&trial)).expect("a start");
     assert_eq!(prepared.outliers[0], Default::default());
     assert!(to_deg(trial.heading()[0]).is_finite());
 }

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, SMatrix, SVector, Vector2, Vector3};
 use ship::first_order::{State, TangentTransition};
 
-use super::record::{Record, Row};
+use super::record::{FilterRow, Record};
 
 /// The unknowns that all records share; linear in the regression but for the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,9 +70,9 @@ impl Filters {
 
     /// Runs over `record` and calls `visit` at every observed row.
     #[inline]
-    pub fn run(record: &Record, shared: Shared, start: State, mut visit: impl FnMut(&Row, &Self)) {
+    pub fn run(record: &Record, shared: Shared, start: State, mut visit: impl FnMut(&FilterRow, &Self)) {
         let mut filters = Self::new(shared, start);
-        let mut before: Option<&Row> = None;
+        let mut before: Option<&FilterRow> = None;
         for row in &record.rows {
             if let Some(before) = before {
                 filters.advance(before, row);
@@ -86,7 +86,7 @@ impl Filters {
 
     /// From the row `before` to `row`.
     #[inline]
-    fn advance(&mut self, before: &Row, row: &Row) {
+    fn advance(&mut self, before: &FilterRow, row: &FilterRow) {
         let h = row.interval;
         if h != self.transition.value.h {
             self.transition = TangentTransition::new(self.shared.a, h);

@@ -37,7 +37,7 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
-use crate::settings::{SettingsError, check_iterations};
+use crate::settings::{SettingsError, check_iterations, require};
 use covariance::Residuals;
 use filter::{Left, NormalEquations, Point, Shared};
 use record::Record;
@@ -74,16 +74,9 @@ impl Settings {
     /// condition limit is not above 1.
     pub fn build(self) -> Result<Srivc, SettingsError> {
         check_iterations("max-iterations", self.max_iterations)?;
-        if !(1e-12..=0.1).contains(&self.relative_step) {
-            return Err(SettingsError::new(
-                "relative-step",
-                Shown(self.relative_step),
-                "a number within 1e-12 and 0.1",
-            ));
-        }
-        if !(self.condition_limit.is_finite() && self.condition_limit > 1.0) {
-            return Err(SettingsError::new("condition-limit", Shown(self.condition_limit), "a number above 1"));
-        }
+        let (step, limit) = (self.relative_step, self.condition_limit);
+        require((1e-12..=0.1).contains(&step), "relative-step", Shown(step), "a number within 1e-12 and 0.1")?;
+        require(limit.is_finite() && limit > 1.0, "condition-limit", Shown(limit), "a number above 1")?;
         Ok(Srivc { settings: self })
     }
 }

@@ -8,7 +8,7 @@ const SAME_INTERVAL: f64 = 1e-9;
 
 /// One row of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Row {
+pub(super) struct FilterRow {
     /// Time since the row before, s; unused in the first row.
     pub interval: f64,
     /// Rudder δ, rad.
@@ -24,7 +24,7 @@ pub(super) struct Row {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Record {
     /// The rows, in the order in which the filters run.
-    pub rows: Vec<Row>,
+    pub rows: Vec<FilterRow>,
     /// Number of observed headings.
     pub observed: usize,
 }
@@ -34,7 +34,7 @@ impl Record {
     /// steers the iteration but carries no weight in the answer.
     pub fn new(trial: &Trial) -> Self {
         let (time, rudder, heading) = (trial.time(), trial.rudder(), trial.heading());
-        let mut rows: Vec<Row> = Vec::with_capacity(trial.len() + trial.rudder_corners().len());
+        let mut rows: Vec<FilterRow> = Vec::with_capacity(trial.len() + trial.rudder_corners().len());
         let mut corners = trial.rudder_corners().iter().peekable();
         let (mut first, mut last, mut next) = (0, 0, 0);
         let mut observed = 0;
@@ -50,7 +50,12 @@ impl Record {
                     interval = elapsed;
                 }
                 before = t;
-                rows.push(Row { interval, rudder, heading: from + share * (to - from) - heading[first], observed });
+                rows.push(FilterRow {
+                    interval,
+                    rudder,
+                    heading: from + share * (to - from) - heading[first],
+                    observed,
+                });
             };
             let share = |t: f64| (t - time[last]) / (time[row] - time[last]);
             while next <= row {
@@ -73,7 +78,8 @@ impl Record {
     pub fn reversed(&self) -> Self {
         // The interval before a row is the one after it in the new order.
         let intervals = std::iter::once(0.0).chain(self.rows[1..].iter().rev().map(|row| row.interval));
-        let rows = self.rows.iter().rev().zip(intervals).map(|(row, interval)| Row { interval, ..*row }).collect();
+        let rows =
+            self.rows.iter().rev().zip(intervals).map(|(row, interval)| FilterRow { interval, ..*row }).collect();
         Self { rows, ..*self }
     }
 }

@@ -10,7 +10,7 @@ use crate::identifier::Opener;
 
 use super::place;
 use super::process::{Listener, Process, locked};
-use super::trouble::Trouble;
+use super::process_error::ProcessError;
 
 /// Most commands whose processes are kept while they wait: those that were asked last.
 const MOST_COMMANDS: usize = 16;
@@ -21,29 +21,29 @@ const MOST_LOG: u64 = 1 << 20;
 /// Said at the end of a log that is full.
 const FULL: &[u8] = b"\n(what was said after this is not kept)\n";
 
-/// All crews, the one that was asked last at the end.
-static CREWS: Mutex<Vec<Weak<Crew>>> = Mutex::new(Vec::new());
+/// All pools, the one that was asked last at the end.
+static POOLS: Mutex<Vec<Weak<ProcessPool>>> = Mutex::new(Vec::new());
 
 /// The processes of one command.
-pub struct Crew {
+pub struct ProcessPool {
     command: Vec<String>,
     folder: PathBuf,
     idle: Mutex<Vec<Process>>,
-    log: Mutex<Option<Arc<Mutex<Log>>>>,
+    log: Mutex<Option<Arc<Mutex<StderrLog>>>>,
 }
 
-impl Crew {
-    /// The crew of a command in a folder, shared with whoever has it already.
+impl ProcessPool {
+    /// The pool of a command in a folder, shared with whoever has it already.
     pub fn of(command: Vec<String>, folder: &Path) -> Arc<Self> {
-        let mut crews = locked(&CREWS);
-        crews.retain(|crew| crew.strong_count() > 0);
-        let known = crews.iter().filter_map(Weak::upgrade);
-        if let Some(own) = known.into_iter().find(|crew| crew.command == command && crew.folder == folder) {
+        let mut pools = locked(&POOLS);
+        pools.retain(|pool| pool.strong_count() > 0);
+        let known = pools.iter().filter_map(Weak::upgrade);
+        if let Some(own) = known.into_iter().find(|pool| pool.command == command && pool.folder == folder) {
             return own;
         }
         let own = Self { command, folder: folder.to_owned(), idle: Mutex::default(), log: Mutex::default() };
         let own = Arc::new(own);
-        crews.push(Arc::downgrade(&own));
+        pools.push(Arc::downgrade(&own));
         own
     }
 
@@ -58,19 +58,19 @@ impl Crew {
     }
 
     /// A process to ask: one that waits, or a new one.
-    pub fn take(self: &Arc<Self>) -> Result<Process, Trouble> {
+    pub fn take(self: &Arc<Self>) -> Result<Process, ProcessError> {
         self.was_asked();
         let idle = locked(&self.idle).pop();
         idle.map_or_else(|| self.start(), Ok)
     }
 
     /// A new process.
-    pub fn start(&self) -> Result<Process, Trouble> {
+    pub fn start(&self) -> Result<Process, ProcessError> {
         let log = locked(&self.log).clone();
         let log = log.map(|log| -> Listener { Box::new(move |words| locked(&log).add(words)) });
         place::command(&self.command, &self.folder)
             .and_then(|command| Process::start(command, log))
-            .map_err(Trouble::NotStarted)
+            .map_err(ProcessError::NotStarted)
     }
 
     /// Takes back a process that waits.
@@ -80,7 +80,7 @@ impl Crew {
 
     /// Where what its processes say beside their answers goes from now on.
     pub fn log_to(&self, open: Opener) {
-        *locked(&self.log) = Some(Arc::new(Mutex::new(Log { open, file: None, left: MOST_LOG })));
+        *locked(&self.log) = Some(Arc::new(Mutex::new(StderrLog { open, file: None, left: MOST_LOG })));
     }
 
     /// Ends the processes that wait, and with them the log.
@@ -92,17 +92,17 @@ impl Crew {
 
     /// Makes it the last that was asked; processes of the one that was not asked for so many others end.
     fn was_asked(self: &Arc<Self>) {
-        let mut crews = locked(&CREWS);
+        let mut pools = locked(&POOLS);
         let own = Arc::downgrade(self);
-        let place = crews.iter().rposition(|crew| Weak::ptr_eq(crew, &own));
+        let place = pools.iter().rposition(|pool| Weak::ptr_eq(pool, &own));
         match place {
-            Some(place) if place + 1 == crews.len() => return,
-            Some(place) => drop(crews.remove(place)),
+            Some(place) if place + 1 == pools.len() => return,
+            Some(place) => drop(pools.remove(place)),
             None => {}
         }
-        crews.push(own);
-        let beyond = crews.len().checked_sub(MOST_COMMANDS + 1).and_then(|place| crews[place].upgrade());
-        drop(crews);
+        pools.push(own);
+        let beyond = pools.len().checked_sub(MOST_COMMANDS + 1).and_then(|place| pools[place].upgrade());
+        drop(pools);
         if let Some(beyond) = beyond {
             let idle = std::mem::take(&mut *locked(&beyond.idle));
             Process::end(idle);
@@ -110,20 +110,20 @@ impl Crew {
     }
 }
 
-impl Drop for Crew {
+impl Drop for ProcessPool {
     fn drop(&mut self) {
         Process::end(std::mem::take(&mut *locked(&self.idle)));
     }
 }
 
 /// What processes say beside their answers, up to a size. A log that cannot be written is not missed.
-struct Log {
+struct StderrLog {
     open: Opener,
     file: Option<File>,
     left: u64,
 }
 
-impl Log {
+impl StderrLog {
     fn add(&mut self, words: &[u8]) {
         if self.left == 0 {
             return;

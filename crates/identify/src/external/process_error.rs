@@ -9,7 +9,7 @@ use crate::error::IdentifyError;
 
 /// Why there is no answer; the process is of no more use.
 #[derive(Debug, Error)]
-pub enum Trouble {
+pub enum ProcessError {
     /// The program cannot be started.
     #[error("not started: {0}")]
     NotStarted(std::io::Error),
@@ -30,15 +30,15 @@ pub enum Trouble {
     Nonsense(String),
 }
 
-impl Trouble {
+impl ProcessError {
     /// Whether an earlier trial may be to blame. Silence is not asked for twice: it would take the time twice.
     pub fn may_be_of_the_past(&self) -> bool {
         matches!(self, Self::Ended(_) | Self::TooLong { .. } | Self::Nonsense(_))
     }
 }
 
-impl From<Trouble> for IdentifyError {
-    fn from(trouble: Trouble) -> Self {
-        Self::outside(&trouble.to_string())
+impl From<ProcessError> for IdentifyError {
+    fn from(error: ProcessError) -> Self {
+        Self::outside(&error.to_string())
     }
 }
