@@ -165,6 +165,15 @@ impl Channel {
         CHANNELS[self as usize].1
     }
 
+    /// What it is called in messages.
+    pub(crate) fn spoken(self) -> &'static str {
+        match self {
+            Channel::YawRate => "yaw rate",
+            Channel::Rudder | Channel::RudderOrder => "rudder angle",
+            other => other.quantity(),
+        }
+    }
+
     /// The units a column of this channel may have; the first is the one files are written in.
     pub fn units(self) -> &'static [Unit] {
         CHANNELS[self as usize].2.0

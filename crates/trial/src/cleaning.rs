@@ -209,11 +209,7 @@ fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<String> {
             *value = f64::NAN;
         }
     }
-    let name = match channel {
-        Channel::YawRate => "yaw rate",
-        _ => "heading",
-    };
-    let every = ordinal(rhythm.every);
+    let (name, every) = (channel.spoken(), ordinal(rhythm.every));
     Some(format!("the {name} is new in every {every} row only; its repetitions are taken as missing"))
 }
 

@@ -55,7 +55,7 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
 pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<String> {
     let time = &columns.time;
     let mut told = Vec::new();
-    for (channel, name) in [(Channel::Heading, "heading"), (Channel::Rudder, "rudder angle")] {
+    for channel in [Channel::Heading, Channel::Rudder] {
         let Some(values) = columns.channels.get_mut(&channel) else { continue };
         let Some(usual) = usual(time, values) else { continue };
         let least = LEAST.max(CLEAR * usual);
@@ -73,7 +73,7 @@ pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedRead
             rows.into_iter().for_each(|row| values[row] = f64::NAN);
             told.push(format!(
                 "{} far from both neighbours (by up to {:.1}°) taken as missing, {times}",
-                counted(spikes.len(), name),
+                counted(spikes.len(), channel.spoken()),
                 largest.to_degrees(),
             ));
         }

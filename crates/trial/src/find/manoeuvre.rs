@@ -1,5 +1,5 @@
-//! What a search gives: a manoeuvre with the part of the log that is to be analysed, and how good the log is there: facts
-//! that a person wants before that. Nothing is refused for them.
+//! What a search gives: a manoeuvre with the part of the log that is to be analysed, and how good the log is there:
+//! facts that a person wants before that. Nothing is refused for them.
 
 use ship::angle::to_deg;
 

@@ -4,7 +4,6 @@
 //! made up over a gap.
 
 use super::error::Problem;
-use super::limits::spoken;
 use super::source::Series;
 use crate::channel::{Channel, Unit};
 use crate::cleaning::draw_line;
@@ -162,7 +161,7 @@ pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
     let heading = find([Channel::Heading, Channel::YawRate]);
     let (Some(rudder), Some(heading)) = (rudder, heading) else {
         let wanted = if rudder.is_none() { "rudder angle" } else { "heading and no yaw rate" };
-        let found = channels.keys().map(|&channel| spoken(channel).to_owned()).collect();
+        let found = channels.keys().map(|&channel| channel.spoken().to_owned()).collect();
         return Err(Problem::NoChannel { wanted, found });
     };
     let span = |values: &[f64]| {

@@ -25,7 +25,7 @@ impl Hash {
 
     /// The hash, hexadecimal; that of the file when it has been read to the end.
     pub fn finish(self) -> String {
-        in_hex(&self.0.take().finalize())
+        format!("{:x}", self.0.take().finalize())
     }
 }
 
@@ -79,8 +79,8 @@ impl<R: Read> Lines<R> {
         self.consumed
     }
 
-    /// Takes the bytes of a line without its end and without the mark of UTF-8, or those of its begin where it is too long;
-    /// how many were read, and whether the line ends with them. `None` at the end of the file.
+    /// Takes the bytes of a line without its end and without the mark of UTF-8, or those of its begin where it is too
+    /// long; how many were read, and whether the line ends with them. `None` at the end of the file.
     fn take_line(&mut self) -> Result<Option<(usize, bool)>, Problem> {
         self.bytes.clear();
         let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
@@ -150,11 +150,6 @@ impl<R: Read> Lines<R> {
     pub fn sha256(self) -> String {
         self.hash.finish()
     }
-}
-
-/// The bytes of a hash, hexadecimal.
-pub fn in_hex(hash: &[u8]) -> String {
-    hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// SHA-256 of a text, hexadecimal.

@@ -1,5 +1,5 @@
-//! A table from its first line to its columns. When the last row is read: instants of shared stamps, columns by channel,
-//! complaints about what is missing, and the list of what was decided.
+//! A table from its first line to its columns. When the last row is read: instants of shared stamps, columns by
+//! channel, complaints about what is missing, and the list of what was decided.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::head;
 use super::input::Text;
 use super::instants::spread;
 use super::layout::{Content, Layout, TableColumn};
-use super::limits::{no_rows, spoken};
+use super::limits::no_rows;
 use super::lines::Lines;
 use super::rows::Rows;
 use super::source::Log;
@@ -140,13 +140,13 @@ impl Rows<'_> {
         }
         let is_empty = |place: &usize| layout.columns[*place].values.iter().all(|value| value.is_nan());
         if let Some(place) = layout.rudder().filter(is_empty) {
-            return all_missing(place, spoken(Channel::Rudder));
+            return all_missing(place, Channel::Rudder.spoken());
         }
         let [heading, rate] = [Channel::Heading, Channel::YawRate].map(|channel| layout.place(channel));
         match (heading, rate) {
             (_, Some(rate)) if !is_empty(&rate) => Ok(()),
-            (Some(heading), _) if is_empty(&heading) => all_missing(heading, spoken(Channel::Heading)),
-            (None, Some(rate)) => all_missing(rate, spoken(Channel::YawRate)),
+            (Some(heading), _) if is_empty(&heading) => all_missing(heading, Channel::Heading.spoken()),
+            (None, Some(rate)) => all_missing(rate, Channel::YawRate.spoken()),
             _ => Ok(()),
         }
     }

@@ -4,7 +4,6 @@
 use std::collections::BTreeMap;
 
 use super::error::Problem;
-use super::limits::spoken;
 use super::source::Log;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
@@ -70,7 +69,8 @@ pub(super) fn settle(
     for open in &open {
         let is_angle = open.channel.units().contains(&Unit::Radian);
         let unit = match open.channel {
-            Channel::Rudder | Channel::RudderOrder => rudder(open),
+            Channel::Rudder | Channel::RudderOrder if open.largest <= RUDDER_RAD => Some(Unit::Radian),
+            Channel::Rudder | Channel::RudderOrder => (open.largest > RUDDER_EITHER).then_some(Unit::Degree),
             Channel::Heading => heading(channels, open),
             Channel::YawRate => yaw_rate(time, channels),
             _ if is_angle && open.largest > std::f64::consts::TAU + 0.01 => Some(Unit::Degree),
@@ -85,13 +85,13 @@ pub(super) fn settle(
                 decided.push(format!(
                     "`{}` is the {} in {}",
                     shortened(&open.name),
-                    spoken(open.channel),
+                    open.channel.spoken(),
                     unit.spoken()
                 ));
             }
             None if is_needed => {
                 let UnitlessColumn { channel, name: column, largest } = open.clone();
-                return Err(Problem::OpenUnit { line, column, quantity: spoken(channel), largest, channel });
+                return Err(Problem::OpenUnit { line, column, quantity: channel.spoken(), largest, channel });
             }
             None if open.channel.units().len() > 1 => left_out.push(open),
             None => {}
@@ -108,7 +108,7 @@ pub(super) fn settle(
         let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
         told.push(format!(
             "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = \"{}\"` for it in a sidecar",
-            spoken(*channel),
+            channel.spoken(),
             shortened(name),
             names.join(" or "),
             channel.column_name()
@@ -127,14 +127,6 @@ fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
         && let Some(values) = channels.get_mut(&channel)
     {
         values.iter_mut().for_each(|value| *value *= factor);
-    }
-}
-
-fn rudder(open: &UnitlessColumn) -> Option<Unit> {
-    match open.largest {
-        largest if largest <= RUDDER_RAD => Some(Unit::Radian),
-        largest if largest > RUDDER_EITHER => Some(Unit::Degree),
-        _ => None,
     }
 }
 

@@ -1,5 +1,5 @@
-//! A log of NMEA 0183 sentences becomes [`ReadSentences`]: every quantity that is used at the instants its instrument sent
-//! it. Headings, rudder angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and the
+//! A log of NMEA 0183 sentences becomes [`ReadSentences`]: every quantity that is used at the instants its instrument
+//! sent it. Headings, rudder angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and the
 //! sentences of single makers are passed over. Time comes from stamps before the sentences, or from the sentences of a
 //! GPS or clock. What is damaged is left out and counted; a course over ground never stands for a heading. Whether
 //! heading and rudder are enough for a record is not decided here: they may lie in two files.

@@ -1,5 +1,5 @@
-//! Whatever sentences a log holds, it is read or refused; and another reader agrees on frames. Any bytes are a matter of
-//! the fuzz targets.
+//! Whatever sentences a log holds, it is read or refused; and another reader agrees on frames. Any bytes are a matter
+//! of the fuzz targets.
 
 use proptest::prelude::*;
 
