@@ -6,7 +6,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 const HALVINGS: usize = 100;
 
 /// A number, and where it is known its standard deviation with the interval between its 2.5 % and 97.5 % quantiles.
-pub type Summary = (f64, Option<(f64, [f64; 2])>);
+pub type MixtureSummary = (f64, Option<(f64, [f64; 2])>);
 
 /// Normal laws with their weights, which sum to one.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +17,7 @@ pub struct NormalMixture {
 
 impl NormalMixture {
     /// Mean and standard deviation of the mixture with its interval. Without an error where one of the parts has none.
-    pub fn summary(&self) -> Summary {
+    pub fn summary(&self) -> MixtureSummary {
         let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
         let mean = self.parts.iter().map(|(weight, mean, _)| weight * mean).sum::<f64>() / total;
         let square = |(weight, own, sd): &(f64, f64, f64)| weight * (sd * sd + (own - mean).powi(2));
@@ -79,7 +79,7 @@ impl NormalPair {
 ///
 /// P(b/a < k) is that of b − k a < 0, which is normal in every model (Fieller 1954). There is no interval where the
 /// denominator may be zero: where its own 95 % interval holds zero.
-pub fn ratio(pairs: &[NormalPair]) -> Summary {
+pub fn ratio(pairs: &[NormalPair]) -> MixtureSummary {
     let best = pairs.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));
     let Some(best) = best else { return (f64::NAN, None) };
     let value = best.numerator.0 / best.denominator.0;

@@ -17,7 +17,7 @@ use crate::base::Base;
 use crate::candidates;
 use crate::document::Document;
 use crate::empirical;
-use crate::fit::{PreparedRecords, StructureFit};
+use crate::fit::{FittedRecords, StructureFit};
 use crate::full::{self, Full};
 use crate::judge::{RecordComparison, ReplayResult, before, starts};
 use crate::left_out::leave_one_out;
@@ -48,7 +48,7 @@ pub struct Analysis {
     pub structures: Structures,
     /// The full model and the noise that it leaves.
     pub full: Full,
-    pub(crate) problem: PreparedRecords,
+    pub(crate) problem: FittedRecords,
     pub(crate) candidates: Vec<Arc<Term>>,
 }
 
@@ -116,7 +116,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let mut candidates = candidates::all(&records, &trials, time, &settings.selection);
     refuse_lacking(&candidates, &settings.selection)?;
     candidates.extend(empirical::candidates(&records, &trials, time).take(settings.monomials));
-    let problem = PreparedRecords::new(records, response.inverse_T, time);
+    let problem = FittedRecords::new(records, response.inverse_T, time);
     let with_waves = settings.selection.allows("wave_yaw");
     let fulls = full::fit(&problem, &base, &candidates, with_waves);
     let (full, structures) =

@@ -17,7 +17,7 @@ use ship::Polyline;
 use trial::Trial;
 
 use crate::average::After;
-use crate::fit::{PreparedRecords, StructureFit};
+use crate::fit::{FittedRecords, StructureFit};
 use crate::record::PreparedRecord;
 
 /// Standard deviations on either side of 95 % of a normal error.
@@ -30,7 +30,7 @@ const DRAWS: usize = 100;
 pub fn of(after: &After, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
     let record = PreparedRecord::averaged(trial, after.time);
     let first = after.members.first()?.1;
-    let problem = PreparedRecords::new(vec![record], first.theta[0], after.time);
+    let problem = FittedRecords::new(vec![record], first.theta[0], after.time);
     let (law_variance, white) = size(after, &problem);
     let record = &problem.records[0];
     let rows = record.observed.len();
@@ -56,7 +56,7 @@ pub fn of(after: &After, trial: &Trial, mean: &Replay, members: &[Replay]) -> Op
 
 /// Variance of the white noise of a row of a record under a law, and of one reading, rad²: its own where it was fitted,
 /// elsewhere the mean.
-fn size(after: &After, problem: &PreparedRecords) -> (f64, f64) {
+fn size(after: &After, problem: &FittedRecords) -> (f64, f64) {
     let all = &after.law.variance;
     let own = after.known.map_or_else(|| all.iter().sum::<f64>() / all.len() as f64, |number| all[number]);
     (own, own * problem.records[0].full_readings as f64)
@@ -96,7 +96,7 @@ enum ParameterErrors {
 impl ResidualSampler {
     fn new(
         after: &After,
-        problem: &PreparedRecords,
+        problem: &FittedRecords,
         fit: &StructureFit,
         initial: [f64; 2],
         variance: f64,

@@ -49,7 +49,7 @@ impl Effort {
 
 /// The records that are fitted together.
 #[derive(Debug, Clone)]
-pub struct PreparedRecords {
+pub struct FittedRecords {
     /// The records.
     pub records: Vec<PreparedRecord>,
     /// What is the same for every intensity of the noise of a record.
@@ -58,7 +58,7 @@ pub struct PreparedRecords {
     pub time: f64,
 }
 
-impl PreparedRecords {
+impl FittedRecords {
     /// Prepares records of a ship whose base has about this 1/T (1/s) and which sails its length in `time` seconds.
     pub fn new(records: Vec<PreparedRecord>, inverse_time: f64, time: f64) -> Self {
         let longest = records.iter().map(PreparedRecord::duration).fold(0.0, f64::max);
@@ -177,7 +177,7 @@ struct FitPoint {
 
 /// A fit on its way.
 struct PosteriorSearch<'a> {
-    problem: &'a PreparedRecords,
+    problem: &'a FittedRecords,
     structure: &'a Structure,
     weights: &'a Weights,
     priors: Vec<Prior>,

@@ -7,7 +7,7 @@ use ship::FirstOrder;
 
 use crate::base::Base;
 use crate::candidates::is_variant;
-use crate::fit::{Effort, PreparedRecords, StructureFit};
+use crate::fit::{Effort, FittedRecords, StructureFit};
 use crate::law::{self, ChosenLaw};
 use crate::model::{Structure, Term};
 use crate::noise::CorrelatedNoise;
@@ -31,7 +31,7 @@ pub struct Full {
 /// Fits the full model, once for every noise that may be the right one: that of all which stands still in time, that
 /// beside moments that come at an instant, where one of these is a random moment that of an error of the heading, and
 /// that of a base to which nothing is added.
-pub fn fit(problem: &PreparedRecords, base: &Base, candidates: &[Arc<Term>], with_waves: bool) -> Vec<Full> {
+pub fn fit(problem: &FittedRecords, base: &Base, candidates: &[Arc<Term>], with_waves: bool) -> Vec<Full> {
     let (late, known): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) =
         candidates.iter().filter(|one| !is_variant(one.effect.as_ref())).partition(|one| one.effect.has_instant());
     let own = Structure::base(problem.records.len(), problem.time);
@@ -82,7 +82,7 @@ pub fn fit(problem: &PreparedRecords, base: &Base, candidates: &[Arc<Term>], wit
 }
 
 /// The base alone with the noise that it leaves: what the records are if nothing is missing but weather is there.
-fn nothing(problem: &PreparedRecords, base: &Base, with_waves: bool, kinds: &[CorrelatedNoise]) -> Full {
+fn nothing(problem: &FittedRecords, base: &Base, with_waves: bool, kinds: &[CorrelatedNoise]) -> Full {
     let own = Structure::base(problem.records.len(), problem.time);
     let law = NoiseLaw::white(problem.records.len(), base.mean_square());
     let theta = start(&own, &base.estimate.response, std::iter::empty());
@@ -95,7 +95,7 @@ fn nothing(problem: &PreparedRecords, base: &Base, with_waves: bool, kinds: &[Co
 }
 
 /// The full model without moments that come at an instant, from two starts.
-fn physics(problem: &PreparedRecords, base: &Base, structure: &Structure, weights: &Weights) -> StructureFit {
+fn physics(problem: &FittedRecords, base: &Base, structure: &Structure, weights: &Weights) -> StructureFit {
     let starts: [fn(&Term) -> Vec<f64>; 2] =
         [|term| term.priors.iter().map(|prior| prior.mean).collect(), Term::neutral];
     let fits = starts.par_iter().map(|values| {

@@ -13,7 +13,7 @@ use estimation::minimum::minimum;
 use nalgebra::{Cholesky, DVector, Dyn};
 use rayon::prelude::*;
 
-use crate::fit::{PreparedRecords, StructureFit, curvature, deviation};
+use crate::fit::{FittedRecords, StructureFit, curvature, deviation};
 use crate::linear::Linear;
 use crate::noise::{CorrelatedNoise, NoiseColour};
 use crate::waves;
@@ -38,7 +38,7 @@ const ROUNDS: usize = 2;
 
 /// Variance, rad², that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral
 /// of the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
-fn floors(problem: &PreparedRecords, gain: f64) -> Vec<f64> {
+fn floors(problem: &FittedRecords, gain: f64) -> Vec<f64> {
     let of = |record: &crate::record::PreparedRecord| {
         let mut bends: Vec<f64> =
             record.rudder.values().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
@@ -54,7 +54,7 @@ fn floors(problem: &PreparedRecords, gain: f64) -> Vec<f64> {
 #[derive(Debug, Clone)]
 pub struct Ground<'a> {
     /// The records.
-    pub problem: &'a PreparedRecords,
+    pub problem: &'a FittedRecords,
     /// Residual and sensitivities.
     pub linear: Linear,
     /// Precision of what is expected of the unknowns, and where they stand beside it; none for those at the end.
@@ -64,7 +64,7 @@ pub struct Ground<'a> {
 
 impl<'a> Ground<'a> {
     /// That of a fit. States at the beginning stand behind the fitted parameters.
-    pub fn of(problem: &'a PreparedRecords, fit: &StructureFit) -> Self {
+    pub fn of(problem: &'a FittedRecords, fit: &StructureFit) -> Self {
         let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
         let prior = fit.structure.fitted_priors(&fit.theta).into_iter().map(|(prior, value)| {
             let precision = curvature(prior);
@@ -182,7 +182,7 @@ pub struct ChosenLaw {
 
 /// The law of what a fit leaves, of some kinds of colour; `variance` are sizes to begin with, rad².
 pub fn of(
-    problem: &PreparedRecords,
+    problem: &FittedRecords,
     fit: &StructureFit,
     variance: &[f64],
     with_waves: bool,
@@ -217,7 +217,7 @@ const TOLD_PER_TIME: f64 = 3.0;
 
 impl NoiseLaw {
     /// A smooth error that is no smaller than that of any model.
-    fn of_model(mut self, problem: &PreparedRecords) -> Self {
+    fn of_model(mut self, problem: &FittedRecords) -> Self {
         let Some((CorrelatedNoise::Smooth(_), level)) = self.colour.wander else { return self };
         for ((variance, power), record) in self.variance.iter_mut().zip(&mut self.power).zip(&problem.records) {
             let rows = record.observed.len() as f64;

@@ -6,7 +6,7 @@ use trial::Trial;
 
 use crate::average::After;
 use crate::base::Base;
-use crate::fit::{Effort, PreparedRecords, StructureFit};
+use crate::fit::{Effort, FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::judge::RecordComparison;
 use crate::model::Structure;
@@ -19,14 +19,14 @@ const MOST: usize = 4;
 /// Comparisons on every record that its fold has not seen.
 pub fn leave_one_out(
     trials: &[Trial],
-    problem: &PreparedRecords,
+    problem: &FittedRecords,
     full: &Full,
     structures: &Structures,
 ) -> Vec<Option<RecordComparison>> {
     let fold = |left: usize| -> Option<RecordComparison> {
         let base = Base::of(&without(trials, left)).ok()?;
         let others =
-            PreparedRecords::new(without(&problem.records, left), base.estimate.response.inverse_T, problem.time);
+            FittedRecords::new(without(&problem.records, left), base.estimate.response.inverse_T, problem.time);
         let law = NoiseLaw {
             variance: without(&full.law.variance, left),
             power: without(&full.law.power, left),

@@ -15,7 +15,7 @@ const GROUP: f64 = 0.6;
 
 /// An effect that is named, or a group of which one is there.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NamedEffect {
+pub struct EffectNaming {
     /// Its most probable form.
     pub term: TermName,
     /// The other effects of its group, each in its most probable form.
@@ -30,7 +30,7 @@ pub struct NamedEffect {
 type EffectKey = (&'static str, Option<usize>);
 
 /// The effects that are named, the most probable first; those that were asked for are.
-pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> Vec<NamedEffect> {
+pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> Vec<EffectNaming> {
     let mut keys: Vec<(EffectKey, f64)> = Vec::new();
     for name in structures.probabilities.keys() {
         let key = (name.0, name.2);
@@ -41,8 +41,8 @@ pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> 
     keys.sort_by(|(one, p), (other, q)| q.total_cmp(p).then(one.cmp(other)));
     let is_named = |(key, p): &(EffectKey, f64)| *p >= threshold || selection.asks_for(key.0) && *p > 0.0;
     let (certain, open): (Vec<_>, Vec<_>) = keys.into_iter().partition(is_named);
-    let mut all: Vec<NamedEffect> =
-        certain.iter().map(|(key, p)| NamedEffect { aliases: Vec::new(), ..one(structures, *key, *p) }).collect();
+    let mut all: Vec<EffectNaming> =
+        certain.iter().map(|(key, p)| EffectNaming { aliases: Vec::new(), ..one(structures, *key, *p) }).collect();
     let mut open: Vec<EffectKey> = open.into_iter().filter(|(_, p)| *p >= SMALLEST).map(|(key, _)| key).collect();
     while let Some((group, probability)) = group(structures, &open, threshold) {
         open.retain(|key| !group.contains(key));
@@ -54,13 +54,13 @@ pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> 
 }
 
 /// An effect in its most probable form.
-fn one(structures: &Structures, (id, only): EffectKey, probability: f64) -> NamedEffect {
+fn one(structures: &Structures, (id, only): EffectKey, probability: f64) -> EffectNaming {
     let of = |name: &&TermName| name.0 == id && name.2 == only;
     let mut forms: Vec<(TermName, f64)> =
         structures.probabilities.keys().filter(of).map(|name| (*name, structures.probabilities[name])).collect();
     forms.sort_by(|(one, p), (other, q)| q.total_cmp(p).then(one.cmp(other)));
     let others = forms[1..].iter().filter(|(_, p)| *p >= SMALLEST).map(|(name, _)| *name).collect();
-    NamedEffect { term: forms[0].0, aliases: Vec::new(), forms: others, probability }
+    EffectNaming { term: forms[0].0, aliases: Vec::new(), forms: others, probability }
 }
 
 /// The smallest group of effects of which one is there, the most probable of them first.

@@ -9,7 +9,7 @@ use trial::Trial;
 
 use crate::analysis::Analysis;
 use crate::document::Outcome;
-use crate::fit::PreparedRecords;
+use crate::fit::FittedRecords;
 use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::weights::NoiseLaw;
@@ -73,7 +73,7 @@ impl Analysis {
         let full = &self.full.fit;
         let (structure, theta) = full.structure.alone(None, &full.theta);
         let record = PreparedRecord::averaged(trial, self.problem.time);
-        let problem = PreparedRecords::new(vec![record], theta[0], self.problem.time);
+        let problem = FittedRecords::new(vec![record], theta[0], self.problem.time);
         let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
         let law = NoiseLaw { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];

@@ -3,7 +3,7 @@
 use estimation::residuals::{GappedSeries, evenness, whiteness};
 use trial::Trial;
 
-use crate::fit::PreparedRecords;
+use crate::fit::FittedRecords;
 use crate::full::Full;
 use crate::judge::{RecordComparison, ReplayResult};
 use crate::replay_errors::ReplayErrors;
@@ -39,7 +39,7 @@ const SMALL: f64 = 1.5;
 impl Remainder {
     /// Looks at what is left.
     pub fn new(
-        problem: &PreparedRecords,
+        problem: &FittedRecords,
         full: &Full,
         structures: &Structures,
         identification: &[RecordComparison],
@@ -81,7 +81,7 @@ const IMPROBABLE: f64 = 1e-4;
 
 /// Whether a law describes the residual (rad) of every record: what is new in every heading, given those before it, is
 /// white (Ljung and Box 1978), of one variance, and without a single surprise.
-fn holds(problem: &PreparedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> bool {
+fn holds(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> bool {
     let weights = problem.weights(law);
     let (mut even, mut series) = (1.0_f64, Vec::new());
     for (number, (record, residual)) in problem.records.iter().zip(residual).enumerate() {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use estimation::mixture::{NormalMixture, NormalPair, Summary, ratio};
+use estimation::mixture::{MixtureSummary, NormalMixture, NormalPair, ratio};
 use estimation::residuals::Whiteness;
 use ship::angle::to_deg;
 use ship::effects::{self, Effect, Parameter};
@@ -14,11 +14,11 @@ use trial::{Quantity, Trial};
 use crate::base::Base;
 use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME};
 use crate::document::*;
-use crate::fit::{PreparedRecords, StructureFit};
+use crate::fit::{FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::judge::RecordComparison;
 use crate::model::{ModelParameter, Term, TermName};
-use crate::naming::{NamedEffect, named};
+use crate::naming::{EffectNaming, named};
 use crate::noise::CorrelatedNoise;
 use crate::remainder::Remainder;
 use crate::selection::EffectId;
@@ -56,7 +56,7 @@ pub struct TraceParts<'a> {
     /// Whether the structures replay the fitted records no nearer than the base.
     pub no_nearer: bool,
     /// The records as they were fitted.
-    pub problem: &'a PreparedRecords,
+    pub problem: &'a FittedRecords,
 }
 
 /// Squared size over its error below which a candidate cannot be seen.
@@ -201,8 +201,8 @@ impl TraceParts<'_> {
         (0..own.len()).map(of).collect()
     }
 
-    fn effects(&self, named: &[NamedEffect]) -> Vec<EffectEntry> {
-        let entry = |one: &NamedEffect| {
+    fn effects(&self, named: &[EffectNaming]) -> Vec<EffectEntry> {
+        let entry = |one: &EffectNaming| {
             let (id, form, only) = one.term;
             let support = self.structures.support_of(id, only);
             let mut aliases: Vec<String> = one.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
@@ -256,7 +256,7 @@ impl TraceParts<'_> {
         })
     }
 
-    fn candidate(&self, id: &'static str, named: &[NamedEffect]) -> CandidateEntry {
+    fn candidate(&self, id: &'static str, named: &[EffectNaming]) -> CandidateEntry {
         let own = self.candidates.iter().filter(|one| one.effect.id() == id);
         let forms: Vec<FormEntry> = own.map(|one| self.form(one.name(), named)).collect();
         let is_sea = id == effects::WaveYaw.id();
@@ -293,7 +293,7 @@ impl TraceParts<'_> {
         }
     }
 
-    fn form(&self, name: TermName, named: &[NamedEffect]) -> FormEntry {
+    fn form(&self, name: TermName, named: &[EffectNaming]) -> FormEntry {
         let (_, form, only) = name;
         let visibility = self.structures.visibility.get(&name).copied();
         let outcome = if named.iter().any(|one| one.term == name) {
@@ -395,6 +395,6 @@ impl TraceParts<'_> {
     }
 }
 
-fn quantity((value, error): Summary) -> Quantity {
+fn quantity((value, error): MixtureSummary) -> Quantity {
     Quantity { value, sd: error.map(|(sd, _)| sd), ci95: error.map(|(_, interval)| interval) }
 }

@@ -15,7 +15,7 @@ use ship::replay::replay_states;
 use estimation::column::dot;
 
 use crate::empirical::{PRIOR_SD, plain};
-use crate::fit::{PreparedRecords, StructureFit};
+use crate::fit::{FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::law::{ChosenLaw, Ground};
 use crate::linear::HeadingSensitivities;
@@ -73,7 +73,7 @@ pub struct Empirical {
 
 /// One record as the best structure replays it.
 struct ReplayedMotion<'a> {
-    problem: &'a PreparedRecords,
+    problem: &'a FittedRecords,
     number: usize,
     base: [f64; 2],
     rate: Vec<f64>,
@@ -82,7 +82,7 @@ struct ReplayedMotion<'a> {
 }
 
 impl<'a> ReplayedMotion<'a> {
-    fn of(problem: &'a PreparedRecords, fit: &StructureFit, number: usize) -> Self {
+    fn of(problem: &'a FittedRecords, fit: &StructureFit, number: usize) -> Self {
         let record = &problem.records[number];
         let response = fit.structure.response(Some(number), &fit.theta);
         let recorded = record.recorded(&response);
@@ -293,7 +293,7 @@ impl<'a> Stand<'a> {
 }
 
 /// Shapes that explain what the best structure leaves better than any noise; `None` where none clearly does.
-pub fn explain(problem: &PreparedRecords, full: &Full, member: &WeighedStructure) -> Option<Empirical> {
+pub fn explain(problem: &FittedRecords, full: &Full, member: &WeighedStructure) -> Option<Empirical> {
     let fit = &member.fit;
     let motions: Vec<ReplayedMotion> =
         (0..problem.records.len()).map(|number| ReplayedMotion::of(problem, fit, number)).collect();

@@ -11,7 +11,7 @@ use estimation::subsets::{Removable, conditional};
 use rayon::prelude::*;
 
 use crate::candidates::{is_delay, is_variant};
-use crate::fit::{Effort, PreparedRecords, StructureFit};
+use crate::fit::{Effort, FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::model::{ModelParameter, Structure, Term, TermName};
 use crate::selection::Selection;
@@ -34,7 +34,7 @@ const ROUNDS: usize = 2;
 
 /// The stage with what it needs.
 struct Stage<'a> {
-    problem: &'a PreparedRecords,
+    problem: &'a FittedRecords,
     weights: Weights,
     full: &'a Full,
     variants: Vec<&'a Arc<Term>>,
@@ -49,7 +49,7 @@ struct Stage<'a> {
 /// Weighs the structures under every law, and keeps the law that explains the records best: by the evidence of its
 /// structures; but where physics beside a smooth error of the model explains what the base leaves, no other law does.
 pub fn choose(
-    problem: &PreparedRecords,
+    problem: &FittedRecords,
     fulls: Vec<Full>,
     candidates: &[Arc<Term>],
     selection: &Selection,
@@ -95,7 +95,7 @@ const ASTRAY: f64 = 2.0;
 
 /// Weighs the structures of a full model.
 fn weigh(
-    problem: &PreparedRecords,
+    problem: &FittedRecords,
     full: &Full,
     candidates: &[Arc<Term>],
     selection: &Selection,

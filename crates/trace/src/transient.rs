@@ -6,7 +6,7 @@ use estimation::levenberg_marquardt::Normal;
 use nalgebra::{Cholesky, DVector, Dyn};
 use ship::first_order::Transition;
 
-use crate::fit::{PreparedRecords, StructureFit, posterior};
+use crate::fit::{FittedRecords, StructureFit, posterior};
 use crate::linear::Linear;
 use crate::model::Term;
 use crate::weights::Weights;
@@ -20,7 +20,7 @@ const BETWEEN_STEPS: f64 = 1.0 / 80.0;
 /// The best place of every one of some moments on top of a fit, (m, t_c, d) of one that passes and (m, t₀) of one that
 /// stays; `None` where the unknowns of the fit cannot be told apart.
 pub fn places(
-    problem: &PreparedRecords,
+    problem: &FittedRecords,
     fit: &StructureFit,
     weights: &Weights,
     terms: &[&Term],
@@ -33,7 +33,7 @@ pub fn places(
 
 /// The best place of one moment beside a linearised fit.
 fn place(
-    problem: &PreparedRecords,
+    problem: &FittedRecords,
     fit: &StructureFit,
     weights: &Weights,
     term: &Term,

@@ -3,7 +3,7 @@
 
 use ship::narrow_band::NarrowBand;
 
-use crate::fit::PreparedRecords;
+use crate::fit::FittedRecords;
 use crate::noise::NoiseColour;
 use crate::weights::NoiseLaw;
 
@@ -22,7 +22,7 @@ const SMALLEST_SHARE: f64 = 0.05;
 const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
 /// The waves that explain a residual best beside what wanders under a law; `None` when none can be resolved or helps.
-pub fn find(problem: &PreparedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBand> {
+pub fn find(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBand> {
     let beside = &NoiseColour { waves: None, ..law.colour };
     // −2 log L and whitened sum of squares of the residual under one colour.
     let judge = |colour: &NoiseColour| {

@@ -4,7 +4,7 @@ use ship::angle::to_deg;
 use trial::{Origin, Trial};
 
 use crate::document::{BeforeAfter, EffectEntry, ErrorEntry, Verdict};
-use crate::naming::NamedEffect;
+use crate::naming::EffectNaming;
 use crate::signature::Signature;
 
 /// Why the replay of the base is kept.
@@ -82,7 +82,7 @@ pub fn headline(verdict: Verdict, effects: &[EffectEntry], error: &ErrorEntry) -
 }
 
 /// What speaks for an effect.
-pub fn evidence(named: &NamedEffect, gain: f64, asked: bool, trials: &[Trial]) -> String {
+pub fn evidence(named: &EffectNaming, gain: f64, asked: bool, trials: &[Trial]) -> String {
     let (id, form, only) = named.term;
     let place = only.map_or(String::new(), |number| format!(" in {}", trials[number].name()));
     let odds = match gain / std::f64::consts::LN_10 {

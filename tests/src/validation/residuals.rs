@@ -11,7 +11,7 @@ use ship::effects::{Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetr
 use ship::{Response, ResponseModel};
 use simulate::{StreamKey, Vessel};
 use trace::candidates;
-use trace::fit::{Effort, PreparedRecords, StructureFit};
+use trace::fit::{Effort, FittedRecords, StructureFit};
 use trace::full::start;
 use trace::model::Structure;
 use trace::record::PreparedRecord;
@@ -127,7 +127,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let replay = identify::replay::replay(&trial, &base).expect("finite");
     let trials = [trial];
     let time = candidates::ship_time(&trials, base.K_over_T);
-    let problem = PreparedRecords::new(vec![PreparedRecord::whole(&trials[0])], base.inverse_T, time);
+    let problem = FittedRecords::new(vec![PreparedRecord::whole(&trials[0])], base.inverse_T, time);
     let selection = Selection::only(vec![EffectId::find(line.effect.id()).expect("on the list")]);
     let all = candidates::all(&problem.records, &trials, time, &selection);
     let term = all.into_iter().find(|term| term.effect.form() == line.effect.form());

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::fit::{deviation, log_normaliser};
-use crate::model::Structure;
+use crate::model::{Structure, Term};
 
 /// Structures that are refitted a round, and the log of the odds against the best beyond which none is.
 const REFITS: usize = 4;
@@ -52,23 +52,8 @@ impl Quadratic {
         let ranges = structure.ranges();
         let mut pinned = vec![false; ranges.len()];
         let removable = |mean: &DVector<f64>, number: usize| {
-            let (term, range) = (&structure.terms[number], ranges[number].clone());
-            let neutral = term.neutral();
-            let mut own =
-                Removable { sizes: Vec::new(), shapes: Vec::new(), log_prior: 0.0, log_odds: log_odds[number] };
-            for (k, place) in range.enumerate() {
-                let prior = term.priors[k];
-                let Some(unknown) = unknown[place] else { continue };
-                own.log_prior += log_normaliser(prior);
-                if prior.is_shape {
-                    own.log_prior -= 0.5 * deviation(prior, theta[place]).powi(2);
-                    own.shapes.push(unknown);
-                } else {
-                    own.log_prior -= 0.5 * deviation(prior, neutral[k]).powi(2);
-                    own.sizes.push((unknown, mean[unknown] - neutral[k]));
-                }
-            }
-            own
+            let places = ranges[number].clone().map(|place| (place, unknown[place]));
+            Removable { log_odds: log_odds[number], ..removable(&structure.terms[number], theta, mean, places) }
         };
         // A size that would leave its range at its neutral end is no size.
         for _ in 0..ranges.len() {
@@ -194,4 +179,25 @@ impl Quadratic {
         let own = kept.iter().map(|&k| removable[k].clone()).collect();
         (kept, covariance, own)
     }
+}
+
+/// A term as it may be taken away, at a point θ of the full model with the unknowns that its places are.
+fn removable(
+    term: &Term,
+    theta: &[f64],
+    mean: &DVector<f64>,
+    places: impl Iterator<Item = (usize, Option<usize>)>,
+) -> Removable {
+    let mut own = Removable { sizes: Vec::new(), shapes: Vec::new(), log_prior: 0.0, log_odds: 0.0 };
+    for (((place, unknown), prior), neutral) in places.zip(&term.priors).zip(term.neutral()) {
+        let Some(unknown) = unknown else { continue };
+        let at = if prior.is_shape { theta[place] } else { neutral };
+        own.log_prior += log_normaliser(*prior);
+        own.log_prior -= 0.5 * deviation(*prior, at).powi(2);
+        match prior.is_shape {
+            true => own.shapes.push(unknown),
+            false => own.sizes.push((unknown, mean[unknown] - neutral)),
+        }
+    }
+    own
 }
