@@ -3,9 +3,9 @@
 
 use identify::{Estimate, IdentifierSettings};
 use report::figures::{
-    CurveFit, Derivatives, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replays, ZigzagTrial,
+    CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replays, ZigzagTrial,
 };
-use report::{Curve, Origin};
+use report::{CurveOrigin, PlotCurve};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use simulate::Truth;
@@ -27,7 +27,7 @@ pub struct Showcase {
     /// The Fourier fit with its residual.
     pub fourier_fit: Option<CurveFit>,
     /// Heading, yaw rate and yaw acceleration of the fits against the truth.
-    pub derivatives: Option<Derivatives>,
+    pub derivatives: Option<DerivativeCurves>,
     /// Every method's replay.
     pub replays: Replays,
     /// K and T of every method.
@@ -70,7 +70,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
             ..zigzag_figure(trial, &zigzag)
         }),
         fourier_fit: fits.first().map(|fit| fit.curve_fit(title("Fourier fit"))),
-        derivatives: (!fits.is_empty()).then(|| Derivatives {
+        derivatives: (!fits.is_empty()).then(|| DerivativeCurves {
             title: title("heading and its derivatives"),
             curves: std::iter::once(truth_curves(truth)).chain(fits.iter().map(FourierCurve::motion)).collect(),
         }),
@@ -112,7 +112,7 @@ fn intervals(
 
 fn truth_curves(truth: &Truth) -> MotionCurves {
     MotionCurves {
-        origin: Origin::Truth,
+        origin: CurveOrigin::Truth,
         name: None,
         heading: curve(&truth.time, &truth.heading),
         yaw_rate: curve(&truth.time, &truth.yaw_rate),
@@ -122,7 +122,7 @@ fn truth_curves(truth: &Truth) -> MotionCurves {
 
 /// A Fourier curve of the heading of a trial; its time runs from the first observed row.
 struct FourierCurve<'a> {
-    origin: Origin,
+    origin: CurveOrigin,
     trial: &'a Trial,
     curve: identify::fourier::FourierFit,
     window: [f64; 2],
@@ -158,7 +158,7 @@ impl<'a> FourierCurve<'a> {
     }
 
     /// A value within the window, dense enough to look smooth.
-    fn sampled(&self, value: impl Fn(f64) -> f64) -> Curve {
+    fn sampled(&self, value: impl Fn(f64) -> f64) -> PlotCurve {
         let [from, to] = self.window;
         let points = self.trial.len() * POINTS_PER_ROW;
         let times = (0..=points).map(|k| from + (to - from) * k as f64 / points as f64);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use ::trace::Analysis;
 use ::trace::document::EffectEntry;
-use ::trace::record::Record;
+use ::trace::record::PreparedRecord;
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, registry};
 use scenario::failure::Failure;
@@ -175,7 +175,7 @@ impl BenchModel {
                 error_on(trial, &analysis.identification.get(number)?.after.replay)
             }
             (Self::Traced(analysis), None) => {
-                analysis.average().replay(&Record::whole(trial), &starts(trial), false)?.replay.rms()
+                analysis.average().replay(&PreparedRecord::whole(trial), &starts(trial), false)?.replay.rms()
             }
         };
         error.is_finite().then_some(error)
