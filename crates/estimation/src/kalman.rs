@@ -7,6 +7,12 @@
 //!
 //! Source: Harvey (1989) for the prediction error decomposition.
 
+mod matrix;
+mod smoother;
+
+pub use matrix::{identity, product, sandwich, sum};
+pub use smoother::Smoother;
+
 use crate::lanes::{Kernel, run};
 use crate::number::{Dual, Real};
 
@@ -43,43 +49,6 @@ impl<R: Real, const N: usize> Step<R, N> {
     pub fn propagate(&self, covariance: &[[R; N]; N]) -> [[R; N]; N] {
         sum(&self.added, &sandwich(&self.transition, covariance))
     }
-}
-
-/// The unit matrix.
-pub fn identity<R: Real, const N: usize>() -> [[R; N]; N] {
-    std::array::from_fn(|i| std::array::from_fn(|j| R::from(f64::from(u8::from(i == j)))))
-}
-
-/// A sum of matrices.
-pub fn sum<R: Real, const N: usize>(one: &[[R; N]; N], other: &[[R; N]; N]) -> [[R; N]; N] {
-    std::array::from_fn(|i| std::array::from_fn(|j| one[i][j] + other[i][j]))
-}
-
-/// A product of matrices of which the first has many zeros: nothing leads back from a ship to what disturbs it.
-pub fn product<R: Real, const N: usize>(one: &[[R; N]; N], other: &[[R; N]; N]) -> [[R; N]; N] {
-    let mut result = [[R::from(0.0); N]; N];
-    for (result, one) in result.iter_mut().zip(one) {
-        for (one, other) in one.iter().zip(other).filter(|(one, _)| !one.vanishes()) {
-            for (result, other) in result.iter_mut().zip(other) {
-                *result = *result + *one * *other;
-            }
-        }
-    }
-    result
-}
-
-/// F P Fᵀ of a symmetric P.
-pub fn sandwich<R: Real, const N: usize>(f: &[[R; N]; N], p: &[[R; N]; N]) -> [[R; N]; N] {
-    let half = product(f, p);
-    let mut result = [[R::from(0.0); N]; N];
-    for (j, f) in f.iter().enumerate() {
-        for (k, f) in f.iter().enumerate().filter(|(_, f)| !f.vanishes()) {
-            for i in j..N {
-                result[i][j] = result[i][j] + half[i][k] * *f;
-            }
-        }
-    }
-    std::array::from_fn(|i| std::array::from_fn(|j| result[i.max(j)][i.min(j)]))
 }
 
 /// What a sensor reads: a state, or the sum of two, and white noise of this variance.
@@ -128,8 +97,8 @@ pub struct System<R, const N: usize> {
 }
 
 impl<const N: usize> System<f64, N> {
-    /// A system of which every row is read once: its first state, or the sum of it and the one `beside`, with noise of a
-    /// variance of its own; `of_row` has the step before every row, which counts from the second on.
+    /// A system of which every row is read once: its first state, or the sum of it and the one `beside`, with noise of
+    /// a variance of its own; `of_row` has the step before every row, which counts from the second on.
     pub fn of_rows(
         steps: Vec<Step<f64, N>>,
         initial: [[f64; N]; N],

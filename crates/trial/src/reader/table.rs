@@ -70,17 +70,7 @@ impl Rows<'_> {
         self.check_values()?;
         let mut warnings = self.warnings();
         if self.stamps.is_some() {
-            let usual = if self.whole_seconds { spread(&mut self.time) } else { None };
-            warnings.extend(usual.map(|usual| {
-                format!(
-                    "rows share their stamps, {usual} as a rule; they are spread evenly over the time to the next stamp"
-                )
-            }));
-            let thin = |values: &mut Vec<f64>| {
-                *values = std::mem::take(values).into_iter().step_by(self.every).collect();
-            };
-            thin(&mut self.time);
-            self.layout.columns.iter_mut().for_each(|column| thin(&mut column.values));
+            warnings.extend(self.spread_stamps());
         }
         let Layout { columns, understood, .. } = self.layout;
         let open_time = self.time_place.map(|place| &columns[place]).filter(|column| column.open);
@@ -123,6 +113,21 @@ impl Rows<'_> {
         }
         log.warnings.extend(decided.into_iter().chain(warnings));
         Ok(log)
+    }
+
+    /// Gives rows that share a stamp their instants, and leaves out those that are thinned; what was decided.
+    fn spread_stamps(&mut self) -> Option<String> {
+        let usual = if self.whole_seconds { spread(&mut self.time) } else { None };
+        let thin = |values: &mut Vec<f64>| {
+            *values = std::mem::take(values).into_iter().step_by(self.every).collect();
+        };
+        thin(&mut self.time);
+        self.layout.columns.iter_mut().for_each(|column| thin(&mut column.values));
+        usual.map(|usual| {
+            format!(
+                "rows share their stamps, {usual} as a rule; they are spread evenly over the time to the next stamp"
+            )
+        })
     }
 
     /// Refuses a part without rows, and needed columns without a value.

@@ -104,20 +104,23 @@ pub(super) fn settle(
     if !decided.is_empty() {
         told.push(format!("columns without a unit: {}, the only unit that fits their values", decided.join(", ")));
     }
-    for UnitlessColumn { channel, name, .. } in left_out {
-        let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
-        told.push(format!(
-            "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = \"{}\"` for it in a sidecar",
-            channel.spoken(),
-            shortened(name),
-            names.join(" or "),
-            channel.column_name()
-        ));
-    }
+    told.extend(left_out.into_iter().map(without_unit));
     if let Some(name) = open_time {
         told.push(seconds(log, &name, line)?);
     }
     Ok(told)
+}
+
+/// What is said of a column that is left out because its values do not show its unit.
+fn without_unit(UnitlessColumn { channel, name, .. }: &UnitlessColumn) -> String {
+    let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
+    format!(
+        "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = \"{}\"` for it in a sidecar",
+        channel.spoken(),
+        shortened(name),
+        names.join(" or "),
+        channel.column_name()
+    )
 }
 
 /// Values were read as if in the unit files are written in.
