@@ -13,8 +13,8 @@ use trial::noise_model::{Moment, NoiseModel};
 
 use coloured::CompassError;
 
-/// Cramér–Rao bound of all records of one trial together: as standard deviations of K (1/s), T (s) and K/T (1/s²), and as
-/// covariance of relative errors of K and T, %².
+/// Cramér–Rao bound of all records of one trial together: as standard deviations of K (1/s), T (s) and K/T (1/s²), and
+/// as covariance of relative errors of K and T, %².
 ///
 /// Random are the compass, the recorded rudder, the gyro, and one moment: a random walk or gusts. What the rest of the
 /// sea does is no noise but a fault of the model, which no bound knows. It leaves out spikes, too,

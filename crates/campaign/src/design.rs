@@ -7,7 +7,7 @@ use scenario::{DesignCell, MethodName, Scenario, Words, name};
 use serde::{Deserialize, Serialize};
 
 /// What tables and figures need of a scenario.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Design {
     /// Names of the axes.
@@ -27,7 +27,7 @@ pub struct Design {
 }
 
 /// What is known of a cell without its rows.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CellFacts {
     /// Labels of its points, one an axis.
@@ -57,11 +57,10 @@ impl Design {
         let bare = |cell: &DesignCell| CellFacts {
             labels: cell.labels.clone(),
             values: cell.values.clone(),
-            trials: 0..0,
             missing: cell.missing(),
             has_own_indices: cell.has_own_indices(),
             is_nearest: !cell.is_first_order(),
-            bound_percent2: None,
+            ..CellFacts::default()
         };
         Self {
             axes: scenario.axes.iter().map(|axis| axis.name.clone()).collect(),

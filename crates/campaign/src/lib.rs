@@ -13,6 +13,7 @@
 //! | what is said about it | [`summary`], [`statistics`] |
 //! | records and answers for figures and other programs | [`curves`], [`answer`] |
 //! | what is known of a ship, for a prediction | [`known`] |
+//! | methods against each other on measured and simulated records | [`benchmark`] |
 
 pub mod answer;
 pub mod answers;

@@ -21,8 +21,8 @@ pub struct PredictionCheck<'a> {
 const ROWS: f64 = 10.0;
 
 impl<'a> PredictionCheck<'a> {
-    /// Steers the ship of a trial through the manoeuvres, with her gear and in her weather; the chance is not that of the
-    /// records.
+    /// Steers the ship of a trial through the manoeuvres, with her gear and in her weather; the chance is not that of
+    /// the records.
     pub fn new(asked: &'a Predictions, simulation: &Simulation, key: &StreamKey, records: &'a [Trial]) -> Self {
         let closed = simulation.vessel.closed_form().map(|ship| ship.K_over_T.sqrt().recip());
         let of_hull = simulation.vessel.particulars().map(|particulars| particulars.length / particulars.speed);

@@ -129,8 +129,8 @@ struct FourierCurve<'a> {
 }
 
 impl<'a> FourierCurve<'a> {
-    /// The curves of the methods of a cell that have one: one for each kind of method, since variants differ in what they
-    /// do with it.
+    /// The curves of the methods of a cell that have one: one for each kind of method, since variants differ in what
+    /// they do with it.
     fn of(cell: &DesignCell, names: &[MethodName], trial: &'a Trial) -> Vec<Self> {
         let mut seen = Vec::new();
         let fit = |method: &Method| {

@@ -95,17 +95,6 @@ mod tests {
     }
 
     #[test]
-    fn shards_are_disjoint_even_and_whole() {
-        for (count, of) in [(1000, 7), (5, 8), (1, 1), (10_000_000_000, 10_000)] {
-            let parts: Vec<Range<u64>> = (1..=of).map(|number| Shard { number, of }.part(count)).collect();
-            assert_eq!((parts[0].start, parts[of as usize - 1].end), (0, count));
-            assert!(parts.windows(2).all(|pair| pair[0].end == pair[1].start));
-            let sizes = parts.iter().map(|part| part.end - part.start);
-            assert!(sizes.clone().max().unwrap_or(0) - sizes.min().unwrap_or(0) <= 1);
-        }
-    }
-
-    #[test]
     fn shards_are_written_as_fractions() {
         assert_eq!("3/16".parse(), Ok(Shard { number: 3, of: 16 }));
         for wrong in ["0/3", "4/3", "3", "a/b", "1/0", "-1/2", "1/2/3"] {

@@ -16,10 +16,6 @@ pub use smoother::Smoother;
 use crate::lanes::{Kernel, run};
 use crate::number::{Dual, Real};
 
-mod smoother;
-
-pub use smoother::Smoother;
-
 /// Most states of a [`Whitener`].
 pub const MOST: usize = 5;
 

@@ -1,8 +1,8 @@
 //! A benchmark of methods that identify ships from zig-zag trials.
 //!
 //! A [`Definition`] says which records are fitted and which are scored. Measured records are found by name and
-//! checksum, simulated ones are made by the engine of studies. Every [`BenchMethod`] gets the same records; an answer is
-//! scored by what it says of a record or a ship, a failed one is a row with its reason.
+//! checksum, simulated ones are made by the engine of studies. Every [`BenchMethod`] gets the same records; an answer
+//! is scored by what it says of a record or a ship, a failed one is a row with its reason.
 //!
 //! | to learn about | read |
 //! |---|---|

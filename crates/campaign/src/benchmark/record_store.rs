@@ -72,8 +72,8 @@ impl RecordStore {
         }
     }
 
-    /// The record in the first of some files that is there as it should be, and which file that is. Fails with the reason
-    /// in words.
+    /// The record in the first of some files that is there as it should be, and which file that is. Fails with the
+    /// reason in words.
     pub fn take(&self, copies: &[RecordFile]) -> Result<(Trial, UsedFile), String> {
         let mut others = Vec::new();
         for copy in copies {

@@ -79,8 +79,8 @@ pub struct StudyRow {
     pub own_k_per_s: Option<f64>,
     /// T of that base, s.
     pub own_t_s: Option<f64>,
-    /// Best standard deviations of K (1/s), T (s) and K/T (1/s²) that an unbiased method can have on this trial, for its
-    /// own noise and true K and T (Cramér–Rao).
+    /// Best standard deviations of K (1/s), T (s) and K/T (1/s²) that an unbiased method can have on this trial, for
+    /// its own noise and true K and T (Cramér–Rao).
     pub bound: Option<[f64; 3]>,
     /// K, 1/s.
     pub k_per_s: Option<f64>,

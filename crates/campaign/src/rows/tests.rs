@@ -6,26 +6,22 @@ use super::*;
 use crate::design::{CellFacts, Design};
 use crate::folder::ResultFolder;
 use ::trace::Verdict;
-use scenario::{MethodName, Words};
+use scenario::MethodName;
 
 fn design() -> Design {
     let cell = |noise: f64, trial: &str| CellFacts {
         labels: vec![noise.to_string(), trial.to_owned()],
         values: vec![Some(noise), None],
         trials: 0..1,
-        missing: Vec::new(),
-        has_own_indices: false,
-        is_nearest: false,
-        bound_percent2: None,
+        ..CellFacts::default()
     };
     let method = |label: &str| MethodName { label: label.into(), id: label.into() };
     Design {
         axes: vec!["noise [°]".into(), "trial".into()],
         methods: vec![method("output-error"), method("srivc")],
-        predicts: false,
         draws: vec!["ship.first-order.K-per-s".into()],
         cells: vec![cell(0.1, "10/10"), cell(0.5, "10/10")],
-        words: Words::default(),
+        ..Design::default()
     }
 }
 
@@ -82,22 +78,12 @@ fn read(path: &Path, layout: &RowLayout) -> Vec<StudyRow> {
     rows
 }
 
+/// What a trace said, and figures that were predicted from an answer, are read as they were written.
 #[test]
-fn rows_come_back_as_they_went() {
+fn traces_and_predictions_have_columns_of_their_own() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("rows.parquet");
-    let layout = RowLayout::of(&design());
-    let rows = vec![good(7), failed(7)];
-    write(&path, &layout, [rows.clone()]);
-    assert_eq!(read(&path, &layout), rows);
-    assert!(!folder.path().join("rows.parquet.tmp").exists());
-}
-
-#[test]
-fn traces_have_columns_of_their_own() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("rows.parquet");
-    let mut design = design();
+    let mut design = Design { predicts: true, ..design() };
     design.methods[1].id = scenario::TRACE.into();
     let layout = RowLayout::of(&design);
     let effect = |id: &str, aliases: &[&str]| NamedEffect {
@@ -117,10 +103,14 @@ fn traces_have_columns_of_their_own() {
         StudyRow { method: 1, traced: Some(Box::new(answer)), ..good(7) }
     };
     let named = vec![effect("wind_moment", &["port_starboard_asymmetry"]), effect("speed_loss", &[])];
-    let rows = vec![good(7), answer(Verdict::Traced, named), answer(Verdict::Clean, Vec::new())];
+    let name = "zig-zag 20/20 first_overshoot_deg";
+    let figure = |truth| PredictedFigure { name: name.into(), truth, median: 1.0 / 3.0, ci90: [-0.1, 1e-17] };
+    let predicts = StudyRow { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(7) };
+    let none = StudyRow { predicted: Some(Box::default()), ..answer(Verdict::Clean, Vec::new()) };
+    let rows = vec![predicts, answer(Verdict::Traced, named), none];
     write(&path, &layout, [rows.clone()]);
     assert_eq!(read(&path, &layout), rows);
-    assert!(layout.names().any(|name| name == "trace_margin"));
+    assert_eq!(layout.names().filter(|name| ["trace_margin", "predicted"].contains(&name.as_str())).count(), 2);
 }
 
 #[test]
@@ -134,6 +124,7 @@ fn the_bytes_do_not_depend_on_the_pieces() {
     write(&many, &layout, rows.chunks(7919).map(<[StudyRow]>::to_vec));
     assert!(std::fs::read(&one).expect("there") == std::fs::read(&many).expect("there"));
     assert!(read(&many, &layout) == rows);
+    assert!(!folder.path().join("many.parquet.tmp").exists());
 }
 
 #[test]
@@ -188,24 +179,6 @@ fn every_column_is_documented() {
         let meaning = meaning.replace('|', "\\|");
         assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");
     }
-}
-
-/// A study that predicts has one column more, and reads from it what was written.
-#[test]
-fn predictions_are_stored_and_read_again() {
-    let design = Design { predicts: true, ..design() };
-    let figure = |truth: f64| PredictedFigure {
-        name: "zig-zag 20/20 first_overshoot_deg".into(),
-        truth,
-        median: 1.0 / 3.0,
-        ci90: [-0.1, 1e-17],
-    };
-    let own = StudyRow { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(0) };
-    let none = StudyRow { predicted: Some(Box::default()), ..good(1) };
-    let layout = RowLayout::of(&design);
-    let columns: Vec<_> = layout.take(&[own.clone(), none.clone()]).collect();
-    assert_eq!(layout.put(columns, 2).expect("what was written"), [own, none]);
-    assert_eq!(layout.names().filter(|name| name == "predicted").count(), 1);
 }
 
 /// 10⁹ trials of seven methods are 106 812 groups of rows, more than a signed number of 16 bits holds.

@@ -1,6 +1,6 @@
 //! Figures over replicates, each with its own Monte-Carlo uncertainty, in memory that does not grow with the number of
-//! replicates: [`ErrorSample`] for everything that depends on order, [`ErrorSums`] for everything that depends on moments,
-//! [`Moments`] for the running moments of one quantity.
+//! replicates: [`ErrorSample`] for everything that depends on order, [`ErrorSums`] for everything that depends on
+//! moments, [`Moments`] for the running moments of one quantity.
 
 mod bootstrap;
 mod moments;

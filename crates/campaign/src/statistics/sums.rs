@@ -1,6 +1,6 @@
-//! ErrorSums over replicates in batches: replicate r belongs to batch r mod 256. A bootstrap over batches gives intervals
-//! for every function of moments; with no more than 256 replicates each batch is one trial, and it is the ordinary
-//! bootstrap.
+//! ErrorSums over replicates in batches: replicate r belongs to batch r mod 256. A bootstrap over batches gives
+//! intervals for every function of moments; with no more than 256 replicates each batch is one trial, and it is the
+//! ordinary bootstrap.
 
 use std::iter::Sum;
 

@@ -6,25 +6,16 @@ use crate::statistics::Statistic;
 use scenario::{MethodName, Presentation, Words};
 
 fn design(methods: &[&str], cells: usize) -> Design {
-    let cell = |index: usize| CellFacts {
-        labels: vec![index.to_string()],
-        values: vec![None],
-        trials: 0..0,
-        missing: Vec::new(),
-        has_own_indices: false,
-        is_nearest: false,
-        bound_percent2: None,
-    };
+    let cell = |index: usize| CellFacts { labels: vec![index.to_string()], values: vec![None], ..CellFacts::default() };
     Design {
         axes: vec!["case".into()],
         methods: methods.iter().map(|&label| MethodName { label: label.into(), id: label.into() }).collect(),
-        predicts: false,
-        draws: Vec::new(),
         cells: (0..cells).map(cell).collect(),
         words: Words {
             output: Presentation { detail: vec!["0".into()], ..Presentation::default() },
             ..Words::default()
         },
+        ..Design::default()
     }
 }
 
