@@ -41,7 +41,7 @@ pub struct MeasuredWire {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RecordWire {
     pub name: Name,
-    pub manoeuvre: Deed,
+    pub manoeuvre: ManoeuvreSpecification,
     pub copies: Vec<CopyWire>,
 }
 
@@ -92,7 +92,7 @@ pub struct PredictionWire {
 /// What the ship was asked to do on a record.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
-pub enum Deed {
+pub enum ManoeuvreSpecification {
     /// Zig-zag.
     ZigZag {
         /// Rudder angle δ.
@@ -111,7 +111,7 @@ pub enum Deed {
     },
 }
 
-impl Deed {
+impl ManoeuvreSpecification {
     /// What a simulated ship is asked to do; `None` for a manoeuvre that no task knows.
     pub fn of(manoeuvre: &Manoeuvre) -> Option<Self> {
         // A scenario is written in degrees, which come back from radians with an error in the last digit.
