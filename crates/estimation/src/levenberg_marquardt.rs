@@ -1,8 +1,8 @@
 //! Least squares between bounds by damped Gauss–Newton steps (Levenberg 1944; Marquardt 1963; Moré 1978).
 //!
 //! J(θ) = Σ e², with terms of what is expected of θ where there are any. The caller knows e and its exact derivatives;
-//! here are the steps. Every unknown is measured in units in which its second derivative is one; an unknown at its bound
-//! whose gradient points beyond stays there. Work space is allocated once a search.
+//! here are the steps. Every unknown is measured in units in which its second derivative is one; an unknown at its
+//! bound whose gradient points beyond stays there. Work space is allocated once a search.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 

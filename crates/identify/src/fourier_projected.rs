@@ -118,8 +118,8 @@ impl Settings {
 /// The mended Fourier method.
 ///
 /// Fails with [`IdentifyError::TooFewPoints`] when a record holds more zig-zags than the highest series can follow,
-/// some twenty, with [`IdentifyError::Singular`] when the basis or the equations are ill-conditioned, and with [`IdentifyError::NotAShip`] when
-/// K/T is not positive.
+/// some twenty, with [`IdentifyError::Singular`] when the basis or the equations are ill-conditioned, and with
+/// [`IdentifyError::NotAShip`] when K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FourierProjected {
     settings: Settings,

@@ -250,8 +250,8 @@ struct RangeScan {
 }
 
 impl RangeScan {
-    /// Places of the local minima of a ship that turns to the side of its rudder. The deepest comes first: it tells which
-    /// of the others are hopeless.
+    /// Places of the local minima of a ship that turns to the side of its rudder. The deepest comes first: it tells
+    /// which of the others are hopeless.
     fn valleys(&self) -> Vec<f64> {
         let height = |k: usize| {
             let ship = self.fits.get(k).copied().flatten().filter(|fit| fit.gain > 0.0);

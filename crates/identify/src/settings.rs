@@ -25,7 +25,7 @@ impl SettingsError {
 /// Most steps of an iteration: what has not settled in a thousand never does.
 pub(crate) const MOST_ITERATIONS: usize = 1000;
 
-/// Refuses a setting of which something does not hold, with what would be accepted; the value found is made text only then.
+/// Refuses a setting of which something does not hold, with the value found and what would be accepted.
 pub(crate) fn require(
     holds: bool,
     key: &'static str,

@@ -17,8 +17,8 @@ use crate::settings::{SettingsError, require};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fundamental {
-    /// Local searches, downhill in RSS(w), from the highest peak of the discrete Fourier transform of the heading, from one
-    /// period a record and from half a period; the best end wins.
+    /// Local searches, downhill in RSS(w), from the highest peak of the discrete Fourier transform of the heading, from
+    /// one period a record and from half a period; the best end wins.
     Starts,
     /// A local search from the peak alone.
     FftPeak,

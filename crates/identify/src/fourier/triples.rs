@@ -20,8 +20,8 @@ const DRAWS_PER_TRIPLE: usize = 1000;
 /// Most triples: ten million draws where none of them is usable.
 pub const MOST_TRIPLES: usize = 10_000;
 
-/// Largest condition number of the equations of a well-conditioned triple, columns divided by the standard deviations of
-/// r' and δ.
+/// Largest condition number of the equations of a well-conditioned triple, columns divided by the standard deviations
+/// of r' and δ.
 const CONDITION_LIMIT: f64 = 10.0;
 
 /// Which triples are used.
@@ -30,8 +30,8 @@ const CONDITION_LIMIT: f64 = 10.0;
 pub enum Selection {
     /// Any three instants.
     Uniform,
-    /// Instants from the central nine tenths of the record with the rudder at rest, and equations with a condition number
-    /// below 10.
+    /// Instants from the central nine tenths of the record with the rudder at rest, and equations with a condition
+    /// number below 10.
     #[default]
     WellConditioned,
 }

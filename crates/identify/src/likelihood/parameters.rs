@@ -79,8 +79,8 @@ impl NoiseVector {
         (0..ENTRIES).filter(move |&entry| there[entry])
     }
 
-    /// The parameters of the noise for this 1/T. The first lane of derivatives is that of 1/T, the others are those of the
-    /// entries that are there.
+    /// The parameters of the noise for this 1/T. The first lane of derivatives is that of 1/T, the others are those of
+    /// the entries that are there.
     pub fn parameters<R: Real>(&self, inverse_time: f64, gyro: bool) -> NoiseParameters<R> {
         let lane = |entry: usize| self.entries(gyro).position(|other| other == entry).map(|place| place + 1);
         let exponential = |entry: usize, sign: f64| {

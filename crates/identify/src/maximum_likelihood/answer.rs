@@ -103,8 +103,8 @@ fn degrees_of_freedom(records: &[Record], found: &Maximum) -> f64 {
     2.0 / variance.into_iter().fold(0.0, f64::max)
 }
 
-/// Covariance of (1/T, b, b δ_r) and degrees of freedom of its variances, with the doubt which noise it is: the value is
-/// that of the most likely one.
+/// Covariance of (1/T, b, b δ_r) and degrees of freedom of its variances, with the doubt which noise it is: the value
+/// is that of the most likely one.
 fn doubt(chosen: &Chosen, freedom: f64) -> (Matrix3<f64>, f64) {
     let of = |point: &Point| Vector3::new(point.inverse_time, point.gain, point.offset);
     let here = of(&chosen.found[0].1.point);

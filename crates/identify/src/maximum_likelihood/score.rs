@@ -47,8 +47,8 @@ pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised>
 }
 
 impl Linearised {
-    /// Adds what a record says, whose entries are these of the unknowns; `factor` makes the columns that all records share
-    /// orthonormal.
+    /// Adds what a record says, whose entries are these of the unknowns; `factor` makes the columns that all records
+    /// share orthonormal.
     fn add(&mut self, record: &Record, point: &Point, number: usize, entries: Range<usize>, factor: &Matrix3<f64>) {
         let (part, place) = (&point.parts[number], &point.places[number]);
         let filter = differentiated(&record.schedule, place, point.inverse_time, record.has_gyro());
