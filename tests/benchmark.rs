@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use campaign::benchmark::board::boards;
-use campaign::benchmark::cases::Case;
+use campaign::benchmark::cases::BenchCase;
 use campaign::benchmark::overall::overall;
-use campaign::benchmark::{Definition, Results, Task, naming};
+use campaign::benchmark::{BenchDocument, BenchTask, Definition, naming};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-fn published() -> Results {
+fn published() -> BenchDocument {
     let path = root().join("results/bench/bench.json");
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
@@ -42,7 +42,7 @@ fn the_published_leaderboards_follow_from_the_stored_answers() {
     assert_eq!(results.overall, overall(&results.cases, &results.methods));
     // The figures themselves, by another way: half of the scores are not larger, half are not smaller.
     for board in &results.boards {
-        let cases: Vec<&Case> =
+        let cases: Vec<&BenchCase> =
             results.cases.iter().filter(|case| case.task == board.task && case.field == board.field).collect();
         for standing in &board.standings {
             let scores: Vec<f64> = cases.iter().filter_map(|case| case.score_of(&standing.method)).collect();
@@ -59,7 +59,7 @@ fn the_published_leaderboards_follow_from_the_stored_answers() {
 #[test]
 fn the_floor_is_on_every_board_of_headings() {
     let results = published();
-    for board in results.boards.iter().filter(|board| board.task != Task::Indices) {
+    for board in results.boards.iter().filter(|board| board.task != BenchTask::Indices) {
         let labels: Vec<&str> = board.standings.iter().map(|standing| standing.method.as_str()).collect();
         assert_eq!(labels.len(), results.methods.len(), "{labels:?}");
         assert!(labels.contains(&campaign::benchmark::method::STRAIGHT_ON), "{labels:?}");

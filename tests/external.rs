@@ -7,10 +7,10 @@ use std::sync::Mutex;
 
 use campaign::collect::collect;
 use campaign::folder::ResultFolder;
-use campaign::rows::Row;
-use campaign::store::Stored;
+use campaign::rows::StudyRow;
+use campaign::store::StoredStudy;
 use campaign::task::Shard;
-use campaign::{Observer, Unwatched};
+use campaign::{NoObserver, Observer};
 use identify::external::{External, Settings};
 use identify::{Identifier, IdentifyError};
 use kempf_tests::outside::least_squares;
@@ -153,13 +153,13 @@ fn run(scenario: &Scenario, threads: usize, folder: &Path, observer: &dyn Observ
     fs::read(folder.join("rows.parquet")).expect("rows")
 }
 
-fn rows(folder: &Path) -> Vec<Row> {
+fn rows(folder: &Path) -> Vec<StudyRow> {
     let mut rows = Vec::new();
     let keep = |row| {
         rows.push(row);
         Ok(())
     };
-    Stored::read(folder).and_then(|stored| stored.rows(keep)).unwrap_or_else(|failure| panic!("{failure}"));
+    StoredStudy::read(folder).and_then(|stored| stored.rows(keep)).unwrap_or_else(|failure| panic!("{failure}"));
     rows
 }
 
@@ -181,17 +181,17 @@ fn rows_do_not_depend_on_threads_or_interruptions() {
     let desk = tempfile::tempdir().expect("a folder");
     let modes: [&[&str]; 5] = [&[], &["dies", "3"], &["nonsense", "4"], &["fails", "5"], &["tires"]];
     let study = scenario_of(&modes, "", &desk.path().join("outside.toml"));
-    let one = run(&study, 1, &desk.path().join("one"), &Unwatched);
-    let four = run(&study, 4, &desk.path().join("four"), &Unwatched);
+    let one = run(&study, 1, &desk.path().join("one"), &NoObserver);
+    let four = run(&study, 4, &desk.path().join("four"), &NoObserver);
     assert!(one == four, "one thread and four give other rows");
     let cut = desk.path().join("cut");
     let held = ResultFolder::hold(&cut).expect("a folder");
     let stopped = collect(&study, Shard::WHOLE, &held, false, &Impatient(Mutex::new(0))).err().expect("it stops");
     assert!(stopped.message.contains("goes on from there"), "{stopped}");
     drop(held);
-    assert!(run(&study, 2, &cut, &Unwatched) == one, "an interrupted study gives other rows");
+    assert!(run(&study, 2, &cut, &NoObserver) == one, "an interrupted study gives other rows");
     // Once more, finished as it is: some trials are computed again and found to be the same.
-    assert!(run(&study, 2, &cut, &Unwatched) == one);
+    assert!(run(&study, 2, &cut, &NoObserver) == one);
     let failures: Vec<(u64, u64, usize, String)> = rows(&cut)
         .into_iter()
         .filter_map(|row| Some((row.cell, row.replicate, row.method, row.failure?.into())))
@@ -211,7 +211,7 @@ fn further_records_of_a_ship_are_asked_about_together() {
     let desk = tempfile::tempdir().expect("a folder");
     let also = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }";
     let study = scenario_of(&[&[]], also, &desk.path().join("outside.toml"));
-    run(&study, 2, &desk.path().join("out"), &Unwatched);
+    run(&study, 2, &desk.path().join("out"), &NoObserver);
     let task = campaign::task::Task { cell: 1, replicate: 3 };
     let trials = campaign::engine::simulate(&study, task).expect("two records");
     let mean = trials.iter().map(|one| direct(&one.trial)[1]).sum::<f64>() / 2.0;
@@ -225,13 +225,13 @@ fn what_a_program_says_beside_its_answers_is_kept_within_bounds() {
     let desk = tempfile::tempdir().expect("a folder");
     let study = scenario_of(&[&["says"], &["chatters"]], "", &desk.path().join("outside.toml"));
     let folder = desk.path().join("out");
-    run(&study, 2, &folder, &Unwatched);
+    run(&study, 2, &folder, &NoObserver);
     let log = fs::read_to_string(folder.join("external-mine-0.log")).expect("a log");
     assert_eq!((log.lines().count(), log.matches("trial 3 of 101 rows").count()), (24, 2), "{log}");
     let long = fs::metadata(folder.join("external-mine-1.log")).expect("a log").len();
     assert!((1 << 20..(1 << 20) + 100).contains(&long), "{long} bytes");
     // It is no part of the study, and grows with it.
-    run(&study, 2, &folder, &Unwatched);
+    run(&study, 2, &folder, &NoObserver);
     assert!(fs::metadata(folder.join("external-mine-0.log")).expect("a log").len() > log.len() as u64);
     assert!(!fs::read_to_string(folder.join("manifest.toml")).expect("a manifest").contains(".log"));
 }
@@ -307,7 +307,7 @@ fn what_is_not_there_is_said_before_the_first_trial() {
         let study = Scenario::parse(&path, "outside", text, None).unwrap_or_else(|failure| panic!("{failure}"));
         let folder = desk.path().join("none");
         let held = ResultFolder::hold(&folder).expect("a folder");
-        let failure = collect(&study, Shard::WHOLE, &held, false, &Unwatched).err().expect("something is missing");
+        let failure = collect(&study, Shard::WHOLE, &held, false, &NoObserver).err().expect("something is missing");
         assert_eq!(failure.blame, scenario::failure::Blame::Input);
         assert!(!folder.join("unfinished").exists(), "nothing was begun");
         failure.message
@@ -329,8 +329,8 @@ fn a_script_is_part_of_the_identity_of_a_study() {
     let (one, other, again) = (of("a = 1"), of("a = 2"), of("a = 1"));
     assert_eq!(one.design_sha256, again.design_sha256);
     assert_ne!(one.design_sha256, other.design_sha256);
-    run(&one, 2, &desk.path().join("out"), &Unwatched);
+    run(&one, 2, &desk.path().join("out"), &NoObserver);
     let held = ResultFolder::hold(&desk.path().join("out")).expect("a folder");
-    let failure = collect(&other, Shard::WHOLE, &held, false, &Unwatched).err().expect("another study");
+    let failure = collect(&other, Shard::WHOLE, &held, false, &NoObserver).err().expect("another study");
     assert!(failure.message.contains("a file that a command in it names"), "{failure}");
 }

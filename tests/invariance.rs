@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use campaign::design::Design;
 use campaign::folder::ResultFolder;
-use campaign::rows::{Layout, Row, Writer};
+use campaign::rows::{RowLayout, RowWriter, StudyRow};
 use campaign::task::Task;
 use campaign::{collect, engine};
 use identify::registry;
@@ -162,11 +162,11 @@ values = [10.0, 20.0]
         .unwrap_or_else(|failure| panic!("{}", failure.message))
 }
 
-fn bytes(folder: &Path, name: &str, (design, rows): (Design, Vec<Row>)) -> Vec<u8> {
-    let layout = Layout::of(&design);
+fn bytes(folder: &Path, name: &str, (design, rows): (Design, Vec<StudyRow>)) -> Vec<u8> {
+    let layout = RowLayout::of(&design);
     let held = ResultFolder::hold(folder);
     held.and_then(|held| {
-        let mut writer = Writer::create(&held, name, &layout)?;
+        let mut writer = RowWriter::create(&held, name, &layout)?;
         writer.push(rows)?;
         writer.finish()?.0.put()
     })
@@ -190,7 +190,7 @@ fn rows_have_the_same_bytes_on_any_number_of_threads() {
 #[test]
 fn a_longer_study_begins_with_the_shorter_one() {
     let (short, long) = (collect::in_memory(&scenario(2)).1, collect::in_memory(&scenario(4)).1);
-    let first: Vec<&Row> = long.iter().filter(|row| row.replicate < 2).collect();
+    let first: Vec<&StudyRow> = long.iter().filter(|row| row.replicate < 2).collect();
     assert_eq!(short.len(), 2 * 2 * 7);
     assert_eq!(short.iter().collect::<Vec<_>>(), first);
     assert!(short.iter().any(|row| row.failure.is_none()));

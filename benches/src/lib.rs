@@ -9,12 +9,7 @@
 //! | records that are identified | [`records`] |
 //! | pieces of work and their limits | [`work`], [`works`] |
 //! | identification by another library | [`rivals`] |
-//! | many nonlinear ships at once | [`batch`], [`norrbin`] |
-//! | times, ratios and verdicts | [`ratios`] |
 
-pub mod batch;
-pub mod norrbin;
-pub mod ratios;
 pub mod records;
 pub mod rivals;
 pub mod work;

@@ -9,8 +9,6 @@ use dsmc::system_identification::iv::srivc::{
 use dsmc::system_identification::oe;
 use trial::Trial;
 
-use crate::work::Indices;
-
 /// Bandwidth that a search starts from when the ship is unknown, rad/s: between that of a tanker and that of a boat. It
 /// takes three iterations from here and from most other starts, two from close to 1/T.
 pub const BANDWIDTH: f64 = 0.1;
@@ -26,13 +24,13 @@ fn options() -> SrivcOptions<f64> {
 }
 
 /// K/T and 1/T to K and T.
-fn indices(theta: &[f64]) -> Indices {
+fn indices(theta: &[f64]) -> [f64; 2] {
     [theta[1] / theta[0], 1.0 / theta[0]]
 }
 
 /// SRIVC of K/(s (1 + T s)) from heading and rudder, `period` s apart: order one and one integrator, rudder linear
 /// between samples; the search starts from `bandwidth`, rad/s. `None` when it gives no answer.
-pub fn srivc_heading(rudder: &[f64], heading: &[f64], period: f64, bandwidth: f64) -> Option<Indices> {
+pub fn srivc_heading(rudder: &[f64], heading: &[f64], period: f64, bandwidth: f64) -> Option<[f64; 2]> {
     let prefilter = Prefilter::new(1, CUTOFF).ok()?;
     let start = Initialization::StateVariableFilter(bandwidth);
     let found = identify_with_prefilter(rudder, heading, period, 1, 0, &prefilter, &start, &options()).ok()?;
@@ -40,14 +38,14 @@ pub fn srivc_heading(rudder: &[f64], heading: &[f64], period: f64, bandwidth: f6
 }
 
 /// SRIVC of K/(1 + T s) from yaw rate and rudder, as in [`srivc_heading`], from a start at [`BANDWIDTH`].
-pub fn srivc_gyro(rudder: &[f64], yaw_rate: &[f64], period: f64) -> Option<Indices> {
+pub fn srivc_gyro(rudder: &[f64], yaw_rate: &[f64], period: f64) -> Option<[f64; 2]> {
     let start = Initialization::StateVariableFilter(BANDWIDTH);
     let found = identify(rudder, yaw_rate, period, 1, 0, &start, &options()).ok()?;
     Some(indices(found.parameter.as_slice()))
 }
 
 /// Output error of rₖ = f rₖ₋₁ + b₀ δₖ + b₁ δₖ₋₁ from yaw rate and rudder; T = −period/ln f, K = (b₀ + b₁)/(1 − f).
-pub fn output_error_gyro(rudder: &[f64], yaw_rate: &[f64], period: f64) -> Option<Indices> {
+pub fn output_error_gyro(rudder: &[f64], yaw_rate: &[f64], period: f64) -> Option<[f64; 2]> {
     let start = oe::Initialization::Sriv(SRIV_ITERATIONS);
     let found = oe::identify(rudder, yaw_rate, &Arx::new(1, 1), &start, &oe::OeOptions::default()).ok()?;
     let [f, b0, b1] = found.model.parameter.as_slice() else { return None };

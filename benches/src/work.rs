@@ -1,8 +1,7 @@
-//! A piece of work, and a row: work, what stands beside it, and what is to be reached.
+//! A piece of work, what stands beside it, and what is to be reached.
 
-use std::fmt;
 use std::hint::black_box;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
@@ -16,9 +15,6 @@ pub enum Cores {
     All,
 }
 
-/// K (1/s) and T (s) that a work has found.
-pub type Indices = [f64; 2];
-
 /// Something that can be done again and again.
 pub struct Work {
     /// Unique within its group; part of a path.
@@ -31,7 +27,7 @@ pub struct Work {
     pub is_slow: bool,
     /// Share by which the answer may differ from the ship, for work that has an answer.
     pub tolerance: Option<f64>,
-    go: Box<dyn Fn() -> Option<Indices> + Send + Sync>,
+    go: Box<dyn Fn() -> Option<[f64; 2]> + Send + Sync>,
 }
 
 impl Work {
@@ -48,7 +44,7 @@ impl Work {
     pub fn answering(
         name: impl Into<String>,
         tolerance: f64,
-        go: impl Fn() -> Option<Indices> + Send + Sync + 'static,
+        go: impl Fn() -> Option<[f64; 2]> + Send + Sync + 'static,
     ) -> Self {
         Self { tolerance: Some(tolerance), go: Box::new(go), ..Self::new(name, || ()) }
     }
@@ -69,7 +65,7 @@ impl Work {
     }
 
     /// Does it once and returns the answer.
-    pub fn answer(&self) -> Option<Indices> {
+    pub fn answer(&self) -> Option<[f64; 2]> {
         (self.go)()
     }
 
@@ -86,12 +82,6 @@ impl Work {
             Cores::One => one_core().install(all),
             Cores::All => all(),
         }
-    }
-}
-
-impl fmt::Debug for Work {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Work").field("name", &self.name).field("cores", &self.cores).finish_non_exhaustive()
     }
 }
 
@@ -112,58 +102,43 @@ pub enum Reach {
     Scaling(f64),
 }
 
-/// One line of a table.
-#[derive(Debug, Clone)]
-pub struct Row {
+/// Work, what it is held against, and what is to be reached.
+pub struct TimedWork {
     /// What is measured.
-    pub work: Arc<Work>,
-    /// What it is held against.
-    pub beside: Option<Arc<Work>>,
+    pub work: Work,
+    /// Name of the work of the group that it is held against.
+    pub beside: Option<String>,
     /// What is to be reached; `None` for work that is only shown.
     pub reach: Option<Reach>,
 }
 
-/// Rows that belong together.
-#[derive(Debug, Clone)]
-pub struct Group {
+/// Work that belongs together.
+pub struct WorkGroup {
     /// Part of a path.
     pub name: &'static str,
     /// Heading of its table.
     pub title: &'static str,
     /// What a reader has to know to read the table.
     pub about: &'static str,
-    /// The rows.
-    pub rows: Vec<Row>,
+    /// The work, in the order of the table.
+    pub rows: Vec<TimedWork>,
 }
 
-impl Group {
-    /// A group without rows.
+impl WorkGroup {
+    /// A group without work.
     pub fn new(name: &'static str, title: &'static str, about: &'static str) -> Self {
         Self { name, title, about, rows: Vec::new() }
     }
 
-    /// Adds work with nothing beside it.
-    pub fn alone(&mut self, work: Work, reach: Option<Reach>) -> Arc<Work> {
-        let work = Arc::new(work);
-        self.rows.push(Row { work: Arc::clone(&work), beside: None, reach });
-        work
+    /// Adds work with nothing beside it; returns its name.
+    pub fn alone(&mut self, work: Work, reach: Option<Reach>) -> String {
+        let name = work.name.clone();
+        self.rows.push(TimedWork { work, beside: None, reach });
+        name
     }
 
-    /// Adds work beside other work.
-    pub fn beside(&mut self, work: Work, beside: &Arc<Work>, reach: Option<Reach>) -> Arc<Work> {
-        let work = Arc::new(work);
-        self.rows.push(Row { work: Arc::clone(&work), beside: Some(Arc::clone(beside)), reach });
-        work
-    }
-
-    /// All work of the group, everything once.
-    pub fn works(&self) -> Vec<&Arc<Work>> {
-        let mut found: Vec<&Arc<Work>> = Vec::new();
-        for work in self.rows.iter().flat_map(|row| row.beside.iter().chain([&row.work])) {
-            if found.iter().all(|known| known.name != work.name) {
-                found.push(work);
-            }
-        }
-        found
+    /// Adds work beside other work of the group.
+    pub fn beside(&mut self, work: Work, beside: &str, reach: Option<Reach>) {
+        self.rows.push(TimedWork { work, beside: Some(beside.to_owned()), reach });
     }
 }

@@ -14,10 +14,10 @@ pub use simulation::simulation;
 pub use studies::studies;
 pub use tracing::tracing;
 
-use crate::work::Group;
+use crate::work::WorkGroup;
 
 /// Every group of the report, in its order; [`outside`] needs a program beside the one that measures.
-pub fn all() -> Vec<Group> {
+pub fn all() -> Vec<WorkGroup> {
     vec![simulation(), identification(), tracing(), prediction(), studies()]
 }
 
@@ -29,7 +29,7 @@ mod tests {
     #[test]
     fn names_can_be_told_apart_and_be_part_of_a_path() {
         for group in all() {
-            let mut names: Vec<&str> = group.works().iter().map(|work| work.name.as_str()).collect();
+            let mut names: Vec<&str> = group.rows.iter().map(|row| row.work.name.as_str()).collect();
             assert!(names.iter().all(|name| name.len() < 60 && !name.contains(['/', '"', ':', '?', '*', '|', '^'])));
             let count = names.len();
             names.sort_unstable();
@@ -42,7 +42,7 @@ mod tests {
     #[test]
     fn answers_are_those_of_the_ship() {
         for group in all() {
-            for work in group.works() {
+            for work in group.rows.into_iter().map(|row| row.work) {
                 let Some(tolerance) = work.tolerance else { continue };
                 let [k, t] = work.answer().unwrap_or_else(|| panic!("{} has no answer", work.name));
                 let worst = (k / K - 1.0).abs().max((t / T - 1.0).abs());

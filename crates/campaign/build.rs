@@ -2,7 +2,7 @@
 //! changed since, and the versions of the crates that decide the numbers.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// Crates whose version is part of a result's identity.
@@ -19,14 +19,20 @@ fn main() {
         println!("cargo::rerun-if-changed={}", lock.display());
     }
     let root = package.join("../..");
-    let Some(git) = repository(&root) else { return };
-    println!("cargo::rerun-if-changed={}", git.join("HEAD").display());
-    // What this program is made from.
+    if !root.join(".git").exists() {
+        return;
+    }
+    // What this program is made from, and what git has noted of it.
     println!("cargo::rerun-if-changed={}", root.join("crates").display());
-    if let Some(revision) = revision(&git) {
+    if let Some(log) = git(&root, &["rev-parse", "--git-path", "logs/HEAD"]) {
+        println!("cargo::rerun-if-changed={}", root.join(log).display());
+    }
+    if let Some(revision) = git(&root, &["rev-parse", "HEAD"]) {
         println!("cargo::rustc-env=KEMPF_GIT_REVISION={revision}");
     }
-    if is_changed(&root) {
+    if git(&root, &["status", "--porcelain", "--untracked-files=no", "--", "crates", "Cargo.toml", "Cargo.lock"])
+        .is_some()
+    {
         println!("cargo::rustc-env=KEMPF_GIT_DIRTY=1");
     }
 }
@@ -39,38 +45,9 @@ fn versions(locked: &str, name: &str) -> Vec<String> {
     of.map(|version| format!("{name} {}", version.trim_matches('"'))).collect()
 }
 
-/// Whether the source of the program differs from its revision. Without git nobody can tell.
-fn is_changed(root: &Path) -> bool {
-    let status = ["status", "--porcelain", "--untracked-files=no", "--", "crates", "Cargo.toml", "Cargo.lock"];
-    let output = Command::new("git").arg("-C").arg(root).args(status).output();
-    output.is_ok_and(|output| output.status.success() && !output.stdout.is_empty())
-}
-
-/// The folder `.git` of a checkout, or what the file of that name in a linked one names.
-fn repository(source: &Path) -> Option<PathBuf> {
-    let git = source.join(".git");
-    match fs::read_to_string(&git) {
-        Ok(link) => Some(source.join(link.strip_prefix("gitdir: ")?.trim())),
-        Err(_) => git.is_dir().then_some(git),
-    }
-}
-
-/// The revision that is checked out, from the files of git themselves.
-fn revision(git: &Path) -> Option<String> {
-    let head = fs::read_to_string(git.join("HEAD")).ok()?;
-    let found = match head.trim().strip_prefix("ref: ") {
-        None => head.trim().to_owned(),
-        Some(branch) => {
-            let common = fs::read_to_string(git.join("commondir")).ok();
-            let shared = common.map_or_else(|| git.to_owned(), |path| git.join(path.trim()));
-            println!("cargo::rerun-if-changed={}", shared.join(branch).display());
-            let packed = || {
-                let list = fs::read_to_string(shared.join("packed-refs")).ok()?;
-                let line = list.lines().find(|line| line.split_once(' ').is_some_and(|(_, name)| name == branch))?;
-                line.split_once(' ').map(|(revision, _)| revision.to_owned())
-            };
-            fs::read_to_string(shared.join(branch)).ok().or_else(packed)?.trim().to_owned()
-        }
-    };
-    (found.len() >= 40 && found.bytes().all(|byte| byte.is_ascii_hexdigit())).then_some(found)
+/// What git says of a checkout; `None` where it says nothing, and without git.
+fn git(root: &Path, arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").arg("-C").arg(root).args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+    (output.status.success() && !text.is_empty()).then_some(text)
 }

@@ -5,52 +5,34 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use kempf_benches::ratios::{lines, table};
+use kempf_benches::work::{Cores, Reach, TimedWork, WorkGroup};
 use kempf_benches::works;
+use report::number::{self, MISSING, significant};
+use report::{Column, Table};
+use serde::Deserialize;
 
 /// Head of the report.
 const HEAD: &str = "# What the work costs\n\n\
     Made by `cargo bench -p kempf-benches && cargo run --release -p kempf-benches --bin ratios -- results/performance`.\n\n\
     Times are those of criterion; ± is half of a 95 % interval, and that of a ratio is the worst case of both intervals.\n";
 
-/// Columns of `performance.csv`.
-const COLUMNS: [&str; 14] = [
-    "group",
-    "work",
-    "threads",
-    "units",
-    "time_s",
-    "lower_s",
-    "upper_s",
-    "beside",
-    "beside_s",
-    "ratio",
-    "ratio_lower",
-    "ratio_upper",
-    "reach",
-    "verdict",
-];
-
 fn main() -> Result<(), Box<dyn Error>> {
     let criterion = std::env::var_os("CRITERION_HOME").map_or_else(in_target, PathBuf::from);
-    let mut report = HEAD.to_owned();
-    let mut rows = csv::Writer::from_writer(Vec::new());
-    rows.write_record(COLUMNS)?;
+    let (mut report, mut numbers) = (HEAD.to_owned(), String::new());
     // The group of outside estimators is only named here, so its program need not be there.
     for group in works::all().into_iter().chain([works::outside("echo")]) {
-        let lines = lines(&group, &criterion);
-        if lines.is_empty() {
+        let Some(table) = table(&group, &criterion) else {
             eprintln!("nothing of `{}` was measured; run `cargo bench -p kempf-benches -- {}`", group.name, group.name);
             continue;
-        }
-        report += &format!("\n## {}\n\n{}\n\n{}", group.title, group.about, table(&lines).to_markdown());
-        lines.iter().try_for_each(|line| rows.write_record(line.record(group.name)))?;
+        };
+        report += &format!("\n## {}\n\n{}\n\n{}", group.title, group.about, table.to_markdown());
+        numbers += &table.to_csv();
     }
     print!("{report}");
     if let Some(folder) = std::env::args_os().nth(1).map(PathBuf::from) {
         fs::create_dir_all(&folder)?;
         fs::write(folder.join("report.md"), report)?;
-        fs::write(folder.join("performance.csv"), rows.into_inner()?)?;
+        fs::write(folder.join("performance.csv"), numbers)?;
     }
     Ok(())
 }
@@ -61,4 +43,192 @@ fn in_target() -> PathBuf {
     // …/target/release/ratios
     let target = program.as_deref().and_then(|path| path.ancestors().nth(2));
     target.unwrap_or_else(|| Path::new("target")).join("criterion")
+}
+
+/// A quantity with a 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct CriterionTime {
+    value: f64,
+    interval: [f64; 2],
+}
+
+impl CriterionTime {
+    fn times(self, factor: f64) -> Self {
+        Self { value: self.value * factor, interval: self.interval.map(|end| end * factor) }
+    }
+
+    /// This over another quantity that was measured apart from it; the interval is that of the worst case.
+    fn over(self, other: &Self) -> Self {
+        let interval = [self.interval[0] / other.interval[1], self.interval[1] / other.interval[0]];
+        Self { value: self.value / other.value, interval }
+    }
+
+    /// Whether a limit is kept, in words; the interval may leave that open.
+    fn verdict(&self, is_kept: impl Fn(f64) -> bool) -> &'static str {
+        let is_open = is_kept(self.interval[0]) != is_kept(self.interval[1]);
+        match (is_kept(self.value), is_open) {
+            (true, false) => "met",
+            (true, true) => "met, within noise",
+            (false, true) => "missed, within noise",
+            (false, false) => "missed",
+        }
+    }
+
+    /// The value and half of its interval; alone where there is no interval.
+    fn words(&self) -> String {
+        match 0.5 * (self.interval[1] - self.interval[0]) {
+            half if half > 0.0 => number::with_uncertainty(self.value, Some(half)),
+            _ => significant(self.value, 3),
+        }
+    }
+}
+
+/// Threads that work on all cores takes.
+fn cores() -> f64 {
+    rayon::current_num_threads() as f64
+}
+
+/// What criterion has stored, ns per go.
+#[derive(Deserialize)]
+struct CriterionEstimates {
+    mean: CriterionEstimate,
+    /// Of time over goes; none where all samples have as many goes.
+    slope: Option<CriterionEstimate>,
+}
+
+#[derive(Deserialize)]
+struct CriterionEstimate {
+    confidence_interval: CriterionInterval,
+    point_estimate: f64,
+}
+
+#[derive(Deserialize)]
+struct CriterionInterval {
+    lower_bound: f64,
+    upper_bound: f64,
+}
+
+/// What criterion found, s per go. `None` where nothing was measured.
+fn estimate(path: &Path) -> Option<CriterionTime> {
+    let CriterionEstimates { mean, slope } = serde_json::from_str(&fs::read_to_string(path).ok()?).ok()?;
+    let CriterionEstimate { confidence_interval, point_estimate } = slope.unwrap_or(mean);
+    let interval = [confidence_interval.lower_bound, confidence_interval.upper_bound];
+    Some(CriterionTime { value: point_estimate, interval }.times(1e-9))
+}
+
+/// The table of a group; `None` where nothing of it was measured.
+fn table(group: &WorkGroup, criterion: &Path) -> Option<Table> {
+    let time = |row: &TimedWork| {
+        let found = estimate(&criterion.join(group.name).join(&row.work.name).join("new/estimates.json"))?;
+        Some(found.times(1.0 / row.work.units))
+    };
+    let rows: Vec<(&TimedWork, CriterionTime)> = group.rows.iter().filter_map(|row| Some((row, time(row)?))).collect();
+    let [work, times, beside, reach, verdict] = ["work", "time", "beside it", "reach", "verdict"].map(Column::left);
+    let mut table =
+        Table::new([work, times, beside, Column::left("its time"), Column::decimal("ratio"), reach, verdict]);
+    for (row, own) in &rows {
+        let beside = row.beside.as_ref();
+        let other = beside.and_then(|name| rows.iter().find(|(other, _)| other.work.name == *name));
+        table.push(cells(row, own, other.map(|(_, time)| time)));
+    }
+    (!rows.is_empty()).then_some(table)
+}
+
+/// The line of work that took a time per unit, beside work that took another one.
+fn cells(row: &TimedWork, time: &CriterionTime, beside: Option<&CriterionTime>) -> [String; 7] {
+    // What is held against a ratio to be reached: time over time beside, or the share of all cores that is used.
+    let ratio = beside.map(|beside| match row.reach {
+        Some(Reach::Scaling(_)) => beside.over(time).times(1.0 / cores()),
+        _ => time.over(beside),
+    });
+    let of_ratio = |is_kept: &dyn Fn(f64) -> bool| ratio.map_or("", |ratio| ratio.verdict(is_kept));
+    let (reach, verdict) = match row.reach {
+        None => (MISSING.to_owned(), ""),
+        Some(Reach::Ratio(limit)) => (format!("≤ {}", significant(limit, 2)), of_ratio(&|ratio| ratio <= limit)),
+        Some(Reach::Time(limit)) => {
+            let words = in_unit(limit, |size| significant(limit / size, 3));
+            (format!("< {words}"), time.verdict(|time| time <= limit))
+        }
+        Some(Reach::Scaling(limit)) => {
+            (format!("≥ {} of the cores", significant(limit, 2)), of_ratio(&|share| share >= limit))
+        }
+    };
+    let unit = if row.work.units > 1.0 { " per unit" } else { "" };
+    let threads = if row.work.cores == Cores::All { format!(" ({} threads)", cores()) } else { String::new() };
+    let missing = || MISSING.to_owned();
+    [
+        format!("{}{threads}", row.work.name),
+        measured_time(time) + unit,
+        row.beside.clone().unwrap_or_else(missing),
+        beside.map_or_else(missing, measured_time),
+        ratio.as_ref().map_or_else(missing, CriterionTime::words),
+        reach,
+        verdict.to_owned(),
+    ]
+}
+
+const UNITS: [(f64, &str); 4] = [(1e-9, "ns"), (1e-6, "µs"), (1e-3, "ms"), (1.0, "s")];
+
+/// A time (s) in the unit that suits it, whose size in s is given to `show`.
+fn in_unit(seconds: f64, show: impl Fn(f64) -> String) -> String {
+    let (size, name) = UNITS.into_iter().rev().find(|(size, _)| seconds >= *size).unwrap_or(UNITS[0]);
+    format!("{} {name}", show(size))
+}
+
+fn measured_time(time: &CriterionTime) -> String {
+    in_unit(time.value, |size| time.times(1.0 / size).words())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kempf_benches::work::Work;
+
+    const FOUND: &str = r#"{
+        "mean": {"confidence_interval": {"confidence_level": 0.95, "lower_bound": 190.0, "upper_bound": 210.0},
+                 "point_estimate": 200.0, "standard_error": 5.0},
+        "median": {}, "median_abs_dev": {}, "slope": null, "std_dev": {} }"#;
+
+    fn timed(value: f64, half: f64) -> CriterionTime {
+        CriterionTime { value, interval: [value - half, value + half] }
+    }
+
+    #[test]
+    fn what_criterion_stored_is_read() {
+        let mut group = WorkGroup::new("group", "Group", "");
+        let rival = group.alone(Work::new("rival", || ()), None);
+        group.beside(Work::new("own", || ()), &rival, Some(Reach::Ratio(2.0)));
+        let folder = tempfile::tempdir().expect("a folder");
+        let store = |work: &str, text: &str| {
+            let new = folder.path().join("group").join(work).join("new");
+            fs::create_dir_all(&new).expect("a folder");
+            fs::write(new.join("estimates.json"), text).expect("a file");
+        };
+        let csv = || table(&group, folder.path()).map(|table| table.to_csv()).unwrap_or_default();
+        assert_eq!(csv(), "");
+        store("own", FOUND);
+        // Where the rival was not measured there is no ratio.
+        assert!(csv().contains("200 ± 10 ns") && !csv().contains("met"), "{}", csv());
+        store("rival", &FOUND.replace("00.0", "50.0"));
+        assert!(csv().contains("0.8") && csv().contains("met"), "{}", csv());
+    }
+
+    #[test]
+    fn verdicts_say_when_the_noise_decides() {
+        let verdict = |value: f64| timed(value, 0.1).verdict(|value| value <= 1.5);
+        let words = [1.0, 1.45, 1.55, 2.0].map(verdict);
+        assert_eq!(words, ["met", "met, within noise", "missed, within noise", "missed"]);
+        // One core is as fast as `share` of all of them makes it.
+        let scaling = |share: f64| {
+            let row = TimedWork { work: Work::new("", || ()), beside: None, reach: Some(Reach::Scaling(0.92)) };
+            cells(&row, &timed(1.0, 0.001), Some(&timed(share * cores(), 0.001)))[6].clone()
+        };
+        assert_eq!([scaling(0.95), scaling(0.5)], ["met", "missed"]);
+    }
+
+    #[test]
+    fn times_have_the_unit_that_suits_them() {
+        assert_eq!(measured_time(&timed(2.134e-4, 0.4e-5)), "213 ± 4 µs");
+        assert_eq!(measured_time(&timed(0.05, 0.0)), "50.0 ms");
+    }
 }

@@ -7,7 +7,7 @@ use trial::Trial;
 
 use crate::records::{PERIOD, ROWS, T, first_order_zig_zag, record};
 use crate::rivals;
-use crate::work::{Group, Reach, Work};
+use crate::work::{Reach, Work, WorkGroup};
 
 /// What everything is held against.
 const RIVAL: &str = "dsmc SRIVC, heading";
@@ -52,8 +52,8 @@ fn identifying(name: &str, settings: IdentifierSettings, trial: &Arc<Trial>) -> 
 }
 
 /// Every method with its default settings on one record, and the published one with many triples.
-pub fn identification() -> Group {
-    let mut group = Group::new(
+pub fn identification() -> WorkGroup {
+    let mut group = WorkGroup::new(
         "identify",
         "Identification",
         "One record of 1201 rows (10/10, 600 s at 0.5 s, K 0.08 1/s, T 25 s, heading noise 0.1 deg, gyro noise 0.02 deg/s), on \

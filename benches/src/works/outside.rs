@@ -7,14 +7,14 @@ use identify::Identifier;
 use identify::external::{Settings, protocol};
 
 use crate::records::{first_order_zig_zag, record};
-use crate::work::{Group, Reach, Work};
+use crate::work::{Reach, Work, WorkGroup};
 
 /// Rows of the record: a zig-zag of some minutes, read every second.
 const ROWS: usize = 270;
 
 /// A trial through a process that answers at once, and the writing of its line alone.
-pub fn outside(echo: &str) -> Group {
-    let mut group = Group::new(
+pub fn outside(echo: &str) -> WorkGroup {
+    let mut group = WorkGroup::new(
         "outside",
         "Outside estimators",
         "One record of 270 rows (10/10, K 0.08 1/s, T 25 s) to an outside estimator that answers at once, and its answer back. \

@@ -7,7 +7,7 @@ use ship::effects::{Effect, NonlinearDamping};
 use simulate::Manoeuvre;
 
 use crate::records::{K, T};
-use crate::work::{Group, Reach, Work};
+use crate::work::{Reach, Work, WorkGroup};
 
 /// Ships of a prediction.
 const DRAWS: usize = 1000;
@@ -52,8 +52,8 @@ fn known(effect: Option<&dyn Effect>, moment: Moment) -> IdentifiedShip {
 }
 
 /// A 20/20 zig-zag, figures and bands, of ships in a calm and in gusts, in closed form and integrated.
-pub fn prediction() -> Group {
-    let mut group = Group::new(
+pub fn prediction() -> WorkGroup {
+    let mut group = WorkGroup::new(
         "predict",
         "Prediction",
         "A 20/20 zig-zag predicted from 1000 drawn ships, on one core: figures of merit with their intervals, and the bands \

@@ -5,9 +5,8 @@ use rand_distr::StandardNormal;
 use ship::ships;
 use simulate::{PreparedSimulation, Purpose, Simulation, Solver, StreamKey, Vessel};
 
-use crate::norrbin;
 use crate::records::{KEY, ROWS, damped_zig_zag, first_order_zig_zag};
-use crate::work::{Group, Reach, Work};
+use crate::work::{Reach, Work, WorkGroup};
 
 /// The random numbers of a trial alone, from the streams that it uses: heading noise and gyro noise of every row.
 fn bare_draws(key: &StreamKey, rows: usize) -> [Vec<f64>; 2] {
@@ -18,14 +17,14 @@ fn bare_draws(key: &StreamKey, rows: usize) -> [Vec<f64>; 2] {
 }
 
 /// Trials of one ship, and many ships at once.
-pub fn simulation() -> Group {
-    let mut group = Group::new(
+pub fn simulation() -> WorkGroup {
+    let mut group = WorkGroup::new(
         "simulate",
         "Simulation",
         "A 10/10 zig-zag of 600 s, 1201 rows, with heading and gyro noise, on one core. Beside it stand its random numbers \
          alone (ChaCha8, standard normal): nothing with that noise can be cheaper. A trial of a study shares the motion of its ship \
          with the other trials of its cell, where chance moves nothing but the instruments; a trial on its own makes it anew, \
-         and so do all others. Norrbin ships are timed per step and ship.",
+         and so do all others.",
     );
     let draws = group.alone(Work::new("bare draws, 2 x 1201", || bare_draws(&KEY, ROWS)), None);
     let simulated = |name: &str, simulation: Simulation| Work::new(name, move || simulation.run(&KEY));
@@ -40,6 +39,5 @@ pub fn simulation() -> Group {
     group.beside(simulated("first order, Runge-Kutta 0.1 s", integrated), &draws, None);
     group.beside(simulated("cubic damping, Runge-Kutta", damped_zig_zag(ROWS)), &draws, None);
     group.beside(simulated("KVLCC2", hull), &draws, None);
-    norrbin::add_rows(&mut group);
     group
 }

@@ -11,7 +11,7 @@ use scenario::Scenario;
 use trial::ZigZag;
 
 use crate::records::{ROWS, first_order_zig_zag, record};
-use crate::work::{Group, Reach, Work};
+use crate::work::{Reach, Work, WorkGroup};
 
 /// Trials of one go.
 const TRIALS: u64 = 256;
@@ -50,8 +50,8 @@ fn drawing() -> Figure {
 }
 
 /// Trials, scenarios and figures.
-pub fn studies() -> Group {
-    let mut group = Group::new(
+pub fn studies() -> WorkGroup {
+    let mut group = WorkGroup::new(
         "study",
         "Trials, scenarios and figures",
         "Trials are those of benches/throughput.toml: 271 samples, seven methods, rows kept in memory. The figure is a zig-zag of \

@@ -6,7 +6,7 @@ use trace::{Settings, trace};
 use trial::Trial;
 
 use crate::records::{first_order_zig_zag, record};
-use crate::work::{Group, Reach, Work};
+use crate::work::{Reach, Work, WorkGroup};
 
 /// Zig-zags of KVLCC2, HSVA: those that are fitted together, then the others.
 const HSVA: [&str; 8] = [
@@ -46,8 +46,8 @@ fn measured(folder: &str, names: &[&str]) -> Option<Vec<Trial>> {
 }
 
 /// Whole traces of a simulated record and of measured ones.
-pub fn tracing() -> Group {
-    let mut group = Group::new(
+pub fn tracing() -> WorkGroup {
+    let mut group = WorkGroup::new(
         "trace",
         "Tracing",
         "Whole traces with bands and the errors of restarted replays, on one core: a simulated record that lacks nothing, and \

@@ -10,7 +10,7 @@ use trial::Quantity;
 
 /// K, T and δ_r of one method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Parameters {
+pub struct IndexEstimates {
     /// K, 1/s.
     #[serde(rename = "K_per_s")]
     pub k_per_s: Quantity,
@@ -23,7 +23,7 @@ pub struct Parameters {
 
 /// K and T without dimension: K' = K L/V, T' = T V/L.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PrimeIndices {
+pub struct PrimeEstimates {
     /// K'.
     #[serde(rename = "K")]
     pub k: Quantity,
@@ -32,10 +32,10 @@ pub struct PrimeIndices {
     pub t: Quantity,
 }
 
-impl Parameters {
+impl IndexEstimates {
     /// The indices without dimension of a ship of these particulars.
-    pub fn prime(&self, ship: Particulars) -> PrimeIndices {
-        PrimeIndices { k: self.k_per_s.scaled(ship.prime([-1, 0])), t: self.t_s.scaled(ship.prime([1, 0])) }
+    pub fn prime(&self, ship: Particulars) -> PrimeEstimates {
+        PrimeEstimates { k: self.k_per_s.scaled(ship.prime([-1, 0])), t: self.t_s.scaled(ship.prime([1, 0])) }
     }
 }
 
@@ -49,17 +49,18 @@ pub struct Validation {
 }
 
 /// Whether a method gave an answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// It did.
     Ok,
     /// It did not; the reason says why.
+    #[default]
     Failed,
 }
 
 /// The answer of one method.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodEntry {
     /// Id of the method, or its label in a scenario.
     pub method: String,
@@ -73,10 +74,10 @@ pub struct MethodEntry {
     /// The reason in a word or two, for tables: "not-excited".
     pub failure: Option<String>,
     /// K, T and δ_r.
-    pub parameters: Option<Parameters>,
+    pub parameters: Option<IndexEstimates>,
     /// K' and T', where length and speed of the ship are known; left out elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prime: Option<PrimeIndices>,
+    pub prime: Option<PrimeEstimates>,
     /// 1/T < 0, in words "course-unstable".
     pub course_unstable: bool,
     /// Root mean square heading error of the replay on the records themselves, deg.
@@ -94,49 +95,28 @@ pub struct MethodEntry {
 impl MethodEntry {
     /// The entry of a method that gave an answer.
     pub fn of(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>) -> Self {
+        let diagnostics = estimate.diagnostics.iter().filter(|(_, value)| value.is_finite());
         Self {
             method: method.to_owned(),
-            id: None,
             status: Status::Ok,
-            reason: None,
-            failure: None,
-            parameters: Some(Parameters {
+            parameters: Some(IndexEstimates {
                 k_per_s: estimate.K(),
                 t_s: estimate.T(),
                 delta_r_deg: estimate.rudder_bias().scaled(to_deg(1.0)),
             }),
-            prime: None,
             course_unstable: estimate.response.is_course_unstable(),
             heading_rmse_deg,
-            validation: Vec::new(),
-            diagnostics: estimate
-                .diagnostics
-                .iter()
-                .filter(|(_, value)| value.is_finite())
-                .map(|&(name, value)| (name.to_owned(), value))
-                .collect(),
+            diagnostics: diagnostics.map(|&(name, value)| (name.to_owned(), value)).collect(),
             stop: Some(estimate.stop.as_str().to_owned()),
             warnings: estimate.warnings.clone(),
+            ..Self::default()
         }
     }
 
     /// The entry of a method that gave none.
     pub fn failed(method: &str, error: &IdentifyError) -> Self {
-        Self {
-            method: method.to_owned(),
-            id: None,
-            status: Status::Failed,
-            reason: Some(error.to_string()),
-            failure: Some(error.kind().to_owned()),
-            parameters: None,
-            prime: None,
-            course_unstable: false,
-            heading_rmse_deg: None,
-            validation: Vec::new(),
-            diagnostics: BTreeMap::new(),
-            stop: None,
-            warnings: Vec::new(),
-        }
+        let (reason, failure) = (Some(error.to_string()), Some(error.kind().to_owned()));
+        Self { method: method.to_owned(), reason, failure, ..Self::default() }
     }
 }
 
@@ -154,8 +134,7 @@ pub fn entry(
 
 /// Root mean square replay error over all rows of all trials, deg.
 pub(crate) fn pooled_rmse_deg(trials: &[trial::Trial], estimate: &Estimate) -> Option<f64> {
-    let mut square = 0.0;
-    let mut rows = 0usize;
+    let (mut square, mut rows) = (0.0, 0usize);
     for trial in trials {
         let replay = identify::replay::replay(trial, &estimate.response)?;
         for (_, residual) in replay.observed() {

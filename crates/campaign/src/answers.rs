@@ -66,22 +66,12 @@ pub fn part_name(record: &str, number: usize) -> String {
 /// A table of answers; the longest that makes sense has a line for every trial of a large study.
 const TABLE: Kind = Kind { name: "a table of answers", largest: 1 << 30 };
 
-/// Columns of a table of answers.
-const COLUMNS: [&str; 10] = [
-    "record",
-    "cell",
-    "replicate",
-    "K_per_s",
-    "T_s",
-    "delta_r_deg",
-    "K_sd_per_s",
-    "T_sd_s",
-    "delta_r_sd_deg",
-    "failed",
-];
+/// Columns of a table of answers that are read, and those of the list of trials, which it may have kept.
+const COLUMNS: &str =
+    "record cell replicate K_per_s T_s delta_r_deg K_sd_per_s T_sd_s delta_r_sd_deg failed label also";
 
-/// Columns of the list of trials, which a table of answers may have kept.
-const OF_THE_LIST: [&str; 2] = ["label", "also"];
+/// Columns that a message names.
+const MOST_COLUMNS: usize = 20;
 
 /// Lines at fault that a message names.
 const MOST_FAULTS: usize = 10;
@@ -99,7 +89,7 @@ pub fn read(path: &Path, scenario: &Scenario, observer: &dyn Observer) -> Result
     let separator = [b';', b'\t'].into_iter().find(|own| head.as_bytes().contains(own)).unwrap_or(b',');
     let mut table =
         ReaderBuilder::new().delimiter(separator).trim(Trim::All).flexible(true).from_reader(text.as_bytes());
-    let columns = Columns::of(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
+    let columns = AnswerColumns::of(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
     if !columns.ignored.is_empty() {
         observer.warn(&format!("{}: not read: {}", path.display(), columns.ignored.join(", ")));
     }
@@ -145,29 +135,23 @@ struct Records<'a> {
 
 impl<'a> Records<'a> {
     fn of(scenario: &'a Scenario) -> Self {
-        let name = |cell: usize| (stem(&record_name(scenario, Task { cell, replicate: 0 })).0.to_owned(), cell as u64);
+        let name = |cell: usize| record_name(scenario, Task { cell, replicate: 0 });
         let several = scenario.replicates > 1;
-        let whole = |cell: usize| (record_name(scenario, Task { cell, replicate: 0 }), cell as u64);
-        let cells = 0..scenario.cells.len();
-        Self { scenario, cells: cells.map(|cell| if several { name(cell) } else { whole(cell) }).collect() }
+        let of_cell = |cell: usize| if several { stem(&name(cell)).0.to_owned() } else { name(cell) };
+        Self { scenario, cells: (0..scenario.cells.len()).map(|cell| (of_cell(cell), cell as u64)).collect() }
     }
 
     /// The trial of a record, by the name of its file.
     fn find(&self, record: &str) -> Option<TrialNumber> {
         let file = record.rsplit(['/', '\\']).next().unwrap_or(record);
         let name = file.strip_suffix(".csv").unwrap_or(file);
-        let place = match self.scenario.replicates {
-            0 | 1 => (*self.cells.get(name)?, 0),
-            _ => {
-                let (cell, number) = stem(name);
-                (*self.cells.get(cell)?, number.parse().ok()?)
-            }
+        let (cell, replicate) = match self.scenario.replicates {
+            0 | 1 => (name, 0),
+            _ => stem(name).1.parse().ok().map(|number| (stem(name).0, number))?,
         };
-        let is_that = |(cell, replicate): &TrialNumber| {
-            *replicate < self.scenario.replicates
-                && record_name(self.scenario, Task { cell: *cell as usize, replicate: *replicate }) == name
-        };
-        Some(place).filter(is_that)
+        let task = Task { cell: *self.cells.get(cell)? as usize, replicate };
+        let is_that = replicate < self.scenario.replicates && record_name(self.scenario, task) == name;
+        is_that.then_some((task.cell as u64, replicate))
     }
 }
 
@@ -177,32 +161,34 @@ fn stem(name: &str) -> (&str, &str) {
 }
 
 /// Where the columns of a table are.
-struct Columns {
-    places: [Option<usize>; COLUMNS.len()],
+struct AnswerColumns {
+    places: HashMap<String, usize>,
     ignored: Vec<String>,
 }
 
-impl Columns {
+impl AnswerColumns {
     fn of(head: &StringRecord) -> Result<Self, String> {
-        let places = COLUMNS.map(|name| head.iter().position(|own| own == name));
-        let has = |name: &str| head.iter().any(|own| own == name);
-        let missing: Vec<&str> = ["K_per_s", "T_s"].into_iter().filter(|name| !has(name)).collect();
-        if !missing.is_empty() || !(has("record") || has("cell") && has("replicate")) {
-            let found: Vec<String> = head.iter().take(2 * COLUMNS.len()).map(shown).collect();
+        let mut places = HashMap::new();
+        for (place, name) in head.iter().enumerate() {
+            // The first of several columns of one name counts.
+            places.entry(name.to_owned()).or_insert(place);
+        }
+        let has = |names: &[&str]| names.iter().all(|name| places.contains_key(*name));
+        if !has(&["K_per_s", "T_s"]) || !has(&["record"]) && !has(&["cell", "replicate"]) {
+            let found: Vec<String> = head.iter().take(MOST_COLUMNS).map(shown).collect();
             return Err(format!(
                 "the columns are {}; expected `record`, or `cell` and `replicate`, beside `K_per_s` and `T_s`",
                 found.join(", ")
             ));
         }
-        let is_known = |own: &&str| COLUMNS.contains(own) || OF_THE_LIST.contains(own);
-        let ignored = head.iter().filter(|own| !is_known(own)).take(COLUMNS.len()).map(shown).collect();
+        let is_known = |own: &&str| COLUMNS.split(' ').any(|known| known == *own);
+        let ignored = head.iter().filter(|own| !is_known(own)).take(MOST_COLUMNS).map(shown).collect();
         Ok(Self { places, ignored })
     }
 
     /// What a row has in a column; `None` where it has nothing.
     fn text<'a>(&self, row: &'a StringRecord, name: &str) -> Option<&'a str> {
-        let column = COLUMNS.iter().position(|own| *own == name)?;
-        row.get(self.places[column]?).filter(|text| !text.is_empty())
+        row.get(*self.places.get(name)?).filter(|text| !text.is_empty())
     }
 
     fn number(&self, row: &StringRecord, name: &str) -> Result<Option<f64>, String> {
@@ -235,16 +221,14 @@ impl Columns {
         let number = |name: &str| self.number(row, name);
         let (k, t, bias) = (number("K_per_s")?, number("T_s")?, number("delta_r_deg")?);
         let sd = [number("K_sd_per_s")?, number("T_sd_s")?, number("delta_r_sd_deg")?.map(from_deg)];
-        let answer = match (self.text(row, "failed"), k, t) {
+        let errors = if sd == [None; 3] { Errors::Unknown } else { Errors::Deviations(sd) };
+        let missing = |name: &str| format!("{name} is missing or is no finite number");
+        Ok(match (self.text(row, "failed"), k, t) {
             (Some(words), _, _) => Err(words.to_owned()),
-            (None, Some(k), Some(t)) => {
-                let errors = if sd == [None; 3] { Errors::Unknown } else { Errors::Deviations(sd) };
-                Ok(Answer { K: k, T: t, rudder_bias: from_deg(bias.unwrap_or(0.0)), errors })
-            }
-            (None, None, _) => Err("K_per_s is missing or is no finite number".to_owned()),
-            (None, Some(_), None) => Err("T_s is missing or is no finite number".to_owned()),
-        };
-        Ok(answer)
+            (None, Some(k), Some(t)) => Ok(Answer { K: k, T: t, rudder_bias: from_deg(bias.unwrap_or(0.0)), errors }),
+            (None, None, _) => Err(missing("K_per_s")),
+            (None, Some(_), None) => Err(missing("T_s")),
+        })
     }
 }
 

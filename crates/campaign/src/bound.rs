@@ -3,7 +3,7 @@
 mod coloured;
 
 use identify::{maximum_likelihood, output_error};
-use nalgebra::{Matrix2, Matrix2x3, Matrix3};
+use nalgebra::{Matrix2x3, Matrix3};
 use ship::FirstOrder;
 use ship::first_order::State;
 use simulate::disturbance::GaussMarkov;
@@ -11,11 +11,10 @@ use simulate::recording::RudderSource;
 use simulate::{Simulated, Simulation};
 use trial::noise_model::{Moment, NoiseModel};
 
-use crate::rows::Bound;
 use coloured::CompassError;
 
-/// Cramér–Rao bound of all records of one trial together: as standard deviations, and as covariance of relative errors
-/// of K and T, %².
+/// Cramér–Rao bound of all records of one trial together: as standard deviations of K (1/s), T (s) and K/T (1/s²), and as
+/// covariance of relative errors of K and T, %².
 ///
 /// Random are the compass, the recorded rudder, the gyro, and one moment: a random walk or gusts. What the rest of the
 /// sea does is no noise but a fault of the model, which no bound knows. It leaves out spikes, too,
@@ -27,7 +26,7 @@ pub fn of<'a>(
     simulations: impl Iterator<Item = &'a Simulation>,
     simulated: &[Simulated],
     truth: &FirstOrder,
-) -> Option<(Bound, Matrix2<f64>)> {
+) -> Option<([f64; 3], [[f64; 2]; 2])> {
     let mut records = simulations.zip(simulated).map(|(simulation, record)| of_record(simulation, record, truth));
     let first = records.next()??;
     let covariance = records.try_fold(first, |so_far, next| {
@@ -38,13 +37,13 @@ pub fn of<'a>(
     // Gradients of ln K = ln b − ln a and ln T = −ln a.
     let gradient = Matrix2x3::new(-1.0 / a, 1.0 / b, 0.0, -1.0 / a, 0.0, 0.0);
     let relative = gradient * covariance * gradient.transpose();
-    let bound = Bound {
-        k_per_s: relative[(0, 0)].sqrt() * truth.K().abs(),
-        t_s: relative[(1, 1)].sqrt() * truth.T().abs(),
-        k_over_t_per_s2: covariance[(1, 1)].sqrt(),
-    };
-    let finite = [bound.k_per_s, bound.t_s, bound.k_over_t_per_s2].iter().all(|sd| sd.is_finite());
-    finite.then_some((bound, relative * 1e4))
+    let bound = [
+        relative[(0, 0)].sqrt() * truth.K().abs(),
+        relative[(1, 1)].sqrt() * truth.T().abs(),
+        covariance[(1, 1)].sqrt(),
+    ];
+    let percent2 = [0, 1].map(|i| [0, 1].map(|j| 1e4 * relative[(i, j)]));
+    bound.iter().all(|sd| sd.is_finite()).then_some((bound, percent2))
 }
 
 /// The bound of (1/T, K/T, K δ_r/T) from one record, its initial state unknown as well.

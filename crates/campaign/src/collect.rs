@@ -8,20 +8,20 @@ use std::thread::Scope;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use scenario::{DesignCell, Scenario};
+use scenario::Scenario;
 
-use crate::design::{CellFacts, Design};
+use crate::design::Design;
 use crate::disk;
-use crate::engine::{self, Bench, Outcome};
+use crate::engine::{self, TrialOutcome, TrialRunner};
 use crate::files;
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::observer::Observer;
-use crate::outside::AtWork;
-use crate::plan::Plan;
-use crate::rows::{Layout, Row};
+use crate::outside::RunningEstimators;
+use crate::plan::TrialPlan;
+use crate::rows::{RowLayout, StudyRow};
 use crate::showcase;
-use crate::store::{self, Stored};
+use crate::store::{self, StoredStudy};
 use crate::task::{Shard, Task};
 use crate::unfinished::{self, Unfinished};
 use scenario::failure::{Failure, OnPath};
@@ -32,7 +32,7 @@ const BATCH_TIME: Duration = Duration::from_millis(250);
 /// Most trials of a batch: they are in memory.
 const MOST_BATCH: usize = 2048;
 
-/// Stored trials that are run again before a study goes on, to see that this program computes the same.
+/// StoredStudy trials that are run again before a study goes on, to see that this program computes the same.
 const SPOT_CHECKS: usize = 32;
 
 /// Runs a shard of a scenario into a folder, or what is missing of it; returns what is stored.
@@ -45,18 +45,18 @@ pub fn collect(
     folder: &ResultFolder,
     restart: bool,
     observer: &dyn Observer,
-) -> Result<Stored, Failure> {
+) -> Result<StoredStudy, Failure> {
     let manifest = Manifest::new(scenario, shard);
     if restart {
         discard(folder, observer)?;
     }
     if let Some(stored) = store::manifest_of_rows(folder.path())? {
         is_same(&stored, &manifest, folder.path())?;
-        let _outside = AtWork::begin(scenario, folder, observer)?;
+        let _outside = RunningEstimators::begin(scenario, folder, observer)?;
         return look_again(scenario, manifest, folder, observer);
     }
-    let design = design(scenario);
-    let layout = Layout::of(&design);
+    let design = Design::of(scenario);
+    let layout = RowLayout::of(&design);
     let rows = folder.path().join(files::ROWS);
     if let Some(stored) = unfinished::manifest_in(folder.path())? {
         is_same(&stored, &manifest, folder.path())?;
@@ -67,8 +67,8 @@ pub fn collect(
             files::MANIFEST
         )));
     }
-    let _outside = AtWork::begin(scenario, folder, observer)?;
-    let mut plan = Plan::new(scenario, shard);
+    let _outside = RunningEstimators::begin(scenario, folder, observer)?;
+    let mut plan = TrialPlan::new(scenario, shard);
     let mut unfinished = Unfinished::open(folder, manifest, &design, &layout, observer)?;
     let mut spots = SpotCheck::new(scenario, folder.path());
     unfinished.resume(&mut plan, |row| spots.see(row))?;
@@ -87,8 +87,8 @@ fn look_again(
     manifest: Manifest,
     folder: &ResultFolder,
     observer: &dyn Observer,
-) -> Result<Stored, Failure> {
-    let study = Stored::held(folder)?;
+) -> Result<StoredStudy, Failure> {
+    let study = StoredStudy::held(folder)?;
     let mut spots = SpotCheck::new(scenario, folder.path());
     study.rows(|row| spots.see(row))?;
     spots.finish()?;
@@ -102,11 +102,10 @@ fn look_again(
         sha256: stored.sha256.clone(),
         ..manifest
     };
-    if told == *stored {
-        return Ok(study);
+    if told != *stored {
+        told.write(folder)?;
     }
-    told.write(folder)?;
-    Ok(study.told(told))
+    Ok(study.with_words_of(told))
 }
 
 /// Everything of a study in a folder, thrown away on request.
@@ -114,27 +113,6 @@ fn discard(folder: &ResultFolder, observer: &dyn Observer) -> Result<(), Failure
     unfinished::discard(folder, observer)?;
     let rows = folder.path().join(files::ROWS);
     disk::remove_if_there(&rows).on("remove", &rows)
-}
-
-/// The design without what takes trials to know.
-fn design(scenario: &Scenario) -> Design {
-    let bare = |cell: &DesignCell| CellFacts {
-        labels: cell.labels.clone(),
-        values: cell.values.clone(),
-        trials: 0..0,
-        missing: cell.missing(),
-        has_own_indices: cell.has_own_indices(),
-        is_nearest: !cell.is_first_order(),
-        bound_percent2: None,
-    };
-    Design {
-        axes: scenario.axes.iter().map(|axis| axis.name.clone()).collect(),
-        methods: scenario.method_names(),
-        draws: scenario.draws.clone(),
-        predicts: scenario.predictions.is_some(),
-        cells: scenario.cells.iter().map(bare).collect(),
-        words: scenario.words.clone(),
-    }
 }
 
 /// Refuses a folder whose rows belong to another study, and says what differs.
@@ -153,7 +131,7 @@ pub fn is_same(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), F
 
 /// How a run of trials ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
+enum RunEnd {
     /// All were run, or nobody takes more.
     Done,
     /// It was asked to stop, and no trial is under way.
@@ -165,7 +143,7 @@ enum End {
 /// Runs what is left of a plan; rows go to a writer of their own while the next trials run.
 fn run_all(
     scenario: &Scenario,
-    plan: &mut Plan,
+    plan: &mut TrialPlan,
     unfinished: &mut Unfinished,
     folder: &Path,
     observer: &dyn Observer,
@@ -173,7 +151,7 @@ fn run_all(
     observer.begin(plan.most(), plan.most() - plan.left());
     std::thread::scope(|scope| {
         // One batch may wait while one is written and one runs: memory stays what it is.
-        let (send, receive) = sync_channel::<Vec<Outcome>>(1);
+        let (send, receive) = sync_channel::<Vec<TrialOutcome>>(1);
         let writer = scope.spawn(move || unfinished.store(receive));
         let take = |outcomes| send.send(outcomes).is_ok();
         let end = run_batches(plan, |tasks| watched(scope, scenario, tasks, observer), take);
@@ -189,9 +167,9 @@ fn run_all(
             ))
         };
         match end {
-            End::Done => written,
-            End::Interrupted => written.and_then(|()| Err(stopped())),
-            End::Stuck => {
+            RunEnd::Done => written,
+            RunEnd::Interrupted => written.and_then(|()| Err(stopped())),
+            RunEnd::Stuck => {
                 let failure = written.err().unwrap_or_else(stopped);
                 observer.give_up(&failure);
                 Err(failure)
@@ -208,16 +186,16 @@ const LOOK: Duration = Duration::from_millis(20);
 
 /// Runs batch after batch by `run` until the plan is done, a batch is not whole, or `take` wants no more.
 fn run_batches(
-    plan: &mut Plan,
-    mut run: impl FnMut(Vec<Task>) -> (Vec<Outcome>, End),
-    mut take: impl FnMut(Vec<Outcome>) -> bool,
-) -> End {
+    plan: &mut TrialPlan,
+    mut run: impl FnMut(Vec<Task>) -> (Vec<TrialOutcome>, RunEnd),
+    mut take: impl FnMut(Vec<TrialOutcome>) -> bool,
+) -> RunEnd {
     let least = (4 * rayon::current_num_threads()).min(MOST_BATCH);
     let mut size = least;
     loop {
         let tasks = plan.next(size as u64);
         if tasks.is_empty() {
-            return End::Done;
+            return RunEnd::Done;
         }
         let start = Instant::now();
         let (outcomes, end) = run(tasks.clone());
@@ -225,7 +203,7 @@ fn run_batches(
         if let Some(&next) = tasks.get(outcomes.len()) {
             plan.go_back_to(next);
         }
-        if !take(outcomes) || end != End::Done {
+        if !take(outcomes) || end != RunEnd::Done {
             return end;
         }
         let wanted = size as f64 * BATCH_TIME.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-6);
@@ -233,9 +211,9 @@ fn run_batches(
     }
 }
 
-/// A bench for tasks, which come in order.
-fn bench<'a>(scenario: &'a Scenario, tasks: &[Task]) -> Bench<'a> {
-    Bench::new(scenario, tasks[0].cell..=tasks[tasks.len() - 1].cell)
+/// What runs tasks, which come in order.
+fn runner<'a>(scenario: &'a Scenario, tasks: &[Task]) -> TrialRunner<'a> {
+    TrialRunner::new(scenario, tasks[0].cell..=tasks[tasks.len() - 1].cell)
 }
 
 /// Runs a batch on a thread of its own, so that an interruption need not wait for a trial that does not end. Returns
@@ -245,16 +223,16 @@ fn watched<'scope>(
     scenario: &'scope Scenario,
     tasks: Vec<Task>,
     observer: &'scope dyn Observer,
-) -> (Vec<Outcome>, End) {
-    let mut outcomes: Vec<Option<Outcome>> = tasks.iter().map(|_| None).collect();
+) -> (Vec<TrialOutcome>, RunEnd) {
+    let mut outcomes: Vec<Option<TrialOutcome>> = tasks.iter().map(|_| None).collect();
     let (send, receive) = channel();
     scope.spawn(move || {
-        let bench = bench(scenario, &tasks);
+        let runner = runner(scenario, &tasks);
         let run = || {
             tasks.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
                 if !observer.is_asked_to_stop() {
                     // Nobody receives any more when the wait for a trial was given up.
-                    let _ = send.send((index, bench.run(task)));
+                    let _ = send.send((index, runner.run(task)));
                 }
             });
         };
@@ -281,49 +259,52 @@ fn watched<'scope>(
     };
     let is_whole = outcomes.iter().all(Option::is_some);
     let end = match (is_stuck, is_whole) {
-        (true, _) => End::Stuck,
-        (false, false) => End::Interrupted,
-        (false, true) => End::Done,
+        (true, _) => RunEnd::Stuck,
+        (false, false) => RunEnd::Interrupted,
+        (false, true) => RunEnd::Done,
     };
     (outcomes.into_iter().map_while(|outcome| outcome).collect(), end)
 }
 
 /// All rows of a small study, in their order, without a folder; and its design.
-pub fn in_memory(scenario: &Scenario) -> (Design, Vec<Row>) {
+pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
     let mut rows = Vec::new();
     let run = |tasks: Vec<Task>| {
-        let bench = bench(scenario, &tasks);
-        (tasks.par_iter().map(|&task| bench.run(task)).collect(), End::Done)
+        let runner = runner(scenario, &tasks);
+        (tasks.par_iter().map(|&task| runner.run(task)).collect(), RunEnd::Done)
     };
-    let take = |outcomes: Vec<Outcome>| {
+    let take = |outcomes: Vec<TrialOutcome>| {
         rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
         true
     };
-    run_batches(&mut Plan::new(scenario, Shard::WHOLE), run, take);
-    let mut cells: Vec<CellFacts> =
-        (0..scenario.cells.len()).into_par_iter().map(|cell| engine::facts(scenario, cell)).collect();
-    rows.iter().for_each(|row: &Row| cells[row.cell as usize].trials.end = row.replicate + 1);
-    (Design { cells, ..design(scenario) }, rows)
+    run_batches(&mut TrialPlan::new(scenario, Shard::WHOLE), run, take);
+    let mut design = Design::of(scenario);
+    rows.iter().for_each(|row: &StudyRow| design.cells[row.cell as usize].trials.end = row.replicate + 1);
+    add_bounds(scenario, &mut design, |_| true);
+    (design, rows)
+}
+
+/// Adds the Cramér–Rao bounds of some cells.
+fn add_bounds(scenario: &Scenario, design: &mut Design, is_wanted: impl Fn(usize) -> bool + Sync) {
+    let wanted = design.cells.par_iter_mut().enumerate().filter(|(cell, _)| is_wanted(*cell));
+    wanted.for_each(|(cell, facts)| facts.bound_percent2 = engine::bound_percent2(scenario, cell));
 }
 
 /// Makes the result folder whole: rows, facts of the cells, showcases, times, and the manifest last.
-fn finish(scenario: &Scenario, plan: &Plan, unfinished: Unfinished, folder: &ResultFolder) -> Result<Stored, Failure> {
+fn finish(
+    scenario: &Scenario,
+    plan: &TrialPlan,
+    unfinished: Unfinished,
+    folder: &ResultFolder,
+) -> Result<StoredStudy, Failure> {
     let rows_sha256 = unfinished.join(folder)?;
     let own = |cell: usize| plan.holds(Task { cell, replicate: 0 });
-    let design = unfinished.design();
-    let facts = |cell: usize| {
-        let known = design.cells[cell].clone();
-        if own(cell) { CellFacts { trials: known.trials, ..engine::facts(scenario, cell) } } else { known }
-    };
-    let cells = (0..scenario.cells.len()).into_par_iter().map(facts).collect();
+    let mut design = unfinished.design.clone();
+    add_bounds(scenario, &mut design, own);
     let shown = if scenario.words.output.showcase { scenario.cells.len() } else { 0 };
-    let showcases: Vec<_> = (0..shown)
-        .into_par_iter()
-        .filter(|&cell| own(cell))
-        .filter_map(|cell| showcase::of_cell(scenario, cell))
-        .collect();
-    let design = Design { cells, ..design.clone() };
-    let stored = store::finish(folder, unfinished.manifest(), rows_sha256, design, showcases, unfinished.timings())?;
+    let shown = (0..shown).into_par_iter().filter(|&cell| own(cell));
+    let showcases: Vec<_> = shown.filter_map(|cell| showcase::of_cell(scenario, cell)).collect();
+    let stored = store::finish(folder, &unfinished.manifest, rows_sha256, design, showcases, &unfinished.timings)?;
     unfinished.remove()?;
     Ok(stored)
 }
@@ -334,7 +315,7 @@ struct SpotCheck<'a> {
     scenario: &'a Scenario,
     folder: &'a Path,
     every: usize,
-    kept: BTreeMap<Task, Vec<Row>>,
+    kept: BTreeMap<Task, Vec<StudyRow>>,
 }
 
 impl<'a> SpotCheck<'a> {
@@ -344,7 +325,7 @@ impl<'a> SpotCheck<'a> {
     }
 
     /// Keeps the first trial of some cells.
-    fn see(&mut self, row: Row) -> Result<(), Failure> {
+    fn see(&mut self, row: StudyRow) -> Result<(), Failure> {
         let task = Task { cell: row.cell as usize, replicate: row.replicate };
         if task.cell.is_multiple_of(self.every) && (task.replicate == 0 || self.kept.is_empty())
             || self.kept.contains_key(&task)
@@ -355,10 +336,9 @@ impl<'a> SpotCheck<'a> {
     }
 
     fn finish(self) -> Result<(), Failure> {
-        let differs = self
-            .kept
-            .par_iter()
-            .find_first(|(task, rows)| Bench::new(self.scenario, task.cell..=task.cell).run(**task).rows != **rows);
+        let differs = self.kept.par_iter().find_first(|(task, rows)| {
+            TrialRunner::new(self.scenario, task.cell..=task.cell).run(**task).rows != **rows
+        });
         let Some((task, _)) = differs else { return Ok(()) };
         Err(Failure::input(format!(
             "the rows in {} are not what this program computes (trial {} of cell {} differs): they were made by another version \

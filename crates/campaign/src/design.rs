@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use scenario::{MethodName, Words, name};
+use scenario::{DesignCell, MethodName, Scenario, Words, name};
 use serde::{Deserialize, Serialize};
 
 /// What tables and figures need of a scenario.
@@ -52,6 +52,27 @@ pub struct CellFacts {
 }
 
 impl Design {
+    /// The design of a scenario of which no trial is stored, and no bound is known.
+    pub fn of(scenario: &Scenario) -> Self {
+        let bare = |cell: &DesignCell| CellFacts {
+            labels: cell.labels.clone(),
+            values: cell.values.clone(),
+            trials: 0..0,
+            missing: cell.missing(),
+            has_own_indices: cell.has_own_indices(),
+            is_nearest: !cell.is_first_order(),
+            bound_percent2: None,
+        };
+        Self {
+            axes: scenario.axes.iter().map(|axis| axis.name.clone()).collect(),
+            methods: scenario.method_names(),
+            draws: scenario.draws.clone(),
+            predicts: scenario.predictions.is_some(),
+            cells: scenario.cells.iter().map(bare).collect(),
+            words: scenario.words.clone(),
+        }
+    }
+
     /// The design in the text of a `cells.json`.
     ///
     /// Fails when it is not one, or contradicts itself, and says where.

@@ -11,9 +11,10 @@ use parquet::file::reader::{ChunkReader, Length};
 
 pub mod faults;
 
-/// Where a test may let an operation fail.
-fn strike(path: &Path) -> io::Result<()> {
-    faults::strike(path)
+/// An operation on a path, which a test may let fail.
+fn at<T>(path: &Path, operation: impl FnOnce() -> io::Result<T>) -> io::Result<T> {
+    faults::strike(path)?;
+    operation()
 }
 
 /// An open file.
@@ -24,41 +25,38 @@ pub struct File {
 }
 
 impl File {
+    fn of(path: &Path, open: impl FnOnce() -> io::Result<fs::File>) -> io::Result<Self> {
+        Ok(Self { file: at(path, open)?, path: path.to_owned() })
+    }
+
     /// Opens a file to read.
     pub fn open(path: &Path) -> io::Result<Self> {
-        strike(path)?;
-        Ok(Self { file: fs::File::open(path)?, path: path.to_owned() })
+        Self::of(path, || fs::File::open(path))
     }
 
     /// Makes a file that is not there yet; a link is not followed.
     pub fn create_new(path: &Path) -> io::Result<Self> {
-        strike(path)?;
-        Ok(Self { file: fs::File::create_new(path)?, path: path.to_owned() })
+        Self::of(path, || fs::File::create_new(path))
     }
 
     /// Opens a file that others may have open too, and makes it when it is missing; its content stays.
     pub fn open_shared(path: &Path) -> io::Result<Self> {
-        strike(path)?;
-        let file = fs::OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
-        Ok(Self { file, path: path.to_owned() })
+        Self::of(path, || fs::OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path))
     }
 
     /// Waits until all that was written is on the disk.
     pub fn sync(&self) -> io::Result<()> {
-        strike(&self.path)?;
-        self.file.sync_all()
+        at(&self.path, || self.file.sync_all())
     }
 
     /// Keeps all others out while the file is open; `false` when another one holds it.
     pub fn lock(&self) -> io::Result<bool> {
-        strike(&self.path)?;
-        taken(|| self.file.try_lock())
+        at(&self.path, || is_taken(|| self.file.try_lock()))
     }
 
     /// Keeps out those who want to write while the file is open; `false` when one of them holds it.
     pub fn lock_for_reading(&self) -> io::Result<bool> {
-        strike(&self.path)?;
-        taken(|| self.file.try_lock_shared())
+        at(&self.path, || is_taken(|| self.file.try_lock_shared()))
     }
 }
 
@@ -66,7 +64,7 @@ impl File {
 /// files for a moment, those included that were closed meanwhile.
 const MOMENT: Duration = Duration::from_millis(200);
 
-fn taken(lock: impl Fn() -> Result<(), fs::TryLockError>) -> io::Result<bool> {
+fn is_taken(lock: impl Fn() -> Result<(), fs::TryLockError>) -> io::Result<bool> {
     let start = Instant::now();
     loop {
         match lock() {
@@ -80,14 +78,14 @@ fn taken(lock: impl Fn() -> Result<(), fs::TryLockError>) -> io::Result<bool> {
 
 impl Read for File {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        strike(&self.path)?;
+        faults::strike(&self.path)?;
         self.file.read(buffer)
     }
 }
 
 impl Write for File {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
-        if let Err(error) = strike(&self.path) {
+        if let Err(error) = faults::strike(&self.path) {
             // A disk that is full takes the beginning.
             let _ = self.file.write(&buffer[..buffer.len() / 2]);
             return Err(error);
@@ -133,14 +131,17 @@ pub fn append(path: &Path) -> io::Result<fs::File> {
     }
 }
 
+/// The value of an operation on what is there; `None` where nothing is.
+fn found<T>(result: io::Result<T>) -> io::Result<Option<T>> {
+    match result {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        other => other.map(Some),
+    }
+}
+
 /// Whether something is there, a link to nowhere included. Unlike `Path::exists`, fails where that cannot be told.
 pub fn is_there(path: &Path) -> io::Result<bool> {
-    strike(path)?;
-    match fs::symlink_metadata(path) {
-        Ok(_) => Ok(true),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(error),
-    }
+    at(path, || Ok(found(fs::symlink_metadata(path))?.is_some()))
 }
 
 /// Whether a link is there.
@@ -150,11 +151,7 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
 
 /// Reads a file of at most `largest` bytes; `None` when there is none.
 pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
-    let mut file = match File::open(path) {
-        Ok(file) => file,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(error),
-    };
+    let Some(mut file) = found(File::open(path))? else { return Ok(None) };
     if !file.file.metadata()?.is_file() {
         return Err(io::Error::other("this is not a regular file"));
     }
@@ -168,40 +165,32 @@ pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
 
 /// Makes a folder and those above it.
 pub fn create_folder(path: &Path) -> io::Result<()> {
-    strike(path)?;
-    fs::create_dir_all(path)
+    at(path, || fs::create_dir_all(path))
 }
 
 /// Gives a file another name in its folder, in the place of whatever had it.
 pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
-    strike(to)?;
-    fs::rename(from, to)
+    at(to, || fs::rename(from, to))
 }
 
 /// Removes a file or a link.
 pub fn remove(path: &Path) -> io::Result<()> {
-    strike(path)?;
-    fs::remove_file(path)
+    at(path, || fs::remove_file(path))
 }
 
 /// Removes a file or a link if it is there.
 pub fn remove_if_there(path: &Path) -> io::Result<()> {
-    match remove(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        other => other,
-    }
+    found(remove(path)).map(drop)
 }
 
 /// Removes an empty folder.
 pub fn remove_folder(path: &Path) -> io::Result<()> {
-    strike(path)?;
-    fs::remove_dir(path)
+    at(path, || fs::remove_dir(path))
 }
 
 /// Names in a folder, sorted.
 pub fn names(path: &Path) -> io::Result<Vec<String>> {
-    strike(path)?;
-    let entries = fs::read_dir(path)?.collect::<io::Result<Vec<_>>>()?;
+    let entries = at(path, || fs::read_dir(path)?.collect::<io::Result<Vec<_>>>())?;
     let mut names: Vec<String> = entries.iter().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
     names.sort();
     Ok(names)
@@ -209,7 +198,6 @@ pub fn names(path: &Path) -> io::Result<Vec<String>> {
 
 /// Waits until the names in a folder are on the disk.
 pub fn sync_folder(path: &Path) -> io::Result<()> {
-    strike(path)?;
     // Other systems have no such call: there a name is as safe as the file system makes it.
-    if cfg!(unix) { fs::File::open(path)?.sync_all() } else { Ok(()) }
+    at(path, || if cfg!(unix) { fs::File::open(path)?.sync_all() } else { Ok(()) })
 }

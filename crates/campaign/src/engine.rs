@@ -3,34 +3,32 @@
 //!
 //! Everything random follows from the key of a trial, so rows do not depend on threads, order or company.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use ::trace::document::EffectEntry;
 use ::trace::judge::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use identify::{Estimate, StopReason};
-use predict::IdentifiedShip;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use simulate::{PreparedSimulation, SimulateError, Simulated, StreamKey};
 use trial::{Quantity, Trial};
 
 use crate::answer::pooled_rmse_deg;
-use crate::design::CellFacts;
-use crate::foretell;
-use crate::known::{self, Shown};
-use crate::rows::{NamedEffect, Row, TraceAnswer};
+use crate::known::{self, RecordFacts};
+use crate::prediction_check::PredictionCheck;
+use crate::reference::{TrialReference, nearest_first_order};
+use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::Timing;
-use crate::yardstick::{Yardstick, nearest_first_order};
-use scenario::{DesignCell, Procedure, Scenario, Specification, TrialSpecification};
+use scenario::{Procedure, Scenario, Specification, TrialSpecification};
 
 /// Rows of one trial, and what they took.
-pub struct Outcome {
+pub struct TrialOutcome {
     /// One row per method, in the order of the scenario.
-    pub rows: Vec<Row>,
+    pub rows: Vec<StudyRow>,
     /// Time to simulate, and of every method.
     pub timing: Timing,
 }
@@ -67,27 +65,27 @@ pub fn truths(scenario: &Scenario, task: Task) -> Result<Truths, String> {
 }
 
 /// Runs trials of one study; what all trials of a cell share is made once.
-pub struct Bench<'a> {
+pub struct TrialRunner<'a> {
     scenario: &'a Scenario,
     first_cell: usize,
-    yardsticks: Vec<OnceLock<Yardstick>>,
+    references: Vec<OnceLock<TrialReference>>,
     /// The simulations of cells whose trials differ in nothing but chance; empty where that would not pay.
     prepared: Vec<OnceLock<Result<PreparedSimulation, SimulateError>>>,
 }
 
-/// Most cells of a bench whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a
-/// tenth of a megabyte.
+/// Most cells whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a tenth of a
+/// megabyte.
 const MOST_PREPARED: usize = 64;
 
-impl<'a> Bench<'a> {
-    /// A bench for trials of these cells.
+impl<'a> TrialRunner<'a> {
+    /// For trials of these cells.
     pub fn new(scenario: &'a Scenario, cells: std::ops::RangeInclusive<usize>) -> Self {
         let count = cells.clone().count();
         let kept = if count <= MOST_PREPARED { count } else { 0 };
         Self {
             scenario,
             first_cell: *cells.start(),
-            yardsticks: (0..count).map(|_| OnceLock::new()).collect(),
+            references: (0..count).map(|_| OnceLock::new()).collect(),
             prepared: (0..kept).map(|_| OnceLock::new()).collect(),
         }
     }
@@ -111,167 +109,177 @@ impl<'a> Bench<'a> {
         std::iter::once(first).chain(records.map(|(simulation, key)| simulation.run(&key))).collect()
     }
 
-    /// Runs one trial.
-    pub fn run(&self, task: Task) -> Outcome {
+    /// Runs one trial. One that cannot be made has a row for every method all the same.
+    pub fn run(&self, task: Task) -> TrialOutcome {
         let cell = &self.scenario.cells[task.cell];
         let key = key(self.scenario, task);
         let start = Instant::now();
-        let specimen = match cell.specimen(&key) {
-            Ok(specimen) => specimen,
-            Err(refusal) => return nothing(cell, task, None, start.elapsed(), &format!("specification: {refusal}")),
-        };
-        let simulated = self.simulate(task.cell, &specimen, &key);
+        let mut blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, ..StudyRow::default() };
+        let made = cell.specimen(&key).map_err(|refusal| format!("specification: {refusal}")).and_then(|specimen| {
+            blank.drawn = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
+            let simulated = self.simulate(task.cell, &specimen, &key);
+            Ok((simulated.map_err(|error| format!("simulation: {error}"))?, specimen))
+        });
         let simulation = start.elapsed();
-        let drawn: Option<Arc<[f64]>> = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
-        let simulated = match simulated {
-            Ok(simulated) => simulated,
-            Err(error) => return nothing(cell, task, drawn, simulation, &format!("simulation: {error}")),
+        let (rows, methods) = match made {
+            Ok((simulated, specimen)) => self.answers(task.cell, &key, blank, simulated, &specimen),
+            Err(reason) => {
+                let blank = StudyRow { failure: Some(reason.into()), ..blank };
+                ((0..cell.methods.len()).map(|method| StudyRow { method, ..blank.clone() }).collect(), Vec::new())
+            }
         };
+        TrialOutcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
+    }
+
+    /// The answers of all methods to a trial, and the times they took.
+    fn answers(
+        &self,
+        index: usize,
+        key: &StreamKey,
+        blank: StudyRow,
+        simulated: Vec<Simulated>,
+        specimen: &TrialSpecification,
+    ) -> (Vec<StudyRow>, Vec<Duration>) {
+        let cell = &self.scenario.cells[index];
         let own;
-        let yardstick = if cell.is_fixed() {
-            self.yardsticks[task.cell - self.first_cell].get_or_init(|| self.shared(task.cell))
+        let reference = if cell.is_fixed() {
+            self.references[index - self.first_cell].get_or_init(|| self.shared(index))
         } else {
-            own = Yardstick::of(&specimen, &simulated, &key, cell.traces());
+            own = TrialReference::of(specimen, &simulated, key, cell.traces());
             &own
         };
-        let blank = Row {
-            true_k_per_s: yardstick.nearest.map(|nearest| nearest.K()),
-            true_t_s: yardstick.nearest.map(|nearest| nearest.T()),
-            own_k_per_s: yardstick.own.map(|own| own.K()),
-            own_t_s: yardstick.own.map(|own| own.T()),
-            bound: yardstick.bound.map(|(bound, _)| bound),
-            ..empty(task, drawn)
+        let blank = StudyRow {
+            true_k_per_s: reference.nearest.map(|nearest| nearest.K()),
+            true_t_s: reference.nearest.map(|nearest| nearest.T()),
+            own_k_per_s: reference.own.map(|own| own.K()),
+            own_t_s: reference.own.map(|own| own.T()),
+            bound: reference.bound.map(|(bound, _)| bound),
+            ..blank
         };
-        let predictions = self.scenario.predictions.as_ref();
-        let deeds = predictions.map(|asked| foretell::deeds(asked, &specimen.specification.simulation, &key));
         let trials: Vec<Trial> = simulated.into_iter().map(|record| record.trial).collect();
-        let trials = trials.as_slice();
-        let shown = predictions.map(|_| Shown::of(trials));
-        let predicted = |known: &dyn Fn(&Shown) -> Option<IdentifiedShip>| {
-            let ((asked, deeds), shown) = predictions.zip(deeds.as_ref()).zip(shown.as_ref())?;
-            Some(known(shown).map(|known| foretell::foretold(asked, known, deeds)).unwrap_or_default())
-        };
-        let mut rows = Vec::with_capacity(cell.methods.len());
-        let mut methods = Vec::with_capacity(cell.methods.len());
-        for (index, method) in cell.methods.iter().enumerate() {
-            let start = Instant::now();
-            let blank = Row { method: index, ..blank.clone() };
-            let validation = yardstick.validation.as_ref();
-            rows.push(match &method.procedure {
-                Procedure::Trace(settings) => {
-                    let answer = ::trace::trace(trials, &[], settings);
-                    methods.push(start.elapsed());
-                    match answer {
-                        Err(error) => Row { failure: Some(reason(&error).into()), ..blank },
-                        Ok(analysis) => {
-                            let missing = &specimen.specification.missing;
-                            Row {
-                                // Effects may ask for a speed and a sway.
-                                predicted: predicted(&|shown| {
-                                    Some(known::of_analysis(&analysis, &shown.clone().with_motion()))
-                                }),
-                                ..traced(blank, trials, validation, &analysis, missing, yardstick.expected)
-                            }
-                        }
-                    }
-                }
-                first_order => {
-                    let answer = first_order.identify(trials, &key).expect("it is no trace");
-                    methods.push(start.elapsed());
-                    match answer {
-                        Err(error) => Row { failure: Some(error.in_a_row().into()), ..blank },
-                        Ok(estimate) => Row {
-                            predicted: predicted(&|shown| known::of_estimate(&estimate, shown)),
-                            ..answered(blank, trials, validation, &estimate)
-                        },
-                    }
-                }
-            });
-        }
-        Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
+        let specification = &*specimen.specification;
+        let check = self.scenario.predictions.as_ref();
+        let check = check.map(|asked| PredictionCheck::new(asked, &specification.simulation, key, &trials));
+        let question = TrialQuestion { trials: &trials, key, reference, missing: &specification.missing, check };
+        let methods = cell.methods.iter().enumerate();
+        methods
+            .map(|(index, method)| question.ask(&method.procedure, StudyRow { method: index, ..blank.clone() }))
+            .unzip()
     }
 
-    /// The yardstick of a cell whose trials all have one specification: made with its first trial, whichever trial
+    /// The reference of a cell whose trials all have one specification: made with its first trial, whichever trial
     /// asks.
-    fn shared(&self, cell: usize) -> Yardstick {
+    fn shared(&self, cell: usize) -> TrialReference {
         let key = key(self.scenario, Task { cell, replicate: 0 });
-        let nothing = Yardstick { nearest: None, own: None, bound: None, validation: None, expected: None };
-        let Ok(specimen) = self.scenario.cells[cell].specimen(&key) else { return nothing };
+        let Ok(specimen) = self.scenario.cells[cell].specimen(&key) else { return TrialReference::default() };
         match self.simulate(cell, &specimen, &key) {
-            Ok(simulated) => Yardstick::of(&specimen, &simulated, &key, self.scenario.cells[cell].traces()),
-            Err(_) => Yardstick { nearest: specimen.specification.truth, ..nothing },
+            Ok(simulated) => TrialReference::of(&specimen, &simulated, &key, self.scenario.cells[cell].traces()),
+            Err(_) => TrialReference { nearest: specimen.specification.truth, ..TrialReference::default() },
         }
     }
 }
 
-fn empty(task: Task, drawn: Option<Arc<[f64]>>) -> Row {
-    Row { cell: task.cell as u64, replicate: task.replicate, drawn, ..Row::default() }
+/// What every method of a trial is asked.
+struct TrialQuestion<'a> {
+    trials: &'a [Trial],
+    key: &'a StreamKey,
+    reference: &'a TrialReference,
+    missing: &'a [String],
+    check: Option<PredictionCheck<'a>>,
 }
 
-/// A trial that could not be made: a row for every method all the same.
-fn nothing(cell: &DesignCell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Duration, reason: &str) -> Outcome {
-    let blank = Row { failure: Some(reason.into()), ..empty(task, drawn) };
-    let rows = (0..cell.methods.len()).map(|method| Row { method, ..blank.clone() }).collect();
-    Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods: Vec::new() } }
+impl TrialQuestion<'_> {
+    /// The row of a method, and the time it took.
+    fn ask(&self, procedure: &Procedure, blank: StudyRow) -> (StudyRow, Duration) {
+        let start = Instant::now();
+        let (row, time) = match procedure {
+            Procedure::Trace(settings) => {
+                let answer = ::trace::trace(self.trials, &[], settings);
+                let time = start.elapsed();
+                (answer.map(|analysis| self.traced(&blank, &analysis)).map_err(|error| failure(&error).into()), time)
+            }
+            first_order => {
+                let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
+                let time = start.elapsed();
+                (
+                    answer.map(|estimate| self.estimated(&blank, &estimate)).map_err(|error| error.in_a_row().into()),
+                    time,
+                )
+            }
+        };
+        (row.unwrap_or_else(|reason| StudyRow { failure: Some(reason), ..blank }), time)
+    }
+
+    fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
+        let error = |trials: &[Trial]| pooled_rmse_deg(trials, estimate);
+        StudyRow {
+            heading_rmse_deg: error(self.trials),
+            validation_rmse_deg: self
+                .reference
+                .validation
+                .as_ref()
+                .and_then(|trial| error(std::slice::from_ref(trial))),
+            evaluations: Some(estimate.evaluations as f64),
+            stop: Some(estimate.stop.as_str()),
+            predicted: self.check.as_ref().map(|check| check.figures(|facts| known::of_estimate(estimate, facts))),
+            ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
+        }
+    }
+
+    /// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
+    fn traced(&self, blank: &StudyRow, analysis: &Analysis) -> StudyRow {
+        let validation = self.reference.validation.as_ref();
+        let validation = validation.and_then(|trial| analysis.in_a_calm(trial, [trial.heading()[0], 0.0]));
+        let document = &analysis.document;
+        let named = |effect: &EffectEntry| {
+            let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
+            NamedEffect { id: effect.id.as_str().into(), aliases: aliases.map(|id| id.as_str().into()).collect() }
+        };
+        let probability =
+            |id: &str| document.candidates.iter().find(|one| one.id == id).map_or(0.0, |one| one.probability);
+        let indices = &document.model.indices;
+        // Effects may ask for a speed and a sway.
+        let known = |facts: &RecordFacts| Some(known::of_analysis(analysis, &facts.clone().with_motion()));
+        StudyRow {
+            heading_rmse_deg: finite(to_deg(misfit(analysis, self.trials))),
+            validation_rmse_deg: validation.as_ref().and_then(|on| finite(to_deg(on.errors.heading))),
+            stop: Some(StopReason::Converged.as_str()),
+            predicted: self.check.as_ref().map(|check| check.figures(known)),
+            traced: Some(Box::new(TraceAnswer {
+                verdict: document.verdict,
+                named: document.effects.iter().map(named).collect(),
+                probabilities: effect_ids()
+                    .map(|id| (Box::from(id), (DIGITS * probability(id)).round() / DIGITS))
+                    .filter(|(_, probability)| *probability >= NEXT_TO_NOTHING)
+                    .collect(),
+                margin: margin(analysis, self.missing),
+                expected: self.reference.expected,
+                band_fitted: analysis.identification[0].after.coverage(),
+                band_held_out: validation.as_ref().and_then(ReplayResult::coverage),
+            })),
+            ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
+        }
+    }
 }
 
 /// Root mean square heading error of a traced model over all rows of its records, rad.
 fn misfit(analysis: &Analysis, trials: &[Trial]) -> f64 {
     let errors = analysis.identification.iter().map(|judged| judged.after.errors.heading);
-    let mut errors = errors.zip(trials.iter().map(|trial| trial.len() as f64));
-    match errors.len() {
-        1 => errors.next().map_or(f64::NAN, |(error, _)| error),
-        _ => {
-            let (square, rows) = errors.fold((0.0, 0.0), |(square, rows), (e, n)| (square + e * e * n, rows + n));
-            (square / rows).sqrt()
-        }
+    let rows = trials.iter().map(|trial| trial.len() as f64);
+    let (square, rows) =
+        errors.clone().zip(rows).fold((0.0, 0.0), |(square, rows), (e, n)| (square + e * e * n, rows + n));
+    match analysis.identification.len() {
+        1 => errors.sum(),
+        _ => (square / rows).sqrt(),
     }
 }
 
 /// Why there is no trace, in a word.
-fn reason(error: &TraceError) -> &'static str {
+pub(crate) fn failure(error: &TraceError) -> &'static str {
     match error {
-        TraceError::Settings(_) => "settings",
+        TraceError::Settings(_) | TraceError::Asked { .. } => "settings",
         TraceError::Base(error) => error.kind(),
-        TraceError::Asked { .. } => "settings",
         TraceError::Replay { .. } => "not-finite",
-    }
-}
-
-/// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
-fn traced(
-    blank: Row,
-    trials: &[Trial],
-    validation: Option<&Trial>,
-    analysis: &Analysis,
-    missing: &[String],
-    expected: Option<f64>,
-) -> Row {
-    let elsewhere = validation.and_then(|trial| analysis.in_a_calm(trial, [trial.heading()[0], 0.0]));
-    let document = &analysis.document;
-    let named = |effect: &EffectEntry| {
-        let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
-        NamedEffect { id: effect.id.as_str().into(), aliases: aliases.map(|id| id.as_str().into()).collect() }
-    };
-    let probability = |id: &str| document.candidates.iter().find(|one| one.id == id).map_or(0.0, |one| one.probability);
-    let indices = &document.model.indices;
-    Row {
-        heading_rmse_deg: finite(to_deg(misfit(analysis, trials))),
-        validation_rmse_deg: elsewhere.as_ref().and_then(|on| finite(to_deg(on.errors.heading))),
-        stop: Some(StopReason::Converged.as_str()),
-        traced: Some(Box::new(TraceAnswer {
-            verdict: document.verdict,
-            named: document.effects.iter().map(named).collect(),
-            probabilities: effect_ids()
-                .map(|id| (Box::from(id), (DIGITS * probability(id)).round() / DIGITS))
-                .filter(|(_, probability)| *probability >= NEXT_TO_NOTHING)
-                .collect(),
-            margin: margin(analysis, missing),
-            expected,
-            band_fitted: analysis.identification[0].after.coverage(),
-            band_held_out: elsewhere.as_ref().and_then(ReplayResult::coverage),
-        })),
-        ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
     }
 }
 
@@ -296,44 +304,23 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 /// A row with K (1/s), T (s) and δ_r (rad) and their intervals.
-fn with_indices(blank: Row, [k, t, bias]: [Quantity; 3]) -> Row {
-    Row {
+fn with_indices(blank: &StudyRow, [k, t, bias]: [Quantity; 3]) -> StudyRow {
+    StudyRow {
         k_per_s: finite(k.value),
         k_ci95_per_s: k.ci95,
         t_s: finite(t.value),
         t_ci95_s: t.ci95,
         rudder_bias_deg: finite(to_deg(bias.value)),
         rudder_bias_ci95_deg: bias.ci95.map(|ends| ends.map(to_deg)),
-        ..blank
+        ..blank.clone()
     }
 }
 
-fn answered(blank: Row, trials: &[Trial], validation: Option<&Trial>, estimate: &Estimate) -> Row {
-    let error = |trials: &[Trial]| pooled_rmse_deg(trials, estimate);
-    Row {
-        heading_rmse_deg: error(trials),
-        validation_rmse_deg: validation.and_then(|trial| error(std::slice::from_ref(trial))),
-        evaluations: Some(estimate.evaluations as u64),
-        stop: Some(estimate.stop.as_str()),
-        ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
-    }
-}
-
-/// What is known of a cell without its rows.
-pub fn facts(scenario: &Scenario, cell: usize) -> CellFacts {
-    let bound = || Bench::new(scenario, cell..=cell).shared(cell).bound;
-    let about = &scenario.cells[cell];
-    let bound = about.is_fixed().then(bound).flatten();
-    CellFacts {
-        labels: about.labels.clone(),
-        values: about.values.clone(),
-        trials: 0..0,
-        missing: about.missing(),
-        has_own_indices: about.has_own_indices(),
-        is_nearest: !about.is_first_order(),
-        bound_percent2: bound
-            .map(|(_, relative)| [[relative[(0, 0)], relative[(0, 1)]], [relative[(1, 0)], relative[(1, 1)]]]),
-    }
+/// Cramér–Rao covariance of the relative errors of K and T in a cell, %²; `None` where every trial has a bound of its
+/// own, and where there is none.
+pub fn bound_percent2(scenario: &Scenario, cell: usize) -> Option<[[f64; 2]; 2]> {
+    let bound = || TrialRunner::new(scenario, cell..=cell).shared(cell).bound;
+    scenario.cells[cell].is_fixed().then(bound).flatten().map(|(_, percent2)| percent2)
 }
 
 #[cfg(test)]
@@ -364,10 +351,10 @@ heading-noise-deg = 0.1
 method.output-error = {}
 "#;
 
-    fn rows(more: &str) -> Vec<Row> {
+    fn rows(more: &str) -> Vec<StudyRow> {
         let scenario = Scenario::parse(Path::new("s.toml"), "s", format!("{TEXT}{more}"), None)
             .unwrap_or_else(|failure| panic!("{failure}"));
-        Bench::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
+        TrialRunner::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
     }
 
     /// Information of separate records adds up: the bound of two is that of 1/(1/a + 1/b) where they tell alike, and
@@ -376,17 +363,17 @@ method.output-error = {}
     fn further_records_of_the_ship_are_identified_together() {
         let further = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }\n";
         let linear = TEXT.replace("[[effect]]\nnonlinear_damping.n3-s2-per-deg2 = 1.0\n", "");
-        let of = |text: &str, trials: u64| -> Vec<Row> {
+        let of = |text: &str, trials: u64| -> Vec<StudyRow> {
             let scenario = Scenario::parse(Path::new("s.toml"), "s", text.to_owned(), None).expect("it is right");
-            let bench = Bench::new(&scenario, 0..=0);
-            (0..trials).map(|replicate| bench.run(Task { cell: 0, replicate }).rows.remove(0)).collect()
+            let runner = TrialRunner::new(&scenario, 0..=0);
+            (0..trials).map(|replicate| runner.run(Task { cell: 0, replicate }).rows.remove(0)).collect()
         };
         let (one, both) = (of(&linear, 60), of(&format!("{linear}{further}"), 60));
-        let bound = |rows: &[Row]| rows[0].bound.expect("white noise").k_per_s;
+        let bound = |rows: &[StudyRow]| rows[0].bound.expect("white noise")[0];
         let share = bound(&both) / bound(&one);
         assert!((share - 0.5f64.sqrt()).abs() < 0.01, "two records of one manoeuvre: {share}");
-        let spread = |rows: &[Row]| {
-            let square = rows.iter().map(|row| row.k_error().expect("an answer").powi(2)).sum::<f64>();
+        let spread = |rows: &[StudyRow]| {
+            let square = rows.iter().map(|row| row.errors()[0].expect("an answer").powi(2)).sum::<f64>();
             (square / rows.len() as f64).sqrt() * 0.1
         };
         assert!((0.8..1.25).contains(&(spread(&both) / bound(&both))), "{} {}", spread(&both), bound(&both));
@@ -411,6 +398,8 @@ method.output-error = {}
         assert!(nearest < 24.0, "the damping shortens T: {nearest}");
         assert_eq!(alone.truth()[1], Some(nearest), "output error fits a first-order response");
         assert_eq!(traced.truth(), [Some(0.1), Some(25.0)], "a trace models the damping");
-        assert!(alone.t_error().expect("an answer").abs() < 0.01 && traced.t_error().expect("an answer").abs() < 0.2);
+        assert!(
+            alone.errors()[1].expect("an answer").abs() < 0.01 && traced.errors()[1].expect("an answer").abs() < 0.2
+        );
     }
 }

@@ -2,7 +2,7 @@
 //! when it is whole, so a reader finds the old one or the new one and a link in the folder is replaced, not followed.
 //! While one program writes in a folder all others are kept out.
 
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufReader, BufWriter, Write};
 use std::path::{Component, Path, PathBuf};
 
 use sha2::{Digest, Sha256};
@@ -24,7 +24,7 @@ pub struct ResultFolder {
 
 /// A folder of results that nobody writes in while this lives.
 #[derive(Debug)]
-pub struct Reading {
+pub struct ReadLock {
     /// `None` where there is nothing to lock.
     _lock: Option<disk::File>,
 }
@@ -86,27 +86,32 @@ impl ResultFolder {
         }
     }
 
-    /// Begins a file, which appears under its name when it is [`Beside::put`] there.
-    pub fn create(&self, name: &str) -> Result<Beside, Failure> {
+    /// Begins a file, which appears under its name when it is [`TemporaryFile::put`] there.
+    pub fn create(&self, name: &str) -> Result<TemporaryFile, Failure> {
         let place = self.place(name)?;
-        let beside = self.place(&format!("{name}.tmp"))?;
+        let path = self.place(&format!("{name}.tmp"))?;
         // What a kill left there.
-        disk::remove_if_there(&beside).on("remove", &beside)?;
-        let file = disk::File::create_new(&beside).on("create", &beside)?;
-        Ok(Beside { file: BufWriter::new(Hashed { file, digest: Sha256::new() }), place, beside, is_put: false })
+        disk::remove_if_there(&path).on("remove", &path)?;
+        let file = disk::File::create_new(&path).on("create", &path)?;
+        Ok(TemporaryFile {
+            file: BufWriter::new(HashedFile { file, digest: Sha256::new() }),
+            place,
+            path,
+            is_put: false,
+        })
     }
 
     /// Writes a file that can be made again from what is stored.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         let mut file = self.create(name)?;
-        file.write_all(content.as_ref()).on("write", &file.beside)?;
+        file.write_all(content.as_ref()).on("write", &file.path)?;
         file.put()
     }
 
     /// Writes a file that cannot be made again, and waits until it is on the disk; returns its SHA-256.
     pub fn keep(&self, name: &str, content: impl AsRef<[u8]>) -> Result<String, Failure> {
         let mut file = self.create(name)?;
-        file.write_all(content.as_ref()).on("write", &file.beside)?;
+        file.write_all(content.as_ref()).on("write", &file.path)?;
         let sha256 = file.seal()?;
         file.put()?;
         self.sync()?;
@@ -119,7 +124,7 @@ impl ResultFolder {
     }
 }
 
-impl Reading {
+impl ReadLock {
     /// Keeps those out who want to write in a folder. A folder that nobody ever wrote in with a lock, or in which none
     /// can be made, is read without one.
     ///
@@ -157,20 +162,20 @@ fn lock_of(folder: &Path) -> Result<PathBuf, Failure> {
 
 /// A file under way, beside its place. What is not put there goes away.
 #[derive(Debug)]
-pub struct Beside {
-    file: BufWriter<Hashed>,
+pub struct TemporaryFile {
+    file: BufWriter<HashedFile>,
     place: PathBuf,
-    beside: PathBuf,
+    path: PathBuf,
     is_put: bool,
 }
 
 #[derive(Debug)]
-struct Hashed {
+struct HashedFile {
     file: disk::File,
     digest: Sha256,
 }
 
-impl Write for Hashed {
+impl Write for HashedFile {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         let written = self.file.write(buffer)?;
         self.digest.update(&buffer[..written]);
@@ -182,7 +187,7 @@ impl Write for Hashed {
     }
 }
 
-impl Write for Beside {
+impl Write for TemporaryFile {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         self.file.write(buffer)
     }
@@ -192,46 +197,40 @@ impl Write for Beside {
     }
 }
 
-impl Beside {
+impl TemporaryFile {
     /// Waits until the content is on the disk; returns its SHA-256.
     pub fn seal(&mut self) -> Result<String, Failure> {
-        self.file.flush().on("write", &self.beside)?;
-        let Hashed { file, digest } = self.file.get_ref();
-        file.sync().on("finish", &self.beside)?;
+        self.file.flush().on("write", &self.path)?;
+        let HashedFile { file, digest } = self.file.get_ref();
+        file.sync().on("finish", &self.path)?;
         Ok(hex(&digest.clone().finalize()))
     }
 
     /// Gives the file its name.
     pub fn put(mut self) -> Result<(), Failure> {
-        self.file.flush().on("write", &self.beside)?;
-        disk::rename(&self.beside, &self.place).on("write", &self.place)?;
+        self.file.flush().on("write", &self.path)?;
+        disk::rename(&self.path, &self.place).on("write", &self.place)?;
         self.is_put = true;
         Ok(())
     }
 
     /// Its path while it is under way, for messages.
     pub fn path(&self) -> &Path {
-        &self.beside
+        &self.path
     }
 }
 
-impl Drop for Beside {
+impl Drop for TemporaryFile {
     fn drop(&mut self) {
         if !self.is_put {
-            let _ = disk::remove(&self.beside);
+            let _ = disk::remove(&self.path);
         }
     }
 }
 
-/// SHA-256 of a file, read piece by piece.
+/// SHA-256 of a file.
 pub fn sha256_of(path: &Path) -> io::Result<String> {
-    let mut file = disk::File::open(path)?;
     let mut digest = Sha256::new();
-    let mut piece = vec![0; 1 << 17];
-    loop {
-        match file.read(&mut piece)? {
-            0 => return Ok(hex(&digest.finalize())),
-            read => digest.update(&piece[..read]),
-        }
-    }
+    io::copy(&mut BufReader::with_capacity(1 << 17, disk::File::open(path)?), &mut digest)?;
+    Ok(hex(&digest.finalize()))
 }

@@ -15,7 +15,7 @@ use trial::{Channel, Trial, ZigZag};
 
 /// What records show of a ship, whatever model is fitted to them: read once for all of its answers.
 #[derive(Debug, Clone)]
-pub struct Shown<'a> {
+pub struct RecordFacts<'a> {
     trials: &'a [Trial],
     gear: Option<KnownGear>,
     /// Noise of the readings of the heading, rad.
@@ -26,11 +26,11 @@ pub struct Shown<'a> {
     speed: Option<f64>,
     motion: Option<Planar>,
     hull: Option<IdentifiedHull>,
-    /// Why records with a speed or positions tell no speed loss and drift.
-    untold: Option<String>,
+    /// Why there is no track, from records with a speed or positions.
+    no_track: Option<String>,
 }
 
-impl<'a> Shown<'a> {
+impl<'a> RecordFacts<'a> {
     /// What some records of one ship show, but for speed and drift.
     pub fn of(trials: &'a [Trial]) -> Self {
         let zigzags: Vec<Option<ZigZag>> = trials.iter().map(|trial| ZigZag::of(trial).ok()).collect();
@@ -44,14 +44,14 @@ impl<'a> Shown<'a> {
             speed: particular(|own| own.speed),
             motion: None,
             hull: None,
-            untold: None,
+            no_track: None,
         }
     }
 
     /// Why no track can be predicted from records that have a speed or positions; `None` where one can, and for records
     /// without.
-    pub fn untold(&self) -> Option<&str> {
-        self.untold.as_deref()
+    pub fn no_track(&self) -> Option<&str> {
+        self.no_track.as_deref()
     }
 
     /// The same with speed and drift: a hull where the length is known and all records have surge and sway, else two
@@ -67,8 +67,8 @@ impl<'a> Shown<'a> {
         if self.hull.is_none() && self.trials.iter().all(is_told) {
             match motion::fit(self.trials, length) {
                 Ok(planar) if loses_speed(&planar) => self.motion = Some(planar),
-                Ok(_) => self.untold = Some("the fitted ship loses no speed in a turn".to_owned()),
-                Err(error) => self.untold = Some(error.to_string()),
+                Ok(_) => self.no_track = Some("the fitted ship loses no speed in a turn".to_owned()),
+                Err(error) => self.no_track = Some(error.to_string()),
             }
         }
         self
@@ -107,10 +107,10 @@ impl<'a> Shown<'a> {
 ///
 /// The random moment is that of `maximum-likelihood`, which alone looks for one; of any other method the heading noise
 /// is that of the readings, or what its replay leaves where the records are no zig-zags.
-pub fn of_estimate(estimate: &Estimate, shown: &Shown) -> Option<IdentifiedShip> {
+pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<IdentifiedShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
-    let replays: Vec<_> = shown.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
+    let replays: Vec<_> = facts.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
     let told = |name: &str| estimate.diagnostics.iter().find(|(own, _)| *own == name).map(|(_, value)| *value);
     let (mut square, mut rows) = (0.0, 0usize);
     for (_, residual) in replays.iter().flat_map(|replay| replay.observed()) {
@@ -135,26 +135,26 @@ pub fn of_estimate(estimate: &Estimate, shown: &Shown) -> Option<IdentifiedShip>
         degrees_of_freedom: covariance.degrees_of_freedom,
     };
     let noise = KnownNoise {
-        heading_sd_rad: told("heading_sd_deg").map(from_deg).or(shown.reading_noise).unwrap_or(left),
+        heading_sd_rad: told("heading_sd_deg").map(from_deg).or(facts.reading_noise).unwrap_or(left),
         moment,
         moment_sd_rudder_rad,
         moment_correlation_s: told("gusts_correlation_s"),
     };
     let initial = (initial / replays.len() as f64).sqrt();
-    Some(shown.with(vec![member], noise, initial, replays.iter().map(|replay| replay.yaw_rate.as_slice())))
+    Some(facts.with(vec![member], noise, initial, replays.iter().map(|replay| replay.yaw_rate.as_slice())))
 }
 
 /// What an analysis knows of the ship of its fitted records.
 ///
 /// Where nothing is missing and a random moment is there, the ship is the one that `maximum-likelihood` is made for:
 /// its covariance holds the doubt about the noise, which that of a trace does not.
-pub fn of_analysis(analysis: &Analysis, shown: &Shown) -> IdentifiedShip {
+pub fn of_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
     let members = analysis.plausible().iter().map(member).collect();
     let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
     let noise = mean_noise(&analysis.document.noise);
-    let known = shown.with(members, noise, analysis.initial_yaw_rate(), rates);
+    let known = facts.with(members, noise, analysis.initial_yaw_rate(), rates);
     match known.members.first() {
-        Some(first) if first.effects.is_empty() && noise.moment != Moment::None => with_likelihood(known, shown),
+        Some(first) if first.effects.is_empty() && noise.moment != Moment::None => with_likelihood(known, facts),
         _ => known,
     }
 }
@@ -180,9 +180,9 @@ fn mean_noise(records: &[RecordNoiseEntry]) -> KnownNoise {
 }
 
 /// The same with the first-order member and the noise of `maximum-likelihood`, where that finds a random moment, too.
-fn with_likelihood(mut known: IdentifiedShip, shown: &Shown) -> IdentifiedShip {
+fn with_likelihood(mut known: IdentifiedShip, facts: &RecordFacts) -> IdentifiedShip {
     let method = maximum_likelihood::Settings::default().build().expect("default settings are valid");
-    let Some(likelihood) = method.identify(shown.trials).ok().and_then(|estimate| of_estimate(&estimate, shown)) else {
+    let Some(likelihood) = method.identify(facts.trials).ok().and_then(|estimate| of_estimate(&estimate, facts)) else {
         return known;
     };
     if let [member] = &likelihood.members[..]
@@ -265,34 +265,31 @@ const FEWEST_STEPS: usize = 4;
 /// as long as a sampling interval both ends of a reversal lie somewhere between two rows, which is the error of its
 /// duration.
 fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<KnownGear> {
-    let (mut rates, mut variances) = (Vec::new(), Vec::new());
-    for (trial, zigzag) in trials.iter().zip(zigzags) {
-        let Some(zigzag) = zigzag else { continue };
-        let Some(rate) = zigzag.rudder_rate.filter(|rate| (RATES_DEG_S[0]..=RATES_DEG_S[1]).contains(&to_deg(*rate)))
-        else {
-            continue;
-        };
-        let inside = inside_movements(trial, rate);
-        if inside.len() >= FEWEST_STEPS {
-            let count = inside.len() as f64;
-            let mean = inside.iter().sum::<f64>() / count;
-            let square: f64 = inside.iter().map(|rate| (rate - mean).powi(2)).sum();
-            rates.push(mean);
-            variances.push(square / (count - 1.0) / count);
-            continue;
-        }
-        let reversals = zigzag.executes.len().max(1) as f64;
-        let throw = zigzag.executes.iter().map(|execute| (execute.rudder_after - execute.rudder_before).abs());
-        let duration = throw.fold(0.0, f64::max) / rate;
-        let doubt = BETWEEN_ROWS * std::f64::consts::SQRT_2 * trial.sampling_period() / duration;
-        rates.push(rate);
-        variances.push((rate * doubt).powi(2) / reversals);
-    }
+    let records = trials.iter().zip(zigzags).filter_map(|(trial, zigzag)| rudder_rate(trial, zigzag.as_ref()?));
+    let (rates, variances): (Vec<f64>, Vec<f64>) = records.unzip();
     let count = rates.len() as f64;
     let mean = rates.iter().sum::<f64>() / count;
     let spread = rates.iter().map(|rate| (rate - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     let read = variances.iter().sum::<f64>() / count;
     (count > 0.0).then(|| KnownGear { rate_rad_s: mean, sd_rad_s: (spread.max(read) / count).sqrt() })
+}
+
+/// Rate of the rudder on a record, rad/s, and its variance.
+fn rudder_rate(trial: &Trial, zigzag: &ZigZag) -> Option<(f64, f64)> {
+    let is_sound = |rate: &f64| (RATES_DEG_S[0]..=RATES_DEG_S[1]).contains(&to_deg(*rate));
+    let rate = zigzag.rudder_rate.filter(is_sound)?;
+    let inside = inside_movements(trial, rate);
+    if inside.len() >= FEWEST_STEPS {
+        let count = inside.len() as f64;
+        let mean = inside.iter().sum::<f64>() / count;
+        let square: f64 = inside.iter().map(|rate| (rate - mean).powi(2)).sum();
+        return Some((mean, square / (count - 1.0) / count));
+    }
+    let reversals = zigzag.executes.len().max(1) as f64;
+    let throw = zigzag.executes.iter().map(|execute| (execute.rudder_after - execute.rudder_before).abs());
+    let duration = throw.fold(0.0, f64::max) / rate;
+    let doubt = BETWEEN_ROWS * std::f64::consts::SQRT_2 * trial.sampling_period() / duration;
+    Some((rate, (rate * doubt).powi(2) / reversals))
 }
 
 /// Rates (rad/s) of the steps of a rudder that lie inside movements of about `rate` rad/s.
@@ -330,7 +327,7 @@ mod tests {
     fn a_ten_ten_tells_the_twenty_twenty() {
         let trials = [record(0.0)];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let known = of_estimate(&estimate, &Shown::of(&trials)).expect("a covariance");
+        let known = of_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
         let gear = known.gear.expect("a zig-zag");
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
         assert!((to_deg(known.noise.heading_sd_rad) - 0.1).abs() < 0.02 && known.noise.moment == Moment::None);
@@ -347,7 +344,8 @@ mod tests {
     fn the_moment_of_the_likelihood_is_handed_on() {
         let trials = [record(0.1)];
         let method = maximum_likelihood::Settings::default().build().expect("defaults");
-        let known = of_estimate(&method.identify(&trials).expect("a fit"), &Shown::of(&trials)).expect("a covariance");
+        let known =
+            of_estimate(&method.identify(&trials).expect("a fit"), &RecordFacts::of(&trials)).expect("a covariance");
         assert_ne!(known.noise.moment, Moment::None);
         assert!(known.noise.moment_sd_rudder_rad > 0.0);
     }
@@ -356,7 +354,7 @@ mod tests {
     fn an_analysis_knows_its_effects() {
         let trials = [record(0.0)];
         let analysis = trace::trace(&trials, &[], &trace::Settings::default()).expect("a base");
-        let known = of_analysis(&analysis, &Shown::of(&trials));
+        let known = of_analysis(&analysis, &RecordFacts::of(&trials));
         assert!((known.members.iter().map(|member| member.weight).sum::<f64>() - 1.0).abs() < 1e-9);
         let first = &known.members[0];
         assert!(first.effects.is_empty() && first.fitted == [0, 1, 2] && first.covariance.len() == 3);

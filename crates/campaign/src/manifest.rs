@@ -61,12 +61,10 @@ pub struct Machine {
 
 /// Version and revision of the program: "0.2.0 (revision 1a2b3c4d5e)", with a word where its source had been changed.
 pub fn version() -> String {
-    let revision = option_env!("KEMPF_GIT_REVISION").map(|revision| revision[..10].to_owned());
-    let changed = option_env!("KEMPF_GIT_DIRTY").map(|_| String::from("changed"));
-    let words: Vec<String> =
-        revision.map(|revision| format!("revision {revision}")).into_iter().chain(changed).collect();
     let number = env!("CARGO_PKG_VERSION");
-    if words.is_empty() { number.to_owned() } else { format!("{number} ({})", words.join(", ")) }
+    let Some(revision) = option_env!("KEMPF_GIT_REVISION") else { return number.to_owned() };
+    let changed = if option_env!("KEMPF_GIT_DIRTY").is_some() { ", changed" } else { "" };
+    format!("{number} (revision {}{changed})", &revision[..10])
 }
 
 /// Largest manifest, bytes: a scenario and little beside it.
@@ -138,11 +136,9 @@ impl Manifest {
                 false => differences.extend(found.iter().map(ToString::to_string)),
             }
         }
-        if self.seed != other.seed {
-            differences.push(format!("seed: {} there, {} here", self.seed, other.seed));
-        }
-        if self.shard != other.shard {
-            differences.push(format!("shard: {} there, {} here", self.shard, other.shard));
+        let of = |manifest: &Self| [("seed", manifest.seed.to_string()), ("shard", manifest.shard.to_string())];
+        for ((what, own), (_, theirs)) in of(self).into_iter().zip(of(other)).filter(|(own, theirs)| own != theirs) {
+            differences.push(format!("{what}: {own} there, {theirs} here"));
         }
         differences
     }

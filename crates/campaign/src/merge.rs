@@ -10,8 +10,8 @@ use crate::design::Design;
 use crate::files::ROWS;
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
-use crate::rows::{Layout, Writer};
-use crate::store::{self, Stored};
+use crate::rows::{RowLayout, RowWriter};
+use crate::store::{self, StoredStudy};
 use crate::task::Shard;
 use crate::timings::Timings;
 use crate::unfinished;
@@ -19,19 +19,11 @@ use crate::unfinished;
 /// Missing shards that a message names.
 const SHOWN: usize = 10;
 
-/// All shards of one study.
-struct Shards<'a> {
-    /// Their folders, in their order.
-    folders: Vec<&'a Path>,
-    /// The manifest of the whole.
-    manifest: Manifest,
-}
-
 /// Joins the shards in these folders to a finished study, byte for byte what one run would have given.
 ///
 /// Fails when they are not all shards of one study, and when `out` holds another one.
-pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<Stored, Failure> {
-    let Shards { folders, manifest } = shards(folders)?;
+pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<StoredStudy, Failure> {
+    let (folders, manifest) = shards(folders)?;
     if let Some(stored) = store::manifest_of_rows(out.path())? {
         is_same(&stored, &manifest, out.path())?;
     }
@@ -41,15 +33,15 @@ pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<Stored, Failure> 
             out.path().display()
         )));
     }
-    let mut design = Stored::read(folders[0])?.design;
+    let mut design = StoredStudy::read(folders[0])?.design;
     design.cells.iter_mut().for_each(|cell| cell.trials = 0..0);
-    let layout = Layout::of(&design);
-    let mut writer = Writer::create(out, ROWS, &layout)?;
+    let layout = RowLayout::of(&design);
+    let mut writer = RowWriter::create(out, ROWS, &layout)?;
     let mut timings = Timings::new(design.methods.len());
     let mut showcases = Vec::new();
     // One shard after the other: thousands of designs of thousands of cells do not fit into memory.
     for folder in folders {
-        let stored = Stored::read(folder)?;
+        let stored = StoredStudy::read(folder)?;
         append(&mut design, &stored.design)
             .map_err(|problem| Failure::input(format!("{}: {problem}; run this shard again", folder.display())))?;
         stored.rows(|row| writer.push([row]))?;
@@ -97,8 +89,8 @@ fn append(design: &mut Design, next: &Design) -> Result<(), String> {
     Ok(())
 }
 
-/// The shards in their order, or what is wrong with them.
-fn shards(folders: &[PathBuf]) -> Result<Shards<'_>, Failure> {
+/// The folders of the shards in their order and the manifest of the whole, or what is wrong with them.
+fn shards(folders: &[PathBuf]) -> Result<(Vec<&Path>, Manifest), Failure> {
     // Of thousands of shards only one manifest is kept: each holds the text of the scenario.
     let mut lowest: Option<(&Path, Manifest)> = None;
     let mut found: BTreeMap<u64, (&Path, f64)> = BTreeMap::new();
@@ -110,40 +102,33 @@ fn shards(folders: &[PathBuf]) -> Result<Shards<'_>, Failure> {
             };
             return Err(Failure::input(format!("{}: {problem}", folder.display())));
         };
-        if let Some((first, known)) = &lowest {
-            let differences = known.differences_of_study(&manifest);
-            if !differences.is_empty() {
-                return Err(Failure::input(format!(
-                    "{} and {} are not shards of one study (there: the first, here: the second):\n  {}\nmerge shards of the \
-                     same scenario, seed and program",
-                    first.display(),
-                    folder.display(),
-                    differences.join("\n  ")
-                )));
-            }
-        }
-        if let Some((twice, _)) = found.insert(manifest.shard.number, (folder, manifest.machine.wall_time_s)) {
+        let differences = lowest.as_ref().map_or(Vec::new(), |(_, known)| known.differences_of_study(&manifest));
+        if let (Some((first, _)), [_, ..]) = (&lowest, differences.as_slice()) {
             return Err(Failure::input(format!(
-                "{} and {} are both shard {}; give each one once",
-                twice.display(),
+                "{} and {} are not shards of one study (there: the first, here: the second):\n  {}\nmerge shards of the same \
+                 scenario, seed and program",
+                first.display(),
                 folder.display(),
-                manifest.shard
+                differences.join("\n  ")
             )));
         }
-        if lowest.as_ref().is_none_or(|(_, known)| manifest.shard.number < known.shard.number) {
+        let shard = manifest.shard;
+        if let Some((twice, _)) = found.insert(shard.number, (folder, manifest.machine.wall_time_s)) {
+            let (twice, folder) = (twice.display(), folder.display());
+            return Err(Failure::input(format!("{twice} and {folder} are both shard {shard}; give each one once")));
+        }
+        if lowest.as_ref().is_none_or(|(_, known)| shard.number < known.shard.number) {
             lowest = Some((folder, manifest));
         }
     }
-    let Some((_, manifest)) = lowest else {
-        return Err(Failure::input("no shards are given; name the folders written with --shard"));
-    };
+    let (_, manifest) =
+        lowest.ok_or_else(|| Failure::input("no shards are given; name the folders written with --shard"))?;
     let of = manifest.shard.of;
     let missing: Vec<String> =
         (1..=of).filter(|number| !found.contains_key(number)).map(|number| Shard { number, of }.to_string()).collect();
     if missing.is_empty() {
-        let wall_time_s = found.values().map(|(_, wall_time_s)| wall_time_s).sum();
-        let folders = found.into_values().map(|(folder, _)| folder).collect();
-        return Ok(Shards { folders, manifest: manifest.of_whole(wall_time_s) });
+        let (folders, wall_times): (Vec<&Path>, Vec<f64>) = found.into_values().unzip();
+        return Ok((folders, manifest.of_whole(wall_times.iter().sum())));
     }
     let shown = missing[..missing.len().min(SHOWN)].join(", ");
     let more = if missing.len() > SHOWN { ", …" } else { "" };

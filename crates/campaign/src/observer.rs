@@ -36,6 +36,6 @@ pub trait Observer: Sync {
 }
 
 /// Nobody watches.
-pub struct Unwatched;
+pub struct NoObserver;
 
-impl Observer for Unwatched {}
+impl Observer for NoObserver {}

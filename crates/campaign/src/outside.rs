@@ -15,9 +15,9 @@ use crate::observer::Observer;
 const MOST_SAID: usize = 10;
 
 /// The outside estimators of a study; when this goes, their processes end.
-pub struct AtWork<'a>(Vec<(&'a Method, &'a dyn Outside)>);
+pub struct RunningEstimators<'a>(Vec<(&'a Method, &'a dyn Outside)>);
 
-impl<'a> AtWork<'a> {
+impl<'a> RunningEstimators<'a> {
     /// Says which commands will be started. What they say beside their answers goes into `external-LABEL.log` of the
     /// folder. Nothing is started before a trial asks.
     ///
@@ -41,7 +41,7 @@ impl<'a> AtWork<'a> {
     }
 }
 
-impl Drop for AtWork<'_> {
+impl Drop for RunningEstimators<'_> {
     fn drop(&mut self) {
         self.0.iter().for_each(|(_, outside)| outside.end());
     }

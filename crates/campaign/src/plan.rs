@@ -7,13 +7,13 @@
 
 use scenario::Scenario;
 
-use crate::rows::Row;
-use crate::stopping::Verdict;
+use crate::rows::StudyRow;
+use crate::stopping::StopCheck;
 use crate::task::{Shard, Task};
 
 /// The trials of a study or a shard of it, handed out in order.
 #[derive(Clone)]
-pub struct Plan<'a> {
+pub struct TrialPlan<'a> {
     scenario: &'a Scenario,
     /// First trial of the part.
     first: Task,
@@ -22,10 +22,10 @@ pub struct Plan<'a> {
     /// Next trial that is not yet handed out.
     next: Task,
     /// What the stopping rule has seen of the cell of `next`.
-    verdict: Option<Verdict>,
+    verdict: Option<StopCheck>,
 }
 
-impl<'a> Plan<'a> {
+impl<'a> TrialPlan<'a> {
     /// The plan of a shard, at its beginning.
     pub fn new(scenario: &'a Scenario, shard: Shard) -> Self {
         let cells = scenario.cells.len() as u64;
@@ -42,7 +42,7 @@ impl<'a> Plan<'a> {
                 (whole(cells.start), whole(cells.end))
             }
         };
-        let verdict = scenario.stop.as_ref().map(|rule| Verdict::new(rule, scenario.labels().count()));
+        let verdict = scenario.stop.as_ref().map(|rule| StopCheck::new(rule, scenario.labels().count()));
         Self { scenario, first, end, next: first, verdict }
     }
 
@@ -57,7 +57,7 @@ impl<'a> Plan<'a> {
     }
 
     /// The next trials, at most `most` of them; none when the part is done. Rows of all trials handed out before have
-    /// to have been shown to [`Plan::saw`].
+    /// to have been shown to [`TrialPlan::saw`].
     pub fn next(&mut self, most: u64) -> Vec<Task> {
         if let (Some(verdict), Some(rule)) = (&self.verdict, &self.scenario.stop) {
             let looked = self.next.replicate > 0 && self.next.replicate.is_multiple_of(rule.every);
@@ -78,7 +78,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Takes note of a row, in order: of a trial handed out, or stored by an earlier run.
-    pub fn saw(&mut self, row: &Row) {
+    pub fn saw(&mut self, row: &StudyRow) {
         if let Some(verdict) = &mut self.verdict {
             verdict.see(row);
         }
@@ -125,8 +125,8 @@ mod tests {
 
     const SHARDS: u64 = 10_000;
 
-    fn plans<'a>(scenario: &'a Scenario, of: u64) -> impl Iterator<Item = Plan<'a>> {
-        (1..=of).map(move |number| Plan::new(scenario, Shard { number, of }))
+    fn plans<'a>(scenario: &'a Scenario, of: u64) -> impl Iterator<Item = TrialPlan<'a>> {
+        (1..=of).map(move |number| TrialPlan::new(scenario, Shard { number, of }))
     }
 
     /// Every trial belongs to one shard: shards begin where the one before ended, the first at the first trial, the
@@ -151,7 +151,7 @@ mod tests {
                 Some(u64::from(!trials.is_multiple_of(SHARDS)))
             );
             // The same from the side of a trial, wherever it is.
-            let all: Vec<Plan> = plans(&scenario, SHARDS).collect();
+            let all: Vec<TrialPlan> = plans(&scenario, SHARDS).collect();
             for trial in (0..trials).step_by(10_000_019).chain([trials - 1]) {
                 let task =
                     Task { cell: (trial / scenario.replicates) as usize, replicate: trial % scenario.replicates };

@@ -61,7 +61,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
         false => Some(format!("{}: {what}", cell.title())),
     };
     let names = scenario.method_names();
-    let fits = FourierFits::of(cell, &names, trial);
+    let fits = FourierCurve::of(cell, &names, trial);
     Some(Showcase {
         title: cell.title(),
         trial: ZigZag::of(trial).ok().map(|zigzag| ZigzagTrial {
@@ -69,10 +69,10 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
             truth: Some(curve(&truth.time, &truth.heading)),
             ..zigzag_figure(trial, &zigzag)
         }),
-        fourier_fit: fits.first().map(|fit| CurveFit { title: title("Fourier fit"), ..fit.curve_fit(trial) }),
-        derivatives: (!fits.0.is_empty()).then(|| Derivatives {
+        fourier_fit: fits.first().map(|fit| fit.curve_fit(title("Fourier fit"))),
+        derivatives: (!fits.is_empty()).then(|| Derivatives {
             title: title("heading and its derivatives"),
-            curves: std::iter::once(truth_curves(truth)).chain(fits.0.iter().map(|fit| fit.motion(trial))).collect(),
+            curves: std::iter::once(truth_curves(truth)).chain(fits.iter().map(FourierCurve::motion)).collect(),
         }),
         replays: Replays {
             title: title("replay of every K and T"),
@@ -120,90 +120,74 @@ fn truth_curves(truth: &Truth) -> MotionCurves {
     }
 }
 
-/// A Fourier curve of the heading; its time runs from the first observed row.
-struct FourierFit {
+/// A Fourier curve of the heading of a trial; its time runs from the first observed row.
+struct FourierCurve<'a> {
     origin: Origin,
+    trial: &'a Trial,
     curve: identify::fourier::FourierFit,
     window: [f64; 2],
 }
 
-/// The Fourier curves of the methods of a cell that have one.
-struct FourierFits(Vec<FourierFit>);
-
-impl FourierFits {
-    fn of(cell: &DesignCell, names: &[MethodName], trial: &Trial) -> Self {
+impl<'a> FourierCurve<'a> {
+    /// The curves of the methods of a cell that have one: one for each kind of method, since variants differ in what they
+    /// do with it.
+    fn of(cell: &DesignCell, names: &[MethodName], trial: &'a Trial) -> Vec<Self> {
         let mut seen = Vec::new();
         let fit = |method: &Method| {
-            // One curve for each kind of method: variants differ in what they do with it.
-            if seen.contains(&method.id) {
-                return None;
-            }
-            let origin = origin(names, &method.label);
-            let Procedure::Identify { settings, .. } = &method.procedure else { return None };
-            let fit = match settings {
-                Some(IdentifierSettings::FourierPublished(settings)) => {
-                    let curve = settings.clone().build().ok()?.curve(trial).ok()?.curve;
-                    FourierFit { origin, curve, window: [0.0, trial.duration()] }
+            let Procedure::Identify { settings: Some(settings), .. } = &method.procedure else { return None };
+            let (curve, window) = match settings {
+                _ if seen.contains(&method.id) => return None,
+                IdentifierSettings::FourierPublished(settings) => {
+                    (settings.clone().build().ok()?.curve(trial).ok()?.curve, [0.0, trial.duration()])
                 }
-                Some(IdentifierSettings::FourierProjected(settings)) => {
+                IdentifierSettings::FourierProjected(settings) => {
                     let curves = settings.clone().build().ok()?.curves(trial).ok()?;
-                    FourierFit { origin, curve: curves.heading.curve, window: curves.window }
+                    (curves.heading.curve, curves.window)
                 }
                 _ => return None,
             };
             seen.push(method.id);
-            Some(fit)
+            Some(Self { origin: origin(names, &method.label), trial, curve, window })
         };
-        Self(cell.methods.iter().filter_map(fit).collect())
+        cell.methods.iter().filter_map(fit).collect()
     }
 
-    fn first(&self) -> Option<&FourierFit> {
-        self.0.first()
+    /// Time of the first observed row, s.
+    fn start(&self) -> f64 {
+        self.trial.observed_rows().next().map_or(0.0, |row| self.trial.time()[row])
     }
-}
 
-impl FourierFit {
-    /// Times within the window, dense enough to look smooth, from the first observed row.
-    fn times(&self, trial: &Trial) -> Vec<f64> {
+    /// A value within the window, dense enough to look smooth.
+    fn sampled(&self, value: impl Fn(f64) -> f64) -> Curve {
         let [from, to] = self.window;
-        let points = trial.len() * POINTS_PER_ROW;
-        (0..=points).map(|k| from + (to - from) * k as f64 / points as f64).collect()
+        let points = self.trial.len() * POINTS_PER_ROW;
+        let times = (0..=points).map(|k| from + (to - from) * k as f64 / points as f64);
+        let (times, values): (Vec<f64>, Vec<f64>) = times.map(|t| (t + self.start(), value(t))).unzip();
+        curve(&times, &values)
     }
 
-    fn sampled(&self, trial: &Trial, value: impl Fn(f64) -> f64) -> Curve {
-        let start = start_of(trial);
-        let times = self.times(trial);
-        let values: Vec<f64> = times.iter().map(|&t| value(t)).collect();
-        curve(&times.iter().map(|t| t + start).collect::<Vec<_>>(), &values)
-    }
-
-    fn motion(&self, trial: &Trial) -> MotionCurves {
+    fn motion(&self) -> MotionCurves {
         MotionCurves {
             origin: self.origin.clone(),
             name: None,
-            heading: self.sampled(trial, |t| self.curve.heading(t)),
-            yaw_rate: self.sampled(trial, |t| self.curve.yaw_rate(t)),
-            yaw_acceleration: self.sampled(trial, |t| self.curve.yaw_acceleration(t)),
+            heading: self.sampled(|t| self.curve.heading(t)),
+            yaw_rate: self.sampled(|t| self.curve.yaw_rate(t)),
+            yaw_acceleration: self.sampled(|t| self.curve.yaw_acceleration(t)),
         }
     }
 
-    fn curve_fit(&self, trial: &Trial) -> CurveFit {
-        let start = start_of(trial);
-        let residual: Vec<f64> =
-            trial.time().iter().zip(trial.heading()).map(|(t, psi)| psi - self.curve.heading(t - start)).collect();
+    fn curve_fit(&self, title: Option<String>) -> CurveFit {
+        let (time, heading) = (self.trial.time(), self.trial.heading());
+        let rows = time.iter().zip(heading);
+        let residual: Vec<f64> = rows.map(|(t, psi)| psi - self.curve.heading(t - self.start())).collect();
         CurveFit {
-            title: None,
-            measured: curve(trial.time(), trial.heading()),
-            fitted: self.sampled(trial, |t| self.curve.heading(t)),
+            title,
+            measured: curve(time, heading),
+            fitted: self.sampled(|t| self.curve.heading(t)),
             fitted_name: format!("{}, {} harmonics", self.origin.label(), self.curve.cosine.len()),
-            residual: curve(trial.time(), &residual),
+            residual: curve(time, &residual),
             r_squared: Some(self.curve.r_squared),
             fundamental_rad_s: Some(self.curve.fundamental),
         }
     }
-}
-
-/// Time of the first observed row, s.
-fn start_of(trial: &Trial) -> f64 {
-    trial.observed_rows().next().map_or(0.0, |row| trial.time()[row])
 }

@@ -1,38 +1,38 @@
 //! The stopping rule: whether a figure of a cell is known well enough. It keeps running sums and no rows.
 
-use crate::rows::Row;
+use crate::rows::StudyRow;
 use crate::statistics::Moments;
 use scenario::{Index, StopFigure, StopRule};
 
 /// What a rule has seen of one cell.
 #[derive(Clone)]
-pub struct Verdict {
+pub struct StopCheck {
     rule: StopRule,
     cell: u64,
-    methods: Vec<Sums>,
+    methods: Vec<FigureSums>,
 }
 
-impl Verdict {
+impl StopCheck {
     /// Before any row.
     pub fn new(rule: &StopRule, methods: usize) -> Self {
-        Self { rule: rule.clone(), cell: 0, methods: vec![Sums::default(); methods] }
+        Self { rule: rule.clone(), cell: 0, methods: vec![FigureSums::default(); methods] }
     }
 
     /// Takes note of a row; one of another cell begins anew.
-    pub fn see(&mut self, row: &Row) {
+    pub fn see(&mut self, row: &StudyRow) {
         if row.cell != self.cell {
             self.cell = row.cell;
-            self.methods.fill(Sums::default());
+            self.methods.fill(FigureSums::default());
         }
         let sums = &mut self.methods[row.method];
-        let (error, truth, ends) = match self.rule.figure.index() {
-            Index::K => (row.k_error(), row.truth()[0], row.k_ci95_per_s),
-            Index::T => (row.t_error(), row.truth()[1], row.t_ci95_s),
+        let (place, ends) = match self.rule.figure.index() {
+            Index::K => (0, row.k_ci95_per_s),
+            Index::T => (1, row.t_ci95_s),
         };
-        if let Some(error) = error {
+        if let Some(error) = row.errors()[place] {
             sums.errors.add(100.0 * error);
         }
-        if let Some((truth, [low, high])) = truth.zip(ends) {
+        if let Some((truth, [low, high])) = row.truth()[place].zip(ends) {
             sums.quoted += 1.0;
             sums.held += f64::from(u8::from(low <= truth && truth <= high));
         }
@@ -40,7 +40,7 @@ impl Verdict {
 
     /// Whether the standard error is at most what the rule asks for, for its method or for all.
     pub fn is_met(&self) -> bool {
-        let met = |sums: &Sums| {
+        let met = |sums: &FigureSums| {
             sums.standard_error(self.rule.figure).is_some_and(|error| error <= self.rule.standard_error_percent)
         };
         match self.rule.method {
@@ -52,13 +52,13 @@ impl Verdict {
 
 /// Moments of relative errors, per cent, and counts of intervals.
 #[derive(Debug, Clone, Copy, Default)]
-struct Sums {
+struct FigureSums {
     errors: Moments,
     quoted: f64,
     held: f64,
 }
 
-impl Sums {
+impl FigureSums {
     /// Standard error of a figure in per cent, by the delta method; `None` below 20 values, too few to judge by.
     fn standard_error(&self, figure: StopFigure) -> Option<f64> {
         let Moments { count: n, mean, second, third, fourth, .. } = self.errors;
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn standard_errors_are_those_of_the_sample() {
         // Two-point sample ±1 about 3: m₂ = 1, m₃ = 0, m₄ = 1.
-        let mut sums = Sums::default();
+        let mut sums = FigureSums::default();
         (0..100).for_each(|k| sums.errors.add(if k % 2 == 0 { 2.0 } else { 4.0 }));
         let error = |figure| sums.standard_error(figure).expect("enough values");
         assert!((error(StopFigure::MeanK) - (1.0_f64 / 99.0).sqrt()).abs() < 1e-12);
@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn the_error_of_a_standard_deviation_is_that_of_a_normal_sample() {
         // Quantiles of a normal distribution: se(s)/s = 1/√(2n).
-        let mut sums = Sums::default();
+        let mut sums = FigureSums::default();
         let n = 4000;
         let normal = |p: f64| {
             use statrs::distribution::{ContinuousCDF, Normal};

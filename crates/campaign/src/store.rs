@@ -12,9 +12,9 @@ use sha2::{Digest, Sha256};
 use crate::design::Design;
 use crate::disk;
 use crate::files::{DESIGN, MANIFEST, ROWS, SHOWCASES, TIMINGS};
-use crate::folder::{Reading, ResultFolder, sha256_of};
+use crate::folder::{ReadLock, ResultFolder, sha256_of};
 use crate::manifest::Manifest;
-use crate::rows::{Layout, Reader, Row, Sequence};
+use crate::rows::{RowLayout, RowReader, Sequence, StudyRow};
 use crate::showcase::Showcase;
 use crate::timings::Timings;
 use crate::unfinished;
@@ -23,7 +23,7 @@ use crate::unfinished;
 const LARGEST_TEXT: u64 = 1 << 29;
 
 /// A finished study: everything but its rows, which are read a few at a time.
-pub struct Stored {
+pub struct StoredStudy {
     folder: PathBuf,
     /// What ran, and on what.
     pub manifest: Manifest,
@@ -33,17 +33,16 @@ pub struct Stored {
     pub showcases: Vec<Showcase>,
     /// How long the methods took.
     pub timings: Timings,
-    _reading: Option<Reading>,
+    _lock: Option<ReadLock>,
 }
 
-impl Stored {
+impl StoredStudy {
     /// Reads a finished study and keeps others from writing there. Fails as wrong input when the folder holds none.
     pub fn read(folder: &Path) -> Result<Self, Failure> {
         // A folder that is not there is not worth a lock.
         expected_in(folder)?;
-        let reading = Reading::begin(folder)?;
-        let stored = Self::of(folder, expected_in(folder)?)?;
-        Ok(Self { _reading: Some(reading), ..stored })
+        let lock = ReadLock::begin(folder)?;
+        Ok(Self { _lock: Some(lock), ..Self::of(folder, expected_in(folder)?)? })
     }
 
     /// Reads a finished study in a folder that is held.
@@ -52,32 +51,38 @@ impl Stored {
     }
 
     fn of(folder: &Path, manifest: Manifest) -> Result<Self, Failure> {
-        for name in [ROWS, DESIGN, SHOWCASES, TIMINGS] {
-            is_unchanged(folder, name, &manifest)?;
-        }
-        let path = folder.join(DESIGN);
-        let design = Design::of_text(&text(&path)?).map_err(|problem| refused(&path, &problem))?;
-        let path = folder.join(SHOWCASES);
-        let showcases =
-            serde_json::from_slice(&text(&path)?).map_err(|problem| refused(&path, &problem.to_string()))?;
-        let path = folder.join(TIMINGS);
-        let timings = Timings::of_text(&text(&path)?, &design).map_err(|problem| refused(&path, &problem))?;
+        let hash =
+            |path: &Path| disk::is_there(path).and_then(|is_there| is_there.then(|| sha256_of(path)).transpose());
+        let path = folder.join(ROWS);
+        is_unchanged(&path, hash(&path).on("read", &path)?, &manifest)?;
+        let text = |name: &str| {
+            let path = folder.join(name);
+            let bytes = disk::read(&path, LARGEST_TEXT).on("read", &path)?;
+            is_unchanged(&path, bytes.as_ref().map(|bytes| hex(&Sha256::digest(bytes))), &manifest)?;
+            Ok::<_, Failure>((bytes.unwrap_or_default(), move |problem: String| refused(&path, &problem)))
+        };
+        let (bytes, refuse) = text(DESIGN)?;
+        let design = Design::of_text(&bytes).map_err(refuse)?;
+        let (bytes, refuse) = text(SHOWCASES)?;
+        let showcases = serde_json::from_slice(&bytes).map_err(|problem| refuse(problem.to_string()))?;
+        let (bytes, refuse) = text(TIMINGS)?;
+        let timings = Timings::of_text(&bytes, &design).map_err(refuse)?;
         let design = Design { words: manifest.words(), ..design };
-        Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings, _reading: None })
+        Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings, _lock: None })
     }
 
     /// The same study after its words have changed.
-    pub(crate) fn told(self, manifest: Manifest) -> Self {
+    pub(crate) fn with_words_of(self, manifest: Manifest) -> Self {
         let design = Design { words: manifest.words(), ..self.design };
         Self { manifest, design, ..self }
     }
 
     /// Hands every row to `take`, in order. Fails when one is missing or is not of this study.
-    pub fn rows(&self, mut take: impl FnMut(Row) -> Result<(), Failure>) -> Result<(), Failure> {
+    pub fn rows(&self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
         let path = self.folder.join(ROWS);
         let refuse = |problem: String| refused(&path, &problem);
         let mut sequence = Sequence::new(&self.design);
-        Reader::open(&path, &Layout::of(&self.design))?.for_each(|row| {
+        RowReader::open(&path, &RowLayout::of(&self.design))?.for_each(|row| {
             sequence.see(&row).map_err(refuse)?;
             take(row)
         })?;
@@ -93,26 +98,20 @@ fn refused(path: &Path, problem: &str) -> Failure {
     ))
 }
 
-fn text(path: &Path) -> Result<Vec<u8>, Failure> {
-    disk::read(path, LARGEST_TEXT).on("read", path)?.ok_or_else(|| refused(path, "it is missing"))
-}
-
-/// Compares a file with what the manifest says of it.
-fn is_unchanged(folder: &Path, name: &str, manifest: &Manifest) -> Result<(), Failure> {
-    let path = folder.join(name);
-    let Some(written) = manifest.sha256.get(name) else {
+/// Compares the SHA-256 of a file, none where the file is missing, with what the manifest says of it.
+fn is_unchanged(path: &Path, found: Option<String>, manifest: &Manifest) -> Result<(), Failure> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let Some(written) = manifest.sha256.get(&*name) else {
         return Err(Failure::input(format!(
             "{}: it has no SHA-256 of {name}, as an earlier version of this program wrote it; run the study again with \
              --restart",
-            folder.join(MANIFEST).display()
+            path.with_file_name(MANIFEST).display()
         )));
     };
-    if !disk::is_there(&path).on("look for", &path)? {
-        return Err(refused(&path, "it is missing"));
-    }
-    match sha256_of(&path).on("read", &path)? == *written {
-        true => Ok(()),
-        false => Err(refused(&path, "it was changed: its SHA-256 is not the one in the manifest")),
+    match found {
+        None => Err(refused(path, "it is missing")),
+        Some(found) if found == *written => Ok(()),
+        Some(_) => Err(refused(path, "it was changed: its SHA-256 is not the one in the manifest")),
     }
 }
 
@@ -164,17 +163,12 @@ pub fn finish(
     design: Design,
     showcases: Vec<Showcase>,
     timings: &Timings,
-) -> Result<Stored, Failure> {
-    let json = |name: &str, text: serde_json::Result<String>| {
+) -> Result<StoredStudy, Failure> {
+    let mut sha256 = BTreeMap::from([(ROWS.to_owned(), rows_sha256)]);
+    for (name, text) in [(DESIGN, serde_json::to_string(&design)), (SHOWCASES, serde_json::to_string(&showcases))] {
         let text = text.on("describe", &folder.path().join(name))?;
-        Ok((name.to_owned(), folder.keep(name, text + "\n")?))
-    };
-    let mut sha256: BTreeMap<String, String> = [
-        (ROWS.to_owned(), rows_sha256),
-        json(DESIGN, serde_json::to_string(&design))?,
-        json(SHOWCASES, serde_json::to_string(&showcases))?,
-    ]
-    .into();
+        sha256.insert(name.to_owned(), folder.keep(name, text + "\n")?);
+    }
     let (manifest, times) = match reproduced(folder.path(), manifest, &sha256)? {
         Some(published) => published,
         None => {
@@ -188,5 +182,5 @@ pub fn finish(
     // As they are written: to the nanosecond.
     let timings = Timings::of_text(&times, &design).map_err(Failure::work)?;
     let design = Design { words: manifest.words(), ..design };
-    Ok(Stored { folder: folder.path().to_owned(), manifest, design, showcases, timings, _reading: None })
+    Ok(StoredStudy { folder: folder.path().to_owned(), manifest, design, showcases, timings, _lock: None })
 }

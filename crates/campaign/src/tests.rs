@@ -6,7 +6,7 @@ use std::path::Path;
 use scenario::keys::ScenarioKey;
 use simulate::limits::MOST_STEPS;
 
-use crate::engine::{Bench, key};
+use crate::engine::{TrialRunner, key};
 use crate::task::Task;
 use scenario::{Scenario, effect_keys};
 
@@ -118,7 +118,7 @@ fn is_refused_or_ends(text: &str) {
                     let steps = specimen.specification.simulation.cost().steps;
                     assert!(steps <= MOST_STEPS as f64, "{steps} steps in\n{changed}");
                 }
-                let rows = Bench::new(&scenario, 0..=0).run(task).rows;
+                let rows = TrialRunner::new(&scenario, 0..=0).run(task).rows;
                 assert_eq!(rows.len(), scenario.cells[0].methods.len());
             }
         });
@@ -167,10 +167,10 @@ fn a_drawn_trial_without_end_is_a_failed_row() {
     let head = EVERYTHING[4].split("[stop]").next().expect("the trial");
     let draw = "[[draw]]\nkey = \"approach.lead-in-s\"\n[draw.log-normal]\nmedian = 10.0\nsigma = 20.0\n";
     let scenario = parse(&format!("{head}{draw}")).unwrap_or_else(|message| panic!("{message}"));
-    let bench = Bench::new(&scenario, 0..=0);
+    let runner = TrialRunner::new(&scenario, 0..=0);
     let failures: Vec<Option<String>> = (0..40)
         .map(|replicate| {
-            bench.run(Task { cell: 0, replicate }).rows[0].failure.as_ref().map(|reason| reason.to_string())
+            runner.run(Task { cell: 0, replicate }).rows[0].failure.as_ref().map(|reason| reason.to_string())
         })
         .collect();
     let refused =

@@ -1,5 +1,6 @@
 //! How long simulation and identification took: the one result that depends on the machine, kept apart from the rows.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
@@ -24,7 +25,7 @@ pub struct Timing {
 /// Times of one method in one cell: `timings.csv` has one line each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Line {
+pub struct TimingLine {
     cell: u64,
     method: String,
     trials: u64,
@@ -36,21 +37,21 @@ pub struct Line {
 /// Times of a study or a part of it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Timings {
-    /// Per cell seen, in order: the simulation, then the methods.
-    cells: Vec<(u64, Vec<Moments>)>,
+    /// Per cell seen: the simulation, then the methods.
+    cells: BTreeMap<u64, Vec<Moments>>,
     methods: usize,
 }
 
 impl Timings {
     /// No times of so many methods.
     pub fn new(methods: usize) -> Self {
-        Self { cells: Vec::new(), methods }
+        Self { cells: BTreeMap::new(), methods }
     }
 
     /// Takes note of one trial.
     pub fn add(&mut self, timing: &Timing) {
         let moments = self.of_cell(timing.cell);
-        let microseconds = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
+        let microseconds = |time: &Duration| time.as_secs_f64() * 1e6;
         moments[0].add(microseconds(&timing.simulation));
         moments[1..].iter_mut().zip(&timing.methods).for_each(|(moments, time)| moments.add(microseconds(time)));
     }
@@ -63,32 +64,20 @@ impl Timings {
     }
 
     fn of_cell(&mut self, cell: u64) -> &mut [Moments] {
-        // Cells come in order, nearly always the last one.
-        let place = match self.cells.last() {
-            Some((last, _)) if *last == cell => self.cells.len() - 1,
-            _ => match self.cells.binary_search_by_key(&cell, |(cell, _)| *cell) {
-                Ok(place) => place,
-                Err(place) => {
-                    self.cells.insert(place, (cell, vec![Moments::default(); 1 + self.methods]));
-                    place
-                }
-            },
-        };
-        &mut self.cells[place].1
+        self.cells.entry(cell).or_insert_with(|| vec![Moments::default(); 1 + self.methods])
     }
 
     /// Mean time of a method over all its trials, µs, with its standard error; `None` when it was never asked.
     pub fn mean_us(&self, method: usize) -> Option<(f64, f64)> {
         let mut all = Moments::default();
-        self.cells.iter().filter_map(|(_, moments)| moments.get(1 + method)).for_each(|moments| all.join(moments));
+        self.cells.values().filter_map(|moments| moments.get(1 + method)).for_each(|moments| all.join(moments));
         (all.count > 0.0).then(|| (all.mean, all.sd() / all.count.sqrt()))
     }
 
     /// One line for every cell and method that was timed.
-    pub fn lines<'a>(&'a self, design: &'a Design) -> impl Iterator<Item = Line> + 'a {
-        let names = || std::iter::once(SIMULATION).chain(design.methods.iter().map(|method| method.label.as_str()));
+    pub fn lines<'a>(&'a self, design: &'a Design) -> impl Iterator<Item = TimingLine> + 'a {
         self.cells.iter().flat_map(move |(cell, moments)| {
-            names().zip(moments).filter(|(_, moments)| moments.count > 0.0).map(|(method, moments)| Line {
+            names(design).zip(moments).filter(|(_, moments)| moments.count > 0.0).map(|(method, moments)| TimingLine {
                 cell: *cell,
                 method: method.to_owned(),
                 trials: moments.count as u64,
@@ -100,14 +89,10 @@ impl Timings {
     }
 
     /// Times from their lines; methods the design does not have are left out.
-    pub fn of_lines(lines: impl IntoIterator<Item = Line>, design: &Design) -> Self {
+    pub fn of_lines(lines: impl IntoIterator<Item = TimingLine>, design: &Design) -> Self {
         let mut timings = Self::new(design.methods.len());
         for line in lines {
-            let place = match line.method.as_str() {
-                SIMULATION => Some(0),
-                label => design.methods.iter().position(|method| method.label == label).map(|place| place + 1),
-            };
-            if let Some(place) = place {
+            if let Some(place) = names(design).position(|name| name == line.method) {
                 timings.of_cell(line.cell)[place] = Moments {
                     count: line.trials as f64,
                     mean: line.mean_us,
@@ -130,9 +115,14 @@ impl Timings {
 
     /// Reads the text of a `timings.csv`; methods the design does not have are left out. Fails when it is none.
     pub fn of_text(text: &[u8], design: &Design) -> Result<Self, String> {
-        let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<Line>, _>>();
+        let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<TimingLine>, _>>();
         Ok(Self::of_lines(lines.map_err(|error| error.to_string())?, design))
     }
+}
+
+/// Names of what is timed.
+fn names(design: &Design) -> impl Iterator<Item = &str> {
+    std::iter::once(SIMULATION).chain(design.methods.iter().map(|method| method.label.as_str()))
 }
 
 /// What a clock tells, of a time in µs.

@@ -13,15 +13,15 @@ use sha2::{Digest, Sha256};
 
 use crate::design::Design;
 use crate::disk;
-use crate::engine::Outcome;
+use crate::engine::TrialOutcome;
 use crate::files::{MANIFEST, ROWS};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::observer::Observer;
-use crate::plan::Plan;
-use crate::rows::{Layout, Reader, Row, Sequence, Writer};
+use crate::plan::TrialPlan;
+use crate::rows::{RowLayout, RowReader, RowWriter, Sequence, StudyRow};
 use crate::task::Task;
-use crate::timings::{self, Timings};
+use crate::timings::{TimingLine, Timings};
 use scenario::failure::{Failure, OnPath};
 use scenario::hex;
 
@@ -49,23 +49,21 @@ const LARGEST_PART: u64 = 1 << 30;
 pub struct Unfinished<'a> {
     folder: ResultFolder,
     observer: &'a dyn Observer,
-    layout: &'a Layout,
+    layout: &'a RowLayout,
     /// The design; its cells know which trials are stored.
-    design: Design,
-    manifest: Manifest,
+    pub design: Design,
+    /// What ran so far, and on what.
+    pub manifest: Manifest,
     parts: u64,
-    timings: Timings,
+    /// Times so far.
+    pub timings: Timings,
 }
 
 /// The description of a part.
 #[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Part {
-    first: Task,
-    last: Task,
-    trials: u64,
+struct PartDescription {
     rows_sha256: String,
-    timings: Vec<timings::Line>,
+    timings: Vec<TimingLine>,
 }
 
 /// Whether a result folder holds a study in progress. What else may be in its folder `unfinished` is left of one that
@@ -146,7 +144,7 @@ impl<'a> Unfinished<'a> {
         results: &ResultFolder,
         manifest: Manifest,
         design: &Design,
-        layout: &'a Layout,
+        layout: &'a RowLayout,
         observer: &'a dyn Observer,
     ) -> Result<Self, Failure> {
         let folder = results.inside(NAME)?;
@@ -188,8 +186,8 @@ impl<'a> Unfinished<'a> {
     /// Fails when a part cannot be read; then nothing is thrown away.
     pub fn resume(
         &mut self,
-        plan: &mut Plan,
-        mut check: impl FnMut(Row) -> Result<(), Failure>,
+        plan: &mut TrialPlan,
+        mut check: impl FnMut(StudyRow) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let names = disk::names(self.folder.path()).on("list", self.folder.path())?;
         let stored: Vec<u64> =
@@ -202,19 +200,18 @@ impl<'a> Unfinished<'a> {
                 true => self.read(number, |trial| follows(&mut ahead, trial))?,
                 false => Err(format!("{} is missing", self.path(&rows_of(self.parts)).display())),
             };
-            match read {
+            let (rows, timings) = match read {
+                Ok(read) => read,
                 Err(problem) => {
                     wrong = Some(problem);
                     break;
                 }
-                Ok((rows, timings)) => {
-                    self.note(&rows);
-                    rows.into_iter().try_for_each(&mut check)?;
-                    self.timings.join(&timings);
-                    self.parts += 1;
-                    *plan = ahead;
-                }
-            }
+            };
+            self.note(&rows);
+            rows.into_iter().try_for_each(&mut check)?;
+            self.timings.join(&timings);
+            self.parts += 1;
+            *plan = ahead;
         }
         let Some(problem) = wrong else { return Ok(()) };
         let lost = &stored[self.parts as usize..];
@@ -233,51 +230,50 @@ impl<'a> Unfinished<'a> {
     fn read(
         &self,
         part: u64,
-        mut see: impl FnMut(&[Row]) -> Result<(), String>,
-    ) -> Result<Result<(Vec<Row>, Timings), String>, Failure> {
+        see: impl FnMut(&[StudyRow]) -> Result<(), String>,
+    ) -> Result<Result<(Vec<StudyRow>, Timings), String>, Failure> {
         let (rows, about) = (self.path(&rows_of(part)), self.path(&about(part)));
-        let read = |path: &Path| match disk::read(path, LARGEST_PART) {
-            Ok(bytes) => Ok(bytes),
-            Err(error) => Err(Failure::work(format!(
-                "failed to read {}: {error}; nothing is removed, and the same command tries again",
-                path.display()
-            ))),
+        let read = |path: &Path| {
+            let advice = "nothing is removed, and the same command tries again";
+            let refuse = |error| Failure::work(format!("failed to read {}: {error}; {advice}", path.display()));
+            disk::read(path, LARGEST_PART).map_err(refuse)
         };
-        let (Some(bytes), description) = (read(&rows)?, read(&about)?) else {
-            return Ok(Err(format!("{} is missing", rows.display())));
-        };
-        let Some(description) = description else {
-            return Ok(Err(format!("{}: {} is missing", rows.display(), about.display())));
-        };
+        let (bytes, description) = (read(&rows)?, read(&about)?);
         let whole = || {
-            let about: Part = serde_json::from_slice(&description).map_err(|error| error.to_string())?;
-            if hex(&Sha256::digest(&bytes)) != about.rows_sha256 {
-                return Err("it is damaged, its SHA-256 is another".to_owned());
-            }
-            let mut rows_of_part = Vec::new();
-            let reader = Reader::of_bytes(bytes, &rows, self.layout).map_err(|failure| failure.message)?;
-            let mut keep = |row| {
-                rows_of_part.push(row);
-                Ok(())
-            };
-            reader.for_each(&mut keep).map_err(|failure| failure.message)?;
-            let methods = self.design.methods.len();
-            let trials = rows_of_part.chunks(methods);
-            let ends = (trials.len() as u64, trials.clone().next().map(task), trials.clone().next_back().map(task));
-            if ends != (about.trials, Some(about.first), Some(about.last))
-                || !rows_of_part.len().is_multiple_of(methods)
-            {
-                return Err("its trials are not those of its description".to_owned());
-            }
-            trials.into_iter().try_for_each(&mut see)?;
-            let timings = Timings::of_lines(about.timings, &self.design);
-            Ok((rows_of_part, timings))
+            let (bytes, description) = bytes.zip(description).ok_or("it is missing, or its description")?;
+            self.decode(&rows, bytes, &description, see)
         };
-        Ok(whole().map_err(|problem| format!("{}: {problem}", rows.display())))
+        Ok(whole().map_err(|problem: String| format!("{}: {problem}", rows.display())))
+    }
+
+    fn decode(
+        &self,
+        path: &Path,
+        bytes: Vec<u8>,
+        description: &[u8],
+        see: impl FnMut(&[StudyRow]) -> Result<(), String>,
+    ) -> Result<(Vec<StudyRow>, Timings), String> {
+        let about: PartDescription = serde_json::from_slice(description).map_err(|error| error.to_string())?;
+        if hex(&Sha256::digest(&bytes)) != about.rows_sha256 {
+            return Err("it is damaged, its SHA-256 is another".to_owned());
+        }
+        let mut rows = Vec::new();
+        let keep = |row| {
+            rows.push(row);
+            Ok(())
+        };
+        let reader = RowReader::of_bytes(bytes, path, self.layout);
+        reader.and_then(|reader| reader.for_each(keep)).map_err(|failure| failure.message)?;
+        let methods = self.design.methods.len();
+        if !rows.len().is_multiple_of(methods) {
+            return Err("its last trial is not whole".to_owned());
+        }
+        rows.chunks(methods).try_for_each(see)?;
+        Ok((rows, Timings::of_lines(about.timings, &self.design)))
     }
 
     /// Takes note of trials that are stored.
-    fn note(&mut self, rows: &[Row]) {
+    fn note(&mut self, rows: &[StudyRow]) {
         for trial in rows.chunks(self.design.methods.len()) {
             let Task { cell, replicate } = task(trial);
             let trials = &mut self.design.cells[cell].trials;
@@ -287,10 +283,10 @@ impl<'a> Unfinished<'a> {
     }
 
     /// Stores trials as they come until there are no more.
-    pub fn store(&mut self, outcomes: impl IntoIterator<Item = Vec<Outcome>>) -> Result<(), Failure> {
+    pub fn store(&mut self, outcomes: impl IntoIterator<Item = Vec<TrialOutcome>>) -> Result<(), Failure> {
         let before = self.manifest.machine.wall_time_s;
         let start = Instant::now();
-        let mut waiting: Vec<Row> = Vec::new();
+        let mut waiting: Vec<StudyRow> = Vec::new();
         let mut timings = Timings::new(self.design.methods.len());
         let mut oldest = Instant::now();
         for outcomes in outcomes {
@@ -311,33 +307,30 @@ impl<'a> Unfinished<'a> {
     }
 
     /// Writes a part; its description first, so that a part with rows has one.
-    fn write_part(&mut self, rows: &mut Vec<Row>, timings: &mut Timings) -> Result<(), Failure> {
-        let methods = self.design.methods.len();
-        let (first, last) = (task(&rows[..methods]), task(&rows[rows.len() - methods..]));
-        let trials = (rows.len() / methods) as u64;
+    fn write_part(&mut self, rows: &mut Vec<StudyRow>, timings: &mut Timings) -> Result<(), Failure> {
         self.note(rows);
-        let mut writer = Writer::create(&self.folder, &rows_of(self.parts), self.layout)?;
+        let mut writer = RowWriter::create(&self.folder, &rows_of(self.parts), self.layout)?;
         writer.push(rows.drain(..))?;
         let (file, rows_sha256) = writer.finish()?;
-        let part = Part { first, last, trials, rows_sha256, timings: timings.lines(&self.design).collect() };
+        let part = PartDescription { rows_sha256, timings: timings.lines(&self.design).collect() };
         let name = about(self.parts);
         self.folder.keep(&name, serde_json::to_string(&part).on("describe", &self.path(&name))?)?;
         file.put()?;
         self.folder.sync()?;
         self.parts += 1;
         self.timings.join(timings);
-        *timings = Timings::new(methods);
+        *timings = Timings::new(self.design.methods.len());
         self.manifest.write(&self.folder)
     }
 
     /// Joins the parts to the rows of a finished study; returns their SHA-256.
     pub fn join(&self, results: &ResultFolder) -> Result<String, Failure> {
-        let mut writer = Writer::create(results, ROWS, self.layout)?;
+        let mut writer = RowWriter::create(results, ROWS, self.layout)?;
         let mut sequence = Sequence::new(&self.design);
         let changed =
             |problem: String| Failure::work(format!("{problem}; it changed while the study ran, run it again"));
         for part in 0..self.parts {
-            let see = |trial: &[Row]| trial.iter().try_for_each(|row| sequence.see(row));
+            let see = |trial: &[StudyRow]| trial.iter().try_for_each(|row| sequence.see(row));
             let (rows, _) = self.read(part, see)?.map_err(changed)?;
             writer.push(rows)?;
         }
@@ -348,21 +341,6 @@ impl<'a> Unfinished<'a> {
         Ok(sha256)
     }
 
-    /// The design; its cells know which trials are stored.
-    pub fn design(&self) -> &Design {
-        &self.design
-    }
-
-    /// What ran so far, and on what.
-    pub fn manifest(&self) -> &Manifest {
-        &self.manifest
-    }
-
-    /// Times so far.
-    pub fn timings(&self) -> &Timings {
-        &self.timings
-    }
-
     /// Removes the folder, once everything in it is elsewhere.
     pub fn remove(self) -> Result<(), Failure> {
         clear(self.folder.path(), self.observer)
@@ -370,14 +348,15 @@ impl<'a> Unfinished<'a> {
 }
 
 /// The trial that rows belong to.
-fn task(trial: &[Row]) -> Task {
+fn task(trial: &[StudyRow]) -> Task {
     Task { cell: trial[0].cell as usize, replicate: trial[0].replicate }
 }
 
 /// Moves a plan behind a trial. Fails when that is not the next one, whole.
-fn follows(plan: &mut Plan, trial: &[Row]) -> Result<(), String> {
+fn follows(plan: &mut TrialPlan, trial: &[StudyRow]) -> Result<(), String> {
     let expected = plan.next(1).pop();
-    let is_row = |(method, row): (usize, &Row)| row.method == method && task(std::slice::from_ref(row)) == task(trial);
+    let is_row =
+        |(method, row): (usize, &StudyRow)| row.method == method && task(std::slice::from_ref(row)) == task(trial);
     if expected != Some(task(trial)) || !trial.iter().enumerate().all(is_row) {
         return Err("these are not the next trials of this study".to_owned());
     }

@@ -62,8 +62,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (design, rows) = in_memory(&study);
     let summary = summarise(&rows, &design);
     println!("{:28} median size of the error of T [%]", "method");
-    for (method, overall) in design.methods.iter().zip(&summary.overall) {
-        let size = overall.record.t.median_size.map_or("no answer".to_owned(), |size| format!("{:.3}", size.value));
+    for (method, record) in design.methods.iter().zip(&summary.overall) {
+        let size = record.t.median_size.map_or("no answer".to_owned(), |size| format!("{:.3}", size.value));
         println!("{:28} {size}", method.label);
     }
     Ok(())

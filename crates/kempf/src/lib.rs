@@ -15,6 +15,7 @@
 //! | find what a first-order model lacks | [`trace`](mod@trace) |
 //! | read a scenario file | [`scenario`] |
 //! | run one to rows and summarise them | [`campaign`] |
+//! | hold methods against each other on published records | [`campaign::benchmark`] |
 //!
 //! ```
 //! use kempf::prelude::*;
@@ -44,7 +45,7 @@ pub mod prelude {
     pub use campaign::collect::{collect, in_memory};
     pub use campaign::folder::ResultFolder;
     pub use campaign::summary::summarise;
-    pub use campaign::{Observer, Unwatched};
+    pub use campaign::{NoObserver, Observer};
     pub use identify::{
         Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, output_error, registry,
     };

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use campaign::benchmark::Task;
+use campaign::benchmark::BenchTask;
 use clap::Args;
 use scenario::problem::suggestion;
 
@@ -26,7 +26,7 @@ pub struct BenchRequest {
     pub external: Vec<NamedCommand>,
     /// Tasks that are set [default: all]
     #[arg(long = "task", value_name = "ID", value_parser = task)]
-    pub tasks: Vec<Task>,
+    pub tasks: Vec<BenchTask>,
     /// Sets of records that are used [default: all]
     #[arg(long = "set", value_name = "NAME")]
     pub sets: Vec<String>,
@@ -35,9 +35,9 @@ pub struct BenchRequest {
     pub style: FigureOptions,
 }
 
-fn task(name: &str) -> Result<Task, String> {
-    Task::ALL.into_iter().find(|task| task.id() == name).ok_or_else(|| {
-        let known = Task::ALL.map(Task::id);
+fn task(name: &str) -> Result<BenchTask, String> {
+    BenchTask::ALL.into_iter().find(|task| task.id() == name).ok_or_else(|| {
+        let known = BenchTask::ALL.map(BenchTask::id);
         format!("there is no such task; {}", suggestion(name, &known))
     })
 }

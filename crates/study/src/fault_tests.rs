@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::commands::merge::{self, MergeRequest};
 use crate::commands::report::{self, ReportRequest};
 use crate::options::{Common, FigureChoice, FigureOptions, Format, StudyFigureOptions};
-use campaign::Unwatched;
+use campaign::NoObserver;
 use campaign::collect::collect;
 use campaign::disk::faults;
 use campaign::files;
@@ -52,7 +52,7 @@ fn report_of(folder: &Path) -> ReportRequest {
 
 /// Runs a scenario into a folder.
 fn run(scenario: &Scenario, shard: Shard, folder: &Path) -> Result<(), Failure> {
-    collect(scenario, shard, &ResultFolder::hold(folder)?, false, &Unwatched).map(drop)
+    collect(scenario, shard, &ResultFolder::hold(folder)?, false, &NoObserver).map(drop)
 }
 
 /// All files of a folder with their bytes; but times differ from run to run.

@@ -11,7 +11,7 @@ use trial::{Channel, Log, Origin, ReadRecord, Sidecar, Trial};
 
 use crate::options::{Moment, ReadingOptions};
 use campaign::answers::TRIALS;
-use campaign::known::Shown;
+use campaign::known::RecordFacts;
 use scenario::failure::{Failure, OnPath};
 use scenario::name;
 
@@ -270,8 +270,8 @@ fn ship(
 }
 
 /// Says why records that have a speed or positions tell no track.
-pub fn warn_of_no_track(shown: &Shown, warnings: &mut Vec<String>) {
-    warnings.extend(shown.untold().map(|why| {
+pub fn warn_of_no_track(shown: &RecordFacts, warnings: &mut Vec<String>) {
+    warnings.extend(shown.no_track().map(|why| {
         format!("speed loss and drift are not told by these records, and no track can be predicted: {why}")
     }));
 }

@@ -16,10 +16,11 @@ use crate::replay_errors::HORIZONS;
 pub const SCHEMA: &str = "trace/3";
 
 /// What the analysis says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Nothing is missing.
+    #[default]
     Clean,
     /// What is missing has a name, and what is left is noise.
     Traced,

@@ -7,7 +7,7 @@ use campaign::design::Design;
 use campaign::files;
 use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 use campaign::task::Shard;
 use scenario::Scenario;
 use tempfile::TempDir;
@@ -28,10 +28,10 @@ static STUDY: LazyLock<Seed> = LazyLock::new(|| {
         Scenario::parse(&path, "small", include_str!("../../fuzz/corpus/scenario/small.toml").to_owned(), None)
             .unwrap_or_else(|failure| panic!("{failure}"));
     ResultFolder::hold(folder.path())
-        .and_then(|held| collect(&scenario, Shard::WHOLE, &held, false, &campaign::Unwatched))
+        .and_then(|held| collect(&scenario, Shard::WHOLE, &held, false, &campaign::NoObserver))
         .unwrap_or_else(|failure| panic!("{failure}"));
-    let stored = Stored::read(folder.path()).unwrap_or_else(|failure| panic!("{failure}"));
-    let Stored { design, manifest, .. } = stored;
+    let stored = StoredStudy::read(folder.path()).unwrap_or_else(|failure| panic!("{failure}"));
+    let StoredStudy { design, manifest, .. } = stored;
     Seed { design, manifest, folder }
 });
 

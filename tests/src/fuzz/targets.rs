@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use campaign::design::Design;
 use campaign::files;
 use campaign::manifest::Manifest;
-use campaign::rows::{Layout, Reader, Sequence};
+use campaign::rows::{RowLayout, RowReader, Sequence};
 use campaign::summary::Tally;
 use campaign::task::Shard;
 use identify::{Identifier, registry};
@@ -166,7 +166,7 @@ pub fn scenario(data: &[u8]) -> bool {
     }
 }
 
-/// Stored rows of the small study, summarised. Who reads them has compared their SHA-256 before; here that is left out.
+/// StoredStudy rows of the small study, summarised. Who reads them has compared their SHA-256 before; here that is left out.
 pub fn rows(data: &[u8]) -> bool {
     summarised(data, &seeds::study().design)
 }
@@ -187,10 +187,10 @@ pub fn cells(data: &[u8]) -> bool {
 }
 
 fn summarised(rows: &[u8], design: &Design) -> bool {
-    let layout = Layout::of(design);
+    let layout = RowLayout::of(design);
     let mut tally = Tally::new(design);
     let mut sequence = Sequence::new(design);
-    let read = Reader::of_bytes(rows.to_vec(), Path::new(files::ROWS), &layout).and_then(|rows| {
+    let read = RowReader::of_bytes(rows.to_vec(), Path::new(files::ROWS), &layout).and_then(|rows| {
         rows.for_each(|row| {
             sequence.see(&row).map_err(Failure::input)?;
             assert!((row.cell as usize) < design.cells.len(), "a row of cell {}", row.cell);

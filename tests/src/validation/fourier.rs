@@ -76,7 +76,8 @@ pub fn section() -> Section {
         };
         let method = settings.build().expect("valid settings");
         let found = method.identify(&[record(rudder, heading, Begin::Mid)]).expect("a zig-zag is identified").response;
-        let name = if side == RudderTreatment::Recorded { "recorded rudder" } else { "rudder projected on the same basis" };
+        let name =
+            if side == RudderTreatment::Recorded { "recorded rudder" } else { "rudder projected on the same basis" };
         for (symbol, published, decimals, ours, unit) in [("K", k, 4, found.K(), "1/s"), ("T", t, 2, found.T(), "s")] {
             checks.push(Check::new(
                 format!("fourier/{rudder}-{heading}/{name}/{symbol}"),

@@ -4,18 +4,17 @@
 use crate::statistics::{Statistic, share};
 use serde::{Deserialize, Serialize};
 
-use crate::benchmark::cases::{Case, mean};
-use crate::benchmark::statistics::{middle_and_high, ranks, ratio, resampled};
-use crate::benchmark::task::Task;
+use crate::benchmark::cases::{BenchCase, BenchTask};
+use crate::benchmark::statistics::{grouped, mean, middle_and_high, ranks, ratio, resampled};
 
-pub use crate::benchmark::statistics::{FEWEST, Figure};
+pub use crate::benchmark::statistics::{FEWEST, ScoreFigure};
 
 /// All methods on one task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Board {
     /// The task.
-    pub task: Task,
+    pub task: BenchTask,
     /// The field of its records.
     pub field: String,
     /// Number of cases.
@@ -23,36 +22,36 @@ pub struct Board {
     /// Number of trials or scored records that are drawn for intervals; cases of one are not independent.
     pub clusters: usize,
     /// The methods, that with the smallest median first.
-    pub standings: Vec<Standing>,
+    pub standings: Vec<LeaderboardRow>,
 }
 
 /// A method on one task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Standing {
+pub struct LeaderboardRow {
     /// Its label.
     pub method: String,
     /// Cases in which it had no answer.
     pub failed: usize,
     /// Median of the score.
-    pub median: Figure,
+    pub median: ScoreFigure,
     /// What the score does not exceed in 90 % of the cases.
-    pub high: Figure,
+    pub high: ScoreFigure,
     /// Median of the score over that of the reference in the same case; none of the reference itself, and where it
     /// takes no part.
-    pub ratio: Option<Figure>,
-    /// Share of cases in which the score is smaller than that of the reference, equal ones counted half.
-    pub better: Option<Figure>,
+    pub ratio: Option<ScoreFigure>,
+    /// WilsonShare of cases in which the score is smaller than that of the reference, equal ones counted half.
+    pub better: Option<ScoreFigure>,
     /// Mean rank among all methods.
     pub rank: f64,
     /// How often 95 % intervals of K and of T hold the truth; none without intervals.
-    pub holds: Option<[Share; 2]>,
+    pub holds: Option<[WilsonShare; 2]>,
 }
 
 /// A share with Wilson's 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Share {
+pub struct WilsonShare {
     /// How many.
     pub count: usize,
     /// Of how many.
@@ -61,7 +60,7 @@ pub struct Share {
     pub ci95: [f64; 2],
 }
 
-impl Share {
+impl WilsonShare {
     /// A share; `None` of nothing.
     pub fn new(count: usize, of: usize) -> Option<Self> {
         let Statistic { ci95, .. } = share(count as u64, of as u64)?;
@@ -70,104 +69,88 @@ impl Share {
 }
 
 /// The boards of all tasks that have a score.
-pub fn boards(cases: &[Case], methods: &[String], reference: &str) -> Vec<Board> {
+pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Board> {
     let scored = by_field(cases, |task| task.score().is_some());
     scored.into_iter().map(|(place, own)| board(place, &own, methods, reference)).collect()
 }
 
 /// The cases of some tasks, field by field.
-pub(crate) fn by_field(cases: &[Case], is_wanted: impl Fn(Task) -> bool) -> Vec<((Task, &str), Vec<&Case>)> {
-    let mut found: Vec<((Task, &str), Vec<&Case>)> = Vec::new();
-    for case in cases.iter().filter(|case| is_wanted(case.task)) {
-        let place = (case.task, case.field.as_str());
-        match found.iter_mut().find(|(known, _)| *known == place) {
-            Some((_, own)) => own.push(case),
-            None => found.push((place, vec![case])),
-        }
-    }
-    found
+pub(super) fn by_field(
+    cases: &[BenchCase],
+    is_wanted: impl Fn(BenchTask) -> bool,
+) -> Vec<((BenchTask, &str), Vec<&BenchCase>)> {
+    grouped(cases.iter().filter(|case| is_wanted(case.task)), |case| (case.task, case.field.as_str()))
 }
 
-/// Cases that are drawn together, as their places.
-pub(crate) fn clusters(cases: &[&Case]) -> Vec<Vec<usize>> {
-    let mut found: Vec<((&str, String), Vec<usize>)> = Vec::new();
-    for (place, case) in cases.iter().enumerate() {
-        let own = case.cluster();
-        match found.iter_mut().find(|(known, _)| *known == own) {
-            Some((_, places)) => places.push(place),
-            None => found.push((own, vec![place])),
-        }
-    }
-    found.into_iter().map(|(_, places)| places).collect()
+/// Scores of some cases.
+pub(super) struct Scores {
+    /// Cases that are drawn together, as their places.
+    pub clusters: Vec<Vec<usize>>,
+    /// Methods that were asked in all cases, and their scores case by case.
+    pub methods: Vec<(String, Vec<f64>)>,
+    /// Ranks of these methods case by case.
+    pub ranks: Vec<Vec<f64>>,
 }
 
-/// Methods that were asked in some cases, and their scores case by case.
-pub(crate) fn scores(cases: &[&Case], methods: &[String]) -> Vec<(String, Vec<f64>)> {
-    let of = |method: &String| {
-        let own: Option<Vec<f64>> = cases.iter().map(|case| case.score_of(method)).collect();
-        Some((method.clone(), own?))
-    };
-    methods.iter().filter_map(of).collect()
-}
-
-/// Ranks of some methods case by case.
-pub(crate) fn ranks_of(scores: &[(String, Vec<f64>)], cases: usize) -> Vec<Vec<f64>> {
-    (0..cases).map(|case| ranks(&scores.iter().map(|(_, own)| own[case]).collect::<Vec<f64>>())).collect()
-}
-
-fn board((task, field): (Task, &str), cases: &[&Case], methods: &[String], reference: &str) -> Board {
-    let clusters = clusters(cases);
-    let scores = scores(cases, methods);
-    let ranks = ranks_of(&scores, cases.len());
-    let other = scores.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
-    let whole: Vec<usize> = (0..cases.len()).collect();
-    let standing = |(place, (method, own)): (usize, &(String, Vec<f64>))| {
-        let of_scores = |cases: &[usize]| middle_and_high(cases.iter().map(|&case| own[case]).collect());
-        let drawn = resampled(&clusters, of_scores);
-        let figure = |k: usize| {
-            Figure::new(of_scores(&whole)[k], clusters.len(), drawn.iter().map(|figures| figures[k]).collect())
+impl Scores {
+    pub(super) fn of(cases: &[&BenchCase], methods: &[String]) -> Self {
+        let of_method = |method: &String| {
+            let own: Option<Vec<f64>> = cases.iter().map(|case| case.score_of(method)).collect();
+            Some((method.clone(), own?))
         };
+        let methods: Vec<(String, Vec<f64>)> = methods.iter().filter_map(of_method).collect();
+        let of_case = |case: usize| ranks(&methods.iter().map(|(_, own)| own[case]).collect::<Vec<f64>>());
+        let ranks = (0..cases.len()).map(of_case).collect();
+        let clusters = grouped(0..cases.len(), |&place| cases[place].cluster());
+        Self { clusters: clusters.into_iter().map(|(_, places)| places).collect(), methods, ranks }
+    }
+
+    /// Two figures of all cases, with intervals.
+    fn figures(&self, of: impl Fn(&[usize]) -> [f64; 2]) -> [ScoreFigure; 2] {
+        let whole: Vec<usize> = (0..self.ranks.len()).collect();
+        let (values, drawn) = (of(&whole), resampled(&self.clusters, &of));
+        [0, 1]
+            .map(|k| ScoreFigure::new(values[k], self.clusters.len(), drawn.iter().map(|figures| figures[k]).collect()))
+    }
+}
+
+fn board((task, field): (BenchTask, &str), cases: &[&BenchCase], methods: &[String], reference: &str) -> Board {
+    let scores = Scores::of(cases, methods);
+    let other = scores.methods.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
+    let row = |(place, (method, own)): (usize, &(String, Vec<f64>))| {
+        let [median, high] = scores.figures(|cases| middle_and_high(cases.iter().map(|&case| own[case]).collect()));
         let paired = other.filter(|_| method != reference).map(|other| {
-            let of_pairs = |cases: &[usize]| {
+            scores.figures(|cases| {
                 let median = middle_and_high(cases.iter().map(|&case| ratio(own[case], other[case])).collect())[0];
                 let smaller = cases.iter().map(|&case| match own[case].total_cmp(&other[case]) {
                     std::cmp::Ordering::Less => 1.0,
                     std::cmp::Ordering::Equal => 0.5,
                     std::cmp::Ordering::Greater => 0.0,
                 });
-                [median, mean(smaller).unwrap_or(f64::NAN)]
-            };
-            let drawn = resampled(&clusters, of_pairs);
-            [0, 1].map(|k| {
-                Figure::new(of_pairs(&whole)[k], clusters.len(), drawn.iter().map(|figures| figures[k]).collect())
+                [median, mean(smaller)]
             })
         });
-        Standing {
+        LeaderboardRow {
             method: method.clone(),
             failed: own.iter().filter(|score| score.is_infinite()).count(),
-            median: figure(0),
-            high: figure(1),
+            median,
+            high,
             ratio: paired.map(|[ratio, _]| ratio),
             better: paired.map(|[_, better]| better),
-            rank: mean(ranks.iter().map(|own| own[place])).unwrap_or(f64::NAN),
+            rank: mean(scores.ranks.iter().map(|own| own[place])),
             holds: holds(cases, method),
         }
     };
-    let mut standings: Vec<Standing> = scores.iter().enumerate().map(standing).collect();
-    let worst = f64::INFINITY;
-    let key = |one: &Standing| [one.median, one.high].map(|figure| figure.value.unwrap_or(worst));
-    standings.sort_by(|one, other| {
-        let ([a, b], [c, d]) = (key(one), key(other));
-        a.total_cmp(&c).then(b.total_cmp(&d))
-    });
-    Board { task, field: field.to_owned(), cases: cases.len(), clusters: clusters.len(), standings }
+    let mut standings: Vec<LeaderboardRow> = scores.methods.iter().enumerate().map(row).collect();
+    standings.sort_by(|one, other| one.median.order(&other.median).then(one.high.order(&other.high)));
+    Board { task, field: field.to_owned(), cases: cases.len(), clusters: scores.clusters.len(), standings }
 }
 
 /// How often the intervals of a method hold K and T.
-fn holds(cases: &[&Case], method: &str) -> Option<[Share; 2]> {
+fn holds(cases: &[&BenchCase], method: &str) -> Option<[WilsonShare; 2]> {
     let answers = cases.iter().flat_map(|case| &case.answers).filter(|answer| answer.method == method);
     let held: Vec<[bool; 2]> = answers.filter_map(|answer| answer.holds).collect();
-    let of = |index: usize| Share::new(held.iter().filter(|both| both[index]).count(), held.len());
+    let of = |index: usize| WilsonShare::new(held.iter().filter(|both| both[index]).count(), held.len());
     Some([of(0)?, of(1)?])
 }
 
@@ -175,7 +158,7 @@ fn holds(cases: &[&Case], method: &str) -> Option<[Share; 2]> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SetLine {
     /// The task.
-    pub task: Task,
+    pub task: BenchTask,
     /// Name of the set.
     pub set: String,
     /// Number of cases.
@@ -185,49 +168,32 @@ pub struct SetLine {
 }
 
 /// Medians set by set.
-pub fn by_set(cases: &[Case], methods: &[String]) -> Vec<SetLine> {
-    let mut lines: Vec<(Task, &str, Vec<&Case>)> = Vec::new();
-    for case in cases.iter().filter(|case| case.task.score().is_some()) {
-        match lines.iter_mut().find(|(task, set, _)| (*task, *set) == (case.task, case.set.as_str())) {
-            Some((_, _, own)) => own.push(case),
-            None => lines.push((case.task, &case.set, vec![case])),
-        }
-    }
-    let line = |(task, set, own): (Task, &str, Vec<&Case>)| {
-        let scores = scores(&own, methods);
+pub fn by_set(cases: &[BenchCase], methods: &[String]) -> Vec<SetLine> {
+    let scored = cases.iter().filter(|case| case.task.score().is_some());
+    let line = |((task, set), own): ((BenchTask, &str), Vec<&BenchCase>)| {
+        let scores = Scores::of(&own, methods);
         let of = |method: &String| {
-            let (_, own) = scores.iter().find(|(known, _)| known == method)?;
+            let (_, own) = scores.methods.iter().find(|(known, _)| known == method)?;
             let failed = own.iter().filter(|score| score.is_infinite()).count();
             Some((middle_and_high(own.clone())[0], failed))
         };
         SetLine { task, set: set.to_owned(), cases: own.len(), methods: methods.iter().map(of).collect() }
     };
-    lines.into_iter().map(line).collect()
-}
-
-/// The share of cases within a score, score by score, of one method on one task; a line that ends below one belongs to
-/// a method that fails.
-pub fn steps(cases: &[Case], task: Task, field: &str, method: &str) -> Vec<(f64, f64)> {
-    let own = cases.iter().filter(|case| (case.task, case.field.as_str()) == (task, field));
-    let mut scores: Vec<f64> = own.filter_map(|case| case.score_of(method)).collect();
-    scores.sort_by(f64::total_cmp);
-    let of = scores.len() as f64;
-    let steps = scores.iter().enumerate().map(|(place, &score)| (score, (place + 1) as f64 / of));
-    steps.filter(|(score, _)| score.is_finite()).collect()
+    grouped(scored, |case| (case.task, case.set.as_str())).into_iter().map(line).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::benchmark::cases::Answer;
+    use crate::benchmark::cases::CaseAnswer;
 
-    fn case(trial: u64, scores: [Option<f64>; 2]) -> Case {
+    fn case(trial: u64, scores: [Option<f64>; 2]) -> BenchCase {
         let answers = ["a", "b"].iter().zip(scores).map(|(method, score)| {
             let failure = score.is_none().then(|| "singular".to_owned());
-            Answer { method: (*method).to_owned(), score, failure, ..Answer::default() }
+            CaseAnswer { method: (*method).to_owned(), score, failure, ..CaseAnswer::default() }
         });
-        Case {
-            task: Task::Circle,
+        BenchCase {
+            task: BenchTask::Circle,
             field: "made".into(),
             set: "s".into(),
             trial: Some(trial),
@@ -241,25 +207,24 @@ mod tests {
     #[test]
     fn a_failed_answer_is_worse_than_any() {
         // b is twice as good wherever it answers, and fails in four of ten.
-        let cases: Vec<Case> = (0..10).map(|trial| case(trial, [Some(2.0), (trial < 6).then_some(1.0)])).collect();
+        let cases: Vec<BenchCase> = (0..10).map(|trial| case(trial, [Some(2.0), (trial < 6).then_some(1.0)])).collect();
         let methods = ["a", "b", "c"].map(str::to_owned);
         let boards = boards(&cases, &methods, "a");
         let [Board { standings, cases: 10, clusters: 10, .. }] = &boards[..] else { panic!("{boards:?}") };
         let [b, a] = &standings[..] else { panic!("c was not asked: {standings:?}") };
         assert_eq!((b.method.as_str(), b.failed, b.median.value, b.high.value), ("b", 4, Some(1.0), None));
         assert_eq!((b.ratio.and_then(|ratio| ratio.value), b.better.and_then(|b| b.value)), (Some(0.5), Some(0.6)));
-        assert_eq!((a.median, a.ratio), (Figure { value: Some(2.0), ci95: Some([Some(2.0); 2]) }, None));
+        assert_eq!((a.median, a.ratio), (ScoreFigure { value: Some(2.0), ci95: Some([Some(2.0); 2]) }, None));
         assert_eq!((a.rank, b.rank), (1.6, 1.4));
         // Half of the draws have five failures or more: the interval of the median has no upper end.
         assert_eq!(b.median.ci95, Some([Some(1.0), None]));
-        assert_eq!(steps(&cases, Task::Circle, "made", "b").last(), Some(&(1.0, 0.6)));
     }
 
     #[test]
     fn cases_of_one_trial_are_drawn_together() {
-        let cases: Vec<Case> = [0, 0, 1, 1, 1].map(|trial| case(trial, [Some(1.0); 2])).to_vec();
-        let all: Vec<&Case> = cases.iter().collect();
-        assert_eq!(clusters(&all), [vec![0, 1], vec![2, 3, 4]]);
+        let cases: Vec<BenchCase> = [0, 0, 1, 1, 1].map(|trial| case(trial, [Some(1.0); 2])).to_vec();
+        let all: Vec<&BenchCase> = cases.iter().collect();
+        assert_eq!(Scores::of(&all, &[]).clusters, [vec![0, 1], vec![2, 3, 4]]);
         assert_eq!(boards(&cases, &["a".to_owned()], "a")[0].standings[0].median.ci95, None, "two clusters");
     }
 }

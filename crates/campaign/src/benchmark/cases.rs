@@ -1,9 +1,68 @@
 //! What was asked and what was answered: one case for every question on every trial, with the answers of all methods.
 
-use crate::statistics::Moments;
 use serde::{Deserialize, Serialize};
 
-use crate::benchmark::task::Task;
+/// A task.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BenchTask {
+    /// Fit a record and replay its rudder on it.
+    Identify,
+    /// Find K and T of a ship that is first order.
+    Indices,
+    /// Fit a zig-zag to one side first, replay one to the other.
+    OtherSide,
+    /// Fit a zig-zag, replay one of another rudder or heading angle.
+    OtherAmplitude,
+    /// Fit zig-zags, replay a turning circle.
+    Circle,
+    /// Name the effect that a first-order ship lacks.
+    Name,
+}
+
+impl BenchTask {
+    /// All tasks, in the order of reports.
+    pub const ALL: [Self; 6] =
+        [Self::Identify, Self::Indices, Self::OtherSide, Self::OtherAmplitude, Self::Circle, Self::Name];
+
+    /// The word used in files and on the command line.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Identify => "identify",
+            Self::Indices => "indices",
+            Self::OtherSide => "other-side",
+            Self::OtherAmplitude => "other-amplitude",
+            Self::Circle => "circle",
+            Self::Name => "name",
+        }
+    }
+
+    /// What it is, in a few words.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Identify => "replay the fitted record",
+            Self::Indices => "find K and T",
+            Self::OtherSide => "predict the other side",
+            Self::OtherAmplitude => "predict another amplitude",
+            Self::Circle => "predict the turning circle",
+            Self::Name => "name the missing effect",
+        }
+    }
+
+    /// What the score is; `None` where an answer is right or wrong.
+    pub fn score(self) -> Option<&'static str> {
+        match self {
+            Self::Indices => Some("larger error of K and T [%]"),
+            Self::Name => None,
+            _ => Some("rms error of the heading [°]"),
+        }
+    }
+
+    /// Whether a record is predicted that was not fitted.
+    pub fn is_prediction(self) -> bool {
+        matches!(self, Self::OtherSide | Self::OtherAmplitude | Self::Circle)
+    }
+}
 
 /// The field of all measured records.
 pub const MEASURED: &str = "measured";
@@ -11,9 +70,9 @@ pub const MEASURED: &str = "measured";
 /// One question with all answers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Case {
+pub struct BenchCase {
     /// What was asked.
-    pub task: Task,
+    pub task: BenchTask,
     /// What the case is counted with: [`MEASURED`], or what the definition calls the simulated set.
     pub field: String,
     /// Name of the set.
@@ -30,13 +89,13 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub missing: Option<String>,
     /// The answers, in the order of methods.
-    pub answers: Vec<Answer>,
+    pub answers: Vec<CaseAnswer>,
 }
 
 /// The answer of one method.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Answer {
+pub struct CaseAnswer {
     /// Label of the method.
     pub method: String,
     /// Heading error, deg, or the larger error of K and T, %; none where there is none, or where the answer is right or
@@ -80,6 +139,20 @@ pub enum Naming {
 }
 
 impl Naming {
+    /// All of them, the best first.
+    pub const ALL: [Self; 5] = [Self::Right, Self::Alias, Self::More, Self::Wrong, Self::Nothing];
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Alias => "among aliases",
+            Self::More => "and more",
+            Self::Wrong => "wrong",
+            Self::Nothing => "nothing",
+        }
+    }
+
     /// What the groups that were named are worth where one effect is missing, or none.
     pub fn of(missing: Option<&str>, named: &[Vec<String>]) -> Self {
         let Some(missing) = missing else { return if named.is_empty() { Self::Right } else { Self::Wrong } };
@@ -94,7 +167,7 @@ impl Naming {
     }
 }
 
-impl Case {
+impl BenchCase {
     /// What is drawn together when intervals are made: all cases of one simulated trial, or all in which one measured
     /// record is scored.
     pub fn cluster(&self) -> (&str, String) {
@@ -112,13 +185,6 @@ impl Case {
 /// A number as it is stored: six digits. Boards are made of stored numbers, so that anybody finds the same.
 pub fn stored(value: f64) -> f64 {
     format!("{value:.5e}").parse().expect("it was written as a number")
-}
-
-/// Mean of some ranks; `None` of none.
-pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut moments = Moments::default();
-    values.for_each(|value| moments.add(value));
-    (moments.count > 0.0).then_some(moments.mean)
 }
 
 #[cfg(test)]

@@ -1,20 +1,17 @@
 //! The definition of a benchmark, read and checked: sets of records, and what is asked of them.
 
-use std::collections::BTreeMap;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::task::Task as Replicate;
+use crate::task::Task;
 use scenario::failure::Failure;
 use scenario::{HULL, Scenario, hex, name};
 use sha2::{Digest, Sha256};
 use trial::file::{self, Kind};
 use trial::{Manoeuvre, Sidecar};
 
-use crate::benchmark::cases::MEASURED;
+use crate::benchmark::cases::{BenchTask, MEASURED};
 use crate::benchmark::embedded;
-use crate::benchmark::task::Task;
 use crate::benchmark::wire::{
     DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire, words,
 };
@@ -32,11 +29,11 @@ pub struct Definition {
     /// Seed in place of those of the scenarios.
     pub seed: Option<u64>,
     /// The sets, in order.
-    pub sets: Vec<Set>,
+    pub sets: Vec<RecordSet>,
 }
 
 /// Records of one ship, measured, or trials of one cell of a scenario.
-pub struct Set {
+pub struct RecordSet {
     /// What it is called; that of a cell has its label behind it.
     pub name: String,
     /// What the definition calls it.
@@ -44,33 +41,27 @@ pub struct Set {
     /// What it is, in a sentence.
     pub title: String,
     /// Its records: of a simulated set those of every trial.
-    pub records: Vec<Member>,
+    pub records: Vec<SetRecord>,
     /// Where they come from.
-    pub source: Source,
+    pub source: SetSource,
     /// What is asked.
     pub questions: Vec<Question>,
 }
 
 /// A record of a set.
-pub struct Member {
+pub struct SetRecord {
     /// What it is called.
     pub name: String,
     /// What the ship was asked to do.
     pub manoeuvre: Manoeuvre,
-    /// The same in words.
-    pub words: String,
 }
 
 /// Where records come from.
-pub enum Source {
+pub enum SetSource {
     /// They were measured, and are not part of the program.
     Measured {
-        /// Where to download them.
-        download: String,
-        /// Their licence.
-        licence: String,
-        /// What to cite.
-        cite: String,
+        /// Where to download them, their licence, and what to cite.
+        origin: [String; 3],
         /// Files that hold each, the preferred one first.
         copies: Vec<Vec<RecordFile>>,
     },
@@ -97,7 +88,7 @@ pub struct RecordFile {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
     /// The task.
-    pub task: Task,
+    pub task: BenchTask,
     /// Places of the fitted records in the set.
     pub fit: Vec<usize>,
     /// Place of the scored record; `None` where the ship is asked about.
@@ -127,23 +118,29 @@ impl Definition {
     }
 
     fn parse(path: &Path, text: &str, seed: Option<u64>, texts: &Texts) -> Result<Self, Failure> {
-        let reading = Reading { path, text, texts, seed };
+        let reader = DefinitionReader { path, text, texts, seed };
         let wire: DefinitionWire = toml::from_str(text).map_err(|error| {
             let message = error.message().split_whitespace().collect::<Vec<_>>().join(" ");
             let advice = "scenarios/bench/zigzag-bench.toml is an example with every key";
             Failure::at(path, text, error.span().unwrap_or(0..0), "this is no benchmark", &message, advice)
         })?;
-        reading.file_name(&wire.name)?;
+        reader.file_name(&wire.name)?;
         let mut digest = Sha256::new_with_prefix(text);
         let mut sets = Vec::new();
-        for measured in &wire.measured {
-            sets.push(reading.measured(measured, &mut digest)?);
+        let groups: Vec<Name> = wire
+            .measured
+            .iter()
+            .map(|set| &set.name)
+            .chain(wire.simulated.iter().map(|set| &set.name))
+            .cloned()
+            .collect();
+        for measured in wire.measured {
+            sets.push(reader.measured(measured, &mut digest)?);
         }
         for simulated in &wire.simulated {
-            sets.extend(reading.simulated(simulated, &mut digest)?);
+            sets.extend(reader.simulated(simulated, &mut digest)?);
         }
-        let groups = wire.measured.iter().map(|set| &set.name).chain(wire.simulated.iter().map(|set| &set.name));
-        reading.distinct(groups, "set")?;
+        reader.distinct(groups.iter(), "set")?;
         if sets.is_empty() {
             return Err(Failure::input(format!(
                 "{}: no set is defined; add [[measured]] or [[simulated]], as in {}",
@@ -159,7 +156,7 @@ impl Definition {
     /// The same benchmark with some of its sets and tasks; empty lists leave all.
     ///
     /// Fails when a set is not in it, and when nothing is left.
-    pub fn only(mut self, sets: &[String], tasks: &[Task]) -> Result<Self, Failure> {
+    pub fn only(mut self, sets: &[String], tasks: &[BenchTask]) -> Result<Self, Failure> {
         let mut known: Vec<String> = self.sets.iter().map(|set| set.group.clone()).collect();
         known.dedup();
         if let Some(unknown) = sets.iter().find(|set| !known.contains(set)) {
@@ -182,23 +179,23 @@ impl Definition {
 type Texts<'a> = dyn Fn(&Path, &str) -> Result<String, String> + 'a;
 
 /// A definition that is being read.
-struct Reading<'a> {
+struct DefinitionReader<'a> {
     path: &'a Path,
     text: &'a str,
     texts: &'a Texts<'a>,
     seed: Option<u64>,
 }
 
-impl Reading<'_> {
-    fn at(&self, span: Range<usize>, found: &str, expected: &str, advice: &str) -> Failure {
-        Failure::at(self.path, self.text, span, found, expected, advice)
+impl DefinitionReader<'_> {
+    fn at(&self, own: &Name, found: &str, expected: &str, advice: &str) -> Failure {
+        Failure::at(self.path, self.text, own.span(), found, expected, advice)
     }
 
     /// A name that files are called by.
     fn file_name(&self, own: &Name) -> Result<(), Failure> {
         let unfit = |unfit: name::Unfit| {
             let found = format!("it is called {}", name::shown(own.get_ref()));
-            self.at(own.span(), &found, &unfit.to_string(), "give it another name")
+            self.at(own, &found, &unfit.to_string(), "give it another name")
         };
         name::file(own.get_ref()).map_err(unfit)
     }
@@ -207,13 +204,12 @@ impl Reading<'_> {
         let mut known: Vec<&str> = Vec::new();
         for own in names {
             let text = own.get_ref().as_str();
-            name::label(text).map_err(|unfit| {
-                let found = format!("a {what} is called {}", name::shown(text));
-                self.at(own.span(), &found, &unfit.to_string(), "give it another name")
-            })?;
+            let refuse = |found: String, expected: &str| Err(self.at(own, &found, expected, "give it another name"));
+            if let Err(unfit) = name::label(text) {
+                return refuse(format!("a {what} is called {}", name::shown(text)), &unfit.to_string());
+            }
             if known.contains(&text) {
-                let found = format!("two {what}s are called {text:?}");
-                return Err(self.at(own.span(), &found, "expected a name of its own", "give it another name"));
+                return refuse(format!("two {what}s are called {text:?}"), "expected a name of its own");
             }
             known.push(text);
         }
@@ -226,200 +222,192 @@ impl Reading<'_> {
         let place = self.path.parent().unwrap_or(Path::new("")).join(file);
         let text = (self.texts)(&place, file).map_err(|error| {
             let found = format!("{} cannot be used: {error}", name::shown(file));
-            self.at(own.span(), &found, "expected a file beside the definition", "mend the name, or put the file there")
+            self.at(own, &found, "expected a file beside the definition", "mend the name, or put the file there")
         })?;
         digest.update(&text);
         Ok((place, text))
     }
 
-    fn measured(&self, wire: &MeasuredWire, digest: &mut Sha256) -> Result<Set, Failure> {
+    fn measured(&self, wire: MeasuredWire, digest: &mut Sha256) -> Result<RecordSet, Failure> {
         self.distinct(wire.record.iter().map(|record| &record.name), "record")?;
-        let member = |record: &RecordWire| self.member(&record.name, &record.manoeuvre, "mend its manoeuvre");
-        let records = wire.record.iter().map(member).collect::<Result<Vec<_>, _>>()?;
         let copies = wire.record.iter().map(|record| self.copies(record, digest)).collect::<Result<_, _>>()?;
-        let ship = wire.tasks.indices.iter().chain(&wire.tasks.name).next();
-        if let Some(of_a_ship) = ship {
+        if let Some(own) = wire.tasks.indices.iter().chain(&wire.tasks.name).next() {
             let found = "a measured ship is asked for what nobody knows";
-            return Err(self.at(of_a_ship.span(), found, "only simulated ships have it", "leave it out"));
+            return Err(self.at(own, found, "only simulated ships have it", "leave it out"));
         }
-        Ok(Set {
-            name: wire.name.get_ref().clone(),
-            group: wire.name.get_ref().clone(),
-            title: wire.title.clone(),
+        let record =
+            |own: &RecordWire| SetRecord { name: own.name.get_ref().clone(), manoeuvre: own.manoeuvre.clone() };
+        let records: Vec<SetRecord> = wire.record.iter().map(record).collect();
+        let name = wire.name.into_inner();
+        Ok(RecordSet {
+            group: name.clone(),
+            name,
+            title: wire.title,
             questions: self.questions(&wire.tasks, &records)?,
             records,
-            source: Source::Measured {
-                download: wire.download.clone(),
-                licence: wire.licence.clone(),
-                cite: wire.cite.clone(),
-                copies,
-            },
+            source: SetSource::Measured { origin: [wire.download, wire.licence, wire.cite], copies },
         })
-    }
-
-    fn member(&self, own: &Name, manoeuvre: &Manoeuvre, advice: &str) -> Result<Member, Failure> {
-        let words = words(manoeuvre).ok_or_else(|| {
-            let found = format!("{} is no zig-zag and no turning circle", own.get_ref());
-            self.at(own.span(), &found, "expected one of the two", advice)
-        })?;
-        Ok(Member { name: own.get_ref().clone(), manoeuvre: manoeuvre.clone(), words })
     }
 
     fn copies(&self, record: &RecordWire, digest: &mut Sha256) -> Result<Vec<RecordFile>, Failure> {
         if record.copies.is_empty() {
             let found = format!("{} has no file", name::shown(record.name.get_ref()));
-            return Err(self.at(record.name.span(), &found, "expected at least one of `copies`", "add one"));
+            return Err(self.at(&record.name, &found, "expected at least one of `copies`", "add one"));
         }
         let mut copies = Vec::new();
         for wire in &record.copies {
             let sha256 = wire.sha256.get_ref().to_ascii_lowercase();
             if sha256.len() != 64 || !sha256.bytes().all(|digit| digit.is_ascii_hexdigit()) {
                 let found = format!("the SHA-256 of {} is {}", wire.file, name::shown(&sha256));
-                return Err(self.at(wire.sha256.span(), &found, "expected 64 hexadecimal digits", "see sha256sum"));
+                return Err(self.at(&wire.sha256, &found, "expected 64 hexadecimal digits", "see sha256sum"));
             }
-            let sidecar = match &wire.sidecar {
-                None => None,
-                Some(own) => {
-                    let (place, text) = self.beside(own, digest)?;
-                    Some(Sidecar::parse(&text, &place).map_err(Failure::input)?)
-                }
-            };
-            copies.push(RecordFile { file: wire.file.clone(), sha256, sidecar });
+            let sidecar = wire.sidecar.as_ref().map(|own| {
+                let (place, text) = self.beside(own, digest)?;
+                Sidecar::parse(&text, &place).map_err(Failure::input)
+            });
+            copies.push(RecordFile { file: wire.file.clone(), sha256, sidecar: sidecar.transpose()? });
         }
         Ok(copies)
     }
 
-    fn simulated(&self, wire: &SimulatedWire, digest: &mut Sha256) -> Result<Vec<Set>, Failure> {
+    fn simulated(&self, wire: &SimulatedWire, digest: &mut Sha256) -> Result<Vec<RecordSet>, Failure> {
         self.distinct(wire.records.iter(), "record")?;
         if wire.name.get_ref() == MEASURED {
             let found = format!("a simulated set is called {MEASURED:?}");
-            return Err(self.at(
-                wire.name.span(),
-                &found,
-                "expected another name",
-                "the measured sets are called that",
-            ));
+            return Err(self.at(&wire.name, &found, "expected another name", "the measured sets are called that"));
         }
         let (place, text) = self.beside(&wire.scenario, digest)?;
         let scenario = Arc::new(Scenario::parse(&place, wire.name.get_ref(), text, self.seed)?);
-        let several = scenario.cells.len() > 1;
-        let of_cell = |cell: usize| {
-            let own = &scenario.cells[cell];
-            let refuse = |at: &Name, found: String, expected: &str, advice: &str| {
-                Err(self.at(at.span(), &found, expected, advice))
-            };
-            if own.records() != wire.records.len() {
-                let found = format!("a trial of {} has {} records", place.display(), own.records());
-                return refuse(&wire.scenario, found, "expected as many names as records", "mend `records`");
-            }
-            let key = crate::engine::key(&scenario, Replicate { cell, replicate: 0 });
-            let first = own.specimen(&key).map_err(Failure::input)?;
-            let made = first.specification.records(&key).map(|(simulation, _)| &simulation.manoeuvre);
-            let member = |(name, made)| self.member(name, made, "change the manoeuvre in the scenario");
-            let records = wire.records.iter().zip(made).map(member).collect::<Result<Vec<_>, _>>()?;
-            if let Some(at) = wire.tasks.indices.first().filter(|_| !own.is_first_order()) {
-                let found = format!("{} is asked for K and T", own.title());
-                return refuse(at, found, "expected a ship that is first order", "leave it out");
-            }
-            let missing = own.missing();
-            if let Some(at) = wire.tasks.name.first().filter(|_| missing.len() > 1 || missing.iter().any(|m| m == HULL))
-            {
-                let found = format!("{} lacks {}", own.title(), missing.join(", "));
-                return refuse(at, found, "expected one effect of the list, or none", "leave it out");
-            }
-            Ok(Set {
-                name: if several { format!("{}, {}", wire.name.get_ref(), own.title()) } else { scenario.name.clone() },
-                group: wire.name.get_ref().clone(),
-                title: wire.title.clone(),
-                questions: self.questions(&wire.tasks, &records)?,
-                records,
-                source: Source::Simulated { scenario: Arc::clone(&scenario), cell },
-            })
-        };
-        (0..scenario.cells.len()).map(of_cell).collect()
+        (0..scenario.cells.len()).map(|cell| self.cell(wire, &place, &scenario, cell)).collect()
     }
 
-    fn questions(&self, tasks: &TasksWire, records: &[Member]) -> Result<Vec<Question>, Failure> {
-        let places: BTreeMap<&str, usize> =
-            records.iter().enumerate().map(|(place, member)| (member.name.as_str(), place)).collect();
+    /// The set of one cell of a scenario.
+    fn cell(
+        &self,
+        wire: &SimulatedWire,
+        place: &Path,
+        scenario: &Arc<Scenario>,
+        cell: usize,
+    ) -> Result<RecordSet, Failure> {
+        let own = &scenario.cells[cell];
+        let refuse =
+            |at: &Name, found: String, expected: &str, advice: &str| Err(self.at(at, &found, expected, advice));
+        if own.records() != wire.records.len() {
+            let found = format!("a trial of {} has {} records", place.display(), own.records());
+            return refuse(&wire.scenario, found, "expected as many names as records", "mend `records`");
+        }
+        let key = crate::engine::key(scenario, Task { cell, replicate: 0 });
+        let first = own.specimen(&key).map_err(Failure::input)?;
+        let mut records = Vec::new();
+        for (name, (simulation, _)) in wire.records.iter().zip(first.specification.records(&key)) {
+            let manoeuvre = simulation.manoeuvre.clone();
+            if !matches!(manoeuvre, Manoeuvre::ZigZag { .. } | Manoeuvre::TurningCircle { .. }) {
+                let found = format!("{} is no zig-zag and no turning circle", name.get_ref());
+                return refuse(name, found, "expected one of the two", "change the manoeuvre in the scenario");
+            }
+            records.push(SetRecord { name: name.get_ref().clone(), manoeuvre });
+        }
+        if let Some(at) = wire.tasks.indices.first().filter(|_| !own.is_first_order()) {
+            let found = format!("{} is asked for K and T", own.title());
+            return refuse(at, found, "expected a ship that is first order", "leave it out");
+        }
+        let missing = own.missing();
+        if let Some(at) = wire.tasks.name.first().filter(|_| missing.len() > 1 || missing.iter().any(|m| m == HULL)) {
+            let found = format!("{} lacks {}", own.title(), missing.join(", "));
+            return refuse(at, found, "expected one effect of the list, or none", "leave it out");
+        }
+        let group = wire.name.get_ref().clone();
+        let several = scenario.cells.len() > 1;
+        Ok(RecordSet {
+            name: if several { format!("{group}, {}", own.title()) } else { scenario.name.clone() },
+            group,
+            title: wire.title.clone(),
+            questions: self.questions(&wire.tasks, &records)?,
+            records,
+            source: SetSource::Simulated { scenario: Arc::clone(scenario), cell },
+        })
+    }
+
+    fn questions(&self, tasks: &TasksWire, records: &[SetRecord]) -> Result<Vec<Question>, Failure> {
         let place = |own: &Name| {
-            places.get(own.get_ref().as_str()).copied().ok_or_else(|| {
-                let known: Vec<&str> = records.iter().map(|member| member.name.as_str()).collect();
+            let known = || records.iter().map(|record| record.name.as_str());
+            known().position(|name| name == own.get_ref()).ok_or_else(|| {
                 let found = format!("there is no record {}", name::shown(own.get_ref()));
-                let advice = scenario::problem::suggestion(own.get_ref(), &known);
-                self.at(own.span(), &found, "expected a record of the set", &advice)
+                let advice = scenario::problem::suggestion(own.get_ref(), &known().collect::<Vec<_>>());
+                self.at(own, &found, "expected a record of the set", &advice)
             })
         };
         let mut questions = Vec::new();
-        for (task, own) in
-            [(Task::Identify, &tasks.identify), (Task::Indices, &tasks.indices), (Task::Name, &tasks.name)]
-        {
-            for record in own {
-                let fit = place(record)?;
-                questions.push(Question { task, fit: vec![fit], score: (task == Task::Identify).then_some(fit) });
-            }
+        let alone = [
+            (BenchTask::Identify, &tasks.identify),
+            (BenchTask::Indices, &tasks.indices),
+            (BenchTask::Name, &tasks.name),
+        ];
+        for (task, record) in alone.iter().flat_map(|(task, own)| own.iter().map(move |record| (*task, record))) {
+            let fit = place(record)?;
+            questions.push(Question { task, fit: vec![fit], score: (task == BenchTask::Identify).then_some(fit) });
         }
-        for (task, own) in [
-            (Task::OtherSide, &tasks.other_side),
-            (Task::OtherAmplitude, &tasks.other_amplitude),
-            (Task::Circle, &tasks.circle),
-        ] {
-            for PredictionWire { fit, score, pairs } in own {
-                let asked: Vec<(Vec<&Name>, &Name)> = match (fit.as_slice(), score.as_slice(), pairs.as_slice()) {
-                    ([_, ..], score @ [_, ..], []) => score.iter().map(|one| (fit.iter().collect(), one)).collect(),
-                    ([], [], [_, _, ..]) => {
-                        let of = |one: usize| (0..pairs.len()).filter(move |&other| other != one);
-                        let both = |one: usize| of(one).map(move |other| (vec![&pairs[one]], &pairs[other]));
-                        (0..pairs.len()).flat_map(both).collect()
-                    }
-                    _ => {
-                        let first = fit.iter().chain(score).chain(pairs).next().map_or(0..0, Name::span);
-                        let found = format!("a prediction of `{}` is not whole", task.id());
-                        let expected = "expected `fit` and `score`, or two or more `pairs`";
-                        return Err(self.at(first, &found, expected, "write { fit = [\"a\"], score = [\"b\"] }"));
-                    }
-                };
-                for (fit, score) in asked {
-                    let fitted = fit.into_iter().map(place).collect::<Result<Vec<usize>, _>>()?;
-                    let scored = place(score)?;
-                    let made: Vec<&Manoeuvre> = fitted.iter().map(|&one| &records[one].manoeuvre).collect();
-                    if let Err(expected) = is_that(task, &made, &records[scored].manoeuvre) {
-                        let words: Vec<&str> = fitted.iter().map(|&one| records[one].words.as_str()).collect();
-                        let found = format!("`{}` from {} to {}", task.id(), words.join("; "), records[scored].words);
-                        return Err(self.at(
-                            score.span(),
-                            &found,
-                            expected,
-                            "name another record, or mend its manoeuvre",
-                        ));
-                    }
-                    questions.push(Question { task, fit: fitted, score: Some(scored) });
+        let predicted = [
+            (BenchTask::OtherSide, &tasks.other_side),
+            (BenchTask::OtherAmplitude, &tasks.other_amplitude),
+            (BenchTask::Circle, &tasks.circle),
+        ];
+        for (task, wire) in predicted.iter().flat_map(|(task, own)| own.iter().map(move |wire| (*task, wire))) {
+            for (fit, score) in self.pairs(task, wire)? {
+                let (fit, scored) = (fit.into_iter().map(place).collect::<Result<Vec<usize>, _>>()?, place(score)?);
+                let fitted: Vec<Manoeuvre> = fit.iter().map(|&one| records[one].manoeuvre.clone()).collect();
+                if let Err(expected) = is_that(task, &fitted, &records[scored].manoeuvre) {
+                    let fitted: Vec<String> = fitted.iter().map(words).collect();
+                    let to = words(&records[scored].manoeuvre);
+                    let found = format!("`{}` from {} to {to}", task.id(), fitted.join("; "));
+                    return Err(self.at(score, &found, expected, "name another record, or mend its manoeuvre"));
                 }
+                questions.push(Question { task, fit, score: Some(scored) });
             }
         }
         Ok(questions)
     }
+
+    /// Which records are fitted together, and which one is scored.
+    fn pairs<'n>(&self, task: BenchTask, wire: &'n PredictionWire) -> Result<Vec<(Vec<&'n Name>, &'n Name)>, Failure> {
+        let PredictionWire { fit, score, pairs } = wire;
+        match (fit.as_slice(), score.as_slice(), pairs.as_slice()) {
+            ([_, ..], [_, ..], []) => Ok(score.iter().map(|one| (fit.iter().collect(), one)).collect()),
+            ([], [], [_, _, ..]) => {
+                let others = |one: usize| (0..pairs.len()).filter(move |&other| other != one);
+                let both = |one: usize| others(one).map(move |other| (vec![&pairs[one]], &pairs[other]));
+                Ok((0..pairs.len()).flat_map(both).collect())
+            }
+            _ => {
+                let span = fit.iter().chain(score).chain(pairs).next().map_or(0..0, Name::span);
+                let found = format!("a prediction of `{}` is not whole", task.id());
+                let expected = "expected `fit` and `score`, or two or more `pairs`";
+                let advice = "write { fit = [\"a\"], score = [\"b\"] }";
+                Err(Failure::at(self.path, self.text, span, &found, expected, advice))
+            }
+        }
+    }
 }
 
 /// Whether a prediction from some manoeuvres to another one is what its task says; fails with what was expected.
-fn is_that(task: Task, fitted: &[&Manoeuvre], scored: &Manoeuvre) -> Result<(), &'static str> {
+fn is_that(task: BenchTask, fitted: &[Manoeuvre], scored: &Manoeuvre) -> Result<(), &'static str> {
     let zig_zag = |manoeuvre: &Manoeuvre| match *manoeuvre {
         Manoeuvre::ZigZag { rudder, heading, first, .. } => Some(([rudder, heading], first)),
         _ => None,
     };
-    let Some(fitted) = fitted.iter().copied().map(zig_zag).collect::<Option<Vec<_>>>() else {
+    let Some(fitted) = fitted.iter().map(zig_zag).collect::<Option<Vec<_>>>() else {
         return Err("expected zig-zags to be fitted");
     };
     let holds = match (task, zig_zag(scored)) {
-        (Task::OtherSide, Some((angles, first))) => fitted.iter().all(|own| own.0 == angles && own.1 != first),
-        (Task::OtherAmplitude, Some((angles, _))) => fitted.iter().all(|own| own.0 != angles),
-        (Task::Circle, None) => true,
+        (BenchTask::OtherSide, Some((angles, first))) => fitted.iter().all(|own| own.0 == angles && own.1 != first),
+        (BenchTask::OtherAmplitude, Some((angles, _))) => fitted.iter().all(|own| own.0 != angles),
+        (BenchTask::Circle, None) => true,
         _ => false,
     };
     match task {
         _ if holds => Ok(()),
-        Task::OtherSide => Err("expected a zig-zag of the same angles to the other side first"),
-        Task::OtherAmplitude => Err("expected a zig-zag of another rudder or heading angle"),
+        BenchTask::OtherSide => Err("expected a zig-zag of the same angles to the other side first"),
+        BenchTask::OtherAmplitude => Err("expected a zig-zag of another rudder or heading angle"),
         _ => Err("expected a turning circle to be scored"),
     }
 }

@@ -1,18 +1,22 @@
 //! Who takes part in a benchmark: methods that identify, a trace, and a floor below which nobody should be.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::sync::Arc;
 
-use crate::statistics::Moments;
+use ::trace::Analysis;
 use ::trace::document::EffectEntry;
 use ::trace::record::Record;
-use ::trace::{Analysis, TraceError};
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, registry};
 use scenario::failure::Failure;
 use scenario::{TRACE, name};
 use simulate::StreamKey;
 use trial::{Channel, Quantity, Trial};
+
+use crate::benchmark::statistics::grouped;
+use crate::engine::failure;
+use crate::statistics::Moments;
 
 /// Label of the method that takes every ship to go straight on.
 pub const STRAIGHT_ON: &str = "straight-on";
@@ -25,19 +29,19 @@ pub const TRACE_OF_HEADING: &str = "trace-of-heading";
 const COMMON: [Channel; 3] = [Channel::Heading, Channel::Rudder, Channel::YawRate];
 
 /// A method with its label.
-pub struct Method {
+pub struct BenchMethod {
     label: String,
-    procedure: Procedure,
+    procedure: BenchProcedure,
 }
 
-enum Procedure {
+enum BenchProcedure {
     Identify(Arc<dyn Identifier>),
     Trace { of_heading: bool },
     StraightOn,
 }
 
 /// What a method made of some records.
-pub enum Model {
+pub enum BenchModel {
     /// A first-order response.
     Response(Box<Estimate>),
     /// A response with what it was found to lack.
@@ -55,10 +59,16 @@ pub struct Failed {
     pub reason: String,
 }
 
-impl Method {
+impl Failed {
+    pub(super) fn of(kind: &str, reason: &dyn fmt::Display) -> Self {
+        Self { kind: kind.to_owned(), reason: reason.to_string() }
+    }
+}
+
+impl BenchMethod {
     /// A method of anybody's under a label.
     pub fn new(label: impl Into<String>, identifier: Arc<dyn Identifier>) -> Self {
-        Self { label: label.into(), procedure: Procedure::Identify(identifier) }
+        Self { label: label.into(), procedure: BenchProcedure::Identify(identifier) }
     }
 
     /// The methods of the project, in the order of reports: those that identify a first-order response, the trace with
@@ -70,9 +80,9 @@ impl Method {
         };
         let mut methods: Vec<Self> = registry::defaults().iter().map(own).collect();
         let others = [
-            (TRACE, Procedure::Trace { of_heading: false }),
-            (TRACE_OF_HEADING, Procedure::Trace { of_heading: true }),
-            (STRAIGHT_ON, Procedure::StraightOn),
+            (TRACE, BenchProcedure::Trace { of_heading: false }),
+            (TRACE_OF_HEADING, BenchProcedure::Trace { of_heading: true }),
+            (STRAIGHT_ON, BenchProcedure::StraightOn),
         ];
         methods.extend(others.map(|(label, procedure)| Self { label: label.into(), procedure }));
         methods
@@ -86,47 +96,44 @@ impl Method {
     /// One line on what it does.
     pub fn summary(&self) -> &str {
         match &self.procedure {
-            Procedure::Identify(identifier) => identifier.summary(),
-            Procedure::Trace { of_heading: false } => {
+            BenchProcedure::Identify(identifier) => identifier.summary(),
+            BenchProcedure::Trace { of_heading: false } => {
                 "a first-order response with every effect that is found missing; it reads speed, sway and wind too, those of \
                  the record that is scored among them"
             }
-            Procedure::Trace { of_heading: true } => "the same from heading, yaw rate and rudder alone, as all others",
-            Procedure::StraightOn => "a ship that keeps its heading: the floor",
+            BenchProcedure::Trace { of_heading: true } => {
+                "the same from heading, yaw rate and rudder alone, as all others"
+            }
+            BenchProcedure::StraightOn => "a ship that keeps its heading: the floor",
         }
     }
 
     /// Whether it says K and T of a ship.
     pub fn has_indices(&self) -> bool {
-        !matches!(self.procedure, Procedure::StraightOn)
+        !matches!(self.procedure, BenchProcedure::StraightOn)
     }
 
     /// Whether it names what a first-order response lacks.
     pub fn names_effects(&self) -> bool {
-        matches!(self.procedure, Procedure::Trace { .. })
+        matches!(self.procedure, BenchProcedure::Trace { .. })
     }
 
     /// Makes a model of all records together; `key` is that of its own chance.
-    pub fn fit(&self, trials: &[Trial], key: &StreamKey) -> Result<Model, Failed> {
+    pub fn fit(&self, trials: &[Trial], key: &StreamKey) -> Result<BenchModel, Failed> {
         match &self.procedure {
-            Procedure::StraightOn => Ok(Model::StraightOn),
-            Procedure::Identify(identifier) => scenario::identify(identifier.as_ref(), trials, key)
-                .map(|estimate| Model::Response(Box::new(estimate)))
-                .map_err(|error| Failed { kind: error.kind().into(), reason: error.to_string() }),
-            Procedure::Trace { of_heading } => {
+            BenchProcedure::StraightOn => Ok(BenchModel::StraightOn),
+            BenchProcedure::Identify(identifier) => scenario::identify(identifier.as_ref(), trials, key)
+                .map(|estimate| BenchModel::Response(Box::new(estimate)))
+                .map_err(|error| Failed::of(error.kind(), &error)),
+            BenchProcedure::Trace { of_heading } => {
                 let shown: Cow<[Trial]> = match of_heading {
                     true => trials.iter().map(of_common).collect(),
                     false => trials.into(),
                 };
                 let settings = ::trace::Settings { thorough: false, ..::trace::Settings::default() };
-                let kind = |error: &TraceError| match error {
-                    TraceError::Base(error) => error.kind(),
-                    TraceError::Replay { .. } => "not-finite",
-                    TraceError::Settings(_) | TraceError::Asked { .. } => "settings",
-                };
                 ::trace::trace(&shown, &[], &settings)
-                    .map(|analysis| Model::Traced(Box::new(analysis)))
-                    .map_err(|error| Failed { kind: kind(&error).into(), reason: error.to_string() })
+                    .map(|analysis| BenchModel::Traced(Box::new(analysis)))
+                    .map_err(|error| Failed::of(failure(&error), &error))
             }
         }
     }
@@ -135,12 +142,11 @@ impl Method {
 /// A record without what some methods do not read.
 fn of_common(trial: &Trial) -> Trial {
     let more = trial.channels().map(|(channel, _)| channel).filter(|channel| !COMMON.contains(channel));
-    let more: Vec<Channel> = more.collect();
-    trial.clone().without(&more)
+    trial.clone().without(&more.collect::<Vec<Channel>>())
 }
 
 /// Checks that methods can be told apart.
-pub fn distinct(methods: &[Method]) -> Result<(), Failure> {
+pub fn distinct(methods: &[BenchMethod]) -> Result<(), Failure> {
     for (place, method) in methods.iter().enumerate() {
         let label = &method.label;
         name::file(label)
@@ -153,7 +159,7 @@ pub fn distinct(methods: &[Method]) -> Result<(), Failure> {
     Ok(())
 }
 
-impl Model {
+impl BenchModel {
     /// Root mean square heading error, rad, of the rudder of a record replayed; only the initial state is fitted.
     /// `fitted` is the number of the record among those of the fit, where it is one. `None` when the replay is not
     /// finite.
@@ -191,13 +197,8 @@ impl Model {
     pub fn named(&self) -> Option<Vec<Vec<String>>> {
         let Self::Traced(analysis) = self else { return None };
         let group = |effect: &EffectEntry| {
-            let mut ids = vec![effect.id.clone()];
-            for alias in &effect.aliases {
-                if !ids.contains(alias) {
-                    ids.push(alias.clone());
-                }
-            }
-            ids
+            let ids = std::iter::once(&effect.id).chain(&effect.aliases).cloned();
+            grouped(ids, String::clone).into_iter().map(|(id, _)| id).collect()
         };
         Some(analysis.document.effects.iter().map(group).collect())
     }
@@ -207,14 +208,9 @@ impl Model {
 /// belong to no ship; here they count, as they do for everybody else.
 fn error_on(trial: &Trial, replay: &Replay) -> f64 {
     let first = trial.time().partition_point(|&time| time < replay.time[0]);
-    let (mut square, mut rows) = (0.0, 0usize);
-    for (measured, replayed) in trial.heading()[first..].iter().zip(&replay.heading) {
-        if measured.is_finite() {
-            square += (measured - replayed).powi(2);
-            rows += 1;
-        }
-    }
-    (square / rows as f64).sqrt()
+    let rows = trial.heading()[first..].iter().zip(&replay.heading).filter(|(measured, _)| measured.is_finite());
+    let square: f64 = rows.clone().map(|(measured, replayed)| (measured - replayed).powi(2)).sum();
+    (square / rows.count() as f64).sqrt()
 }
 
 /// Initial states near which the best is looked for: with no yaw rate, and with the one that was measured.

@@ -1,16 +1,15 @@
 //! A benchmark of methods that identify ships from zig-zag trials.
 //!
 //! A [`Definition`] says which records are fitted and which are scored. Measured records are found by name and
-//! checksum, simulated ones are made by the engine of studies. Every [`Method`] gets the same records; an answer is
+//! checksum, simulated ones are made by the engine of studies. Every [`BenchMethod`] gets the same records; an answer is
 //! scored by what it says of a record or a ship, a failed one is a row with its reason.
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | the definition as a file, and its checks | [`definition`], `wire`, `embedded` |
-//! | how measured records are found | [`shelf`] |
+//! | how measured records are found | [`record_store`] |
 //! | who takes part, and what an answer can do | [`method`] |
-//! | what is asked | [`task`] |
-//! | all records, all answers | [`mod@run`], [`cases`] |
+//! //! | what is asked and answered | [`mod@run`], [`cases`] |
 //! | leaderboards | [`board`], [`naming`], [`overall`], `statistics` |
 //! | the whole result, as it is stored | [`results`] |
 
@@ -21,16 +20,15 @@ mod embedded;
 pub mod method;
 pub mod naming;
 pub mod overall;
+pub mod record_store;
 pub mod results;
 pub mod run;
-pub mod shelf;
 mod statistics;
-pub mod task;
 mod wire;
 
+pub use cases::BenchTask;
 pub use definition::Definition;
-pub use method::Method;
-pub use results::Results;
-pub use run::{Entry, run};
-pub use shelf::Shelf;
-pub use task::Task;
+pub use method::BenchMethod;
+pub use record_store::RecordStore;
+pub use results::BenchDocument;
+pub use run::run;

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::benchmark::board::Share;
-use crate::benchmark::cases::{Case, Naming};
-use crate::benchmark::task::Task;
+use crate::benchmark::board::WilsonShare;
+use crate::benchmark::cases::{BenchCase, BenchTask, Naming};
+use crate::benchmark::statistics::grouped;
 
 /// What a method said of the ships of one set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,42 +20,18 @@ pub struct NamingLine {
     pub counts: [usize; Naming::ALL.len()],
     /// Trials without an answer.
     pub failed: usize,
-    /// Share of trials in which the answer is right or holds what is missing among aliases, and nothing else.
-    pub named: Share,
-}
-
-impl Naming {
-    /// All of them, the best first.
-    pub const ALL: [Self; 5] = [Self::Right, Self::Alias, Self::More, Self::Wrong, Self::Nothing];
-
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Right => "right",
-            Self::Alias => "among aliases",
-            Self::More => "and more",
-            Self::Wrong => "wrong",
-            Self::Nothing => "nothing",
-        }
-    }
+    /// WilsonShare of trials in which the answer is right or holds what is missing among aliases, and nothing else.
+    pub named: WilsonShare,
 }
 
 /// The lines of all methods, set by set.
-pub fn lines(cases: &[Case], methods: &[String]) -> Vec<NamingLine> {
-    let own: Vec<&Case> = cases.iter().filter(|case| case.task == Task::Name).collect();
-    let mut sets: Vec<&str> = own.iter().map(|case| case.set.as_str()).collect();
-    sets.dedup();
-    let mut lines = Vec::new();
-    for method in methods {
-        for set in &sets {
-            let of_set: Vec<&&Case> = own.iter().filter(|case| case.set == *set).collect();
-            lines.extend(line(method, set, &of_set));
-        }
-    }
-    lines
+pub fn lines(cases: &[BenchCase], methods: &[String]) -> Vec<NamingLine> {
+    let own = cases.iter().filter(|case| case.task == BenchTask::Name);
+    let sets = grouped(own, |case| case.set.as_str());
+    methods.iter().flat_map(|method| sets.iter().filter_map(|(set, cases)| line(method, set, cases))).collect()
 }
 
-fn line(method: &str, set: &str, cases: &[&&Case]) -> Option<NamingLine> {
+fn line(method: &str, set: &str, cases: &[&BenchCase]) -> Option<NamingLine> {
     let answers = || cases.iter().flat_map(|case| &case.answers).filter(|answer| answer.method == method);
     let counts = Naming::ALL.map(|one| answers().filter(|answer| answer.naming == Some(one)).count());
     Some(NamingLine {
@@ -63,7 +39,7 @@ fn line(method: &str, set: &str, cases: &[&&Case]) -> Option<NamingLine> {
         set: set.to_owned(),
         missing: cases.first()?.missing.clone(),
         failed: answers().filter(|answer| answer.naming.is_none()).count(),
-        named: Share::new(counts[0] + counts[1], answers().count())?,
+        named: WilsonShare::new(counts[0] + counts[1], answers().count())?,
         counts,
     })
 }
@@ -77,5 +53,5 @@ pub fn total(lines: &[NamingLine], method: &str, is_missing: bool) -> Option<Nam
         ..one
     })?;
     let of = joined.counts.iter().sum::<usize>() + joined.failed;
-    Some(NamingLine { named: Share::new(joined.counts[0] + joined.counts[1], of)?, ..joined })
+    Some(NamingLine { named: WilsonShare::new(joined.counts[0] + joined.counts[1], of)?, ..joined })
 }

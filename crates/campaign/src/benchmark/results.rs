@@ -3,11 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::{Board, boards};
-use crate::benchmark::cases::Case;
-use crate::benchmark::definition::{Definition, Set, Source};
+use crate::benchmark::cases::BenchCase;
+use crate::benchmark::definition::{Definition, RecordSet, SetRecord, SetSource};
+use crate::benchmark::method::BenchMethod;
 use crate::benchmark::naming::{self, NamingLine};
-use crate::benchmark::overall::{Overall, overall};
-use crate::benchmark::shelf::UsedFile;
+use crate::benchmark::overall::{OverallRanking, overall};
+use crate::benchmark::record_store::UsedFile;
+use crate::benchmark::statistics::grouped;
+use crate::benchmark::wire::words;
 
 /// Version of the file.
 pub const SCHEMA: &str = "bench/1";
@@ -15,7 +18,7 @@ pub const SCHEMA: &str = "bench/1";
 /// The whole result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Results {
+pub struct BenchDocument {
     /// Version of the file.
     pub schema: String,
     /// What was run.
@@ -37,9 +40,9 @@ pub struct Results {
     /// What was said of missing effects.
     pub naming: Vec<NamingLine>,
     /// The ranking over all predictions.
-    pub overall: Option<Overall>,
+    pub overall: Option<OverallRanking>,
     /// Every question with every answer.
-    pub cases: Vec<Case>,
+    pub cases: Vec<BenchCase>,
 }
 
 /// Which definition was run.
@@ -98,66 +101,52 @@ pub struct Skipped {
 
 impl Present {
     /// A set with the files of its records that were found, in order, or no files where it is simulated.
-    pub(crate) fn of(set: &Set, files: Vec<Option<UsedFile>>, trials: usize) -> Self {
+    pub(super) fn of(set: &RecordSet, files: Vec<Option<UsedFile>>, trials: usize) -> Self {
         let source = match &set.source {
-            Source::Measured { download, licence, cite, .. } => Some([download.clone(), licence.clone(), cite.clone()]),
-            Source::Simulated { .. } => None,
+            SetSource::Measured { origin, .. } => Some(origin.clone()),
+            SetSource::Simulated { .. } => None,
         };
         let files = files.into_iter().chain(std::iter::repeat(None));
-        let record = |(member, file): (&crate::benchmark::definition::Member, Option<UsedFile>)| PresentRecord {
-            name: member.name.clone(),
-            manoeuvre: member.words.clone(),
+        let record = |(SetRecord { name, manoeuvre }, file): (&SetRecord, Option<UsedFile>)| PresentRecord {
+            name: name.clone(),
+            manoeuvre: words(manoeuvre),
             file,
         };
+        let records = set.records.iter().zip(files).map(record).collect();
+        Self { name: set.name.clone(), title: set.title.clone(), source, trials, records }
+    }
+}
+
+impl BenchDocument {
+    /// The result of some cases.
+    pub(super) fn of(
+        definition: &Definition,
+        methods: &[BenchMethod],
+        sets: Vec<Present>,
+        skipped: Vec<Skipped>,
+        cases: Vec<BenchCase>,
+    ) -> Self {
+        let Definition { name, about, reference, sha256, seed, .. } = definition;
+        let labels: Vec<String> = methods.iter().map(|method| method.label().to_owned()).collect();
         Self {
-            name: set.name.clone(),
-            title: set.title.clone(),
-            source,
-            trials,
-            records: set.records.iter().zip(files).map(record).collect(),
+            schema: SCHEMA.to_owned(),
+            definition: Identity { name: name.clone(), about: about.clone(), sha256: sha256.clone(), seed: *seed },
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            reference: reference.clone(),
+            boards: boards(&cases, &labels, reference),
+            naming: naming::lines(&cases, &labels),
+            overall: overall(&cases, &labels),
+            methods: labels,
+            summaries: methods.iter().map(|method| method.summary().to_owned()).collect(),
+            sets,
+            skipped,
+            cases,
         }
     }
-}
 
-/// The result of some cases.
-pub(crate) fn of(
-    definition: &Definition,
-    [methods, summaries]: [Vec<String>; 2],
-    sets: Vec<Present>,
-    skipped: Vec<Skipped>,
-    cases: Vec<Case>,
-) -> Results {
-    Results {
-        schema: SCHEMA.to_owned(),
-        definition: Identity {
-            name: definition.name.clone(),
-            about: definition.about.clone(),
-            sha256: definition.sha256.clone(),
-            seed: definition.seed,
-        },
-        program: env!("CARGO_PKG_VERSION").to_owned(),
-        reference: definition.reference.clone(),
-        boards: boards(&cases, &methods, &definition.reference),
-        naming: naming::lines(&cases, &methods),
-        overall: overall(&cases, &methods),
-        methods,
-        summaries,
-        sets,
-        skipped,
-        cases,
-    }
-}
-
-impl Results {
     /// The fields of records, in order.
     pub fn fields(&self) -> Vec<&str> {
-        let mut fields: Vec<&str> = Vec::new();
-        for board in &self.boards {
-            if !fields.contains(&board.field.as_str()) {
-                fields.push(&board.field);
-            }
-        }
-        fields
+        grouped(&self.boards, |board| board.field.as_str()).into_iter().map(|(field, _)| field).collect()
     }
 
     /// The same as JSON: everything indented, and a line for every case.

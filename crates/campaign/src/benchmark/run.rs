@@ -1,9 +1,6 @@
 //! All records, all methods, all answers. The work is shared by threads; what comes out has the order of the
 //! definition.
 
-use crate::Observer;
-use crate::engine::{simulate, truths};
-use crate::task::Task as Replicate;
 use rayon::prelude::*;
 use scenario::failure::Failure;
 use ship::FirstOrder;
@@ -11,26 +8,19 @@ use ship::angle::to_deg;
 use simulate::StreamKey;
 use trial::{Scales, Trial};
 
-use crate::benchmark::cases::{Answer, Case, MEASURED, Naming, stored};
-use crate::benchmark::definition::{Definition, Question, RecordFile, Set, Source};
-use crate::benchmark::method::{self, Failed, Method, Model};
-use crate::benchmark::results::{self, Present, Results, Skipped};
-use crate::benchmark::shelf::{Shelf, UsedFile};
-use crate::benchmark::task::Task;
-
-/// What is entered.
-pub struct Entry<'a> {
-    /// The benchmark.
-    pub definition: &'a Definition,
-    /// Where measured records are.
-    pub shelf: &'a Shelf,
-    /// Who takes part.
-    pub methods: &'a [Method],
-}
+use crate::Observer;
+use crate::benchmark::cases::{BenchCase, BenchTask, CaseAnswer, MEASURED, Naming, stored};
+use crate::benchmark::definition::{Definition, Question, RecordFile, RecordSet, SetRecord, SetSource};
+use crate::benchmark::method::{self, BenchMethod, BenchModel, Failed};
+use crate::benchmark::record_store::{RecordStore, UsedFile};
+use crate::benchmark::results::{BenchDocument, Present, Skipped};
+use crate::benchmark::statistics::grouped;
+use crate::engine::{self, simulate, truths};
+use crate::task::Task;
 
 /// The records of one set or of one trial of it.
-struct Unit<'a> {
-    set: &'a Set,
+struct BenchTrial<'a> {
+    set: &'a RecordSet,
     trial: Option<u64>,
     /// In the order of the set; none for what is not there.
     records: Vec<Option<Trial>>,
@@ -40,32 +30,36 @@ struct Unit<'a> {
 }
 
 /// Questions that have their fit in common.
-struct Fit<'a> {
-    unit: &'a Unit<'a>,
+struct SharedFit<'a> {
+    trial: &'a BenchTrial<'a>,
     questions: Vec<&'a Question>,
-    trials: Vec<Trial>,
+    records: Vec<Trial>,
 }
 
-/// Runs a benchmark.
+/// Runs a benchmark: every method on the records that are there.
 ///
 /// Fails when two methods have one label, when records of a set are of different scale, and when it is asked to stop.
-pub fn run(entry: &Entry, observer: &dyn Observer) -> Result<Results, Failure> {
-    let Entry { definition, shelf, methods } = entry;
+pub fn run(
+    definition: &Definition,
+    store: &RecordStore,
+    methods: &[BenchMethod],
+    observer: &dyn Observer,
+) -> Result<BenchDocument, Failure> {
     method::distinct(methods)?;
-    let (mut units, mut present, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut trials, mut present, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
     for (number, set) in definition.sets.iter().enumerate() {
         let (own, found) = match &set.source {
-            Source::Measured { copies, .. } => measured(set, copies, number, shelf, &mut skipped)?,
-            Source::Simulated { .. } => (simulated(set, &mut skipped), Vec::new()),
+            SetSource::Measured { copies, .. } => measured(set, copies, number, store, &mut skipped)?,
+            SetSource::Simulated { .. } => (simulated(set, &mut skipped), Vec::new()),
         };
         present.push(Present::of(set, found, own.len()));
-        units.extend(own);
+        trials.extend(own);
     }
-    let fits: Vec<Fit> = units.iter().flat_map(fits_of).collect();
-    let work: Vec<(&Fit, &Method)> =
+    let fits: Vec<SharedFit> = trials.iter().flat_map(fits_of).collect();
+    let work: Vec<(&SharedFit, &BenchMethod)> =
         fits.iter().flat_map(|fit| methods.iter().map(move |method| (fit, method))).collect();
     observer.begin(work.len() as u64, 0);
-    let answers: Vec<Option<Vec<Option<Answer>>>> = work
+    let answers: Option<Vec<Vec<Option<CaseAnswer>>>> = work
         .par_iter()
         .map(|(fit, method)| {
             let answers = (!observer.is_asked_to_stop()).then(|| answers(fit, method));
@@ -74,165 +68,130 @@ pub fn run(entry: &Entry, observer: &dyn Observer) -> Result<Results, Failure> {
         })
         .collect();
     observer.end();
-    let Some(answers) = answers.into_iter().collect::<Option<Vec<_>>>() else {
-        return Err(Failure::work("stopped; nothing was written"));
-    };
+    let answers = answers.ok_or_else(|| Failure::work("stopped; nothing was written"))?;
     let mut cases = Vec::new();
     for (fit, answers) in fits.iter().zip(answers.chunks(methods.len().max(1))) {
         for (place, question) in fit.questions.iter().enumerate() {
             let own = answers.iter().filter_map(|of_method| of_method[place].clone());
-            cases.push(case(fit.unit, question, own.collect()));
+            cases.push(case(fit.trial, question, own.collect()));
         }
     }
     cases.retain(|case| !case.answers.is_empty());
     // By task, as they are read; within a task in the order of the definition.
     cases.sort_by_key(|case| case.task);
-    let words = |of: fn(&Method) -> &str| methods.iter().map(|method| of(method).to_owned()).collect();
-    let words = [words(Method::label), words(Method::summary)];
-    Ok(results::of(definition, words, present, skipped, cases))
+    Ok(BenchDocument::of(definition, methods, present, skipped, cases))
 }
 
 fn measured<'a>(
-    set: &'a Set,
+    set: &'a RecordSet,
     copies: &[Vec<RecordFile>],
     number: usize,
-    shelf: &Shelf,
+    store: &RecordStore,
     skipped: &mut Vec<Skipped>,
-) -> Result<(Vec<Unit<'a>>, Vec<Option<UsedFile>>), Failure> {
-    let mut records = Vec::new();
-    let mut found = Vec::new();
-    for (place, (member, copies)) in set.records.iter().zip(copies).enumerate() {
+) -> Result<(Vec<BenchTrial<'a>>, Vec<Option<UsedFile>>), Failure> {
+    let mut take = |(place, (record, copies)): (usize, (&SetRecord, &Vec<RecordFile>))| {
         let is_asked_for = |question: &Question| question.fit.contains(&place) || question.score == Some(place);
         if !set.questions.iter().any(is_asked_for) {
-            found.push(None);
-            records.push(None);
-            continue;
+            return (None, None);
         }
-        match shelf.take(copies) {
-            Ok(own) => {
-                found.push(Some(own.file));
-                records.push(Some(own.trial));
-            }
+        match store.take(copies) {
+            Ok((trial, file)) => (Some(trial), Some(file)),
             Err(reason) => {
-                skipped.push(Skipped { set: set.name.clone(), record: member.name.clone(), reason });
-                found.push(None);
-                records.push(None);
+                skipped.push(Skipped { set: set.name.clone(), record: record.name.clone(), reason });
+                (None, None)
             }
         }
-    }
-    let scales = Scales::among(records.iter().flatten()).map_err(|error| error.to_string());
-    let several = match scales {
+    };
+    let (records, files): (Vec<Option<Trial>>, Vec<_>) =
+        set.records.iter().zip(copies).enumerate().map(&mut take).unzip();
+    let several = match Scales::among(records.iter().flatten()) {
         Ok(None) => None,
         Ok(Some(scales)) => Some(format!("its records are of {} scales", scales.particulars.len())),
-        Err(error) => Some(error),
+        Err(error) => Some(error.to_string()),
     };
     if let Some(why) = several {
         return Err(Failure::input(format!("set {}: {why}; make a set for every scale", set.name)));
     }
-    if records.iter().all(Option::is_none) {
-        return Ok((Vec::new(), found));
-    }
     let key = StreamKey { seed: 0, cell: number as u64, replicate: 0 };
-    Ok((vec![Unit { set, trial: None, records, truth: None, key }], found))
+    let is_there = records.iter().any(Option::is_some);
+    let trial = is_there.then(|| BenchTrial { set, trial: None, records, truth: None, key });
+    Ok((trial.into_iter().collect(), files))
 }
 
-fn simulated<'a>(set: &'a Set, skipped: &mut Vec<Skipped>) -> Vec<Unit<'a>> {
-    let Source::Simulated { scenario, cell } = &set.source else { return Vec::new() };
-    let trials: Vec<Result<Unit, Skipped>> = (0..scenario.replicates)
-        .into_par_iter()
-        .map(|replicate| {
-            let task = Replicate { cell: *cell, replicate };
-            let refused = |reason| Skipped { set: set.name.clone(), record: format!("trial {replicate}"), reason };
-            let records = simulate(scenario, task).map_err(refused)?;
-            let truth = match scenario.cells[*cell].is_first_order() {
-                true => truths(scenario, task).map_err(refused)?.nearest,
-                false => None,
-            };
-            let records = records.into_iter().map(|simulated| Some(simulated.trial)).collect();
-            Ok(Unit { set, trial: Some(replicate), records, truth, key: crate::engine::key(scenario, task) })
-        })
-        .collect();
-    let mut units = Vec::new();
-    for trial in trials {
-        match trial {
-            Ok(unit) => units.push(unit),
-            Err(refused) => skipped.push(refused),
-        }
-    }
-    units
+fn simulated<'a>(set: &'a RecordSet, skipped: &mut Vec<Skipped>) -> Vec<BenchTrial<'a>> {
+    let SetSource::Simulated { scenario, cell } = &set.source else { return Vec::new() };
+    let of_replicate = |replicate: u64| {
+        let task = Task { cell: *cell, replicate };
+        let refused = |reason| Skipped { set: set.name.clone(), record: format!("trial {replicate}"), reason };
+        let records = simulate(scenario, task).map_err(refused)?;
+        let truth = match scenario.cells[*cell].is_first_order() {
+            true => truths(scenario, task).map_err(refused)?.nearest,
+            false => None,
+        };
+        let records = records.into_iter().map(|simulated| Some(simulated.trial)).collect();
+        Ok(BenchTrial { set, trial: Some(replicate), records, truth, key: engine::key(scenario, task) })
+    };
+    let trials: Vec<Result<BenchTrial, Skipped>> = (0..scenario.replicates).into_par_iter().map(of_replicate).collect();
+    trials.into_iter().filter_map(|trial| trial.map_err(|refused| skipped.push(refused)).ok()).collect()
 }
 
-/// The questions of a unit whose records are there, those with one fit together.
-fn fits_of<'a>(unit: &'a Unit<'a>) -> Vec<Fit<'a>> {
-    let mut fits: Vec<(&[usize], Fit)> = Vec::new();
-    let is_there = |record: &usize| unit.records[*record].is_some();
-    for question in &unit.set.questions {
-        if !question.fit.iter().chain(&question.score).all(is_there) {
-            continue;
-        }
-        match fits.iter_mut().find(|(own, _)| *own == question.fit.as_slice()) {
-            Some((_, fit)) => fit.questions.push(question),
-            None => {
-                let trials = question.fit.iter().filter_map(|&record| unit.records[record].clone()).collect();
-                fits.push((&question.fit, Fit { unit, questions: vec![question], trials }));
-            }
-        }
-    }
-    fits.into_iter().map(|(_, fit)| fit).collect()
+/// The questions of a trial whose records are there, those with one fit together.
+fn fits_of<'a>(trial: &'a BenchTrial<'a>) -> impl Iterator<Item = SharedFit<'a>> {
+    let is_there = |record: &usize| trial.records[*record].is_some();
+    let asked = trial.set.questions.iter().filter(move |own| own.fit.iter().chain(&own.score).all(is_there));
+    grouped(asked, |question| question.fit.as_slice()).into_iter().map(|(fit, questions)| {
+        let records = fit.iter().filter_map(|&record| trial.records[record].clone()).collect();
+        SharedFit { trial, questions, records }
+    })
 }
 
 /// The answers of a method to the questions of a fit; none to what it does not answer at all.
-fn answers(fit: &Fit, method: &Method) -> Vec<Option<Answer>> {
-    let takes_part = |task: Task| match task {
-        Task::Indices => method.has_indices(),
-        Task::Name => method.names_effects(),
+fn answers(fit: &SharedFit, method: &BenchMethod) -> Vec<Option<CaseAnswer>> {
+    let takes_part = |task: BenchTask| match task {
+        BenchTask::Indices => method.has_indices(),
+        BenchTask::Name => method.names_effects(),
         _ => true,
     };
     if !fit.questions.iter().any(|question| takes_part(question.task)) {
         return vec![None; fit.questions.len()];
     }
-    let model = method.fit(&fit.trials, &fit.unit.key);
+    let model = method.fit(&fit.records, &fit.trial.key);
     let answer = |question: &&Question| {
-        let own = match &model {
-            Err(failed) => failure(failed.clone()),
-            Ok(model) => answered(fit.unit, question, model),
-        };
-        takes_part(question.task).then(|| Answer { method: method.label().to_owned(), ..own })
+        let answer = model.as_ref().map_err(Clone::clone).and_then(|model| answered(fit.trial, question, model));
+        let answer = answer.unwrap_or_else(|Failed { kind, reason }| CaseAnswer {
+            failure: Some(kind),
+            reason: Some(reason),
+            ..CaseAnswer::default()
+        });
+        takes_part(question.task).then(|| CaseAnswer { method: method.label().to_owned(), ..answer })
     };
     fit.questions.iter().map(answer).collect()
 }
 
-fn failure(Failed { kind, reason }: Failed) -> Answer {
-    Answer { failure: Some(kind), reason: Some(reason), ..Answer::default() }
-}
-
-fn answered(unit: &Unit, question: &Question, model: &Model) -> Answer {
+fn answered(trial: &BenchTrial, question: &Question, model: &BenchModel) -> Result<CaseAnswer, Failed> {
     match question.task {
-        Task::Name => {
+        BenchTask::Name => {
             let named = model.named().unwrap_or_default();
-            Answer { naming: Some(Naming::of(missing(unit).as_deref(), &named)), named, ..Answer::default() }
+            Ok(CaseAnswer {
+                naming: Some(Naming::of(missing(trial).as_deref(), &named)),
+                named,
+                ..CaseAnswer::default()
+            })
         }
-        Task::Indices => indices(unit, model).unwrap_or_else(|| {
-            let reason = "K or T is not finite".to_owned();
-            failure(Failed { kind: "not-finite".to_owned(), reason })
-        }),
+        BenchTask::Indices => indices(trial, model).ok_or_else(|| Failed::of("not-finite", &"K or T is not finite")),
         _ => {
-            let scored = question.score.and_then(|record| unit.records[record].as_ref());
+            let scored = question.score.and_then(|record| trial.records[record].as_ref());
             let fitted = question.score.and_then(|record| question.fit.iter().position(|own| *own == record));
-            match scored.and_then(|trial| model.heading_error(trial, fitted)) {
-                Some(error) => Answer { score: Some(stored(to_deg(error))), ..Answer::default() },
-                None => {
-                    let reason = "the replay leaves the range of numbers".to_owned();
-                    failure(Failed { kind: "not-finite".to_owned(), reason })
-                }
-            }
+            let error = scored.and_then(|record| model.heading_error(record, fitted));
+            let error = error.ok_or_else(|| Failed::of("not-finite", &"the replay leaves the range of numbers"))?;
+            Ok(CaseAnswer { score: Some(stored(to_deg(error))), ..CaseAnswer::default() })
         }
     }
 }
 
 /// Errors of K and T of a ship that is first order.
-fn indices(unit: &Unit, model: &Model) -> Option<Answer> {
-    let truth = unit.truth?;
+fn indices(trial: &BenchTrial, model: &BenchModel) -> Option<CaseAnswer> {
+    let truth = trial.truth?;
     let found = model.indices()?;
     let truths = [truth.K(), truth.T()];
     let errors = [0, 1].map(|index| stored(100.0 * (found[index].value / truths[index] - 1.0)));
@@ -243,27 +202,27 @@ fn indices(unit: &Unit, model: &Model) -> Option<Answer> {
     let holds = holds(0).zip(holds(1)).map(|(k, t)| [k, t]);
     let score = errors[0].abs().max(errors[1].abs());
     let is_finite = errors.iter().all(|error| error.is_finite());
-    is_finite.then(|| Answer { score: Some(score), errors_percent: Some(errors), holds, ..Answer::default() })
+    is_finite.then(|| CaseAnswer { score: Some(score), errors_percent: Some(errors), holds, ..CaseAnswer::default() })
 }
 
-/// The effect that the ship of a unit lacks.
-fn missing(unit: &Unit) -> Option<String> {
-    match &unit.set.source {
-        Source::Simulated { scenario, cell } => scenario.cells[*cell].missing().into_iter().next(),
-        Source::Measured { .. } => None,
+/// The effect that the ship of a trial lacks.
+fn missing(trial: &BenchTrial) -> Option<String> {
+    match &trial.set.source {
+        SetSource::Simulated { scenario, cell } => scenario.cells[*cell].missing().into_iter().next(),
+        SetSource::Measured { .. } => None,
     }
 }
 
-fn case(unit: &Unit, question: &Question, answers: Vec<Answer>) -> Case {
-    let name = |record: usize| unit.set.records[record].name.clone();
-    Case {
+fn case(trial: &BenchTrial, question: &Question, answers: Vec<CaseAnswer>) -> BenchCase {
+    let name = |record: usize| trial.set.records[record].name.clone();
+    BenchCase {
         task: question.task,
-        field: if unit.trial.is_some() { unit.set.group.clone() } else { MEASURED.to_owned() },
-        set: unit.set.name.clone(),
-        trial: unit.trial,
+        field: if trial.trial.is_some() { trial.set.group.clone() } else { MEASURED.to_owned() },
+        set: trial.set.name.clone(),
+        trial: trial.trial,
         fitted: question.fit.iter().copied().map(name).collect(),
         scored: question.score.map(name),
-        missing: if question.task == Task::Name { missing(unit) } else { None },
+        missing: if question.task == BenchTask::Name { missing(trial) } else { None },
         answers,
     }
 }

@@ -1,10 +1,14 @@
 //! Quantiles of scores among which some are infinite, and their intervals by drawing clusters with replacement (Efron
 //! 1979; Field and Welsh 2007 for clusters).
 
+use std::cmp::Ordering;
+
 use estimation::statistics::quantile;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
+
+use crate::statistics::Moments;
 
 /// Times that clusters are drawn: enough for the 2.5 and 97.5 % points to two digits.
 const RESAMPLES: usize = 1000;
@@ -18,14 +22,14 @@ pub const FEWEST: usize = 6;
 /// A figure with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Figure {
+pub struct ScoreFigure {
     /// The figure; none where an answer that failed stands there.
     pub value: Option<f64>,
     /// Its interval, where there are six clusters or more; an end is none where an answer that failed stands there.
     pub ci95: Option<[Option<f64>; 2]>,
 }
 
-impl Figure {
+impl ScoreFigure {
     /// A figure of some clusters; of several of its values, in any order, the ends of the interval.
     pub fn new(value: f64, clusters: usize, mut resampled: Vec<f64>) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
@@ -34,6 +38,32 @@ impl Figure {
         let ci95 = (clusters >= FEWEST && !resampled.is_empty()).then(|| [finite(end(0.025)), finite(end(0.975))]);
         Self { value: finite(value), ci95 }
     }
+
+    /// Order of two figures, that which an answer that failed decides behind all others.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        let [one, other] = [self, other].map(|figure| figure.value.unwrap_or(f64::INFINITY));
+        one.total_cmp(&other)
+    }
+}
+
+/// Groups in the order of their first members.
+pub(super) fn grouped<K: PartialEq, T>(all: impl IntoIterator<Item = T>, key: impl Fn(&T) -> K) -> Vec<(K, Vec<T>)> {
+    let mut found: Vec<(K, Vec<T>)> = Vec::new();
+    for one in all {
+        let own = key(&one);
+        match found.iter_mut().find(|(known, _)| *known == own) {
+            Some((_, group)) => group.push(one),
+            None => found.push((own, vec![one])),
+        }
+    }
+    found
+}
+
+/// Mean of some numbers; NaN of none.
+pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let mut moments = Moments::default();
+    values.for_each(|value| moments.add(value));
+    if moments.count > 0.0 { moments.mean } else { f64::NAN }
 }
 
 /// The median and the 90 % point of some scores.
@@ -44,33 +74,30 @@ pub fn middle_and_high(mut scores: Vec<f64>) -> [f64; 2] {
 
 /// What is computed from the cases of many draws of clusters, in the order of the draws.
 pub fn resampled<T>(clusters: &[Vec<usize>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
-    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
-    let mut cases = Vec::new();
-    let draw = |_| {
-        cases.clear();
-        for _ in 0..clusters.len() {
-            cases.extend(&clusters[rng.random_range(0..clusters.len())]);
-        }
-        compute(&cases)
-    };
-    (0..RESAMPLES).map(draw).collect()
+    draws(|rng, cases| draw_clusters(clusters, rng, cases), compute)
 }
 
 /// The same where sets are drawn, and from every set that was drawn its clusters.
 pub fn resampled_by_set<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
+    let draw = |rng: &mut ChaCha8Rng, cases: &mut Vec<usize>| {
+        (0..sets.len()).for_each(|_| draw_clusters(&sets[rng.random_range(0..sets.len())], rng, cases));
+    };
+    draws(draw, compute)
+}
+
+fn draw_clusters(clusters: &[Vec<usize>], rng: &mut ChaCha8Rng, cases: &mut Vec<usize>) {
+    (0..clusters.len()).for_each(|_| cases.extend(&clusters[rng.random_range(0..clusters.len())]));
+}
+
+fn draws<T>(draw: impl Fn(&mut ChaCha8Rng, &mut Vec<usize>), compute: impl Fn(&[usize]) -> T) -> Vec<T> {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let mut cases = Vec::new();
-    let draw = |_| {
+    let one = |_| {
         cases.clear();
-        for _ in 0..sets.len() {
-            let clusters = &sets[rng.random_range(0..sets.len())];
-            for _ in 0..clusters.len() {
-                cases.extend(&clusters[rng.random_range(0..clusters.len())]);
-            }
-        }
+        draw(&mut rng, &mut cases);
         compute(&cases)
     };
-    (0..RESAMPLES).map(draw).collect()
+    (0..RESAMPLES).map(one).collect()
 }
 
 /// One score over another of the same case: two that failed are alike, and one that failed is endlessly worse.
@@ -123,8 +150,8 @@ mod tests {
             // Every number twice, in a cluster of its own.
             let clusters: Vec<Vec<usize>> = (0..40).map(|place| vec![place, place]).collect();
             let of = |cases: &[usize]| middle_and_high(cases.iter().map(|&case| own[case]).collect())[0];
-            let figure = Figure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
-            let again = Figure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
+            let figure = ScoreFigure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
+            let again = ScoreFigure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
             assert_eq!(figure, again);
             let [Some(low), Some(high)] = figure.ci95.expect("enough clusters") else { panic!("finite") };
             low <= LN_2 && LN_2 <= high
@@ -135,8 +162,11 @@ mod tests {
 
     #[test]
     fn few_clusters_have_no_interval() {
-        assert_eq!(Figure::new(1.0, 5, vec![1.0; 10]), Figure { value: Some(1.0), ci95: None });
-        assert_eq!(Figure::new(WORST, 6, vec![1.0, WORST]), Figure { value: None, ci95: Some([Some(1.0), None]) });
+        assert_eq!(ScoreFigure::new(1.0, 5, vec![1.0; 10]), ScoreFigure { value: Some(1.0), ci95: None });
+        assert_eq!(
+            ScoreFigure::new(WORST, 6, vec![1.0, WORST]),
+            ScoreFigure { value: None, ci95: Some([Some(1.0), None]) }
+        );
     }
 
     /// Sets of very different size: where one is drawn, all its clusters are.

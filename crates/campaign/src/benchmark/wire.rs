@@ -89,14 +89,12 @@ pub struct PredictionWire {
     pub pairs: Vec<Name>,
 }
 
-/// A manoeuvre in words: "zig-zag 20/10, starboard first"; `None` for one that no task knows.
-pub fn words(manoeuvre: &Manoeuvre) -> Option<String> {
+/// A manoeuvre in words: "zig-zag 20/10, starboard first".
+pub fn words(manoeuvre: &Manoeuvre) -> String {
     let rudder = whole_deg(manoeuvre.rudder());
     match manoeuvre {
-        Manoeuvre::ZigZag { heading, first, .. } => {
-            Some(format!("zig-zag {rudder}/{}, {first} first", whole_deg(*heading)))
-        }
-        Manoeuvre::TurningCircle { side, .. } => Some(format!("turning circle {rudder}° to {side}")),
-        _ => None,
+        Manoeuvre::ZigZag { heading, first, .. } => format!("zig-zag {rudder}/{}, {first} first", whole_deg(*heading)),
+        Manoeuvre::TurningCircle { side, .. } => format!("turning circle {rudder}° to {side}"),
+        other => other.to_string(),
     }
 }

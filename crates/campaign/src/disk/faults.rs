@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// The folder below which operations fail, which of them do, and how many there were.
-struct Fault {
+struct DiskFault {
     root: PathBuf,
     failing: Range<u64>,
     seen: u64,
 }
 
-static FAULTS: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
+static FAULTS: Mutex<Vec<DiskFault>> = Mutex::new(Vec::new());
 
 /// How many folders there are whose operations fail: none, outside of tests.
 static ARMED: AtomicUsize = AtomicUsize::new(0);
@@ -23,7 +23,7 @@ pub struct Armed(PathBuf);
 
 /// Lets the operations below `root` with these numbers, counted from 0, fail.
 pub fn arm(root: &Path, failing: Range<u64>) -> Armed {
-    let fault = Fault { root: root.to_owned(), failing, seen: 0 };
+    let fault = DiskFault { root: root.to_owned(), failing, seen: 0 };
     FAULTS.lock().unwrap_or_else(PoisonError::into_inner).push(fault);
     ARMED.fetch_add(1, Ordering::SeqCst);
     Armed(root.to_owned())

@@ -11,14 +11,14 @@ use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReader};
-use parquet::file::writer::SerializedFileWriter;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::ColumnPath;
 
 use super::decoding;
-use super::layout::{Layout, Values};
-use super::row::Row;
+use super::layout::{RowLayout, Values};
+use super::row::StudyRow;
 use crate::disk;
-use crate::folder::{Beside, ResultFolder};
+use crate::folder::{ResultFolder, TemporaryFile};
 use scenario::failure::{Failure, OnPath};
 
 /// Rows of a row group. Part of the identity of a file: groups are cut here however the rows arrive.
@@ -37,20 +37,20 @@ const LARGEST_COLUMN: i64 = 1 << 28;
 const TAIL: u64 = 8;
 
 /// Writes rows in their order to a new file, which appears under its name whole or not at all.
-pub struct Writer<'a> {
-    layout: &'a Layout,
+pub struct RowWriter<'a> {
+    layout: &'a RowLayout,
     path: PathBuf,
-    file: SerializedFileWriter<Beside>,
-    waiting: Vec<Row>,
+    file: SerializedFileWriter<TemporaryFile>,
+    waiting: Vec<StudyRow>,
 }
 
-impl<'a> Writer<'a> {
+impl<'a> RowWriter<'a> {
     /// Begins a file.
-    pub fn create(folder: &ResultFolder, name: &str, layout: &'a Layout) -> Result<Self, Failure> {
+    pub fn create(folder: &ResultFolder, name: &str, layout: &'a RowLayout) -> Result<Self, Failure> {
         let file = folder.create(name)?;
         let path = file.path().to_owned();
         let mut properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
-        for name in layout.names().filter(|name| !Layout::repeats(name)) {
+        for name in layout.names().filter(|name| !RowLayout::repeats(name)) {
             properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![name]), false);
         }
         let file = SerializedFileWriter::new(file, Arc::new(layout.schema()), Arc::new(properties.build()))
@@ -59,7 +59,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Adds rows.
-    pub fn push(&mut self, rows: impl IntoIterator<Item = Row>) -> Result<(), Failure> {
+    pub fn push(&mut self, rows: impl IntoIterator<Item = StudyRow>) -> Result<(), Failure> {
         for row in rows {
             self.waiting.push(row);
             if self.waiting.len() == GROUP {
@@ -70,7 +70,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Ends the file, waits until it is on the disk and returns it, still without its name, and its SHA-256.
-    pub fn finish(mut self) -> Result<(Beside, String), Failure> {
+    pub fn finish(mut self) -> Result<(TemporaryFile, String), Failure> {
         if !self.waiting.is_empty() {
             self.write_group()?;
         }
@@ -85,19 +85,14 @@ impl<'a> Writer<'a> {
         for values in self.layout.take(&self.waiting) {
             let mut target = group.next_column().on("write", path)?.expect("the file has the columns of its layout");
             match values {
-                Values::Counts(values) => {
-                    target.typed::<Int64Type>().write_batch(&values, None, None).on("write", path)?;
-                }
-                Values::Numbers(values) => {
-                    let (present, values) = presence(values);
-                    target.typed::<DoubleType>().write_batch(&values, Some(&present), None).on("write", path)?;
-                }
+                Values::Counts(values) => write::<Int64Type>(&mut target, values),
+                Values::Numbers(values) => write::<DoubleType>(&mut target, values),
                 Values::Texts(values) => {
-                    let (present, values) = presence(values);
-                    let values: Vec<ByteArray> = values.iter().map(|text| ByteArray::from(text.as_str())).collect();
-                    target.typed::<ByteArrayType>().write_batch(&values, Some(&present), None).on("write", path)?;
+                    let bytes = |text: String| ByteArray::from(text.into_bytes());
+                    write::<ByteArrayType>(&mut target, values.into_iter().map(|text| text.map(bytes)).collect())
                 }
             }
+            .on("write", path)?;
             target.close().on("write", path)?;
         }
         group.close().on("write", path)?;
@@ -106,79 +101,76 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Definition levels, and the values that are there.
-fn presence<T>(values: Vec<Option<T>>) -> (Vec<i16>, Vec<T>) {
-    (values.iter().map(|value| i16::from(value.is_some())).collect(), values.into_iter().flatten().collect())
+/// Writes the values that are there, and where they are.
+fn write<T: DataType>(
+    target: &mut SerializedColumnWriter<'_>,
+    values: Vec<Option<T::T>>,
+) -> parquet::errors::Result<usize> {
+    let present: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+    let values: Vec<T::T> = values.into_iter().flatten().collect();
+    target.typed::<T>().write_batch(&values, Some(&present), None)
 }
 
 /// Reads rows back in their order. What it reads may have been damaged, or made to do harm: sizes are looked at before
 /// anything is unpacked, and where the decoder gives up the reader fails.
-pub struct Reader<'a> {
-    layout: &'a Layout,
+pub struct RowReader<'a, B: ChunkReader + 'static> {
+    layout: &'a RowLayout,
     path: PathBuf,
-    file: SerializedFileReader<Source>,
+    file: SerializedFileReader<CheckedPages<B>>,
     group: usize,
     columns: Vec<ColumnReader>,
     left: usize,
 }
 
-/// Where the bytes of a file come from.
-enum Source {
-    Disk(disk::File),
-    Memory(Bytes),
-}
+/// The bytes of a file, in which the heads of pages are looked at.
+struct CheckedPages<B>(B);
 
-impl Length for Source {
+impl<B: ChunkReader> Length for CheckedPages<B> {
     fn len(&self) -> u64 {
-        match self {
-            Self::Disk(file) => Length::len(file),
-            Self::Memory(bytes) => Length::len(bytes),
-        }
+        self.0.len()
     }
 }
 
-impl ChunkReader for Source {
-    type T = Box<dyn std::io::Read>;
+impl<B: ChunkReader> ChunkReader for CheckedPages<B> {
+    type T = B::T;
 
     /// The decoder asks in this way for the tail of a file and for the head of every page.
     fn get_read(&self, start: u64) -> parquet::errors::Result<Self::T> {
-        if start.checked_add(TAIL) != Some(Length::len(self)) {
-            let left = Length::len(self).saturating_sub(start);
+        if start.checked_add(TAIL) != Some(self.len()) {
+            let left = self.len().saturating_sub(start);
             let head = self.get_bytes(start, decoding::PAGE_HEAD.min(usize::try_from(left)?))?;
             decoding::check_page(&head)?;
         }
-        Ok(match self {
-            Self::Disk(file) => Box::new(file.get_read(start)?),
-            Self::Memory(bytes) => Box::new(bytes.get_read(start)?),
-        })
+        self.0.get_read(start)
     }
 
     fn get_bytes(&self, start: u64, length: usize) -> parquet::errors::Result<Bytes> {
-        match self {
-            Self::Disk(file) => file.get_bytes(start, length),
-            Self::Memory(bytes) => bytes.get_bytes(start, length),
-        }
+        self.0.get_bytes(start, length)
     }
 }
 
-impl<'a> Reader<'a> {
+impl<'a> RowReader<'a, disk::File> {
     /// Opens a file. Fails as wrong input when there is none, or when its columns are not those of the layout.
-    pub fn open(path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
+    pub fn open(path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
         let file = disk::File::open(path)
             .map_err(|error| Failure::input(format!("{}: cannot be opened: {error}", path.display())))?;
-        Self::new(Source::Disk(file), path, layout)
+        Self::new(file, path, layout)
     }
+}
 
-    /// Reads from memory what `path` held. Fails as [`Reader::open`] does.
-    pub fn of_bytes(bytes: Vec<u8>, path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
-        Self::new(Source::Memory(bytes.into()), path, layout)
+impl<'a> RowReader<'a, Bytes> {
+    /// Reads from memory what `path` held. Fails as [`RowReader::open`] does.
+    pub fn of_bytes(bytes: Vec<u8>, path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
+        Self::new(bytes.into(), path, layout)
     }
+}
 
-    fn new(file: Source, path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
+impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
+    fn new(file: B, path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
         let refuse =
             |problem: String| Failure::input(format!("{}: {problem}; expected the rows of this study", path.display()));
         trial::decoder::guarded(|| {
-            let file = SerializedFileReader::new(file).map_err(|error| refuse(error.to_string()))?;
+            let file = SerializedFileReader::new(CheckedPages(file)).map_err(|error| refuse(error.to_string()))?;
             let schema = file.metadata().file_metadata().schema_descr_ptr();
             let found: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
             if let Some(name) = layout.names().find(|name| !found.contains(&name.as_str())) {
@@ -201,25 +193,15 @@ impl<'a> Reader<'a> {
         .unwrap_or_else(|| Err(refuse("it is damaged".to_owned())))
     }
 
-    /// Number of rows in the file.
-    pub fn len(&self) -> u64 {
-        self.file.metadata().file_metadata().num_rows().unsigned_abs()
-    }
-
-    /// Whether the file holds no row.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// The next rows, a few thousand at most; nothing when all have been read.
-    pub(super) fn next_rows(&mut self) -> Result<Vec<Row>, Failure> {
+    pub(super) fn next_rows(&mut self) -> Result<Vec<StudyRow>, Failure> {
         let path = self.path.clone();
         trial::decoder::guarded(|| self.decoded()).unwrap_or_else(|| {
             Err(Failure::input(format!("{}: it is damaged; expected the rows of this study", path.display())))
         })
     }
 
-    fn decoded(&mut self) -> Result<Vec<Row>, Failure> {
+    fn decoded(&mut self) -> Result<Vec<StudyRow>, Failure> {
         while self.left == 0 {
             if self.group == self.file.num_row_groups() {
                 return Ok(Vec::new());
@@ -244,7 +226,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Hands every row to `take`, in order.
-    pub fn for_each(mut self, mut take: impl FnMut(Row) -> Result<(), Failure>) -> Result<(), Failure> {
+    pub fn for_each(mut self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
         // Rows are decoded while those before them are taken.
         std::thread::scope(|scope| {
             let (send, receive) = sync_channel(1);
@@ -265,18 +247,11 @@ impl<'a> Reader<'a> {
 
 fn values(column: &mut ColumnReader, length: usize) -> Result<Values, String> {
     Ok(match column {
-        ColumnReader::Int64ColumnReader(reader) => {
-            let (_, values) = read(reader, length)?;
-            Values::Counts(values)
-        }
-        ColumnReader::DoubleColumnReader(reader) => {
-            let (present, values) = read(reader, length)?;
-            Values::Numbers(spread(&present, values))
-        }
+        ColumnReader::Int64ColumnReader(reader) => Values::Counts(read(reader, length)?),
+        ColumnReader::DoubleColumnReader(reader) => Values::Numbers(read(reader, length)?),
         ColumnReader::ByteArrayColumnReader(reader) => {
-            let (present, values) = read(reader, length)?;
-            let texts: Result<Vec<String>, String> = values.iter().map(text).collect();
-            Values::Texts(spread(&present, texts?))
+            let texts = read(reader, length)?.into_iter().map(|bytes| bytes.map(|bytes| text(&bytes)).transpose());
+            Values::Texts(texts.collect::<Result<_, _>>()?)
         }
         _ => unreachable!("the schema was compared when the file was opened"),
     })
@@ -289,8 +264,8 @@ fn text(bytes: &ByteArray) -> Result<String, String> {
     }
 }
 
-/// Definition levels and values of `length` rows.
-fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<(Vec<i16>, Vec<T::T>), String> {
+/// Values of `length` rows.
+fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<Vec<Option<T::T>>, String> {
     let (mut present, mut values) = (Vec::with_capacity(length), Vec::with_capacity(length));
     let mut read = 0;
     while read < length {
@@ -302,10 +277,8 @@ fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<
         }
         read += rows;
     }
-    Ok((present, values))
-}
-
-fn spread<T>(present: &[i16], values: Vec<T>) -> Vec<Option<T>> {
+    // A column that has a value in every row has no levels.
+    present.resize(length, 1);
     let mut values = values.into_iter();
-    present.iter().map(|&level| if level > 0 { values.next() } else { None }).collect()
+    Ok(present.into_iter().map(|level| if level > 0 { values.next() } else { None }).collect())
 }

@@ -4,17 +4,6 @@ use std::sync::Arc;
 
 use ::trace::Verdict;
 
-/// Best standard deviations an unbiased method can have on a trial (Cramér–Rao), for its own noise and true K and T.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bound {
-    /// Of K, 1/s.
-    pub k_per_s: f64,
-    /// Of T, s.
-    pub t_s: f64,
-    /// Of K/T, 1/s².
-    pub k_over_t_per_s2: f64,
-}
-
 /// An effect that a trace named.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct NamedEffect {
@@ -33,7 +22,7 @@ impl NamedEffect {
 
 /// A figure of a manoeuvre that was predicted from an answer, beside what the same ship does.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Foretold {
+pub struct PredictedFigure {
     /// Manoeuvre and figure, with the unit: `zig-zag 20/20 first_overshoot_deg`.
     pub name: Box<str>,
     /// What the ship does.
@@ -44,7 +33,7 @@ pub struct Foretold {
     pub ci90: [f64; 2],
 }
 
-impl Foretold {
+impl PredictedFigure {
     /// Whether the interval holds the truth.
     pub fn holds(&self) -> bool {
         (self.ci90[0]..=self.ci90[1]).contains(&self.truth)
@@ -52,7 +41,7 @@ impl Foretold {
 }
 
 /// What a trace said of one trial.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct TraceAnswer {
     /// Whether anything is missing, and whether it has a name.
     pub verdict: Verdict,
@@ -72,7 +61,7 @@ pub struct TraceAnswer {
 
 /// The result of one method on one trial. Units are in the names; `None` is "not defined".
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Row {
+pub struct StudyRow {
     /// Index of the cell in the design.
     pub cell: u64,
     /// Index of the replicate in the cell.
@@ -90,8 +79,9 @@ pub struct Row {
     pub own_k_per_s: Option<f64>,
     /// T of that base, s.
     pub own_t_s: Option<f64>,
-    /// Cramér–Rao bound of this trial.
-    pub bound: Option<Bound>,
+    /// Best standard deviations of K (1/s), T (s) and K/T (1/s²) that an unbiased method can have on this trial, for its
+    /// own noise and true K and T (Cramér–Rao).
+    pub bound: Option<[f64; 3]>,
     /// K, 1/s.
     pub k_per_s: Option<f64>,
     /// Lower and upper end of the 95 % interval of K, 1/s.
@@ -109,19 +99,19 @@ pub struct Row {
     /// The same on the validation manoeuvre, which the method has not seen, deg.
     pub validation_rmse_deg: Option<f64>,
     /// Model evaluations of the method.
-    pub evaluations: Option<u64>,
+    pub evaluations: Option<f64>,
     /// Why the method stopped.
     pub stop: Option<&'static str>,
     /// What a trace said.
     pub traced: Option<Box<TraceAnswer>>,
     /// Figures of manoeuvres that were predicted from the answer, empty where it has no covariance; `None` where
     /// nothing is predicted.
-    pub predicted: Option<Box<[Foretold]>>,
+    pub predicted: Option<Box<[PredictedFigure]>>,
     /// Drawn values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
     pub drawn: Option<Arc<[f64]>>,
 }
 
-impl Row {
+impl StudyRow {
     /// K and T that this answer is held against, 1/s and s: the ship's own for a trace, which models its effects, else
     /// those of the first-order response nearest to it.
     pub fn truth(&self) -> [Option<f64>; 2] {
@@ -132,27 +122,15 @@ impl Row {
     }
 
     /// The Cramér–Rao bound of this answer: there is none for a base with effects.
-    pub fn bound_of_truth(&self) -> Option<Bound> {
+    pub fn bound_of_truth(&self) -> Option<[f64; 3]> {
         self.bound.filter(|_| self.traced.is_none() || self.own_k_per_s.is_none())
     }
 
-    /// Relative error of K, (K̂ − K)/K.
-    pub fn k_error(&self) -> Option<f64> {
-        relative(self.k_per_s?, self.truth()[0]?)
+    /// Relative errors of K, (K̂ − K)/K, of T, and of K/T, the slope of the response to the rudder at its beginning.
+    pub fn errors(&self) -> [Option<f64>; 3] {
+        let ([k, t], [true_k, true_t]) = ([self.k_per_s, self.t_s], self.truth());
+        let over = |k: Option<f64>, t: Option<f64>| Some(k? / t?);
+        [(k, true_k), (t, true_t), (over(k, t), over(true_k, true_t))]
+            .map(|(found, truth)| Some(found? / truth? - 1.0).filter(|error| error.is_finite()))
     }
-
-    /// Relative error of T.
-    pub fn t_error(&self) -> Option<f64> {
-        relative(self.t_s?, self.truth()[1]?)
-    }
-
-    /// Relative error of K/T, the slope of the response to the rudder at its beginning.
-    pub fn k_over_t_error(&self) -> Option<f64> {
-        let [k, t] = self.truth();
-        relative(self.k_per_s? / self.t_s?, k? / t?)
-    }
-}
-
-fn relative(found: f64, truth: f64) -> Option<f64> {
-    Some(found / truth - 1.0).filter(|error| error.is_finite())
 }

@@ -2,7 +2,7 @@
 
 use crate::design::Design;
 
-use super::row::Row;
+use super::row::StudyRow;
 
 /// Follows rows from the first to the last trial that a design says is stored.
 pub struct Sequence<'a> {
@@ -29,7 +29,7 @@ impl<'a> Sequence<'a> {
     }
 
     /// Takes note of a row. Fails when it is not the next one, and says which was expected.
-    pub fn see(&mut self, row: &Row) -> Result<(), String> {
+    pub fn see(&mut self, row: &StudyRow) -> Result<(), String> {
         if (row.cell, row.replicate, row.method) != (self.cell as u64, self.replicate, self.method) {
             let found = format!("trial {} of cell {}", row.replicate, row.cell);
             return Err(match self.expected() {

@@ -29,14 +29,14 @@ fn design() -> Design {
     }
 }
 
-fn good(replicate: u64) -> Row {
-    Row {
+fn good(replicate: u64) -> StudyRow {
+    StudyRow {
         cell: 1,
         replicate,
         method: 0,
         true_k_per_s: Some(0.1),
         true_t_s: Some(16.3),
-        bound: Some(Bound { k_per_s: 1e-4, t_s: 2e-2, k_over_t_per_s2: 3e-6 }),
+        bound: Some([1e-4, 2e-2, 3e-6]),
         k_per_s: Some(0.1001 + replicate as f64 * 1e-9),
         k_ci95_per_s: Some([0.0999, 0.1003]),
         t_s: Some(16.31),
@@ -44,35 +44,35 @@ fn good(replicate: u64) -> Row {
         rudder_bias_ci95_deg: Some([-0.3, -0.1]),
         heading_rmse_deg: Some(0.1),
         validation_rmse_deg: Some(0.2),
-        evaluations: Some(90),
+        evaluations: Some(90.0),
         stop: Some("converged"),
         drawn: Some([0.1].into()),
-        ..Row::default()
+        ..StudyRow::default()
     }
 }
 
-fn failed(replicate: u64) -> Row {
-    Row {
+fn failed(replicate: u64) -> StudyRow {
+    StudyRow {
         cell: 1,
         replicate,
         method: 1,
         failure: Some("not-excited".into()),
         drawn: Some([0.1].into()),
-        ..Row::default()
+        ..StudyRow::default()
     }
 }
 
-fn write(path: &Path, layout: &Layout, pieces: impl IntoIterator<Item = Vec<Row>>) {
+fn write(path: &Path, layout: &RowLayout, pieces: impl IntoIterator<Item = Vec<StudyRow>>) {
     let (folder, name) = (path.parent().expect("in a folder"), path.file_name().and_then(|name| name.to_str()));
     let folder = ResultFolder::hold(folder).expect("held");
-    let mut writer = Writer::create(&folder, name.expect("a name"), layout).expect("created");
+    let mut writer = RowWriter::create(&folder, name.expect("a name"), layout).expect("created");
     pieces.into_iter().for_each(|rows| writer.push(rows).expect("written"));
     writer.finish().and_then(|(file, _)| file.put()).expect("finished");
 }
 
-fn read(path: &Path, layout: &Layout) -> Vec<Row> {
+fn read(path: &Path, layout: &RowLayout) -> Vec<StudyRow> {
     let mut rows = Vec::new();
-    let reader = Reader::open(path, layout).expect("opened");
+    let reader = RowReader::open(path, layout).expect("opened");
     reader
         .for_each(|row| {
             rows.push(row);
@@ -86,7 +86,7 @@ fn read(path: &Path, layout: &Layout) -> Vec<Row> {
 fn rows_come_back_as_they_went() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("rows.parquet");
-    let layout = Layout::of(&design());
+    let layout = RowLayout::of(&design());
     let rows = vec![good(7), failed(7)];
     write(&path, &layout, [rows.clone()]);
     assert_eq!(read(&path, &layout), rows);
@@ -99,7 +99,7 @@ fn traces_have_columns_of_their_own() {
     let path = folder.path().join("rows.parquet");
     let mut design = design();
     design.methods[1].id = scenario::TRACE.into();
-    let layout = Layout::of(&design);
+    let layout = RowLayout::of(&design);
     let effect = |id: &str, aliases: &[&str]| NamedEffect {
         id: id.into(),
         aliases: aliases.iter().map(|&alias| alias.into()).collect(),
@@ -114,7 +114,7 @@ fn traces_have_columns_of_their_own() {
             band_fitted: Some(0.95),
             band_held_out: None,
         };
-        Row { method: 1, traced: Some(Box::new(answer)), ..good(7) }
+        StudyRow { method: 1, traced: Some(Box::new(answer)), ..good(7) }
     };
     let named = vec![effect("wind_moment", &["port_starboard_asymmetry"]), effect("speed_loss", &[])];
     let rows = vec![good(7), answer(Verdict::Traced, named), answer(Verdict::Clean, Vec::new())];
@@ -126,12 +126,12 @@ fn traces_have_columns_of_their_own() {
 #[test]
 fn the_bytes_do_not_depend_on_the_pieces() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let layout = Layout::of(&design());
+    let layout = RowLayout::of(&design());
     let (one, many) = (folder.path().join("one.parquet"), folder.path().join("many.parquet"));
     // More than a row group, and more than a batch of the reader.
-    let rows: Vec<Row> = (0..35_000).flat_map(|replicate| [good(replicate), failed(replicate)]).collect();
+    let rows: Vec<StudyRow> = (0..35_000).flat_map(|replicate| [good(replicate), failed(replicate)]).collect();
     write(&one, &layout, [rows.clone()]);
-    write(&many, &layout, rows.chunks(7919).map(<[Row]>::to_vec));
+    write(&many, &layout, rows.chunks(7919).map(<[StudyRow]>::to_vec));
     assert!(std::fs::read(&one).expect("there") == std::fs::read(&many).expect("there"));
     assert!(read(&many, &layout) == rows);
 }
@@ -140,10 +140,10 @@ fn the_bytes_do_not_depend_on_the_pieces() {
 fn rows_of_another_study_are_refused() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("rows.parquet");
-    write(&path, &Layout::of(&design()), [vec![good(0)]]);
+    write(&path, &RowLayout::of(&design()), [vec![good(0)]]);
     let refused = |design: &Design| {
-        let layout = Layout::of(design);
-        let mut reader = Reader::open(&path, &layout)?;
+        let layout = RowLayout::of(design);
+        let mut reader = RowReader::open(&path, &layout)?;
         reader.next_rows().map(drop)
     };
     let other_axis = Design { axes: vec!["sampling [s]".into(), "trial".into()], ..design() };
@@ -158,26 +158,32 @@ fn rows_of_another_study_are_refused() {
 
 #[test]
 fn axes_and_draws_are_columns() {
-    let names: Vec<String> = Layout::of(&design()).names().collect();
+    let names: Vec<String> = RowLayout::of(&design()).names().collect();
     assert_eq!(names[..COLUMNS.len()], COLUMNS.map(|column| column.name));
     assert_eq!(names[COLUMNS.len()..], ["axis.noise [°]", "axis.trial", "draw.ship.first-order.K-per-s"]);
 }
 
 #[test]
 fn errors_are_relative_to_the_truth() {
-    let row =
-        Row { k_per_s: Some(0.11), t_s: Some(-16.3), true_k_per_s: Some(0.1), true_t_s: Some(16.3), ..Row::default() };
+    let row = StudyRow {
+        k_per_s: Some(0.11),
+        t_s: Some(-16.3),
+        true_k_per_s: Some(0.1),
+        true_t_s: Some(16.3),
+        ..StudyRow::default()
+    };
     let near = |found: Option<f64>, expected: f64| (found.expect("a truth") - expected).abs() < 1e-12;
-    assert!(near(row.k_error(), 0.1) && near(row.t_error(), -2.0) && near(row.k_over_t_error(), -2.1));
-    assert_eq!(Row { true_k_per_s: None, ..row.clone() }.k_error(), None);
-    assert_eq!(Row { t_s: Some(0.0), ..row }.k_over_t_error(), None, "an infinite error is none");
+    assert!(row.errors().into_iter().zip([0.1, -2.0, -2.1]).all(|(found, expected)| near(found, expected)));
+    assert_eq!(StudyRow { true_k_per_s: None, ..row.clone() }.errors()[0], None);
+    assert_eq!(StudyRow { t_s: Some(0.0), ..row }.errors()[2], None, "an infinite error is none");
 }
 
 #[test]
 fn every_column_is_documented() {
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/src/reference/results.md"))
         .expect("the page is there");
-    for Column { name, meaning, .. } in COLUMNS.iter().chain(&OWN_COLUMNS).chain(&TRACE_COLUMNS).chain(&PREDICT_COLUMNS)
+    for RowColumn { name, meaning, .. } in
+        COLUMNS.iter().chain(&OWN_COLUMNS).chain(&TRACE_COLUMNS).chain(&PREDICT_COLUMNS)
     {
         let meaning = meaning.replace('|', "\\|");
         assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");
@@ -188,15 +194,15 @@ fn every_column_is_documented() {
 #[test]
 fn predictions_are_stored_and_read_again() {
     let design = Design { predicts: true, ..design() };
-    let figure = |truth: f64| Foretold {
+    let figure = |truth: f64| PredictedFigure {
         name: "zig-zag 20/20 first_overshoot_deg".into(),
         truth,
         median: 1.0 / 3.0,
         ci90: [-0.1, 1e-17],
     };
-    let own = Row { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(0) };
-    let none = Row { predicted: Some(Box::default()), ..good(1) };
-    let layout = Layout::of(&design);
+    let own = StudyRow { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(0) };
+    let none = StudyRow { predicted: Some(Box::default()), ..good(1) };
+    let layout = RowLayout::of(&design);
     let columns: Vec<_> = layout.take(&[own.clone(), none.clone()]).collect();
     assert_eq!(layout.put(columns, 2).expect("what was written"), [own, none]);
     assert_eq!(layout.names().filter(|name| name == "predicted").count(), 1);

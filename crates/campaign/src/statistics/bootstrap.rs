@@ -48,7 +48,7 @@ impl Resamples {
         batches: &[BatchSums],
         statistics: impl Fn(&BatchSums) -> [Option<f64>; N],
     ) -> [Option<Statistic>; N] {
-        let whole = batches.iter().fold(BatchSums::default(), plus);
+        let whole = batches.iter().copied().sum::<BatchSums>();
         let values = statistics(&whole);
         if whole.count < FEWEST as f64 || batches.len() > self.batches {
             return values.map(|value| value.map(|value| Statistic { value, ci95: None }));
@@ -90,14 +90,10 @@ impl Resamples {
     }
 }
 
-fn plus(sum: BatchSums, batch: &BatchSums) -> BatchSums {
-    BatchSums { count: sum.count + batch.count, first: sum.first + batch.first, second: sum.second + batch.second }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::{BATCHES, Sums};
+    use crate::statistics::{BATCHES, ErrorSums};
     use rand_distr::StandardNormal;
 
     /// Intervals of the sd of normal samples: they repeat, and cover 95 % within the error of 400 samples, whether a
@@ -109,7 +105,7 @@ mod tests {
             let samples = 400;
             let mut rng = ChaCha8Rng::seed_from_u64(5);
             let covered = (0..samples).filter(|_| {
-                let mut sums = Sums::default();
+                let mut sums = ErrorSums::default();
                 (0..size as u64).for_each(|replicate| sums.add(replicate, rng.sample::<f64, _>(StandardNormal)));
                 let [sd] = resamples.figures(sums.batches(), |total| [sums.sd(total)]);
                 let [lo, hi] = sd.and_then(|figure| figure.ci95).expect("enough values");
@@ -122,7 +118,7 @@ mod tests {
 
     #[test]
     fn few_values_have_no_interval() {
-        let mut sums = Sums::default();
+        let mut sums = ErrorSums::default();
         (0..5).for_each(|replicate| sums.add(replicate, replicate as f64));
         let [mean, none] = Resamples::new(5).figures(sums.batches(), |total| [sums.mean(total), None]);
         assert_eq!((mean, none), (Some(Statistic { value: 2.0, ci95: None }), None));

@@ -16,13 +16,13 @@ const ZERO: f64 = 1e-12;
 
 /// A sample that is being taken.
 #[derive(Debug, Clone, Default)]
-pub struct Sample {
+pub struct ErrorSample {
     exact: Vec<f64>,
     /// Counts by bin, in the order of the values; empty while all are exact.
     bins: BTreeMap<i32, u64>,
 }
 
-impl Sample {
+impl ErrorSample {
     /// Adds a finite value; others are left out.
     pub fn add(&mut self, value: f64) {
         if !value.is_finite() {
@@ -141,14 +141,6 @@ impl Ordered {
         self.distances(self.quantile(0.5)?).figure(0.5)
     }
 
-    /// Steps (value, share of `of` values that are not larger), at most `most` of them; the rest of `of` never comes.
-    pub fn steps(&self, of: u64, most: u64) -> Vec<(f64, f64)> {
-        let n = self.len();
-        let count = n.min(most);
-        let ranks = (1..=count).map(|step| (u128::from(n) * u128::from(step) / u128::from(count)) as u64 - 1);
-        ranks.map(|rank| (self.at(rank), (rank + 1) as f64 / of as f64)).collect()
-    }
-
     /// Density by a Gaussian kernel at `points` places from one end of the middle 98 % to the other, with the bandwidth
     /// of Silverman (1986, eq. 3.31); nothing for fewer than ten values or for values that are all the same.
     pub fn density(&self, points: usize) -> Vec<(f64, f64)> {
@@ -178,7 +170,7 @@ mod tests {
     use statrs::distribution::{ContinuousCDF, Normal};
 
     fn sample(values: impl IntoIterator<Item = f64>) -> Ordered {
-        let mut sample = Sample::default();
+        let mut sample = ErrorSample::default();
         values.into_iter().for_each(|value| sample.add(value));
         sample.ordered()
     }
@@ -196,7 +188,6 @@ mod tests {
         assert_eq!(ordered.figure(0.5), Some(Statistic { value: 51.0, ci95: Some([41.0, 61.0]) }));
         assert_eq!(ordered.mad().map(|figure| figure.value), Some(25.0));
         assert_eq!(ordered.quantile(0.125), Some(13.5));
-        assert_eq!(ordered.steps(202, 2), [(50.0, 50.0 / 202.0), (101.0, 0.5)]);
         assert_eq!(sample([]).figure(0.5), None);
         assert_eq!(sample([1.0, f64::NAN, f64::INFINITY]).len(), 1);
         assert_eq!(sample([1.0, 2.0, 3.0]).figure(0.5).and_then(|figure| figure.ci95), None, "too few for an interval");

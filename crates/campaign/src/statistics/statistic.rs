@@ -1,7 +1,9 @@
 //! A figure over replicates with its interval, and the interval of a share.
 
+use serde::{Deserialize, Serialize};
+
 /// A figure with a 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
     /// The figure.
     pub value: f64,

@@ -1,6 +1,8 @@
-//! Sums over replicates in batches: replicate r belongs to batch r mod 256. A bootstrap over batches gives intervals
+//! ErrorSums over replicates in batches: replicate r belongs to batch r mod 256. A bootstrap over batches gives intervals
 //! for every function of moments; with no more than 256 replicates each batch is one trial, and it is the ordinary
 //! bootstrap.
+
+use std::iter::Sum;
 
 /// Number of batches.
 pub const BATCHES: usize = 256;
@@ -16,6 +18,16 @@ pub struct BatchSums {
     pub second: f64,
 }
 
+impl Sum for BatchSums {
+    fn sum<I: Iterator<Item = Self>>(batches: I) -> Self {
+        batches.fold(Self::default(), |sum, batch| Self {
+            count: sum.count + batch.count,
+            first: sum.first + batch.first,
+            second: sum.second + batch.second,
+        })
+    }
+}
+
 /// The batch of a replicate.
 fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
     let place = (replicate % BATCHES as u64) as usize;
@@ -25,15 +37,15 @@ fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
     &mut batches[place]
 }
 
-/// Sums of one quantity.
+/// ErrorSums of one quantity.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Sums {
+pub struct ErrorSums {
     /// First value: taken off every value, so that a large common error does not drown a small scatter.
     shift: f64,
     batches: Vec<BatchSums>,
 }
 
-impl Sums {
+impl ErrorSums {
     /// Adds the value of a replicate.
     pub fn add(&mut self, replicate: u64, value: f64) {
         if self.batches.is_empty() {
@@ -69,7 +81,7 @@ impl Sums {
     }
 }
 
-/// Sums of the squares of two quantities on trials where both are known: [`BatchSums::first`] belongs to the one,
+/// ErrorSums of the squares of two quantities on trials where both are known: [`BatchSums::first`] belongs to the one,
 /// [`BatchSums::second`] to the other.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PairSums {
@@ -97,6 +109,11 @@ impl PairSums {
         &self.batches
     }
 
+    /// Trials in which both are known.
+    pub fn trials(&self) -> u64 {
+        self.batches.iter().map(|batch| batch.count).sum::<f64>() as u64
+    }
+
     /// Difference of the root mean squares of a total.
     pub fn difference(total: &BatchSums) -> Option<f64> {
         (total.count > 0.0).then(|| (total.first / total.count).sqrt() - (total.second / total.count).sqrt())
@@ -113,16 +130,12 @@ mod tests {
     use super::*;
 
     fn total(batches: &[BatchSums]) -> BatchSums {
-        batches.iter().fold(BatchSums::default(), |sum, batch| BatchSums {
-            count: sum.count + batch.count,
-            first: sum.first + batch.first,
-            second: sum.second + batch.second,
-        })
+        batches.iter().copied().sum()
     }
 
     #[test]
     fn a_small_scatter_about_a_large_error_is_kept() {
-        let mut sums = Sums::default();
+        let mut sums = ErrorSums::default();
         (0..1000).for_each(|replicate| sums.add(replicate, -6.53 + 1e-9 * f64::from(u8::from(replicate % 2 == 0))));
         let total = total(sums.batches());
         assert_eq!(sums.batches().len(), BATCHES);

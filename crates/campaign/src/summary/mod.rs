@@ -10,11 +10,11 @@ mod record;
 mod tally;
 mod tracing;
 
-pub use detail::{CellDetail, Cloud, MethodDetail, Violin};
+pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
 pub use predictions::PredictionSummary;
-pub use record::{Comparison, Errors, MethodSummary, Overall, PairSummary, Record, Summary};
+pub use record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 pub use tally::{Tally, summarise};
-pub use tracing::{CLEAR, PROMISED, Promised, TraceSummary, effect_ids};
+pub use tracing::{CALIBRATION, CLEAR, CalibrationBin, TraceSummary, effect_ids};
 
 #[cfg(test)]
 mod tests;

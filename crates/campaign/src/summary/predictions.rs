@@ -1,10 +1,12 @@
 //! Whether the intervals of predictions hold, figure by figure.
 
-use crate::rows::Row;
+use serde::{Deserialize, Serialize};
+
+use crate::rows::StudyRow;
 use crate::statistics::{Statistic, share};
 
 /// One figure of a manoeuvre in one cell, predicted from the answers of one method.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PredictionSummary {
     /// Index of the cell.
     pub cell: usize,
@@ -16,7 +18,7 @@ pub struct PredictionSummary {
     pub trials: u64,
     /// Trials whose 90 % interval holds what the ship does.
     pub inside: u64,
-    /// Sums of the median less what the ship does, of its square, of the width of the interval, and of what the ship
+    /// ErrorSums of the median less what the ship does, of its square, of the width of the interval, and of what the ship
     /// does.
     sums: [f64; 4],
 }
@@ -52,60 +54,40 @@ impl PredictionSummary {
     }
 }
 
-/// Counts over the rows.
-#[derive(Debug, Default)]
-pub struct PredictionTally(Vec<PredictionSummary>);
-
-impl PredictionTally {
-    /// Takes note of a row, in the order of rows.
-    pub fn add(&mut self, row: &Row) {
-        let Some(predicted) = &row.predicted else { return };
-        let (cell, method) = (row.cell as usize, row.method);
-        let of_cell = self.0.iter().rposition(|line| line.cell != cell).map_or(0, |before| before + 1);
-        for figure in predicted {
-            let is_own = |line: &PredictionSummary| line.method == method && line.name == figure.name;
-            let at = match self.0[of_cell..].iter().position(is_own) {
-                Some(own) => of_cell + own,
-                None => {
-                    let name = figure.name.clone();
-                    self.0.push(PredictionSummary { cell, method, name, ..PredictionSummary::default() });
-                    self.0.len() - 1
-                }
-            };
-            let line = &mut self.0[at];
-            line.trials += 1;
-            line.inside += u64::from(figure.holds());
-            let error = figure.median - figure.truth;
-            let added = [error, error * error, figure.ci90[1] - figure.ci90[0], figure.truth];
-            line.sums.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
-        }
-    }
-
-    /// All cells, methods and figures.
-    pub fn finish(mut self) -> Vec<PredictionSummary> {
-        // A figure may be seen for the first time after those of another method.
-        self.0.sort_by_key(|line| (line.cell, line.method));
-        self.0
+/// Takes note of a row of one method in one cell.
+pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow) {
+    for figure in row.predicted.iter().flatten() {
+        let at = lines.iter().position(|line| line.name == figure.name).unwrap_or_else(|| {
+            let (cell, method, name) = (row.cell as usize, row.method, figure.name.clone());
+            lines.push(PredictionSummary { cell, method, name, ..PredictionSummary::default() });
+            lines.len() - 1
+        });
+        let line = &mut lines[at];
+        line.trials += 1;
+        line.inside += u64::from(figure.holds());
+        let error = figure.median - figure.truth;
+        let added = [error, error * error, figure.ci90[1] - figure.ci90[0], figure.truth];
+        line.sums.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::Foretold;
+    use crate::rows::PredictedFigure;
 
     #[test]
     fn intervals_are_counted_where_they_hold() {
         let row = |truth: f64| {
-            let figure = Foretold { name: "zig-zag 10/10 period_s".into(), truth, median: 100.0, ci90: [98.0, 103.0] };
-            Row { predicted: Some([figure].into()), ..Row::default() }
+            let figure =
+                PredictedFigure { name: "zig-zag 10/10 period_s".into(), truth, median: 100.0, ci90: [98.0, 103.0] };
+            StudyRow { predicted: Some([figure].into()), ..StudyRow::default() }
         };
-        let mut tally = PredictionTally::default();
-        [99.0, 103.0, 97.0, 101.0].into_iter().for_each(|truth| tally.add(&row(truth)));
-        tally.add(&Row { cell: 1, ..row(99.0) });
-        tally.add(&Row::default());
-        let [first, second] = tally.finish().try_into().expect("two cells");
-        assert_eq!((first.trials, first.inside, second.trials), (4, 3, 1));
+        let mut lines = Vec::new();
+        [99.0, 103.0, 97.0, 101.0].into_iter().for_each(|truth| add_predictions(&mut lines, &row(truth)));
+        add_predictions(&mut lines, &StudyRow::default());
+        let [first] = lines.try_into().expect("one figure");
+        assert_eq!((first.trials, first.inside), (4, 3));
         assert_eq!((first.bias(), first.width(), first.truth()), (0.0, 5.0, 100.0));
         assert!((first.rms() - 5f64.sqrt()).abs() < 1e-12);
         assert_eq!(first.coverage().expect("trials").value, 0.75);

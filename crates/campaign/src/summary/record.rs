@@ -1,14 +1,16 @@
 //! What is said of methods: in one cell, against one another, and over all cells.
 
+use serde::{Deserialize, Serialize};
+
 use crate::statistics::Statistic;
 
-use super::detail::{CellDetail, MethodDetail};
+use super::detail::CellDetail;
 use super::predictions::PredictionSummary;
 use super::tracing::TraceSummary;
 
 /// Errors of one index over trials, relative to the truth. All but shares are in per cent.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Errors {
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct IndexErrors {
     /// Mean of the answers themselves, SI, with its normal interval.
     pub answer: Option<Statistic>,
     /// Mean error.
@@ -36,8 +38,8 @@ pub struct Errors {
 }
 
 /// One method on a set of trials.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Record {
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Performance {
     /// Trials run.
     pub trials: u64,
     /// Reasons of trials without an estimate, with their counts, in the order in which they came.
@@ -45,11 +47,11 @@ pub struct Record {
     /// Share of trials without an estimate.
     pub failure_rate: Option<Statistic>,
     /// Errors of K.
-    pub k: Errors,
+    pub k: IndexErrors,
     /// Errors of T.
-    pub t: Errors,
+    pub t: IndexErrors,
     /// Errors of K/T.
-    pub k_over_t: Errors,
+    pub k_over_t: IndexErrors,
     /// Median over trials of the heading error of the replay on the trial itself, deg.
     pub heading_rmse_deg: Option<Statistic>,
     /// The same on the validation manoeuvre, deg.
@@ -60,7 +62,7 @@ pub struct Record {
     pub evaluations: Option<f64>,
 }
 
-impl Record {
+impl Performance {
     /// Number of failed trials.
     pub fn failed(&self) -> u64 {
         self.failures.iter().map(|(_, count)| count).sum()
@@ -68,18 +70,18 @@ impl Record {
 }
 
 /// One method in one cell.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodSummary {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method.
     pub method: usize,
     /// What it did there.
-    pub record: Record,
+    pub record: Performance,
 }
 
 /// One index of one method against the reference, on trials where both gave an answer.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// Difference of the rms errors, per cent: negative where the method is better.
     pub rms_difference: Option<Statistic>,
@@ -90,7 +92,7 @@ pub struct Comparison {
 }
 
 /// One method against the reference in one cell.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PairSummary {
     /// Index of the cell.
     pub cell: usize,
@@ -104,17 +106,8 @@ pub struct PairSummary {
     pub t: Comparison,
 }
 
-/// One method over all cells.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Overall {
-    /// What it did.
-    pub record: Record,
-    /// Distributions of its errors.
-    pub detail: MethodDetail,
-}
-
 /// All that is said of a study.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Per cell and method, in the order of the rows.
     pub methods: Vec<MethodSummary>,
@@ -123,7 +116,7 @@ pub struct Summary {
     /// Index of the method that others are compared with.
     pub reference: usize,
     /// Per method, over all cells.
-    pub overall: Vec<Overall>,
+    pub overall: Vec<Performance>,
     /// Distributions in the cells whose detail was asked for.
     pub details: Vec<CellDetail>,
     /// What traces said, in the cells that have them.
@@ -134,7 +127,7 @@ pub struct Summary {
 
 impl Summary {
     /// The record of a method in a cell.
-    pub fn record(&self, cell: usize, method: usize) -> Option<&Record> {
+    pub fn record(&self, cell: usize, method: usize) -> Option<&Performance> {
         let key = |summary: &MethodSummary| (summary.cell, summary.method);
         let place = self.methods.binary_search_by_key(&(cell, method), key).ok()?;
         Some(&self.methods[place].record)

@@ -3,119 +3,101 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use scenario::MethodName;
 
-use super::detail::{CellDetail, MOST_PAIRS, MethodDetail};
-use super::predictions::PredictionTally;
-use super::record::{Comparison, Errors, MethodSummary, Overall, PairSummary, Record, Summary};
+use super::detail::{CellDetail, Cloud, ErrorDensity, MOST_PAIRS, MethodDetail};
+use super::predictions::{PredictionSummary, add_predictions};
+use super::record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use super::tracing::TraceTally;
 use crate::design::Design;
-use crate::rows::Row;
-use crate::statistics::{BATCHES, PairSums, Resamples, Sample, Statistic, Sums, Z95, share};
+use crate::rows::StudyRow;
+use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, share};
 
 /// The method that others are compared with, where a study has it.
 const REFERENCE: &str = "output-error";
 
 /// Takes rows in their order, cell by cell, and summarises them.
-pub struct Tally {
-    reference: usize,
+pub struct Tally<'a> {
+    design: &'a Design,
     detailed: Vec<usize>,
     cell: usize,
+    replicate: u64,
     present: Vec<Running>,
-    pairs: Vec<[PairSums; 2]>,
-    /// Errors of K and T of the reference on the present trial, and which trial that is.
-    trial: Trial,
     overall: Vec<Running>,
     resamples: Option<Arc<Resamples>>,
     /// Cells that have ended and are not yet summarised.
-    waiting: Vec<Ended>,
-    methods: Vec<MethodSummary>,
-    compared: Vec<PairSummary>,
-    details: Vec<CellDetail>,
-    tracing: TraceTally,
-    predictions: PredictionTally,
+    waiting: Vec<ClosedCell>,
+    summary: Summary,
 }
 
 /// Trials times methods of cells that wait to be summarised together, on all threads: enough to be worth it, few enough
 /// that memory does not grow with the design.
 const WAITING: u64 = 1 << 15;
 
-/// Errors of all methods on one trial.
-#[derive(Default)]
-struct Trial {
-    replicate: u64,
-    errors: Vec<[Option<f64>; 2]>,
+/// The sums of a cell whose rows have all been seen.
+struct ClosedCell {
+    cell: usize,
+    present: Vec<Running>,
+    resamples: Arc<Resamples>,
 }
 
-impl Tally {
+impl<'a> Tally<'a> {
     /// A tally of the rows of a design.
-    pub fn new(design: &Design) -> Self {
-        let methods = design.methods.len();
-        let labelled = design.methods.iter().position(|method| method.label == REFERENCE);
-        let reference =
-            labelled.or_else(|| design.methods.iter().position(|method| method.id == REFERENCE)).unwrap_or(0);
+    pub fn new(design: &'a Design) -> Self {
+        let of = |is_it: fn(&MethodName) -> bool| design.methods.iter().position(is_it);
+        let reference = of(|method| method.label == REFERENCE).or_else(|| of(|method| method.id == REFERENCE));
+        let running = vec![Running::default(); design.methods.len()];
         Self {
-            reference,
+            design,
             detailed: design.detail(),
             cell: 0,
-            present: vec![Running::default(); methods],
-            pairs: vec![Default::default(); methods],
-            trial: Trial { replicate: 0, errors: vec![[None; 2]; methods] },
-            overall: vec![Running::default(); methods],
+            replicate: 0,
+            present: running.clone(),
+            overall: running,
             resamples: None,
             waiting: Vec::new(),
-            methods: Vec::new(),
-            compared: Vec::new(),
-            details: Vec::new(),
-            tracing: TraceTally::new(design),
-            predictions: PredictionTally::default(),
+            summary: Summary { reference: reference.unwrap_or(0), ..Summary::default() },
         }
     }
 
     /// Takes note of a row.
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         let cell = row.cell as usize;
-        if cell != self.cell || row.replicate != self.trial.replicate {
+        if (cell, row.replicate) != (self.cell, self.replicate) {
             self.end_trial();
-            self.trial.replicate = row.replicate;
+            self.replicate = row.replicate;
         }
         if cell != self.cell {
             self.end_cell();
             self.cell = cell;
         }
-        let errors = [row.k_error(), row.t_error(), row.k_over_t_error()].map(|error| error.map(|error| 100.0 * error));
-        self.tracing.add(row);
-        self.predictions.add(row);
-        self.trial.errors[row.method] = [errors[0], errors[1]];
-        let detailed = self.detailed.contains(&cell);
-        self.present[row.method].add(row, row.replicate, &errors, detailed);
+        let errors = row.errors().map(|error| error.map(|error| 100.0 * error));
+        let own = &mut self.present[row.method];
+        own.add(row, &errors);
+        own.add_details(row, &self.design.cells[cell].missing, self.detailed.contains(&cell));
         // Batches over all cells: a replicate of one cell goes with the same of another, since they may share a ship.
-        self.overall[row.method].add(row, row.replicate, &errors, false);
+        self.overall[row.method].add(row, &errors);
     }
 
     /// Compares all methods with the reference on the trial that has just been seen.
     fn end_trial(&mut self) {
-        let reference = self.trial.errors[self.reference];
-        for (pairs, errors) in self.pairs.iter_mut().zip(&self.trial.errors) {
-            for (pair, (error, other)) in pairs.iter_mut().zip(errors.iter().zip(reference)) {
-                if let (Some(error), Some(other)) = (error, other) {
-                    pair.add(self.trial.replicate, *error, other);
-                }
+        let reference = self.present[self.summary.reference].latest;
+        for running in &mut self.present {
+            let errors = std::mem::take(&mut running.latest).into_iter().zip(reference);
+            for (pair, (error, other)) in running.pairs.iter_mut().zip(errors) {
+                error.zip(other).into_iter().for_each(|(error, other)| pair.add(self.replicate, error, other));
             }
         }
-        self.trial.errors.fill([None; 2]);
     }
 
     fn end_cell(&mut self) {
-        let (cell, reference) = (self.cell, self.reference);
         if self.present.iter().all(|running| running.trials == 0) {
             return;
         }
         let resamples = self.resamples(most_batches(&self.present));
         let present = std::mem::replace(&mut self.present, vec![Running::default(); self.overall.len()]);
-        let pairs = std::mem::replace(&mut self.pairs, vec![Default::default(); self.overall.len()]);
-        let detailed = self.detailed.contains(&cell);
-        self.waiting.push(Ended { cell, reference, detailed, present, pairs, resamples });
-        let rows = self.waiting.iter().flat_map(|ended| &ended.present).map(|running| running.trials);
+        self.waiting.push(ClosedCell { cell: self.cell, present, resamples });
+        let rows = self.waiting.iter().flat_map(|closed| &closed.present).map(|running| running.trials);
         if rows.sum::<u64>() >= WAITING {
             self.summarise();
         }
@@ -123,11 +105,15 @@ impl Tally {
 
     /// Summarises the cells that wait, in parallel; what is said of each goes down in their order.
     fn summarise(&mut self) {
-        let summarised: Vec<_> = std::mem::take(&mut self.waiting).into_par_iter().map(Ended::summarised).collect();
-        for (methods, compared, detail) in summarised {
-            self.methods.extend(methods);
-            self.compared.extend(compared);
-            self.details.extend(detail);
+        let (reference, detailed) = (self.summary.reference, &self.detailed);
+        let waiting = std::mem::take(&mut self.waiting).into_par_iter();
+        let summarised = waiting.map(|closed| closed.summarised(reference, detailed)).collect::<Vec<Summary>>();
+        for Summary { methods, pairs, details, tracing, predictions, .. } in summarised {
+            self.summary.methods.extend(methods);
+            self.summary.pairs.extend(pairs);
+            self.summary.details.extend(details);
+            self.summary.tracing.extend(tracing);
+            self.summary.predictions.extend(predictions);
         }
     }
 
@@ -145,59 +131,40 @@ impl Tally {
         self.end_cell();
         self.summarise();
         let resamples = self.resamples(most_batches(&self.overall));
-        let overall = self.overall.par_iter().map(|running| running.overall(&resamples));
-        Summary {
-            overall: overall.collect(),
-            methods: self.methods,
-            pairs: self.compared,
-            reference: self.reference,
-            details: self.details,
-            tracing: self.tracing.finish(),
-            predictions: self.predictions.finish(),
-        }
+        let overall = self.overall.par_iter().map(|running| running.record(&resamples)).collect();
+        Summary { overall, ..self.summary }
     }
 }
 
 /// Summarises rows that are in memory.
-pub fn summarise(rows: &[Row], design: &Design) -> Summary {
+pub fn summarise(rows: &[StudyRow], design: &Design) -> Summary {
     let mut tally = Tally::new(design);
     rows.iter().for_each(|row| tally.add(row));
     tally.finish()
 }
 
-/// The sums of a cell that has ended.
-struct Ended {
-    cell: usize,
-    reference: usize,
-    detailed: bool,
-    present: Vec<Running>,
-    pairs: Vec<[PairSums; 2]>,
-    resamples: Arc<Resamples>,
-}
-
-impl Ended {
+impl ClosedCell {
     /// What is said of the cell: every method, every method against the reference, and the distributions where asked
     /// for.
-    fn summarised(self) -> (Vec<MethodSummary>, Vec<PairSummary>, Option<CellDetail>) {
-        let Self { cell, reference, detailed, present, pairs, resamples } = self;
-        let detail = detailed.then(|| CellDetail {
-            cell,
-            methods: present.par_iter().map(Running::detail).collect::<Vec<MethodDetail>>(),
+    fn summarised(self, reference: usize, detailed: &[usize]) -> Summary {
+        let Self { cell, present, resamples } = self;
+        let methods = present.par_iter().enumerate();
+        let others = methods.clone().filter(|(method, _)| *method != reference);
+        let compared = others.map(|(method, running)| {
+            let [k, t] = running.pairs.each_ref().map(|pair| comparison(pair, &resamples));
+            PairSummary { cell, method, trials: running.pairs[0].trials(), k, t }
         });
-        let methods = present.par_iter().enumerate().map(|(method, running)| MethodSummary {
-            cell,
-            method,
-            record: running.record(&resamples),
-        });
-        let others = pairs.par_iter().enumerate().filter(|(method, _)| *method != reference);
-        let compared = others.map(|(method, [k, t])| PairSummary {
-            cell,
-            method,
-            trials: k.batches().iter().map(|batch| batch.count).sum::<f64>() as u64,
-            k: comparison(k, &resamples),
-            t: comparison(t, &resamples),
-        });
-        (methods.collect(), compared.collect(), detail)
+        let detail = || CellDetail { cell, methods: present.par_iter().map(Running::detail).collect() };
+        Summary {
+            pairs: compared.collect(),
+            methods: methods
+                .map(|(method, running)| MethodSummary { cell, method, record: running.record(&resamples) })
+                .collect(),
+            details: detailed.contains(&cell).then(detail).into_iter().collect(),
+            tracing: present.iter().filter_map(|running| running.trace.as_ref()).map(TraceTally::summary).collect(),
+            predictions: present.iter().flat_map(|running| running.predictions.clone()).collect(),
+            ..Summary::default()
+        }
     }
 }
 
@@ -208,8 +175,7 @@ fn most_batches(methods: &[Running]) -> usize {
 fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
     let [rms_difference, rms_ratio] =
         resamples.figures(pair.batches(), |total| [PairSums::difference(total), PairSums::ratio(total)]);
-    let trials = pair.batches().iter().map(|batch| batch.count).sum::<f64>();
-    Comparison { rms_difference, rms_ratio, closer: share(pair.smaller.round() as u64, trials as u64) }
+    Comparison { rms_difference, rms_ratio, closer: share(pair.smaller.round() as u64, pair.trials()) }
 }
 
 /// Running sums of one method.
@@ -219,54 +185,82 @@ struct Running {
     /// Batches that hold a trial, whether it was answered or not.
     batches: usize,
     failures: Vec<(String, u64)>,
-    k: Index,
-    t: Index,
-    k_over_t: Index,
-    heading: Sample,
-    validation: Sample,
+    /// Of K, T and K/T.
+    indices: [IndexSums; 3],
+    /// Errors of K and T on the present trial.
+    latest: [Option<f64>; 2],
+    /// Errors of K and T beside those of the reference.
+    pairs: [PairSums; 2],
+    heading: ErrorSample,
+    validation: ErrorSample,
     evaluations: f64,
-    pairs: Vec<(f64, f64)>,
+    cloud: Vec<(f64, f64)>,
+    trace: Option<TraceTally>,
+    predictions: Vec<PredictionSummary>,
 }
 
 /// Reasons that are told apart; a reason may hold numbers of its trial.
 const MOST_REASONS: usize = 50;
 
 impl Running {
-    fn add(&mut self, row: &Row, replicate: u64, errors: &[Option<f64>; 3], detailed: bool) {
+    fn add(&mut self, row: &StudyRow, errors: &[Option<f64>; 3]) {
         self.trials += 1;
-        self.batches = self.batches.max((replicate as usize % BATCHES) + 1);
+        self.batches = self.batches.max((row.replicate as usize % BATCHES) + 1);
         if let Some(reason) = row.failure.as_deref() {
-            count_reason(&mut self.failures, reason);
+            self.failed(reason);
         }
-        let bound = |sd: Option<f64>, truth: Option<f64>| Some(100.0 * sd? / truth?.abs());
         let [k, t] = row.truth();
-        let best = row.bound_of_truth();
-        let ratio = k.zip(t).map(|(k, t)| k / t);
-        self.k.add(replicate, errors[0], bound(best.map(|b| b.k_per_s), k), holds(row.k_ci95_per_s, k), row.k_per_s);
-        self.t.add(replicate, errors[1], bound(best.map(|b| b.t_s), t), holds(row.t_ci95_s, t), row.t_s);
-        self.k_over_t.add(replicate, errors[2], bound(best.map(|b| b.k_over_t_per_s2), ratio), None, None);
+        let truths = [k, t, k.zip(t).map(|(k, t)| k / t)];
+        let intervals = [row.k_ci95_per_s, row.t_ci95_s, None];
+        let answers = [row.k_per_s, row.t_s, None];
+        for (place, index) in self.indices.iter_mut().enumerate() {
+            let truth = truths[place];
+            let bound = row.bound_of_truth().zip(truth).map(|(sd, truth)| 100.0 * sd[place] / truth.abs());
+            let held = intervals[place].zip(truth).map(|([low, high], truth)| low <= truth && truth <= high);
+            index.add(row.replicate, errors[place], bound, held, answers[place]);
+        }
         row.heading_rmse_deg.into_iter().for_each(|error| self.heading.add(error));
         row.validation_rmse_deg.into_iter().for_each(|error| self.validation.add(error));
-        self.evaluations += row.evaluations.unwrap_or(0) as f64;
-        if let [Some(k), Some(t), _] = errors
+        self.evaluations += row.evaluations.unwrap_or(0.0);
+        self.latest = [errors[0], errors[1]];
+    }
+
+    /// What is not summed over all cells.
+    fn add_details(&mut self, row: &StudyRow, missing: &[String], detailed: bool) {
+        if let Some(answer) = &row.traced {
+            self.trace.get_or_insert_with(|| TraceTally::new(row, missing)).add(answer);
+        }
+        add_predictions(&mut self.predictions, row);
+        if let [Some(k), Some(t)] = self.latest
             && detailed
-            && self.pairs.len() < MOST_PAIRS
+            && self.cloud.len() < MOST_PAIRS
         {
-            self.pairs.push((*k, *t));
+            self.cloud.push((k, t));
         }
     }
 
-    fn record(&self, resamples: &Resamples) -> Record {
+    fn failed(&mut self, reason: &str) {
+        let failures = &mut self.failures;
+        let last = failures.len().saturating_sub(1);
+        match failures.iter().position(|(known, _)| known == reason) {
+            Some(known) => failures[known].1 += 1,
+            None if failures.len() < MOST_REASONS => failures.push((reason.to_owned(), 1)),
+            None => failures[last] = ("other reasons".to_owned(), failures[last].1 + 1),
+        }
+    }
+
+    fn record(&self, resamples: &Resamples) -> Performance {
         let failed: u64 = self.failures.iter().map(|(_, count)| count).sum();
         let (heading, validation) = (self.heading.ordered(), self.validation.ordered());
         let answered = self.trials - failed;
-        Record {
+        let [k, t, k_over_t] = self.indices.each_ref().map(|index| index.errors(resamples));
+        Performance {
             trials: self.trials,
             failures: self.failures.clone(),
             failure_rate: share(failed, self.trials),
-            k: self.k.errors(resamples),
-            t: self.t.errors(resamples),
-            k_over_t: self.k_over_t.errors(resamples),
+            k,
+            t,
+            k_over_t,
             heading_rmse_deg: heading.figure(0.5),
             validation_rmse_deg: validation.figure(0.5),
             high_validation_rmse_deg: validation.figure(0.9),
@@ -274,38 +268,18 @@ impl Running {
         }
     }
 
-    fn overall(&self, resamples: &Resamples) -> Overall {
-        let detail = MethodDetail::of_all_cells(&self.k.sample.ordered(), &self.t.sample.ordered(), self.trials);
-        Overall { record: self.record(resamples), detail }
-    }
-
     fn detail(&self) -> MethodDetail {
-        MethodDetail::of(&self.k.sample.ordered(), &self.t.sample.ordered(), self.trials, &self.pairs)
+        let [k, t, _] = self.indices.each_ref().map(|index| ErrorDensity::of(&index.sample.ordered()));
+        MethodDetail { violin_k: k, violin_t: t, cloud: Cloud::of(&self.cloud) }
     }
-}
-
-fn count_reason(failures: &mut Vec<(String, u64)>, reason: &str) {
-    let known = failures.iter().position(|(known, _)| known == reason);
-    let last = failures.len().saturating_sub(1);
-    match known {
-        Some(known) => failures[known].1 += 1,
-        None if failures.len() < MOST_REASONS => failures.push((reason.to_owned(), 1)),
-        None => failures[last] = ("other reasons".to_owned(), failures[last].1 + 1),
-    }
-}
-
-/// Whether an interval holds the truth.
-fn holds(interval: Option<[f64; 2]>, truth: Option<f64>) -> Option<bool> {
-    let ([low, high], truth) = (interval?, truth?);
-    Some(low <= truth && truth <= high)
 }
 
 /// Running sums of the errors of one index.
 #[derive(Debug, Clone, Default)]
-struct Index {
-    sample: Sample,
-    sums: Sums,
-    /// Sums of the answers less the first of them, and of their squares, after that first one.
+struct IndexSums {
+    sample: ErrorSample,
+    sums: ErrorSums,
+    /// ErrorSums of the answers less the first of them, and of their squares, after that first one.
     answers: Option<(f64, [f64; 2])>,
     /// Sum of the squared bounds, per cent, and their number.
     bounds: (f64, f64),
@@ -314,7 +288,7 @@ struct Index {
     held: u64,
 }
 
-impl Index {
+impl IndexSums {
     fn add(&mut self, replicate: u64, error: Option<f64>, bound: Option<f64>, held: Option<bool>, value: Option<f64>) {
         if let Some(error) = error {
             self.sample.add(error);
@@ -343,7 +317,7 @@ impl Index {
         Some(Statistic { value, ci95: half.is_finite().then_some([value - half, value + half]) })
     }
 
-    fn errors(&self, resamples: &Resamples) -> Errors {
+    fn errors(&self, resamples: &Resamples) -> IndexErrors {
         let ordered = self.sample.ordered();
         let sizes = ordered.distances(0.0);
         let sums = &self.sums;
@@ -351,8 +325,7 @@ impl Index {
             resamples.figures(sums.batches(), |total| [sums.mean(total), sums.sd(total), sums.rms(total)]);
         let (squares, count) = self.bounds;
         let bound = (count > 0.0 && squares > 0.0).then(|| (squares / count).sqrt());
-        let over = |sd: Statistic, bound: f64| sd.times(1.0 / bound);
-        Errors {
+        IndexErrors {
             answer: self.answer(),
             mean,
             median: ordered.figure(0.5),
@@ -364,7 +337,7 @@ impl Index {
             high_size: sizes.figure(0.9),
             coverage: share(self.held, self.quoted),
             quoting: if self.quoted > 0 { share(self.quoted, self.answered) } else { None },
-            sd_over_bound: sd.zip(bound).map(|(sd, bound)| over(sd, bound)),
+            sd_over_bound: sd.zip(bound).map(|(sd, bound)| sd.times(1.0 / bound)),
         }
     }
 }

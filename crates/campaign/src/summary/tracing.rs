@@ -1,12 +1,13 @@
 //! What traces said, cell by cell: was everything named that was missing, and anything that was not.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::AddAssign;
 use std::sync::LazyLock;
 
 use ::trace::Verdict;
+use serde::{Deserialize, Serialize};
 
-use crate::design::Design;
-use crate::rows::{NamedEffect, Row};
+use crate::rows::{StudyRow, TraceAnswer};
 use crate::statistics::{Statistic, share};
 use scenario::HULL;
 
@@ -15,7 +16,7 @@ use scenario::HULL;
 pub const CLEAR: f64 = 10.0;
 
 /// What traces said in one cell.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TraceSummary {
     /// Index of the cell.
     pub cell: usize,
@@ -47,15 +48,15 @@ pub struct TraceSummary {
     /// Mean share of the headings inside the band: of the trial, and of the validation manoeuvre.
     pub band: [Option<f64>; 2],
     /// Effects by the probability that was given to them; empty for a hull, of which nobody knows what it lacks.
-    pub promised: [Promised; PROMISED.len() - 1],
+    pub calibration: [CalibrationBin; CALIBRATION.len() - 1],
 }
 
-/// Ends of the ranges of probability that are told apart.
-pub const PROMISED: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
+/// Ends of the bins of probability.
+pub const CALIBRATION: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
 
-/// Effects whose probabilities are in one range.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Promised {
+/// Effects whose probabilities are in one bin.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct CalibrationBin {
     /// Effects on the list, one for every trial.
     pub effects: u64,
     /// Those of them that were there.
@@ -64,9 +65,8 @@ pub struct Promised {
     pub sum: f64,
 }
 
-impl Promised {
-    /// Adds those of other trials.
-    pub fn join(&mut self, other: &Self) {
+impl AddAssign for CalibrationBin {
+    fn add_assign(&mut self, other: Self) {
         self.effects += other.effects;
         self.present += other.present;
         self.sum += other.sum;
@@ -84,18 +84,22 @@ pub fn effect_ids() -> impl Iterator<Item = &'static str> {
 impl TraceSummary {
     /// Share of trials in which all that is missing was named.
     pub fn complete_share(&self) -> Option<Statistic> {
-        if self.missing.is_empty() || self.is_hull() { None } else { share(self.complete, self.trials) }
+        if self.missing.is_empty() { None } else { self.share_of(self.complete) }
     }
 
     /// Share of trials in which exactly what is missing was named; `None` for a hull.
     pub fn exact_share(&self) -> Option<Statistic> {
-        if self.is_hull() { None } else { share(self.exact, self.trials) }
+        self.share_of(self.exact)
     }
 
-    /// Share of trials in which something was named that is not missing; `None` for a hull, of which nobody knows what
-    /// it lacks.
+    /// Share of trials in which something was named that is not missing; `None` for a hull.
     pub fn wrong_share(&self) -> Option<Statistic> {
-        if self.is_hull() { None } else { share(self.wrong, self.trials) }
+        self.share_of(self.wrong)
+    }
+
+    /// A share of the trials; `None` for a hull, of which nobody knows what it lacks.
+    fn share_of(&self, count: u64) -> Option<Statistic> {
+        if self.is_hull() { None } else { share(count, self.trials) }
     }
 
     /// Share of clear trials in which the right effect was named.
@@ -109,69 +113,52 @@ impl TraceSummary {
     }
 }
 
-/// Counts over the rows of traces.
-#[derive(Debug, Default)]
-pub struct TraceTally {
-    missing: Vec<Vec<String>>,
-    cells: Vec<TraceSummary>,
-    /// Means of every line: of the expected likelihood ratio, and of the coverage of the two bands.
-    means: Vec<[Mean; 3]>,
+/// Counts over the traces of one method in one cell.
+#[derive(Debug, Clone)]
+pub(super) struct TraceTally {
+    summary: TraceSummary,
+    /// Means of the expected likelihood ratio, and of the coverage of the two bands.
+    means: [RunningMean; 3],
 }
 
-/// The mean of the numbers that there are.
+/// Sum and number of the numbers that there are.
 #[derive(Debug, Default, Clone, Copy)]
-struct Mean {
-    sum: f64,
-    count: u64,
-}
+struct RunningMean(f64, u64);
 
-impl Mean {
+impl RunningMean {
+    /// The mean with one more.
     fn add(&mut self, value: Option<f64>) -> Option<f64> {
-        if let Some(value) = value {
-            self.sum += value;
-            self.count += 1;
-        }
-        (self.count > 0).then(|| self.sum / self.count as f64)
+        *self = Self(self.0 + value.unwrap_or(0.0), self.1 + u64::from(value.is_some()));
+        (self.1 > 0).then(|| self.0 / self.1 as f64)
     }
 }
 
 impl TraceTally {
-    /// A tally of the cells of a design.
-    pub fn new(design: &Design) -> Self {
-        Self { missing: design.cells.iter().map(|cell| cell.missing.clone()).collect(), ..Self::default() }
+    /// Before any trace, for the cell and the method of a row.
+    pub(super) fn new(row: &StudyRow, missing: &[String]) -> Self {
+        let (cell, method, missing) = (row.cell as usize, row.method, missing.to_owned());
+        let summary = TraceSummary { cell, method, missing, ..TraceSummary::default() };
+        Self { summary, means: Default::default() }
     }
 
-    /// Takes note of a row, in the order of rows.
-    pub fn add(&mut self, row: &Row) {
-        let Some(answer) = &row.traced else { return };
-        let (cell, method) = (row.cell as usize, row.method);
-        let of_cell = self.cells.iter().rposition(|line| line.cell != cell).map_or(0, |before| before + 1);
-        let at = match self.cells[of_cell..].iter().position(|line| line.method == method) {
-            Some(own) => of_cell + own,
-            None => {
-                let missing = self.missing[cell].clone();
-                self.cells.push(TraceSummary { cell, method, missing, ..TraceSummary::default() });
-                self.means.push(Default::default());
-                self.cells.len() - 1
-            }
-        };
-        let summary = &mut self.cells[at];
+    /// Takes note of an answer.
+    pub(super) fn add(&mut self, answer: &TraceAnswer) {
+        let Self { summary, means: [expected, fitted, held_out] } = self;
         summary.trials += 1;
         let verdict = Verdict::ALL.iter().position(|verdict| *verdict == answer.verdict);
         verdict.into_iter().for_each(|place| summary.verdicts[place] += 1);
         summary.silent += u64::from(answer.named.is_empty());
         let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
         ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
-        let is_missing = |effect: &NamedEffect| summary.missing.iter().any(|id| effect.holds(id));
-        let stands_for =
-            |effect: &&NamedEffect| is_missing(effect) && summary.missing.iter().all(|id| **id != *effect.id);
-        let aliases: Vec<String> = answer.named.iter().filter(stands_for).map(|effect| effect.id.to_string()).collect();
-        let wrong = !answer.named.iter().all(is_missing);
-        summary.wrong += u64::from(wrong);
-        summary.aliases.extend(aliases);
-        let complete = summary.missing.iter().all(|id| answer.named.iter().any(|effect| effect.holds(id)));
-        summary.complete += u64::from(complete && !summary.missing.is_empty());
-        summary.exact += u64::from(complete && !wrong);
+        let missing = &summary.missing;
+        let (right, wrong): (Vec<_>, Vec<_>) =
+            answer.named.iter().partition(|effect| missing.iter().any(|id| effect.holds(id)));
+        let aliases = right.iter().filter(|effect| missing.iter().all(|id| **id != *effect.id));
+        summary.aliases.extend(aliases.map(|effect| effect.id.to_string()));
+        let complete = missing.iter().all(|id| right.iter().any(|effect| effect.holds(id)));
+        summary.wrong += u64::from(!wrong.is_empty());
+        summary.complete += u64::from(complete && !missing.is_empty());
+        summary.exact += u64::from(complete && wrong.is_empty());
         if answer.margin.is_some_and(|margin| margin > CLEAR) {
             summary.clear[0] += 1;
             summary.clear[1] += u64::from(complete);
@@ -179,53 +166,53 @@ impl TraceTally {
         let known = !summary.is_hull();
         for id in effect_ids().filter(|_| known) {
             let own = answer.probabilities.iter().find(|(other, _)| **other == *id);
-            let probability = own.map_or(0.0, |(_, probability)| *probability);
-            let range = PROMISED[1..].partition_point(|end| *end <= probability).min(summary.promised.len() - 1);
+            let sum = own.map_or(0.0, |(_, probability)| *probability);
+            let bin = CALIBRATION[1..].partition_point(|end| *end <= sum).min(summary.calibration.len() - 1);
             let present = u64::from(summary.missing.iter().any(|missing| missing == id));
-            summary.promised[range].join(&Promised { effects: 1, present, sum: probability });
+            summary.calibration[bin] += CalibrationBin { effects: 1, present, sum };
         }
-        let [expected, fitted, held_out] = &mut self.means[at];
         summary.expected = expected.add(answer.expected);
         summary.band = [fitted.add(answer.band_fitted), held_out.add(answer.band_held_out)];
     }
 
-    /// All cells with traces, in order.
-    pub fn finish(self) -> Vec<TraceSummary> {
-        self.cells
+    /// The counts so far.
+    pub(super) fn summary(&self) -> TraceSummary {
+        self.summary.clone()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::TraceAnswer;
+    use crate::rows::NamedEffect;
 
-    /// A row that names effects, each with its aliases.
-    fn row(groups: &[&[&str]], margin: Option<f64>) -> Row {
+    /// The summary of traces that name effects, each with its aliases, where some are missing.
+    fn summary(missing: &[&str], trials: &[&[&[&str]]]) -> TraceSummary {
+        let missing: Vec<String> = missing.iter().map(|&id| id.to_owned()).collect();
+        let mut tally = TraceTally::new(&StudyRow::default(), &missing);
         let effect = |ids: &&[&str]| NamedEffect {
             id: ids[0].into(),
             aliases: ids[1..].iter().map(|&alias| alias.into()).collect(),
         };
-        let named = groups.iter().map(effect).collect();
-        let cells = TraceAnswer {
-            verdict: Verdict::Traced,
-            named,
-            probabilities: vec![("wind_moment".into(), 0.97)],
-            margin,
-            expected: Some(4.0),
-            band_fitted: Some(0.9),
-            band_held_out: None,
-        };
-        Row { traced: Some(Box::new(cells)), ..Row::default() }
+        for groups in trials {
+            tally.add(&TraceAnswer {
+                verdict: Verdict::Traced,
+                named: groups.iter().map(effect).collect(),
+                probabilities: vec![("wind_moment".into(), 0.97)],
+                margin: Some(30.0),
+                expected: Some(4.0),
+                band_fitted: Some(0.9),
+                band_held_out: None,
+            });
+        }
+        tally.summary()
     }
 
     #[test]
     fn groups_are_right_when_they_hold_what_is_missing() {
-        let mut tally = TraceTally { missing: vec![vec!["a".into(), "b".into()]], ..TraceTally::default() };
         let trials: [&[&[&str]]; 5] =
             [&[&["a"], &["b"]], &[&["c", "a"], &["b"]], &[&["a"]], &[&["a"], &["b"], &["d"]], &[]];
-        trials.into_iter().for_each(|groups| tally.add(&row(groups, Some(30.0))));
-        let [summary] = tally.finish().try_into().expect("one cell");
+        let summary = summary(&["a", "b"], &trials);
         assert_eq!((summary.trials, summary.complete, summary.wrong, summary.silent), (5, 3, 1, 1));
         assert_eq!((summary.exact, summary.clear), (2, [5, 3]));
         assert_eq!((summary.named["b"], summary.named["c"]), (3, 1));
@@ -234,35 +221,17 @@ mod tests {
 
     /// Of the effects on the list one is there and was given 97 %, the others are not and were given nothing.
     #[test]
-    fn effects_are_counted_by_what_was_promised() {
-        let mut tally = TraceTally { missing: vec![vec!["wind_moment".into()]], ..TraceTally::default() };
-        tally.add(&row(&[], None));
-        let [summary] = tally.finish().try_into().expect("one cell");
+    fn effects_are_counted_by_their_probability() {
+        let summary = summary(&["wind_moment"], &[&[]]);
         let others = effect_ids().count() as u64 - 1;
-        assert_eq!(summary.promised[0], Promised { effects: others, present: 0, sum: 0.0 });
-        assert_eq!(summary.promised[6], Promised { effects: 1, present: 1, sum: 0.97 });
-        assert_eq!(summary.promised.iter().map(|range| range.effects).sum::<u64>(), others + 1);
+        assert_eq!(summary.calibration[0], CalibrationBin { effects: others, present: 0, sum: 0.0 });
+        assert_eq!(summary.calibration[6], CalibrationBin { effects: 1, present: 1, sum: 0.97 });
+        assert_eq!(summary.calibration.iter().map(|range| range.effects).sum::<u64>(), others + 1);
     }
 
     #[test]
     fn any_name_is_wrong_where_nothing_is_missing() {
-        let mut tally = TraceTally { missing: vec![vec![]], ..TraceTally::default() };
-        tally.add(&row(&[], None));
-        tally.add(&row(&[&["a"]], None));
-        let [summary] = tally.finish().try_into().expect("one cell");
+        let summary = summary(&[], &[&[], &[&["a"]]]);
         assert_eq!((summary.wrong, summary.exact, summary.complete_share()), (1, 1, None));
-    }
-
-    #[test]
-    fn every_trace_of_a_cell_has_a_line_of_its_own() {
-        let mut tally = TraceTally { missing: vec![vec![], vec!["a".into()]], ..TraceTally::default() };
-        for (cell, method, group) in [(0, 1, "a"), (0, 2, "b"), (0, 1, "a"), (1, 1, "a"), (1, 2, "b")] {
-            tally.add(&Row { cell, method, ..row(&[&[group]], None) });
-        }
-        let lines = tally.finish();
-        let told = |line: &TraceSummary| (line.cell, line.method, line.trials, line.exact, line.expected);
-        let expected = Some(4.0);
-        let wanted = [(0, 1, 2, 0, expected), (0, 2, 1, 0, expected), (1, 1, 1, 1, expected), (1, 2, 1, 0, expected)];
-        assert_eq!(lines.iter().map(told).collect::<Vec<_>>(), wanted);
     }
 }

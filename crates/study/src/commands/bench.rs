@@ -5,7 +5,7 @@ use std::env;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use campaign::benchmark::{Definition, Entry, Method, Results, Shelf};
+use campaign::benchmark::{BenchDocument, BenchMethod, Definition, RecordStore};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
@@ -44,9 +44,8 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
     };
     let definition = definition.only(&request.sets, &request.tasks)?;
     let methods = methods(request)?;
-    let shelf = Shelf::search(&folders(&request.data), &definition)?;
-    let entry = Entry { definition: &definition, shelf: &shelf, methods: &methods };
-    let results = campaign::benchmark::run(&entry, &Terminal::new(common.quiet))?;
+    let store = RecordStore::search(&folders(&request.data), &definition)?;
+    let results = campaign::benchmark::run(&definition, &store, &methods, &Terminal::new(common.quiet))?;
     if results.cases.is_empty() {
         let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
         return Err(Failure::input(format!("there is nothing to ask:\n  {}", reasons.join("\n  "))));
@@ -73,9 +72,9 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
 }
 
 /// Who takes part: the methods of the project, or those of them that are named, and outside estimators behind them.
-fn methods(request: &BenchRequest) -> Result<Vec<Method>, Failure> {
+fn methods(request: &BenchRequest) -> Result<Vec<BenchMethod>, Failure> {
     let names = &request.methods;
-    let mut methods = Method::ours();
+    let mut methods = BenchMethod::ours();
     let known: Vec<String> = methods.iter().map(|method| method.label().to_owned()).collect();
     if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
         return Err(Failure::input(format!("--method {unknown}: no such method; {}", suggestion(unknown, &known))));
@@ -86,7 +85,7 @@ fn methods(request: &BenchRequest) -> Result<Vec<Method>, Failure> {
     if !outside.is_empty() {
         interrupt::install();
     }
-    methods.extend(outside.into_iter().map(|(label, method)| Method::new(label, Arc::from(method))));
+    methods.extend(outside.into_iter().map(|(label, method)| BenchMethod::new(label, Arc::from(method))));
     Ok(methods)
 }
 
@@ -105,7 +104,7 @@ fn skipped(one: &campaign::benchmark::results::Skipped) -> String {
 
 /// Writes everything; what an earlier run left and this one does not make goes away.
 fn publish(
-    results: &Results,
+    results: &BenchDocument,
     folder: &ResultFolder,
     draw: impl FnOnce(&ResultFolder) -> Result<Vec<(String, String)>, Failure>,
 ) -> Result<(), Failure> {

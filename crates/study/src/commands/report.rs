@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use campaign::folder::ResultFolder;
-use campaign::store::{self, Stored};
+use campaign::store::{self, StoredStudy};
 use clap::Args;
 use scenario::failure::Failure;
 
@@ -48,13 +48,13 @@ fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &Common) -> Result<(
         |out: &Path| out.canonicalize().ok().zip(rows.canonicalize().ok()).is_some_and(|(out, rows)| out == rows);
     match common.out.as_deref().filter(|out| !is_same(out)) {
         Some(out) => {
-            let stored = Stored::read(rows)?;
+            let stored = StoredStudy::read(rows)?;
             publish(&stored, &ResultFolder::hold(out)?, (&theme, style.figures), common)
         }
         None => {
             store::is_finished(rows)?;
             let folder = ResultFolder::hold(rows)?;
-            publish(&Stored::held(&folder)?, &folder, (&theme, style.figures), common)
+            publish(&StoredStudy::held(&folder)?, &folder, (&theme, style.figures), common)
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Figures of a benchmark: scores over those of the reference.
 
-use campaign::benchmark::Results;
+use campaign::benchmark::BenchDocument;
 use campaign::benchmark::board::Board;
 use campaign::disk;
 use campaign::folder::ResultFolder;
@@ -35,7 +35,7 @@ pub fn of_field(field: &str) -> String {
 }
 
 /// Draws them, and returns stems and captions.
-pub fn draw(results: &Results, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
+pub fn draw(results: &BenchDocument, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
     let mut drawn = Vec::new();
     for field in results.fields() {
         let Some(data) = ratios(results, field) else { continue };
@@ -69,7 +69,7 @@ fn origin(method: &str) -> Origin {
     }
 }
 
-fn ratios(results: &Results, field: &str) -> Option<DotPlot> {
+fn ratios(results: &BenchDocument, field: &str) -> Option<DotPlot> {
     let boards: Vec<_> = results.boards.iter().filter(|board| board.field == field).collect();
     let others: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
     let has_ratios = boards.iter().flat_map(|board| &board.standings).any(|standing| standing.ratio.is_some());

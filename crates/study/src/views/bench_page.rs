@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use campaign::benchmark::Results;
+use campaign::benchmark::BenchDocument;
 use campaign::benchmark::board::FEWEST;
-use campaign::benchmark::cases::{Answer, Case};
+use campaign::benchmark::cases::{BenchCase, CaseAnswer};
 use report::markdown;
 
 use super::bench_figures::{capital, of_field};
@@ -20,7 +20,7 @@ const READING: &str = "*median*, *90 % within*: what the score of half and of ni
      together; with fewer than six there is none. They speak of records like these, not of other ships; trials of one hull differ in their noise alone.";
 
 /// `report.md`.
-pub fn page(results: &Results, drawn: &[(String, String)]) -> String {
+pub fn page(results: &BenchDocument, drawn: &[(String, String)]) -> String {
     let mut page = String::new();
     let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
     let definition = &results.definition;
@@ -108,7 +108,7 @@ fn counted(cases: usize, clusters: usize) -> String {
 }
 
 /// `methods/ID.md`.
-pub fn of_method(results: &Results, method: &str) -> String {
+pub fn of_method(results: &BenchDocument, method: &str) -> String {
     let mut page = String::new();
     let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
     line(&format!("# {method}\n\nIn [{}](../report.md). {READING}\n", results.definition.name));
@@ -129,7 +129,7 @@ pub fn of_method(results: &Results, method: &str) -> String {
 }
 
 /// Failures of a method by kind, task and set: how many, and the first reason.
-fn failures<'a>(results: &'a Results, method: &str) -> BTreeMap<(&'a str, &'a str, &'a str), (usize, String)> {
+fn failures<'a>(results: &'a BenchDocument, method: &str) -> BTreeMap<(&'a str, &'a str, &'a str), (usize, String)> {
     let mut found = BTreeMap::new();
     for case in &results.cases {
         for answer in case.answers.iter().filter(|answer| answer.method == method) {
@@ -141,7 +141,7 @@ fn failures<'a>(results: &'a Results, method: &str) -> BTreeMap<(&'a str, &'a st
     found
 }
 
-fn example(case: &Case, answer: &Answer) -> String {
+fn example(case: &BenchCase, answer: &CaseAnswer) -> String {
     let on = case.trial.map_or_else(|| case.fitted.join(" + "), |trial| format!("trial {trial}"));
     format!("{on}, {}", answer.reason.as_deref().unwrap_or("no reason was given"))
 }

@@ -1,9 +1,9 @@
 //! Tables of a benchmark: leaderboards, sets, answers one by one.
 
-use campaign::benchmark::board::{Board, Figure, SetLine, Share, Standing, by_set};
-use campaign::benchmark::cases::{Case, Naming};
+use campaign::benchmark::board::{Board, LeaderboardRow, ScoreFigure, SetLine, WilsonShare, by_set};
+use campaign::benchmark::cases::{BenchCase, Naming};
 use campaign::benchmark::naming::{NamingLine, total};
-use campaign::benchmark::{Results, Task};
+use campaign::benchmark::{BenchDocument, BenchTask};
 use report::number::{MISSING, fixed, significant};
 use report::{Column, Table};
 
@@ -17,20 +17,20 @@ fn score(value: Option<f64>) -> String {
     value.map_or_else(|| FAILED.to_owned(), |value| significant(value, DIGITS))
 }
 
-fn value(figure: Figure) -> String {
+fn value(figure: ScoreFigure) -> String {
     score(figure.value)
 }
 
-fn ends(figure: Figure) -> String {
+fn ends(figure: ScoreFigure) -> String {
     figure.ci95.map_or_else(|| MISSING.to_owned(), |[low, high]| format!("[{}, {}]", score(low), score(high)))
 }
 
-fn percent(figure: Figure) -> Figure {
+fn percent(figure: ScoreFigure) -> ScoreFigure {
     let times = |value: f64| 100.0 * value;
-    Figure { value: figure.value.map(times), ci95: figure.ci95.map(|ends| ends.map(|end| end.map(times))) }
+    ScoreFigure { value: figure.value.map(times), ci95: figure.ci95.map(|ends| ends.map(|end| end.map(times))) }
 }
 
-fn share(share: Share) -> String {
+fn share(share: WilsonShare) -> String {
     let [low, high] = share.ci95.map(|end| fixed(100.0 * end, 0));
     format!("{} [{low}, {high}]", fixed(100.0 * share.count as f64 / share.of as f64, 0))
 }
@@ -58,8 +58,9 @@ fn columns(reference: &str, indices: bool) -> Vec<Column> {
     columns
 }
 
-fn cells(standing: &Standing, indices: bool) -> Vec<String> {
-    let paired = |figure: Option<Figure>, of: fn(Figure) -> String| figure.map_or_else(|| MISSING.to_owned(), of);
+fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
+    let paired =
+        |figure: Option<ScoreFigure>, of: fn(ScoreFigure) -> String| figure.map_or_else(|| MISSING.to_owned(), of);
     let mut cells = vec![
         standing.method.clone(),
         value(standing.median),
@@ -81,22 +82,22 @@ fn cells(standing: &Standing, indices: bool) -> Vec<String> {
 }
 
 /// One board.
-pub fn board(results: &Results, board: &Board) -> Table {
-    let indices = board.task == Task::Indices;
+pub fn board(results: &BenchDocument, board: &Board) -> Table {
+    let indices = board.task == BenchTask::Indices;
     let mut table = Table::new(columns(&results.reference, indices));
     board.standings.iter().for_each(|standing| table.push(cells(standing, indices)));
     table
 }
 
 /// All boards below each other, for a person.
-pub fn leaderboard(results: &Results) -> Table {
+pub fn leaderboard(results: &BenchDocument) -> Table {
     let mut columns = columns(&results.reference, true);
     columns.splice(0..0, [Column::left("task"), Column::left("records"), Column::right("n")]);
     let mut table = Table::new(columns);
     for board in &results.boards {
         for standing in &board.standings {
             let mut line = vec![board.task.id().to_owned(), board.field.clone(), board.cases.to_string()];
-            line.extend(cells(standing, board.task == Task::Indices));
+            line.extend(cells(standing, board.task == BenchTask::Indices));
             table.push(line);
         }
     }
@@ -104,7 +105,7 @@ pub fn leaderboard(results: &Results) -> Table {
 }
 
 /// All boards with all their numbers, for a program.
-pub fn leaderboard_numbers(results: &Results) -> Table {
+pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
     let mut table = Table::new(
         [
             "task",
@@ -132,9 +133,9 @@ pub fn leaderboard_numbers(results: &Results) -> Table {
         .map(Column::left),
     );
     let text = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-    let all = |figure: Option<Figure>| match figure {
+    let all = |figure: Option<ScoreFigure>| match figure {
         None => vec![String::new(); 3],
-        Some(Figure { value, ci95 }) => {
+        Some(ScoreFigure { value, ci95 }) => {
             let [low, high] = ci95.unwrap_or([None; 2]);
             [value, low, high].map(text).to_vec()
         }
@@ -155,7 +156,7 @@ pub fn leaderboard_numbers(results: &Results) -> Table {
 }
 
 /// Medians set by set, methods side by side.
-pub fn sets(results: &Results) -> Table {
+pub fn sets(results: &BenchDocument) -> Table {
     let heads = [Column::left("task"), Column::left("set"), Column::right("n")];
     let methods = results.methods.iter().map(Column::decimal);
     let mut table = Table::new(heads.into_iter().chain(methods).collect::<Vec<_>>());
@@ -173,7 +174,7 @@ pub fn sets(results: &Results) -> Table {
 }
 
 /// One method on every set, beside the reference.
-pub fn of_method(results: &Results, method: &str) -> Table {
+pub fn of_method(results: &BenchDocument, method: &str) -> Table {
     let mut columns = vec![
         Column::left("task"),
         Column::left("set"),
@@ -209,14 +210,14 @@ pub fn of_method(results: &Results, method: &str) -> Table {
 }
 
 /// One method on every board.
-pub fn standings_of(results: &Results, method: &str) -> Table {
+pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
     let mut columns = columns(&results.reference, true);
     columns[0] = Column::left("task");
     columns.insert(1, Column::right("n"));
     let mut table = Table::new(columns);
     for board in &results.boards {
         for (place, standing) in board.standings.iter().enumerate().filter(|(_, own)| own.method == method) {
-            let mut line = cells(standing, board.task == Task::Indices);
+            let mut line = cells(standing, board.task == BenchTask::Indices);
             line[0] = format!("{} ({} of {})", board_name(board), place + 1, board.standings.len());
             line.insert(1, board.cases.to_string());
             table.push(line);
@@ -240,7 +241,7 @@ fn push_naming(table: &mut Table, line: &NamingLine, set: &str) {
 }
 
 /// What methods said of missing effects, all ships together.
-pub fn naming_totals(results: &Results) -> Table {
+pub fn naming_totals(results: &BenchDocument) -> Table {
     let mut table = naming_table("ships");
     for method in &results.methods {
         for (is_missing, ships) in [(true, "that lack one effect"), (false, "that lack nothing")] {
@@ -253,7 +254,7 @@ pub fn naming_totals(results: &Results) -> Table {
 }
 
 /// The same set by set, of one method or of all.
-pub fn naming(results: &Results, method: Option<&str>) -> Table {
+pub fn naming(results: &BenchDocument, method: Option<&str>) -> Table {
     let mut table = naming_table("set");
     let own = results.naming.iter().filter(|line| method.is_none_or(|method| line.method == method));
     own.for_each(|line| push_naming(&mut table, line, &line.set));
@@ -261,7 +262,7 @@ pub fn naming(results: &Results, method: Option<&str>) -> Table {
 }
 
 /// The ranking over all predictions.
-pub fn overall(results: &Results) -> Table {
+pub fn overall(results: &BenchDocument) -> Table {
     let mut table = Table::new([Column::left("method"), Column::decimal("mean rank"), Column::left("95 %")]);
     for (method, rank) in results.overall.iter().flat_map(|overall| &overall.standings) {
         table.push([method.clone(), value(*rank), ends(*rank)]);
@@ -270,7 +271,7 @@ pub fn overall(results: &Results) -> Table {
 }
 
 /// The sets and their records.
-pub fn present(results: &Results) -> Table {
+pub fn present(results: &BenchDocument) -> Table {
     let heads = [Column::left("set"), Column::right("trials"), Column::left("record"), Column::left("manoeuvre")];
     let files = [Column::left("file"), Column::left("SHA-256")];
     let mut table = Table::new(heads.into_iter().chain(files).collect::<Vec<_>>());
@@ -289,7 +290,7 @@ pub fn present(results: &Results) -> Table {
 }
 
 /// One row for every answer.
-pub fn rows(results: &Results) -> Table {
+pub fn rows(results: &BenchDocument) -> Table {
     let mut table = Table::new(
         [
             "task",
@@ -314,7 +315,7 @@ pub fn rows(results: &Results) -> Table {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let truth = |value: Option<bool>| value.map_or_else(String::new, |value| value.to_string());
     for case in &results.cases {
-        let Case { task, field, set, trial, fitted, scored, missing, answers } = case;
+        let BenchCase { task, field, set, trial, fitted, scored, missing, answers } = case;
         for answer in answers {
             let errors = answer.errors_percent;
             let named: Vec<String> = answer.named.iter().map(|group| group.join("|")).collect();

@@ -10,7 +10,7 @@ use scenario::TRACE;
 use campaign::curves;
 use campaign::design::Design;
 use campaign::statistics::{Statistic, Z95};
-use campaign::summary::{Record, Summary};
+use campaign::summary::{Performance, Summary};
 
 /// What a chart over the axes of a design shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,7 +51,7 @@ impl Quantity {
     }
 
     /// The figure of one panel.
-    pub fn of(self, record: &Record, panel: usize) -> Option<Statistic> {
+    pub fn of(self, record: &Performance, panel: usize) -> Option<Statistic> {
         let errors = if panel == 0 { &record.k } else { &record.t };
         match self {
             Self::Rms => errors.rms,
@@ -116,7 +116,7 @@ impl<'a> Measure<'a> {
         let is_bounded = quantity == Quantity::Rms && cells().all(|cell| cell.bound_percent2.is_some());
         let over_bound = is_bounded && !cells().any(|cell| cell.is_nearest);
         if quantity == Quantity::Failures {
-            methods.retain(|&method| summary.overall[method].record.failed() > 0);
+            methods.retain(|&method| summary.overall[method].failed() > 0);
         }
         Some(Self { design, summary, quantity, over_bound, to_nearest, methods })
     }
@@ -294,7 +294,7 @@ pub fn over_axes(design: &Design, summary: &Summary, quantity: Quantity) -> Vec<
     let number = (0..design.axes.len()).rev().filter(has_several).find(is_number);
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
     // A chart without a value, or without a single failure, says nothing.
-    let says_something = |record: &Record| {
+    let says_something = |record: &Performance| {
         let mut figures = (0..quantity.panels()).filter_map(|panel| quantity.of(record, panel));
         figures.any(|figure| quantity != Quantity::Failures || figure.value > 0.0)
     };

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use campaign::folder::ResultFolder;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 use report::figures::Replays;
 use report::{Curve, Origin};
 use scenario::failure::Failure;
@@ -59,7 +59,7 @@ pub fn of_replays(replays: &Replays, rudder: Option<&Curve>) -> String {
 }
 
 /// Writes the replays of every showcase beside their figure.
-pub fn write_showcases(stored: &Stored, drawings: &[Drawing], folder: &ResultFolder) -> Result<(), Failure> {
+pub fn write_showcases(stored: &StoredStudy, drawings: &[Drawing], folder: &ResultFolder) -> Result<(), Failure> {
     for (index, showcase) in stored.showcases.iter().enumerate() {
         let of_replays_figure =
             |drawing: &&Drawing| drawing.showcase == Some(index) && drawing.stem.contains("replays");

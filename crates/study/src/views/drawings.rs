@@ -14,7 +14,7 @@ use super::trace_charts as traces;
 use super::tracing_table::has_several;
 use campaign::folder::ResultFolder;
 use campaign::showcase::Showcase;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 use campaign::summary::{Summary, TraceSummary};
 use scenario::failure::Failure;
 
@@ -66,7 +66,7 @@ impl<'a> Drawing<'a> {
 
 /// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
 /// A name of a figure that there is not is warned of.
-pub fn of<'a>(stored: &'a Stored, summary: &'a Summary, choice: FigureChoice) -> Vec<Drawing<'a>> {
+pub fn of<'a>(stored: &'a StoredStudy, summary: &'a Summary, choice: FigureChoice) -> Vec<Drawing<'a>> {
     let words = &stored.design.words;
     let drawings = all(stored, summary);
     let warn = |key: &str, name: &str| {
@@ -104,7 +104,7 @@ pub fn of<'a>(stored: &'a Stored, summary: &'a Summary, choice: FigureChoice) ->
 }
 
 /// All figures there are.
-fn all<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
+fn all<'a>(stored: &'a StoredStudy, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
     for (index, showcase) in stored.showcases.iter().enumerate() {
         drawings.extend(of_showcase(index, &slug(&showcase.title), showcase));
@@ -161,7 +161,7 @@ pub fn first_trace(summary: &Summary) -> Vec<TraceSummary> {
 }
 
 /// Figures about what traces named.
-fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
+fn of_traces<'a>(stored: &'a StoredStudy, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let design = &stored.design;
     let mut drawings = Vec::new();
     // Of several traces the first is drawn: the others are in the tables.
@@ -201,7 +201,7 @@ fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
     drawings
 }
 
-fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
+fn of_summary<'a>(stored: &'a StoredStudy, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let design = &stored.design;
     let mut drawings = of_traces(stored, summary);
     // What a trace finds is told by its own figures; of many cells the errors would be a figure each.

@@ -71,7 +71,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, HeatMap)> {
 pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, Violins)> {
     let panel = |detail: &summary::CellDetail,
                  x_title: &str,
-                 violin: fn(&summary::MethodDetail) -> &Option<summary::Violin>| {
+                 violin: fn(&summary::MethodDetail) -> &Option<summary::ErrorDensity>| {
         let of_method = |(method, own): (usize, &summary::MethodDetail)| Violin {
             origin: origin(design, method),
             density: violin(own).as_ref().map_or_else(Vec::new, |violin| violin.density.clone()),

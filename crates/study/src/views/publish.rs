@@ -5,7 +5,7 @@ use std::io::Write as _;
 use campaign::design::Design;
 use campaign::disk;
 use campaign::folder::ResultFolder;
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 use campaign::summary::{Summary, Tally};
 use rayon::prelude::*;
 use report::{Table, Theme, markdown};
@@ -21,7 +21,7 @@ use crate::screen;
 
 /// Makes the tables, the figures and `report.md` and `report.html` in a folder, and prints the tables.
 pub fn publish(
-    stored: &Stored,
+    stored: &StoredStudy,
     folder: &ResultFolder,
     style: (&Theme, FigureChoice),
     common: &Common,
@@ -42,7 +42,7 @@ pub fn publish(
 }
 
 /// What was published, for other programs. Fails where it cannot be written as JSON.
-pub fn document(stored: &Stored, summary: &Summary, folder: &ResultFolder) -> Result<String, Failure> {
+pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) -> Result<String, Failure> {
     let body = json!({
         "folder": folder.path().display().to_string(),
         "manifest": stored.manifest,
@@ -54,7 +54,7 @@ pub fn document(stored: &Stored, summary: &Summary, folder: &ResultFolder) -> Re
 
 /// Makes the tables, the figures and `report.md` and `report.html` in a folder; returns what they are made from.
 pub fn put(
-    stored: &Stored,
+    stored: &StoredStudy,
     folder: &ResultFolder,
     (theme, figures): (&Theme, FigureChoice),
 ) -> Result<Summary, Failure> {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use campaign::store::Stored;
+use campaign::store::StoredStudy;
 use campaign::summary::Summary;
 use report::{Table, number};
 
@@ -13,8 +13,8 @@ use super::{coverage_table, tables, tracing_table};
 const SHOWN_CELLS: usize = 12;
 
 /// What a person sees: the first trial of every cell in detail, all trials in brief, failures with their reasons.
-pub fn on_screen(stored: &Stored, summary: &Summary) -> String {
-    let Stored { manifest, design, showcases, .. } = stored;
+pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
+    let StoredStudy { manifest, design, showcases, .. } = stored;
     let mut text = format!("{}: {}\n\n", manifest.name, design.words.question.trim());
     for showcase in showcases {
         let title = if showcase.title.is_empty() { "first trial" } else { &showcase.title };
@@ -46,8 +46,8 @@ pub fn on_screen(stored: &Stored, summary: &Summary) -> String {
 /// `report.md`.
 ///
 /// `brief` holds the cells one by one, where a person may read them all.
-pub fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings: &[Drawing]) -> String {
-    let Stored { manifest, design, showcases, timings, .. } = stored;
+pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<&Table>, drawings: &[Drawing]) -> String {
+    let StoredStudy { manifest, design, showcases, timings, .. } = stored;
     let mut page = String::new();
     let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
     let figure = |drawing: &Drawing| format!("![{0}]({1}.png)\n\n*{0}*\n", drawing.caption, drawing.stem);

@@ -7,8 +7,8 @@ use report::{Column, Table};
 use campaign::design::Design;
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
-use campaign::store::Stored;
-use campaign::summary::{Errors, MethodSummary, PairSummary, Record, Summary};
+use campaign::store::StoredStudy;
+use campaign::summary::{IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use scenario::MethodName;
 
 /// The table of a showcase: the methods, and below them the truth and the published values.
@@ -56,8 +56,8 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     table
 }
 
-/// A figure of [`Errors`]: its name, unit, and how to get it.
-type ErrorFigure = (&'static str, &'static str, fn(&Errors) -> Option<Statistic>);
+/// A figure of [`IndexErrors`]: its name, unit, and how to get it.
+type ErrorFigure = (&'static str, &'static str, fn(&IndexErrors) -> Option<Statistic>);
 
 const ERRORS: [ErrorFigure; 14] = [
     ("mean error", "%", |errors| errors.mean),
@@ -133,7 +133,7 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     table
 }
 
-fn brief(record: &Record) -> Vec<String> {
+fn brief(record: &Performance) -> Vec<String> {
     let mut cells = vec![format!("{}/{}", record.failed(), record.trials)];
     for errors in [&record.k, &record.t] {
         cells.push(supported(errors.median));
@@ -156,8 +156,7 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
     }
     columns.push(Column::decimal("validation").unit("deg"));
     let mut table = Table::new(columns);
-    for (method, overall) in design.methods.iter().zip(&summary.overall) {
-        let record = &overall.record;
+    for (method, record) in design.methods.iter().zip(&summary.overall) {
         let mut cells = vec![method.label.clone(), format!("{}/{}", record.failed(), record.trials)];
         for errors in [&record.k, &record.t] {
             cells.push(supported(errors.median_size));
@@ -172,7 +171,7 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
 }
 
 /// [`overall`] with the caption and the label it has in a paper: `summary.tex`.
-pub fn for_paper(summary: &Summary, stored: &Stored) -> Table {
+pub fn for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
     let (name, cells) = (&stored.manifest.name, stored.design.cells.len());
     let of = if cells == 1 { name.clone() } else { format!("{name}, all {cells} cells together") };
     let caption = format!(
@@ -220,7 +219,7 @@ fn interval(figure: Option<Statistic>) -> String {
 
 /// Reasons of failed trials with their counts, one line a cell and method.
 pub fn failures(summary: &Summary, design: &Design) -> Vec<String> {
-    let line = |cell: usize, method: usize, record: &Record| {
+    let line = |cell: usize, method: usize, record: &Performance| {
         let reasons: Vec<String> =
             record.failures.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
         let place = design.cells[cell].labels.join(", ");

@@ -12,7 +12,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
 use campaign::statistics::share;
-use campaign::summary::{PROMISED, Promised, TraceSummary};
+use campaign::summary::{CALIBRATION, CalibrationBin, TraceSummary};
 
 /// Name of the row of ships that lack nothing, and of the column of trials in which nothing was named.
 const NOTHING: &str = "nothing";
@@ -175,10 +175,10 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
 }
 
 /// Effects by their probability, over all cells.
-pub fn promised(lines: &[TraceSummary]) -> Vec<Promised> {
-    let mut all = vec![Promised::default(); PROMISED.len() - 1];
+pub fn promised(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
+    let mut all = vec![CalibrationBin::default(); CALIBRATION.len() - 1];
     for line in lines {
-        all.iter_mut().zip(&line.promised).for_each(|(all, own)| all.join(own));
+        all.iter_mut().zip(line.calibration).for_each(|(all, own)| *all += own);
     }
     all
 }

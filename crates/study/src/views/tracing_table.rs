@@ -9,7 +9,7 @@ use super::tables::head_of_cells;
 use super::trace_charts::promised;
 use campaign::design::Design;
 use campaign::statistics::{Statistic, share};
-use campaign::summary::{CLEAR, PROMISED, Summary, TraceSummary};
+use campaign::summary::{CALIBRATION, CLEAR, Summary, TraceSummary};
 use scenario::TRACE;
 
 /// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
@@ -81,7 +81,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Table {
         Column::decimal("low").unit("%"),
         Column::decimal("high").unit("%"),
     ]);
-    for (range, ends) in promised(lines).iter().zip(PROMISED.windows(2)) {
+    for (range, ends) in promised(lines).iter().zip(CALIBRATION.windows(2)) {
         let mean = (range.effects > 0).then(|| 100.0 * range.sum / range.effects as f64);
         let present = share(range.present, range.effects);
         let ends_of = present.and_then(|share| share.ci95);

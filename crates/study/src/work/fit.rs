@@ -18,7 +18,7 @@ use crate::records::{file_of, warn_of_no_track};
 use crate::scales::{self, Together};
 use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
-use campaign::known::{self, Shown};
+use campaign::known::{self, RecordFacts};
 
 /// What came out.
 pub struct Fit {
@@ -68,7 +68,7 @@ pub fn fit(
     let zigzags: Vec<Result<ZigZag, ZigZagError>> = records.iter().map(ZigZag::of).collect();
     let entries_of_trials: Vec<TrialEntry> =
         records.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag.as_ref().ok())).collect();
-    let shown = Shown::of(trials).with_motion();
+    let shown = RecordFacts::of(trials).with_motion();
     warn_of_no_track(&shown, warnings);
     let file = FitDocument {
         schema: "fit/1".into(),

@@ -3,7 +3,7 @@
 
 use ::trace::{Analysis, Settings, TraceError};
 use campaign::folder::ResultFolder;
-use campaign::known::{self, Shown};
+use campaign::known::{self, RecordFacts};
 use scenario::failure::{Failure, OnPath};
 use trial::{Channel, Trial};
 
@@ -58,7 +58,7 @@ pub fn trace(
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let scales = together.sentence();
     let Together { trials, others: held_out, .. } = together;
-    let shown = Shown::of(&trials).with_motion();
+    let shown = RecordFacts::of(&trials).with_motion();
     warn_of_no_track(&shown, warnings);
     let all = records.iter().chain(others);
     let names = names(trials.iter().chain(&held_out).map(Trial::name));

@@ -3,8 +3,8 @@
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use campaign::rows::Row;
-use campaign::store::Stored;
+use campaign::rows::StudyRow;
+use campaign::store::StoredStudy;
 
 use crate::desk::Desk;
 
@@ -287,7 +287,7 @@ fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
     desk.run(&merge).is_done();
     assert!(whole == desk.bytes("joined/rows.parquet"));
 
-    let stored = Stored::read(&desk.path("whole")).expect("it is finished");
+    let stored = StoredStudy::read(&desk.path("whole")).expect("it is finished");
     let mut rows = Vec::new();
     let read = stored.rows(|row| {
         rows.push(row);
@@ -296,7 +296,7 @@ fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
     read.expect("they can be read");
     let ships: Vec<&[f64]> = rows.iter().map(|row| row.drawn.as_deref().expect("a ship of its own")).collect();
     assert_eq!(ships[..80], ships[80..], "paired over the cells");
-    let is_truth = |row: &Row, ship: &[f64]| row.true_t_s.is_some_and(|t| (t / ship[0] - 1.0).abs() < 1e-14);
+    let is_truth = |row: &StudyRow, ship: &[f64]| row.true_t_s.is_some_and(|t| (t / ship[0] - 1.0).abs() < 1e-14);
     assert!(rows.iter().zip(&ships).all(|(row, ship)| is_truth(row, ship)), "the truth is what was drawn");
     assert!(ships.iter().all(|ship| (5.0..=50.0).contains(&ship[0]) && (2.3..=7.0).contains(&ship[1])));
     assert!(ships[0] != ships[2], "one ship per trial");

@@ -1,8 +1,8 @@
 //! Methods that are other programs, as far as the command line goes: what is said of them, and answers that come as a
 //! table. What a program answers is tested where there is one, with the tests of the whole workspace.
 
-use campaign::rows::Row;
-use campaign::store::Stored;
+use campaign::rows::StudyRow;
+use campaign::store::StoredStudy;
 
 use crate::desk::Desk;
 use crate::scenarios::GOOD;
@@ -114,13 +114,15 @@ fn simulated(desk: &Desk) -> Vec<String> {
 
 const HEAD: &str = "record,K_per_s,T_s,delta_r_deg\n";
 
-fn rows(desk: &Desk, folder: &str) -> Vec<Row> {
+fn rows(desk: &Desk, folder: &str) -> Vec<StudyRow> {
     let mut rows = Vec::new();
     let keep = |row| {
         rows.push(row);
         Ok(())
     };
-    Stored::read(&desk.path(folder)).and_then(|stored| stored.rows(keep)).unwrap_or_else(|failure| panic!("{failure}"));
+    StoredStudy::read(&desk.path(folder))
+        .and_then(|stored| stored.rows(keep))
+        .unwrap_or_else(|failure| panic!("{failure}"));
     rows
 }
 
@@ -136,7 +138,7 @@ fn answers_from_the_truth_have_no_error() {
     assert_eq!(scored.len(), 18);
     for row in &scored {
         let is_ours = row.method == 2;
-        let error = row.t_error().expect("all answered").abs();
+        let error = row.errors()[1].expect("all answered").abs();
         assert!(if is_ours { error < 1e-12 } else { error > 1e-6 }, "{row:?}");
     }
     // Among the records of the folder neither their list nor the answers are taken for one.
@@ -144,7 +146,7 @@ fn answers_from_the_truth_have_no_error() {
     assert!(fit.is_done().out.contains("6 records together"), "{}", fit.out);
     // The other methods answer as if nobody else had.
     desk.run(&["two.toml", "--seed", "7", "--out", "alone", "--quiet"]).is_done();
-    let beside: Vec<Row> = scored.into_iter().filter(|row| row.method < 2).collect();
+    let beside: Vec<StudyRow> = scored.into_iter().filter(|row| row.method < 2).collect();
     assert_eq!(beside, rows(&desk, "alone"));
     // Whoever asks again gets the same, and answers that have changed are another study.
     desk.run(&["score", "records/perfect.csv", "--out", "scored", "--quiet"]).is_done();

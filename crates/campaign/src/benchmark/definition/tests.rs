@@ -3,9 +3,9 @@ use super::*;
 #[test]
 fn the_published_benchmark_is_whole() {
     let published = Definition::published(None).unwrap_or_else(|failure| panic!("{failure}"));
-    let of = |task: Task| published.sets.iter().flat_map(|set| &set.questions).filter(|q| q.task == task).count();
+    let of = |task: BenchTask| published.sets.iter().flat_map(|set| &set.questions).filter(|q| q.task == task).count();
     // 8 + 3 + 5 measured records, 3 + 3 simulated cells; pairs of 8, of 2 and of 2.
-    assert_eq!(Task::ALL.map(of), [22, 3, 8, 66, 10, 12]);
+    assert_eq!(BenchTask::ALL.map(of), [22, 3, 8, 66, 10, 12]);
     assert_eq!(published.sets.len(), 3 + 3 + 3 + 12);
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(embedded::PLACE);
     let read = Definition::read(&file, None).unwrap_or_else(|failure| panic!("{failure}"));
@@ -65,23 +65,32 @@ fn what_is_wrong_is_told_with_line_and_place() {
 #[test]
 fn tasks_are_what_they_say() {
     let zig_zag = |rudder| Manoeuvre::zig_zag(rudder, 0.3);
-    let [one, mirrored, small] = &[zig_zag(0.3), zig_zag(0.3).to(trial::Side::Port), zig_zag(0.2)];
-    let circle = &Manoeuvre::turning_circle(0.6);
-    assert!(is_that(Task::OtherSide, &[one], mirrored).is_ok() && is_that(Task::OtherSide, &[one], small).is_err());
-    assert!(is_that(Task::OtherAmplitude, &[one, mirrored], small).is_ok());
-    assert!(is_that(Task::OtherAmplitude, &[one, small], mirrored).is_err());
-    assert!(is_that(Task::Circle, &[one], circle).is_ok() && is_that(Task::Circle, &[circle], circle).is_err());
+    let [one, mirrored, small] = [zig_zag(0.3), zig_zag(0.3).to(trial::Side::Port), zig_zag(0.2)];
+    let circle = Manoeuvre::turning_circle(0.6);
+    let is_that = |task, fitted: &[&Manoeuvre], scored: &Manoeuvre| {
+        is_that(task, &fitted.iter().map(|&one| one.clone()).collect::<Vec<_>>(), scored)
+    };
+    assert!(
+        is_that(BenchTask::OtherSide, &[&one], &mirrored).is_ok()
+            && is_that(BenchTask::OtherSide, &[&one], &small).is_err()
+    );
+    assert!(is_that(BenchTask::OtherAmplitude, &[&one, &mirrored], &small).is_ok());
+    assert!(is_that(BenchTask::OtherAmplitude, &[&one, &small], &mirrored).is_err());
+    assert!(
+        is_that(BenchTask::Circle, &[&one], &circle).is_ok()
+            && is_that(BenchTask::Circle, &[&circle], &circle).is_err()
+    );
 }
 
 #[test]
 fn sets_and_tasks_can_be_left_out() {
-    let some = |sets: &[&str], tasks: &[Task]| {
+    let some = |sets: &[&str], tasks: &[BenchTask]| {
         let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
         Definition::published(None).unwrap_or_else(|failure| panic!("{failure}")).only(&sets, tasks)
     };
-    let hulls = some(&["hulls"], &[Task::Circle]).unwrap_or_else(|failure| panic!("{failure}"));
+    let hulls = some(&["hulls"], &[BenchTask::Circle]).unwrap_or_else(|failure| panic!("{failure}"));
     assert_eq!(hulls.sets.iter().map(|set| set.questions.len()).collect::<Vec<_>>(), [1, 1, 1]);
     let unknown = some(&["hull"], &[]).err().expect("no such set").to_string();
     assert!(unknown.contains("--set hull") && unknown.contains("did you mean `hulls`"), "{unknown}");
-    assert!(some(&["missing"], &[Task::Circle]).is_err());
+    assert!(some(&["missing"], &[BenchTask::Circle]).is_err());
 }

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use crate::Unwatched;
+use crate::NoObserver;
 use identify::estimate::{Estimate, StopReason, Uncertainty};
 use identify::{Identifier, IdentifyError};
 
@@ -88,14 +88,13 @@ impl Identifier for Known {
     }
 }
 
-fn results(definition: &Definition) -> Results {
-    let mut methods = Method::ours();
+fn results(definition: &Definition) -> BenchDocument {
+    let mut methods = BenchMethod::ours();
     methods.retain(|method| ["output-error", "trace", method::STRAIGHT_ON].contains(&method.label()));
     for (label, known) in [("perfect", Some([0.1, 20.0])), ("slow", Some([0.1, 24.0])), ("silent", None)] {
-        methods.push(Method::new(label, Arc::new(Known(known))));
+        methods.push(BenchMethod::new(label, Arc::new(Known(known))));
     }
-    let entry = Entry { definition, shelf: &Shelf::default(), methods: &methods };
-    run(&entry, &Unwatched).unwrap_or_else(|failure| panic!("{failure}"))
+    run(definition, &RecordStore::default(), &methods, &NoObserver).unwrap_or_else(|failure| panic!("{failure}"))
 }
 
 #[test]
@@ -109,7 +108,7 @@ fn scores_are_what_the_models_are_worth() {
         assert!(median("output-error") < 1e-3, "{:?}: {}", board.task, median("output-error"));
         assert!(median("slow") > 0.1, "{:?}: {}", board.task, median("slow"));
         match board.task {
-            Task::Indices => {
+            BenchTask::Indices => {
                 assert!(of(method::STRAIGHT_ON).is_none(), "it has no K and no T");
                 let slow = of("slow").expect("it answers");
                 assert!((median("slow") - 20.0).abs() < 1e-9, "T is 24 s where it is 20 s");
@@ -131,14 +130,14 @@ fn only_who_names_effects_is_asked_for_one() {
     let [line] = &results.naming[..] else { panic!("{:?}", results.naming) };
     assert_eq!((line.method.as_str(), line.missing.as_deref(), line.named.of), ("trace", Some("nonlinear_damping"), 2));
     assert_eq!(line.counts.iter().sum::<usize>(), 2);
-    assert!(results.cases.iter().filter(|case| case.task == Task::Name).all(|case| case.answers.len() == 1));
+    assert!(results.cases.iter().filter(|case| case.task == BenchTask::Name).all(|case| case.answers.len() == 1));
 }
 
 #[test]
 fn what_is_stored_is_read_back() {
     let results = results(&definition());
     let json = results.json().expect("numbers");
-    assert_eq!(serde_json::from_str::<Results>(&json).expect("its own file"), results);
+    assert_eq!(serde_json::from_str::<BenchDocument>(&json).expect("its own file"), results);
     assert_eq!(json.lines().filter(|line| line.contains("\"answers\"")).count(), results.cases.len());
 }
 
@@ -146,9 +145,8 @@ fn what_is_stored_is_read_back() {
 fn labels_are_names_of_files_and_different() {
     let definition = definition();
     for (labels, said) in [(["a", "A"], "two methods are called"), (["a", "b/c"], "the name of a file")] {
-        let methods = labels.map(|label| Method::new(label, Arc::new(Known(None))));
-        let entry = Entry { definition: &definition, shelf: &Shelf::default(), methods: &methods };
-        let error = run(&entry, &Unwatched).expect_err("refused").to_string();
+        let methods = labels.map(|label| BenchMethod::new(label, Arc::new(Known(None))));
+        let error = run(&definition, &RecordStore::default(), &methods, &NoObserver).expect_err("refused").to_string();
         assert!(error.contains(said), "{error}");
     }
 }
@@ -162,6 +160,6 @@ fn an_interrupted_run_has_no_result() {
             true
         }
     }
-    let entry = Entry { definition: &definition(), shelf: &Shelf::default(), methods: &Method::ours() };
-    assert!(run(&entry, &Impatient).expect_err("stopped").message.contains("nothing was written"));
+    let stopped = run(&definition(), &RecordStore::default(), &BenchMethod::ours(), &Impatient).expect_err("stopped");
+    assert!(stopped.message.contains("nothing was written"));
 }

@@ -14,24 +14,15 @@ use sha2::{Digest, Sha256};
 use trial::Trial;
 use trial::reader::{RECORD, read_bytes};
 
-use crate::benchmark::definition::{Definition, RecordFile, Source};
+use crate::benchmark::definition::{Definition, RecordFile, SetSource};
 
 /// Folders below one another that are searched: a link that leads back is not followed, and nobody has as many.
 const DEEPEST: usize = 32;
 
 /// The files below some folders that a definition knows by name.
 #[derive(Debug, Default)]
-pub struct Shelf {
+pub struct RecordStore {
     places: BTreeMap<String, Vec<PathBuf>>,
-}
-
-/// A record that was found.
-#[derive(Debug)]
-pub struct Found {
-    /// The record.
-    pub trial: Trial,
-    /// What it was read from.
-    pub file: UsedFile,
 }
 
 /// A file that was used.
@@ -44,26 +35,25 @@ pub struct UsedFile {
     pub sha256: String,
 }
 
-impl Shelf {
+impl RecordStore {
     /// Looks through folders for the files that a definition names, in the order of the folders and of names.
     ///
     /// Fails when a folder cannot be listed; one below it that cannot be listed is passed by.
     pub fn search(folders: &[PathBuf], definition: &Definition) -> Result<Self, Failure> {
-        let mut wanted = BTreeSet::new();
-        for set in &definition.sets {
-            if let Source::Measured { copies, .. } = &set.source {
-                wanted.extend(copies.iter().flatten().map(|copy| copy.file.as_str()));
-            }
-        }
-        let mut shelf = Self::default();
+        let copies = definition.sets.iter().flat_map(|set| match &set.source {
+            SetSource::Measured { copies, .. } => copies.as_slice(),
+            SetSource::Simulated { .. } => &[],
+        });
+        let wanted = copies.flatten().map(|copy| copy.file.as_str()).collect();
+        let mut store = Self::default();
         for folder in folders {
             let names = disk::names(folder).map_err(|error| {
                 let advice = "give the folder of the measured records with --data, or in KEMPF_DATA";
                 Failure::input(format!("{}: {error}; {advice}", folder.display()))
             })?;
-            shelf.look_through(folder, names, &wanted, 0);
+            store.look_through(folder, names, &wanted, 0);
         }
-        Ok(shelf)
+        Ok(store)
     }
 
     fn look_through(&mut self, folder: &Path, names: Vec<String>, wanted: &BTreeSet<&str>, depth: usize) {
@@ -82,8 +72,9 @@ impl Shelf {
         }
     }
 
-    /// The first of some files that is there as it should be. Fails with the reason in words.
-    pub fn take(&self, copies: &[RecordFile]) -> Result<Found, String> {
+    /// The record in the first of some files that is there as it should be, and which file that is. Fails with the reason
+    /// in words.
+    pub fn take(&self, copies: &[RecordFile]) -> Result<(Trial, UsedFile), String> {
         let mut others = Vec::new();
         for copy in copies {
             for path in self.places.get(&copy.file).into_iter().flatten() {
@@ -96,17 +87,17 @@ impl Shelf {
                     }
                 };
                 let sha256 = hex(&Sha256::digest(&bytes));
-                if sha256 != copy.sha256 {
-                    let begin = |hash: &str| hash[..12].to_owned();
-                    others.push(format!(
-                        "{} is another file: its SHA-256 begins with {}, expected {}",
-                        copy.file,
-                        begin(&sha256),
-                        begin(&copy.sha256)
-                    ));
-                    continue;
+                if sha256 == copy.sha256 {
+                    let size = Some(bytes.len() as u64);
+                    let read = read_bytes(Path::new(&copy.file), Cursor::new(bytes), size, copy.sidecar.as_ref());
+                    let file = UsedFile { name: copy.file.clone(), sha256 };
+                    return Ok((read.map_err(|error| error.to_string())?.trial, file));
                 }
-                return read(copy, bytes, sha256);
+                let [begin, expected] = [&sha256[..12], &copy.sha256[..12]];
+                others.push(format!(
+                    "{} is another file: its SHA-256 begins with {begin}, expected {expected}",
+                    copy.file
+                ));
             }
         }
         if others.is_empty() {
@@ -116,13 +107,6 @@ impl Shelf {
         others.dedup();
         Err(others.join("; "))
     }
-}
-
-fn read(copy: &RecordFile, bytes: Vec<u8>, sha256: String) -> Result<Found, String> {
-    let size = Some(bytes.len() as u64);
-    let reading = read_bytes(Path::new(&copy.file), Cursor::new(bytes), size, copy.sidecar.as_ref());
-    let reading = reading.map_err(|error| error.to_string())?;
-    Ok(Found { trial: reading.trial, file: UsedFile { name: copy.file.clone(), sha256 } })
 }
 
 #[cfg(test)]
@@ -136,10 +120,10 @@ mod tests {
         RecordFile { file: file.into(), sha256: hex(&Sha256::digest(text)), sidecar: None }
     }
 
-    fn shelf(folder: &Path) -> Shelf {
-        let mut shelf = Shelf::default();
-        shelf.look_through(folder, disk::names(folder).expect("a folder"), &BTreeSet::from(["a.csv", "b.csv"]), 0);
-        shelf
+    fn store(folder: &Path) -> RecordStore {
+        let mut store = RecordStore::default();
+        store.look_through(folder, disk::names(folder).expect("a folder"), &BTreeSet::from(["a.csv", "b.csv"]), 0);
+        store
     }
 
     #[test]
@@ -150,18 +134,18 @@ mod tests {
         fs::write(desk.path().join("a.csv"), "another").expect("written");
         fs::write(desk.path().join("x/a.csv"), RECORD_TEXT).expect("written");
         fs::write(desk.path().join("x/y/a.csv"), RECORD_TEXT).expect("written");
-        let found = shelf(desk.path()).take(&[copy("b.csv", RECORD_TEXT), copy("a.csv", RECORD_TEXT)]);
-        let found = found.expect("it is there");
-        assert_eq!((found.file.name.as_str(), found.trial.len()), ("a.csv", 12));
+        let found = store(desk.path()).take(&[copy("b.csv", RECORD_TEXT), copy("a.csv", RECORD_TEXT)]);
+        let (trial, file) = found.expect("it is there");
+        assert_eq!((file.name.as_str(), trial.len()), ("a.csv", 12));
     }
 
     #[test]
     fn what_is_absent_or_another_file_is_told_without_its_place() {
         let desk = tempfile::tempdir().expect("a folder");
-        let absent = shelf(desk.path()).take(&[copy("a.csv", RECORD_TEXT), copy("b.csv", "")]).expect_err("absent");
+        let absent = store(desk.path()).take(&[copy("a.csv", RECORD_TEXT), copy("b.csv", "")]).expect_err("absent");
         assert_eq!(absent, "no file a.csv or b.csv");
         fs::write(desk.path().join("a.csv"), format!("{RECORD_TEXT} ")).expect("written");
-        let another = shelf(desk.path()).take(&[copy("a.csv", RECORD_TEXT)]).expect_err("another file");
+        let another = store(desk.path()).take(&[copy("a.csv", RECORD_TEXT)]).expect_err("another file");
         assert!(another.starts_with("a.csv is another file: its SHA-256 begins with "), "{another}");
         assert!(!another.contains(&*desk.path().to_string_lossy()), "{another}");
     }
@@ -171,7 +155,7 @@ mod tests {
     fn what_cannot_be_read_is_told() {
         let desk = tempfile::tempdir().expect("a folder");
         fs::write(desk.path().join("a.csv"), "no,record\n1,2\n").expect("written");
-        let error = shelf(desk.path()).take(&[copy("a.csv", "no,record\n1,2\n")]).expect_err("no record");
+        let error = store(desk.path()).take(&[copy("a.csv", "no,record\n1,2\n")]).expect_err("no record");
         assert!(error.starts_with("a.csv"), "{error}");
     }
 }

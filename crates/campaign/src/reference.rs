@@ -2,32 +2,31 @@
 
 use identify::replay::replay;
 use identify::{Identifier, output_error};
-use nalgebra::Matrix2;
 use ship::FirstOrder;
 use simulate::recording::RudderSource;
 use simulate::{Disturbances, Recording, Sensors, Simulated, Simulation, StreamKey};
 use trial::Trial;
 
 use crate::bound;
-use crate::rows::Bound;
 use scenario::{Specification, TrialSpecification};
 
 /// What the trials of a cell are held against.
-pub struct Yardstick {
+#[derive(Default)]
+pub struct TrialReference {
     /// The first-order response that comes nearest to the ship: the ship itself where it is exactly first order.
     pub nearest: Option<FirstOrder>,
     /// The base of a response ship with effects, where that is another one.
     pub own: Option<FirstOrder>,
-    /// Best covariance of (1/T, K/T, δ_r) on this trial, as [`Bound`] and as covariance of relative errors of K and T,
-    /// %².
-    pub bound: Option<(Bound, Matrix2<f64>)>,
+    /// Best standard deviations of K (1/s), T (s) and K/T (1/s²) on this trial, and covariance of relative errors of K
+    /// and T, %².
+    pub bound: Option<([f64; 3], [[f64; 2]; 2])>,
     /// Undisturbed second manoeuvre, perfectly recorded.
     pub validation: Option<Trial>,
     /// What a likelihood ratio of the whole truth against the nearest first-order response would be on average.
     pub expected: Option<f64>,
 }
 
-impl Yardstick {
+impl TrialReference {
     /// Of a trial with this chance; `traces` when a trace is among the methods.
     pub fn of(specimen: &TrialSpecification, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
         let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
@@ -41,7 +40,7 @@ impl Yardstick {
         // Of a likelihood with white heading noise: what has a colour is another one.
         let Sensors { heading_wander, heading_every_rows, .. } = simulation.sensors;
         let white = sd.filter(|_| heading_wander.is_none());
-        let ratio = |(near, sd): (Nearest, f64)| {
+        let ratio = |(near, sd): (NearestResponse, f64)| {
             near.mean_square / (sd * sd) * near.rows.div_ceil(heading_every_rows.unwrap_or(1)) as f64
         };
         let expected = near.filter(|_| traces).zip(white).map(ratio);
@@ -50,7 +49,7 @@ impl Yardstick {
 }
 
 /// The first-order response that comes nearest to undisturbed, perfectly recorded records of a trial, and how near.
-pub struct Nearest {
+pub struct NearestResponse {
     /// The response.
     pub response: FirstOrder,
     /// Mean square heading error, rad².
@@ -59,7 +58,7 @@ pub struct Nearest {
 }
 
 /// The first-order response nearest to the trial of a ship that is none.
-pub fn nearest_first_order(specification: &Specification, key: &StreamKey) -> Option<Nearest> {
+pub fn nearest_first_order(specification: &Specification, key: &StreamKey) -> Option<NearestResponse> {
     let calm = |(simulation, key): (&Simulation, StreamKey)| {
         let calm = Simulation {
             disturbances: Disturbances::default(),
@@ -76,5 +75,5 @@ pub fn nearest_first_order(specification: &Specification, key: &StreamKey) -> Op
         trials.iter().map(|trial| Some(replay(trial, &response)?.residual)).collect::<Option<_>>()?;
     let rows = residuals.iter().map(Vec::len).sum();
     let square: f64 = residuals.iter().flatten().map(|e| e * e).sum();
-    Some(Nearest { response, mean_square: square / rows as f64, rows })
+    Some(NearestResponse { response, mean_square: square / rows as f64, rows })
 }
