@@ -8,6 +8,7 @@
 //! Sources: Harvey (1989) for the prediction error decomposition; Bryson and Frazier (1963) for the smoother, which
 //! inverts no matrix.
 
+use crate::lanes::{Kernel, run};
 use crate::number::{Dual, Real};
 
 /// Most states of a [`Whitener`].
@@ -301,34 +302,13 @@ impl Whitener {
     /// other columns.
     pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
         with_states!(self.states, N => {
-            let (fours, rest) = columns.as_chunks_mut::<4>();
-            fours.iter_mut().for_each(|columns| self.run::<N, 4>(columns));
-            let (twos, rest) = rest.as_chunks_mut::<2>();
-            twos.iter_mut().for_each(|columns| self.run::<N, 2>(columns));
-            rest.as_chunks_mut::<1>().0.iter_mut().for_each(|columns| self.run::<N, 1>(columns));
-        });
-    }
-
-    fn run<const N: usize, const COLUMNS: usize>(&self, columns: &mut [&mut Vec<f64>; COLUMNS]) {
-        let columns = columns.each_mut().map(|column| &mut column[..self.readings.len()]);
-        let mut x = [[0.0; COLUMNS]; N];
-        for (row, &(Reading { step, sensor }, gain)) in self.readings.iter().enumerate() {
-            if let Some(step) = step {
-                x = advanced(&self.transitions[step], &x);
-            }
-            let (gain, weight) = &self.gains[gain as usize];
-            let seen = self.sensors[sensor].of(&x);
-            let mut innovation = [0.0; COLUMNS];
-            for k in 0..COLUMNS {
-                innovation[k] = columns[k][row] - seen[k];
-                columns[k][row] = innovation[k] * weight;
-            }
-            for (x, gain) in x.iter_mut().zip(gain) {
-                for k in 0..COLUMNS {
-                    x[k] += gain * innovation[k];
+            for columns in columns.chunks_mut(COLUMNS) {
+                match columns.len() {
+                    1 => run(Whitening::<N, 1> { whitener: self, columns }),
+                    _ => run(Whitening::<N, COLUMNS> { whitener: self, columns }),
                 }
             }
-        }
+        });
     }
 
     /// Applies the transpose of what makes a column white, so that both together are Σ⁻¹ of the noise.
@@ -342,6 +322,54 @@ impl Whitener {
             if let Some(step) = step {
                 let f = &self.transitions[step];
                 later = std::array::from_fn(|j| (0..self.states).map(|i| f[i][j] * later[i]).sum());
+            }
+        }
+    }
+}
+
+/// Columns that are made white side by side, and rows that are laid side by side for it at a time.
+const COLUMNS: usize = 8;
+const ROWS: usize = 64;
+
+/// Makes up to so many columns white.
+struct Whitening<'a, 'b, const N: usize, const COLUMNS: usize> {
+    whitener: &'a Whitener,
+    columns: &'a mut [&'b mut Vec<f64>],
+}
+
+impl<const N: usize, const COLUMNS: usize> Kernel for Whitening<'_, '_, N, COLUMNS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Whitener { transitions, sensors, gains, readings, .. } = self.whitener;
+        let mut x = [[0.0; COLUMNS]; N];
+        // A column that is not there holds zeros.
+        let mut block = [[0.0; COLUMNS]; ROWS];
+        for (number, readings) in readings.chunks(ROWS).enumerate() {
+            let rows = number * ROWS..number * ROWS + readings.len();
+            for (k, column) in self.columns.iter().enumerate() {
+                block.iter_mut().zip(&column[rows.clone()]).for_each(|(values, value)| values[k] = *value);
+            }
+            for (values, &(Reading { step, sensor }, gain)) in block.iter_mut().zip(readings) {
+                if let Some(step) = step {
+                    x = advanced(&transitions[step], &x);
+                }
+                let (gain, weight) = &gains[gain as usize];
+                let seen = sensors[sensor].of(&x);
+                let mut innovation = [0.0; COLUMNS];
+                for k in 0..COLUMNS {
+                    innovation[k] = values[k] - seen[k];
+                    values[k] = innovation[k] * weight;
+                }
+                for (x, gain) in x.iter_mut().zip(gain) {
+                    for k in 0..COLUMNS {
+                        x[k] += gain * innovation[k];
+                    }
+                }
+            }
+            for (k, column) in self.columns.iter_mut().enumerate() {
+                column[rows.clone()].iter_mut().zip(&block).for_each(|(value, values)| *value = values[k]);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The Kalman filter of a noise on a schedule, and how it changes with the parameters of the noise.
 
 use estimation::kalman::{Filter, Reading, Sensor, Step, System, Whitener};
+use estimation::lanes::Kernel;
 use estimation::number::{Dual, Real};
 use estimation::with_states;
 use trial::noise_model::Moment;
@@ -64,7 +65,7 @@ pub struct Slopes {
 }
 
 /// Columns whose slopes are computed side by side.
-pub const SIDE_BY_SIDE: usize = 6;
+pub const SIDE_BY_SIDE: usize = 8;
 
 /// A filter that knows its derivatives.
 pub trait Differentiated {
@@ -119,15 +120,33 @@ impl<const LANES: usize, const N: usize> Differentiated for Filter<Dual<LANES>, 
     }
 
     fn sensitivity_products(&self, raw: [&[f64]; SIDE_BY_SIDE], white: [&[f64]; SIDE_BY_SIDE]) -> Vec<f64> {
+        let sums = estimation::lanes::run(Products { filter: self, raw, white });
+        sums.iter().map(|sums| sums.iter().sum()).collect()
+    }
+}
+
+/// Σ q·∂ν/∂θ/√S of every column, by lane.
+struct Products<'a, const LANES: usize, const N: usize> {
+    filter: &'a Filter<Dual<LANES>, N>,
+    raw: [&'a [f64]; SIDE_BY_SIDE],
+    white: [&'a [f64]; SIDE_BY_SIDE],
+}
+
+impl<const LANES: usize, const N: usize> Kernel for Products<'_, LANES, N> {
+    type Output = [[f64; SIDE_BY_SIDE]; LANES];
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Self { filter, raw, white } = self;
         let mut sums = [[0.0; SIDE_BY_SIDE]; LANES];
         let at = |columns: &[&[f64]; SIDE_BY_SIDE], row: usize| -> [f64; SIDE_BY_SIDE] {
             std::array::from_fn(|k| columns[k].get(row).copied().unwrap_or(0.0))
         };
-        self.run(
+        filter.run(
             |row| at(&raw, row),
             |row, gain, by: [[f64; SIDE_BY_SIDE]; LANES]| {
                 let q = at(&white, row);
-                let (weight, _) = self.variance(gain);
+                let (weight, _) = filter.variance(gain);
                 for (sums, by) in sums.iter_mut().zip(&by) {
                     for k in 0..SIDE_BY_SIDE {
                         sums[k] += q[k] * by[k] * weight;
@@ -135,6 +154,6 @@ impl<const LANES: usize, const N: usize> Differentiated for Filter<Dual<LANES>, 
                 }
             },
         );
-        sums.iter().map(|sums| sums.iter().sum()).collect()
+        sums
     }
 }
