@@ -64,45 +64,50 @@ pub enum Unit {
     Knot,
     /// `m`
     Metre,
-    /// `rps`, revolutions per second.
-    PerSecond,
     /// `rpm`, revolutions per minute.
     PerMinute,
+    /// `rps`, revolutions per second.
+    PerSecond,
 }
 
-impl Unit {
-    /// How it ends a column name, its name in words, and the factor to SI units and radians.
-    fn facts(self) -> (&'static str, &'static str, f64) {
-        match self {
-            Unit::Second => ("s", "seconds", 1.0),
-            Unit::Millisecond => ("ms", "milliseconds", 1e-3),
-            Unit::Minute => ("min", "minutes", 60.0),
-            Unit::Degree => ("deg", "degrees", DEGREE),
-            Unit::Radian => ("rad", "radians", 1.0),
-            Unit::DegreePerSecond => ("deg_s", "degrees per second", DEGREE),
-            Unit::DegreePerMinute => ("deg_min", "degrees per minute", DEGREE / 60.0),
-            Unit::RadianPerSecond => ("rad_s", "radians per second", 1.0),
-            Unit::MetrePerSecond => ("m_s", "metres per second", 1.0),
-            Unit::Knot => ("kn", "knots", KNOT),
-            Unit::Metre => ("m", "metres", 1.0),
-            Unit::PerSecond => ("rps", "revolutions per second", 1.0),
-            Unit::PerMinute => ("rpm", "revolutions per minute", 1.0 / 60.0),
-        }
-    }
+/// Every unit in the order of its declaration: how it ends a column name, its name in words, the factor to SI units and
+/// radians, and how it is written, without blanks and in small letters.
+pub(crate) const UNITS: [(Unit, &str, &str, f64, &str); 13] = [
+    (Unit::Second, "s", "seconds", 1.0, "s, sec, secs, second, seconds, sek"),
+    (Unit::Millisecond, "ms", "milliseconds", 1e-3, "ms, msec"),
+    (Unit::Minute, "min", "minutes", 60.0, "min, minutes"),
+    (Unit::Degree, "deg", "degrees", DEGREE, "deg, degs, degree, degrees, °, º, grad"),
+    (Unit::Radian, "rad", "radians", 1.0, "rad, radian, radians"),
+    (Unit::DegreePerSecond, "deg_s", "degrees per second", DEGREE, "deg/s, deg/sec, °/s, º/s, degs-1, grad/s"),
+    (
+        Unit::DegreePerMinute,
+        "deg_min",
+        "degrees per minute",
+        DEGREE / 60.0,
+        "deg/min, °/min, º/min, degmin-1, grad/min, dpm",
+    ),
+    (Unit::RadianPerSecond, "rad_s", "radians per second", 1.0, "rad/s, rad/sec, rads-1"),
+    (Unit::MetrePerSecond, "m_s", "metres per second", 1.0, "m/s, mps, m/sec, ms-1"),
+    (Unit::Knot, "kn", "knots", KNOT, "kn, kt, kts, kns, knot, knots, knoten, sm/h, nm/h"),
+    (Unit::Metre, "m", "metres", 1.0, "m, metre, metres, meter, meters"),
+    (Unit::PerMinute, "rpm", "revolutions per minute", 1.0 / 60.0, "rpm, 1/min, min-1, u/min"),
+    (Unit::PerSecond, "rps", "revolutions per second", 1.0, "rps, 1/s, s-1, hz"),
+];
 
+impl Unit {
     /// The unit as it ends a column name.
     pub fn id(self) -> &'static str {
-        self.facts().0
+        UNITS[self as usize].1
     }
 
     /// The unit in words, for messages.
     pub fn spoken(self) -> &'static str {
-        self.facts().1
+        UNITS[self as usize].2
     }
 
     /// What a number in this unit is multiplied with to be in SI units and radians.
     pub fn to_si(self) -> f64 {
-        self.facts().2
+        UNITS[self as usize].3
     }
 }
 
@@ -158,6 +163,15 @@ impl Channel {
     /// The quantity as it begins a column name.
     pub fn quantity(self) -> &'static str {
         CHANNELS[self as usize].1
+    }
+
+    /// What it is called in messages.
+    pub(crate) fn spoken(self) -> &'static str {
+        match self {
+            Channel::YawRate => "yaw rate",
+            Channel::Rudder | Channel::RudderOrder => "rudder angle",
+            other => other.quantity(),
+        }
     }
 
     /// The units a column of this channel may have; the first is the one files are written in.

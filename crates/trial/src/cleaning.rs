@@ -57,30 +57,29 @@ pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bo
         && last.is_none_or(|last| (value - last).abs() > NO_READING)
 }
 
-/// Cleans the columns; a sentence for everything that was done. The single readings it was done to go to `marks`.
-pub(crate) fn clean(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Vec<String> {
+/// Cleans the columns; a sentence for everything that was done. The single readings it was done to go to `rejected`.
+pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<String> {
     let mut done = Vec::new();
-    done.extend(leave_out_no_rudder(columns, marks));
+    done.extend(leave_out_no_rudder(columns, rejected));
     done.extend(straighten_rudder(columns));
     for channel in [Channel::Heading, Channel::YawRate] {
         done.extend(drop_repeats(columns, channel));
     }
-    done.extend(drop_frozen(columns, marks));
-    done.extend(readings::drop_spikes(columns, marks));
-    done.extend(readings::drop_clipped(columns, marks));
+    done.extend(drop_frozen(columns, rejected));
+    done.extend(readings::drop_spikes(columns, rejected));
+    done.extend(readings::drop_clipped(columns, rejected));
     done
 }
 
 /// Leaves out rows whose rudder angle no rudder has, where they are few.
-fn leave_out_no_rudder(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Option<String> {
+fn leave_out_no_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<String> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
     let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > NO_RUDDER).collect();
     let rest = rudder.iter().map(|delta| delta.abs()).filter(|size| *size <= NO_RUDDER).fold(0.0, f64::max);
     if wild.is_empty() || wild.len() as f64 > LARGEST_SHARE * rudder.len() as f64 || rest > ANY_RUDDER {
         return None;
     }
-    let times: Vec<f64> = wild.iter().map(|&row| columns.time[row]).collect();
-    marks.extend(wild.iter().map(|&row| RejectedReading::at(Channel::Rudder, &columns.time, rudder, row)));
+    let times = reject(Channel::Rudder, &columns.time, rudder, &wild, rejected);
     let largest =
         wild.iter().map(|&row| rudder[row]).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
     let mut keep = vec![true; columns.time.len()];
@@ -90,7 +89,7 @@ fn leave_out_no_rudder(columns: &mut Columns, marks: &mut Vec<RejectedReading>) 
         "{} with a rudder angle no rudder has ({:.0}°) left out, {}; between its neighbours the rudder runs straight",
         counted(wild.len(), "row"),
         largest.to_degrees(),
-        at(&times)
+        times
     ))
 }
 
@@ -105,11 +104,18 @@ fn ordinal(number: usize) -> String {
     format!("{number}{ending}")
 }
 
-/// Up to six times.
-fn at(times: &[f64]) -> String {
+/// Notes the readings of some rows as rejected; up to six of their times, for a message.
+fn reject(
+    channel: Channel,
+    time: &[f64],
+    values: &[f64],
+    rows: &[usize],
+    rejected: &mut Vec<RejectedReading>,
+) -> String {
     const SHOWN: usize = 6;
-    let mut shown: Vec<String> = times.iter().take(SHOWN).map(|time| time.to_string()).collect();
-    shown.extend((times.len() > SHOWN).then(|| String::from("…")));
+    rejected.extend(rows.iter().map(|&row| RejectedReading { channel, time: time[row], value: values[row] }));
+    let mut shown: Vec<String> = rows.iter().take(SHOWN).map(|&row| time[row].to_string()).collect();
+    shown.extend((rows.len() > SHOWN).then(|| String::from("…")));
     format!("at t = {} s", shown.join(", "))
 }
 
@@ -167,6 +173,14 @@ impl Rhythm {
     }
 }
 
+/// Draws a straight line between the values of two rows.
+pub(crate) fn draw_line(time: &[f64], values: &mut [f64], from: usize, to: usize) {
+    let slope = (values[to] - values[from]) / (time[to] - time[from]);
+    for row in from + 1..to {
+        values[row] = values[from] + slope * (time[row] - time[from]);
+    }
+}
+
 /// Draws straight lines between the new values of a rudder that is repeated in between.
 fn straighten_rudder(columns: &mut Columns) -> Option<String> {
     let time = &columns.time;
@@ -174,11 +188,7 @@ fn straighten_rudder(columns: &mut Columns) -> Option<String> {
     let rhythm = Rhythm::of(rudder)?;
     let new: Vec<usize> = (0..rudder.len()).filter(|&row| rhythm.is_new(row)).collect();
     for pair in new.windows(2) {
-        let (from, to) = (pair[0], pair[1]);
-        let slope = (rudder[to] - rudder[from]) / (time[to] - time[from]);
-        for row in from + 1..to {
-            rudder[row] = rudder[from] + slope * (time[row] - time[from]);
-        }
+        draw_line(time, rudder, pair[0], pair[1]);
     }
     Some(format!(
         "the rudder is new in every {} row only and repeated in between; between the new values it runs straight",
@@ -199,11 +209,7 @@ fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<String> {
             *value = f64::NAN;
         }
     }
-    let name = match channel {
-        Channel::YawRate => "yaw rate",
-        _ => "heading",
-    };
-    let every = ordinal(rhythm.every);
+    let (name, every) = (channel.spoken(), ordinal(rhythm.every));
     Some(format!("the {name} is new in every {every} row only; its repetitions are taken as missing"))
 }
 
@@ -222,7 +228,7 @@ fn rests(values: &[f64]) -> bool {
 
 /// Takes a heading as missing where it stood still: it leaves the value faster than the ship turns, or the ship turned
 /// before and after by much more than the heading resolves.
-fn drop_frozen(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Option<String> {
+fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<String> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     if !rests(heading) {
@@ -258,10 +264,9 @@ fn drop_frozen(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Optio
     let frozen: Vec<&[usize]> = rests.filter(is_frozen).map(|rest| &seen[rest.start..=rest.end]).collect();
     let told: Vec<String> =
         frozen.iter().map(|rows| format!("from {} s to {} s", time[rows[0]], time[rows[rows.len() - 1]])).collect();
-    for &row in frozen.iter().flat_map(|rows| &rows[1..]) {
-        marks.push(RejectedReading::at(Channel::Heading, time, heading, row));
-        heading[row] = f64::NAN;
-    }
+    let rows: Vec<usize> = frozen.iter().flat_map(|rows| &rows[1..]).copied().collect();
+    reject(Channel::Heading, time, heading, &rows, rejected);
+    rows.into_iter().for_each(|row| heading[row] = f64::NAN);
     (!told.is_empty()).then(|| format!("the heading is frozen {}; it is taken as missing there", told.join(", ")))
 }
 

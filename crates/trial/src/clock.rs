@@ -1,8 +1,8 @@
 //! Stamps of date and time as loggers and spreadsheets write them, and the seconds between them. It knows the notations
 //! and the calendar; what is a time column and what becomes of the seconds is decided in [`crate::reader`].
 //!
-//! The calendar is that of `chrono`. No library reads the notations: jiff and chrono read ISO 8601 and one given notation
-//! at a time, no decimal commas, and no date of which the file has yet to show the month.
+//! The calendar is that of `chrono`. No library reads the notations: jiff and chrono read ISO 8601 and one given
+//! notation at a time, no decimal commas, and no date of which the file has yet to show the month.
 
 use chrono::NaiveDate;
 

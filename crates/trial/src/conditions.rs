@@ -185,34 +185,29 @@ impl Conditions {
 
     /// What is not, or not known to be, as MSC/Circ.1053 (2002), 2.2, asks for; current and speed are not looked at.
     pub fn shortcomings(&self) -> Vec<Shortcoming> {
-        let mut found = Vec::new();
-        let unknown = |what, asked| Shortcoming::Unknown { what, asked };
-        match self.depth_in_draughts() {
-            None => found.push(unknown("the water depth in draughts", "more than 4 mean draughts")),
-            Some(draughts) if draughts <= FEWEST_DRAUGHTS => found.push(Shortcoming::Depth { draughts }),
-            Some(_) => {}
-        }
-        match self.wind_beaufort {
-            None => found.push(unknown("the wind", "at most Beaufort 5")),
-            Some(beaufort) if beaufort > MOST_BEAUFORT => found.push(Shortcoming::Wind { beaufort }),
-            Some(_) => {}
-        }
-        match self.sea_state {
-            None => found.push(unknown("the sea state", "at most sea state 4")),
-            Some(state) if state > MOST_SEA_STATE => found.push(Shortcoming::Sea { state }),
-            Some(_) => {}
-        }
+        let unknown = |what, asked| Some(Shortcoming::Unknown { what, asked });
+        let depth = match self.depth_in_draughts() {
+            None => unknown("the water depth in draughts", "more than 4 mean draughts"),
+            Some(draughts) => (draughts <= FEWEST_DRAUGHTS).then_some(Shortcoming::Depth { draughts }),
+        };
+        let wind = match self.wind_beaufort {
+            None => unknown("the wind", "at most Beaufort 5"),
+            Some(beaufort) => (beaufort > MOST_BEAUFORT).then_some(Shortcoming::Wind { beaufort }),
+        };
+        let sea = match self.sea_state {
+            None => unknown("the sea state", "at most sea state 4"),
+            Some(state) => (state > MOST_SEA_STATE).then_some(Shortcoming::Sea { state }),
+        };
         let draught = self.draught_share();
-        match (self.loading(), draught) {
-            (None, _) => found.push(unknown("the loading", "full load with a tolerance of 5 % in draught")),
-            (Some(Loading::Partial), _) => found.push(Shortcoming::Load { draught }),
-            (Some(Loading::Full), Some(draught)) if (draught - 1.0).abs() > DRAUGHT_TOLERANCE => {
-                found.push(Shortcoming::Contradiction { draught });
-            }
-            (Some(Loading::Full), _) => {}
-        }
-        found.extend(self.trim.filter(|trim| *trim != 0.0).map(|trim| Shortcoming::Trim { trim }));
-        found
+        let load = match (self.loading(), draught) {
+            (None, _) => unknown("the loading", "full load with a tolerance of 5 % in draught"),
+            (Some(Loading::Partial), _) => Some(Shortcoming::Load { draught }),
+            (Some(Loading::Full), share) => share
+                .filter(|share| (share - 1.0).abs() > DRAUGHT_TOLERANCE)
+                .map(|draught| Shortcoming::Contradiction { draught }),
+        };
+        let trim = self.trim.filter(|trim| *trim != 0.0).map(|trim| Shortcoming::Trim { trim });
+        [depth, wind, sea, load, trim].into_iter().flatten().collect()
     }
 }
 

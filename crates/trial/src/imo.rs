@@ -35,13 +35,10 @@ pub fn second_overshoot_10_10_limit_deg(particulars: Particulars) -> f64 {
 }
 
 fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, line: impl Fn(f64) -> f64) -> f64 {
-    let seconds = length / speed;
-    if seconds < 10.0 {
-        short
-    } else if seconds < 30.0 {
-        line(seconds)
-    } else {
-        long
+    match length / speed {
+        seconds if seconds < 10.0 => short,
+        seconds if seconds < 30.0 => line(seconds),
+        _ => long,
     }
 }
 
@@ -127,20 +124,12 @@ pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
         let way = zigzag.initial_turning_distance.unwrap_or(speed * time.value);
         Quantity::new(way / length, time.sd.map(|sd| sd * speed / length))
     });
+    let in_degrees = |name, measured, limit| Criterion::new(name, measured, limit, Unit::Degrees);
+    let [first, second] = [first_overshoot_10_10_limit_deg(particulars), second_overshoot_10_10_limit_deg(particulars)];
     vec![
-        Criterion::new(
-            "10/10 first overshoot",
-            overshoot(10.0, 1),
-            first_overshoot_10_10_limit_deg(particulars),
-            Unit::Degrees,
-        ),
-        Criterion::new(
-            "10/10 second overshoot",
-            overshoot(10.0, 2),
-            second_overshoot_10_10_limit_deg(particulars),
-            Unit::Degrees,
-        ),
-        Criterion::new("20/20 first overshoot", overshoot(20.0, 1), FIRST_OVERSHOOT_20_20_DEG, Unit::Degrees),
+        in_degrees("10/10 first overshoot", overshoot(10.0, 1), first),
+        in_degrees("10/10 second overshoot", overshoot(10.0, 2), second),
+        in_degrees("20/20 first overshoot", overshoot(20.0, 1), FIRST_OVERSHOOT_20_20_DEG),
         Criterion::new("initial turning", initial_turning, INITIAL_TURNING_LENGTHS, Unit::ShipLengths),
     ]
 }

@@ -2,7 +2,7 @@
 //! beside them, becomes a [`ColumnMeaning`]. It knows names and units; which column of a table is used is decided by
 //! the reader.
 
-use crate::channel::{Channel, Unit, column, time_column};
+use crate::channel::{Channel, UNITS, Unit, column, time_column};
 
 /// What the name of a column says.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,36 +79,14 @@ const NAMES: [(ColumnMeaning, &str); 20] = {
     ]
 };
 
-/// Units as they are written, without blanks and in small letters.
-const UNITS: [(Unit, &str); 13] = [
-    (Unit::Second, "s, sec, secs, second, seconds, sek"),
-    (Unit::Millisecond, "ms, msec"),
-    (Unit::Minute, "min, minutes"),
-    (Unit::Degree, "deg, degs, degree, degrees, °, º, grad"),
-    (Unit::Radian, "rad, radian, radians"),
-    (Unit::DegreePerSecond, "deg/s, deg/sec, °/s, º/s, degs-1, grad/s"),
-    (Unit::DegreePerMinute, "deg/min, °/min, º/min, degmin-1, grad/min, dpm"),
-    (Unit::RadianPerSecond, "rad/s, rad/sec, rads-1"),
-    (Unit::MetrePerSecond, "m/s, mps, m/sec, ms-1"),
-    (Unit::Knot, "kn, kt, kts, kns, knot, knots, knoten, sm/h, nm/h"),
-    (Unit::Metre, "m, metre, metres, meter, meters"),
-    (Unit::PerMinute, "rpm, 1/min, min-1, u/min"),
-    (Unit::PerSecond, "rps, 1/s, s-1, hz"),
-];
-
-/// The entries of such a list, each with what it stands for.
-fn entries<T: Copy>(list: &'static [(T, &'static str)]) -> impl Iterator<Item = (&'static str, T)> {
-    list.iter().flat_map(|&(meaning, names)| names.split(", ").map(move |name| (name, meaning)))
-}
-
 /// What people call the columns of a record, with what it says.
 pub fn names() -> impl Iterator<Item = (&'static str, ColumnMeaning)> {
-    entries(&NAMES)
+    NAMES.iter().flat_map(|&(meaning, names)| names.split(", ").map(move |name| (name, meaning)))
 }
 
 /// How units are written.
 pub fn units() -> impl Iterator<Item = (&'static str, Unit)> {
-    entries(&UNITS)
+    UNITS.iter().flat_map(|&(unit, .., names)| names.split(", ").map(move |name| (name, unit)))
 }
 
 /// The unit a text stands for, brackets around it left out: `[deg]`, `(°/min)`, `kn`.
@@ -188,20 +166,21 @@ fn unit_after(text: &str) -> Option<Unit> {
     unit(text).or_else(|| unit(&text.replace(['_', ' '], "/")))
 }
 
+/// The unit of a channel that is written so; `None` where it cannot have it.
+fn fitting(channel: Channel, unit: Unit) -> Option<Unit> {
+    // A rate of turn in "ms" is nothing; a speed in "ms" was written for m/s.
+    let speed = unit == Unit::Millisecond && channel.units().contains(&Unit::MetrePerSecond);
+    Some(if speed { Unit::MetrePerSecond } else { unit }).filter(|unit| channel.units().contains(unit))
+}
+
 /// The same with a unit; `None` where the quantity cannot have it.
 pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
     match meaning {
         ColumnMeaning::Time(_) => time_column(&format!("t_{}", unit.id())).map(|unit| ColumnMeaning::Time(Some(unit))),
         ColumnMeaning::Channel(channel, _) => {
-            // A rate of turn in "ms" is nothing; a speed in "ms" was written for m/s.
-            let speed = unit == Unit::Millisecond && channel.units().contains(&Unit::MetrePerSecond);
-            let unit = if speed { Unit::MetrePerSecond } else { unit };
-            channel.units().contains(&unit).then_some(ColumnMeaning::Channel(channel, Some(unit)))
+            fitting(channel, unit).map(|unit| ColumnMeaning::Channel(channel, Some(unit)))
         }
-        ColumnMeaning::OverGround(_) => match with_unit(ColumnMeaning::Channel(Channel::Speed, None), unit)? {
-            ColumnMeaning::Channel(_, unit) => Some(ColumnMeaning::OverGround(unit)),
-            _ => None,
-        },
+        ColumnMeaning::OverGround(_) => fitting(Channel::Speed, unit).map(|unit| ColumnMeaning::OverGround(Some(unit))),
         ColumnMeaning::Latitude | ColumnMeaning::Longitude | ColumnMeaning::Course => {
             (unit == Unit::Degree).then_some(meaning)
         }

@@ -138,12 +138,15 @@ pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
     Ok(warnings)
 }
 
+/// Smallest and largest finite value; ∞ and −∞ where there is none.
+pub(crate) fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+}
+
 /// Largest minus smallest finite value; 0 where there is none.
 pub(crate) fn range(values: &[f64]) -> f64 {
-    let (low, high) = values
-        .iter()
-        .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
+    let (low, high) = extremes(values.iter().copied());
     if low <= high { high - low } else { 0.0 }
 }
 
@@ -154,8 +157,7 @@ fn range_deg(values: &[f64]) -> f64 {
 
 /// How often the rudder goes from one side of its range to the other, by more than half of it.
 pub(crate) fn reversals(rudder: &[f64]) -> usize {
-    let low = rudder.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = rudder.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = extremes(rudder.iter().copied());
     let (middle, quarter) = (0.5 * (low + high), 0.25 * (high - low));
     let mut side = 0.0;
     let mut count = 0;
@@ -169,13 +171,13 @@ pub(crate) fn reversals(rudder: &[f64]) -> usize {
 }
 
 /// Whether the heading steps by 2π under its own unit: 6.28 "degrees" between one row and the next.
-fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
+pub(crate) fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
     let mut last = f64::NAN;
     let (mut wraps, mut others) = (0, 0);
     for &psi in heading.iter().filter(|psi| psi.is_finite()) {
         let step_deg = to_deg(psi - last).abs();
-        wraps += usize::from((step_deg - std::f64::consts::TAU).abs() < 0.2);
-        others += usize::from((1.0..=std::f64::consts::TAU - 0.2).contains(&step_deg));
+        wraps += usize::from((step_deg - std::f64::consts::TAU).abs() < 0.3);
+        others += usize::from((1.0..std::f64::consts::TAU - 0.3).contains(&step_deg));
         last = psi;
     }
     wraps > 0 && others == 0

@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use crate::channel::Channel;
 use crate::conditions::{Conditions, LONGEST_INTERVAL, Shortcoming};
-use corners::Rudder;
+use corners::RecordedRudder;
 use estimation::statistics::upper_median;
 
 pub use corners::Corner;
@@ -84,12 +84,6 @@ pub struct RejectedReading {
     pub value: f64,
 }
 
-impl RejectedReading {
-    pub(crate) fn at(channel: Channel, time: &[f64], values: &[f64], row: usize) -> Self {
-        Self { channel, time: time[row], value: values[row] }
-    }
-}
-
 /// Why columns do not make a record.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
@@ -132,14 +126,14 @@ pub enum TrialError {
 pub struct Trial {
     name: String,
     origin: Origin,
-    rudder: Rudder,
+    rudder: RecordedRudder,
     channels: BTreeMap<Channel, Vec<f64>>,
     unknown: Vec<(String, Vec<f64>)>,
     heading_from_yaw_rate: bool,
     noise: Noise,
     particulars: Option<Particulars>,
     conditions: Conditions,
-    marks: Vec<RejectedReading>,
+    rejected: Vec<RejectedReading>,
 }
 
 /// The rudder over time, of as many values as times.
@@ -170,7 +164,7 @@ impl Trial {
             }
         }
         let rudder = channels.remove(&Channel::Rudder).ok_or(TrialError::Missing("rudder angle"))?;
-        let rudder = Rudder::new(signal(time, rudder)?);
+        let rudder = RecordedRudder::new(signal(time, rudder)?);
         let heading_from_yaw_rate = !channels.contains_key(&Channel::Heading);
         if heading_from_yaw_rate {
             let rate = channels.get(&Channel::YawRate).ok_or(TrialError::Missing("heading and no yaw rate"))?;
@@ -190,7 +184,7 @@ impl Trial {
             noise: Noise::default(),
             particulars: None,
             conditions: Conditions::default(),
-            marks: Vec::new(),
+            rejected: Vec::new(),
         })
     }
 
@@ -210,8 +204,8 @@ impl Trial {
     }
 
     /// The same record with the readings that were taken as missing or told as doubtful.
-    pub fn with_rejected(self, marks: Vec<RejectedReading>) -> Self {
-        Self { marks, ..self }
+    pub fn with_rejected(self, rejected: Vec<RejectedReading>) -> Self {
+        Self { rejected, ..self }
     }
 
     /// Name of the record: the stem of its file, or the cell of its scenario.
@@ -308,7 +302,7 @@ impl Trial {
 
     /// Readings that were taken as missing or told as doubtful before the record was made.
     pub fn rejected(&self) -> &[RejectedReading] {
-        &self.marks
+        &self.rejected
     }
 
     /// Length and approach speed of the ship, where declared.
@@ -340,8 +334,8 @@ impl Trial {
     }
 }
 
-/// Trapezoid integral of a rate from 0; over a missing value the neighbours are joined by a straight line.
-fn integrate(time: &[f64], rate: &[f64]) -> Vec<f64> {
+/// Trapezoid integral of a rate from 0, NaN where that is missing: there the neighbours are joined by a straight line.
+pub(crate) fn integrate(time: &[f64], rate: &[f64]) -> Vec<f64> {
     let mut total = 0.0;
     let mut last: Option<(f64, f64)> = None;
     time.iter()

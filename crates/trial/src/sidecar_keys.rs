@@ -106,7 +106,7 @@ pub(crate) struct NoiseKeys {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct CheckKeys {
-    /// With false nothing is mended, and what looks implausible is a warning in place of an error. (true or false)
+    /// With false nothing is cleaned, and what looks implausible is a warning in place of an error. (true or false)
     pub plausibility: Option<bool>,
 }
 

@@ -3,6 +3,9 @@
 
 use std::path::PathBuf;
 
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use ship::FirstOrder;
 use ship::angle::from_deg;
 use ship::first_order::{State, Transition};
@@ -112,28 +115,16 @@ pub(crate) fn trial(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Tria
     Trial::new("zig-zag", origin, Columns { time, channels, unknown: Vec::new() }).expect("columns are consistent")
 }
 
-/// Normal deviates from a linear congruential generator (constants of Knuth's MMIX) and the Box-Muller transform.
-pub(crate) struct Gaussian {
-    state: u64,
-}
+/// Normal deviates.
+pub(crate) struct Gaussian(ChaCha8Rng);
 
 impl Gaussian {
     pub fn new(seed: u64) -> Self {
-        let mut generator = Self { state: seed };
-        for _ in 0..4 {
-            generator.uniform();
-        }
-        generator
-    }
-
-    fn uniform(&mut self) -> f64 {
-        self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        Self(ChaCha8Rng::seed_from_u64(seed))
     }
 
     pub fn draw(&mut self) -> f64 {
-        let (u, v) = (self.uniform(), self.uniform());
-        (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+        StandardNormal.sample(&mut self.0)
     }
 }
 

@@ -1,9 +1,10 @@
 //! Single readings that are wrong: spikes and jumps of a heading, a yaw rate at the end of its scale. A spike is left
 //! out; a jump is told and left, for nobody can say which side of it is right.
 
-use super::at;
+use super::reject;
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
+use crate::words::counted;
 use estimation::statistics::upper_median;
 
 /// Least height of a spike or a jump, rad: 2°, more than any digits and waves make of two readings.
@@ -51,10 +52,10 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
 }
 
 /// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.
-pub(super) fn drop_spikes(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Vec<String> {
+pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<String> {
     let time = &columns.time;
     let mut told = Vec::new();
-    for (channel, name) in [(Channel::Heading, "heading"), (Channel::Rudder, "rudder angle")] {
+    for channel in [Channel::Heading, Channel::Rudder] {
         let Some(values) = columns.channels.get_mut(&channel) else { continue };
         let Some(usual) = usual(time, values) else { continue };
         let least = LEAST.max(CLEAR * usual);
@@ -67,28 +68,24 @@ pub(super) fn drop_spikes(columns: &mut Columns, marks: &mut Vec<RejectedReading
         }
         if !spikes.is_empty() && spikes.len() as f64 <= FEW * values.len() as f64 {
             let largest = spikes.iter().map(|(_, deviation)| deviation.abs()).fold(0.0, f64::max);
-            let times: Vec<f64> = spikes.iter().map(|&(row, _)| time[row]).collect();
-            for &(row, _) in &spikes {
-                marks.push(RejectedReading::at(channel, time, values, row));
-                values[row] = f64::NAN;
-            }
+            let rows: Vec<usize> = spikes.iter().map(|&(row, _)| row).collect();
+            let times = reject(channel, time, values, &rows, rejected);
+            rows.into_iter().for_each(|row| values[row] = f64::NAN);
             told.push(format!(
-                "{} {name}{} far from both neighbours (by up to {:.1}°) taken as missing, {}",
-                spikes.len(),
-                if spikes.len() == 1 { "" } else { "s" },
+                "{} far from both neighbours (by up to {:.1}°) taken as missing, {times}",
+                counted(spikes.len(), channel.spoken()),
                 largest.to_degrees(),
-                at(&times)
             ));
         }
         if channel == Channel::Heading {
-            told.extend(jumps(time, values, least, marks));
+            told.extend(jumps(time, values, least, rejected));
         }
     }
     told
 }
 
 /// Tells of steps between two headings that no ship makes: far more than the steps before and after.
-fn jumps(time: &[f64], heading: &[f64], least: f64, marks: &mut Vec<RejectedReading>) -> Option<String> {
+fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedReading>) -> Option<String> {
     let mut found = Vec::new();
     let mut last: [Option<usize>; 3] = [None; 3];
     for row in readings(heading) {
@@ -107,17 +104,16 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, marks: &mut Vec<RejectedRead
         return None;
     }
     let largest = found.iter().map(|(_, step)| *step).fold(0.0, f64::max);
-    let times: Vec<f64> = found.iter().map(|&(row, _)| time[row]).collect();
-    marks.extend(found.iter().map(|&(row, _)| RejectedReading::at(Channel::Heading, time, heading, row)));
+    let rows: Vec<usize> = found.iter().map(|&(row, _)| row).collect();
+    let times = reject(Channel::Heading, time, heading, &rows, rejected);
     Some(format!(
-        "the heading jumps (by up to {:.1}°) as no ship turns, {}; it is left as it is, for nobody can say which side is right",
+        "the heading jumps (by up to {:.1}°) as no ship turns, {times}; it is left as it is, for nobody can say which side is right",
         largest.to_degrees(),
-        at(&times)
     ))
 }
 
 /// Takes a yaw rate as missing where it stays at the end of its scale while the heading turns faster.
-pub(super) fn drop_clipped(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Option<String> {
+pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<String> {
     let time = &columns.time;
     let (heading, rate) = (columns.channels.get(&Channel::Heading)?, columns.channels.get(&Channel::YawRate)?);
     let end = rate.iter().filter(|rate| rate.is_finite()).fold(0.0, |end: f64, rate| end.max(rate.abs()));
@@ -140,10 +136,8 @@ pub(super) fn drop_clipped(columns: &mut Columns, marks: &mut Vec<RejectedReadin
         return None;
     }
     let rate = columns.channels.get_mut(&Channel::YawRate)?;
-    for &row in &at_end {
-        marks.push(RejectedReading::at(Channel::YawRate, &columns.time, rate, row));
-        rate[row] = f64::NAN;
-    }
+    reject(Channel::YawRate, &columns.time, rate, &at_end, rejected);
+    at_end.iter().for_each(|&row| rate[row] = f64::NAN);
     Some(format!(
         "the yaw rate ends at {:.2}°/s while the heading turns faster: {} rows at the end of its scale taken as missing",
         end.to_degrees(),

@@ -11,12 +11,10 @@ fn the_calendar_agrees_with_known_days() {
     for (given, day) in [((1970, 1, 1), 0), ((2000, 3, 1), 11_017), ((2026, 11, 20), 20_777), ((1969, 12, 31), -1)] {
         assert_eq!(days(given.0, given.1, given.2), Some(day));
     }
-    for day in (-800_000..800_000).step_by(37) {
-        let text = date(day).to_string();
-        let [year, month, of_month] = [0..text.len() - 6, text.len() - 5..text.len() - 3, text.len() - 2..text.len()]
-            .map(|range| text[range].parse::<i32>().expect("digits"));
-        assert_eq!(days(year, month as u32, of_month as u32), Some(day));
-    }
+    assert_eq!(
+        [date(20_777), date(-1), date(-719_528)].map(|day| day.to_string()),
+        ["2026-11-20", "1969-12-31", "0000-01-01"]
+    );
     assert_eq!([days(2025, 2, 29), days(2024, 13, 1), days(2024, 4, 31), days(2024, 0, 1)], [None; 4]);
     assert!(days(2024, 2, 29).is_some() && days(1900, 2, 29).is_none() && days(2000, 2, 29).is_some());
 }

@@ -3,11 +3,11 @@
 
 use super::course::middle;
 use super::kind::Kind;
-use super::manoeuvre::Manoeuvre;
+use super::manoeuvre::{Approach, Manoeuvre, Quality, STEADY_SPEED};
 use super::pattern::{Pattern, Prepared};
-use super::quality::{Approach, Quality, STEADY_SPEED};
 use super::rest::{Hold, usual};
-use crate::zigzag::executes::Rudder;
+use crate::plausibility::{extremes, range};
+use crate::zigzag::executes::{RudderMovements, row_before};
 use crate::zigzag::holds::{self, LAID};
 
 /// Rudder off its middle in a steady approach, and how far its middle may be off amidships, as shares of the rudder
@@ -84,11 +84,11 @@ fn spread(pattern: &Pattern) -> f64 {
     if !matches!(pattern.kind, Kind::ZigZag { .. }) {
         return 0.0;
     }
-    let range = |offset: usize| {
-        let levels = || pattern.holds.iter().skip(offset).step_by(2).map(|hold| hold.level);
-        levels().fold(f64::NEG_INFINITY, f64::max) - levels().fold(f64::INFINITY, f64::min)
+    let of_side = |offset: usize| {
+        let levels = pattern.holds.iter().skip(offset).step_by(2).map(|hold| hold.level);
+        range(&levels.collect::<Vec<f64>>())
     };
-    range(0).max(range(1))
+    of_side(0).max(of_side(1))
 }
 
 /// Last row of a manoeuvre in which the propeller turns.
@@ -133,7 +133,7 @@ pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free:
     {
         return window + row;
     }
-    let rudder = Rudder::new(&time[window..=end], angle, &local, Some(record.rest.noise));
+    let rudder = RudderMovements::new(&time[window..=end], angle, &local, Some(record.rest.noise));
     let Some(movement) = rudder.first() else { return hold.first };
     let start = time.partition_point(|&t| t < movement.start.value).clamp(window, hold.first);
     let rate = movement.rate.map(f64::abs).or(rudder.rate());
@@ -142,10 +142,15 @@ pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free:
     })
 }
 
+/// Last row before a hold in which the rudder has at most half of its angle.
+fn half_way(angle: &[f64], hold: &holds::Hold) -> Option<usize> {
+    (0..hold.first).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs())
+}
+
 /// First row on the line through a movement into a hold at a rate, rad/s. Steering to the same side just before moves
 /// the foot of that line, but is not on it.
 fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f64) -> usize {
-    let half = (0..hold.first).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs()).unwrap_or(0);
+    let half = half_way(angle, hold).unwrap_or(0);
     let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
     // The other half tells how well the rows of a movement keep to a line: rounding and uneven times take them off.
     let ramp: Vec<usize> =
@@ -164,18 +169,18 @@ fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f6
 /// where the record does not show it.
 fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> Option<usize> {
     let laid = hold.first;
-    let half = (0..laid).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs())?;
+    let half = half_way(angle, hold)?;
     let rate = (angle[laid] - angle[half]) / (time[laid] - time[half]);
     let look_back = (0.2 * hold.level.abs()).max(8.0 * noise) / rate.abs();
     let mut row = half;
     while row > 0 {
-        let earlier = time.partition_point(|&t| t <= time[row] - look_back).saturating_sub(1).min(row - 1);
+        let earlier = row_before(time, row, look_back).min(row - 1);
         if (angle[row] - angle[earlier]) / (time[row] - time[earlier]) / rate < 0.3 {
             break;
         }
         row -= 1;
     }
-    let clear = time.partition_point(|&t| t <= time[row] - 0.3 * look_back).saturating_sub(1).min(row);
+    let clear = row_before(time, row, 0.3 * look_back);
     let before = middle(&angle[clear.saturating_sub(ENOUGH_ROWS)..=clear])?;
     let start = time[half] - (angle[half] - before) / rate;
     let tolerance = (2.5 * noise).max(0.01 * hold.level.abs());
@@ -226,11 +231,11 @@ impl ApproachSegment {
 /// First row from which on the rudder stays about amidships until row `start`; `None` where it does not in the end.
 fn steady_rudder(record: &Prepared, pattern: &Pattern, earliest: usize, start: usize) -> Option<usize> {
     let (time, angle) = (record.log.time, &record.rest.angle);
-    let levels = || pattern.holds.iter().map(|hold| hold.level);
-    let largest = levels().map(f64::abs).fold(0.0, f64::max);
+    let (lowest, highest) = extremes(pattern.holds.iter().map(|hold| hold.level));
+    let largest = lowest.abs().max(highest.abs());
     let amidships = match pattern.kind {
         Kind::TurningCircle { .. } => record.rest.neutral,
-        _ => 0.5 * (levels().fold(f64::NEG_INFINITY, f64::max) + levels().fold(f64::INFINITY, f64::min)),
+        _ => 0.5 * (highest + lowest),
     };
     let level = middle(&angle[start - (start - earliest).div_ceil(4)..start])?;
     if (level - amidships).abs() > AMIDSHIPS * largest {

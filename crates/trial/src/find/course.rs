@@ -1,7 +1,6 @@
 //! The heading of a log where it was read: what it is near a time, and how it changes between two. Gaps are bridged
 //! only as far as the caller says.
 
-use super::signals::Signals;
 use estimation::statistics::median;
 
 /// Most rows that a middle value is taken of: more make it no better, and the search slower.
@@ -17,8 +16,8 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    pub fn of(log: &Signals) -> Self {
-        let read = log.time.iter().zip(log.heading).filter(|(_, psi)| psi.is_finite());
+    pub fn of(time: &[f64], heading: &[f64]) -> Self {
+        let read = time.iter().zip(heading).filter(|(_, psi)| psi.is_finite());
         let (time, heading) = read.map(|(&t, &psi)| (t, psi)).unzip();
         Self { time, heading }
     }

@@ -1,7 +1,8 @@
 //! What a ship can do, and what it is called in lists.
 
-use crate::zigzag::holds::conventional_deg;
 use ship::angle::to_deg;
+
+use crate::zigzag::holds::conventional_deg;
 
 /// What a ship did.
 #[derive(Debug, Clone, Copy, PartialEq)]

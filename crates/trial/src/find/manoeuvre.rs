@@ -1,7 +1,94 @@
-//! What a search gives: a manoeuvre with the part of the log that is to be analysed.
+//! What a search gives: a manoeuvre with the part of the log that is to be analysed, and how good the log is there:
+//! facts that a person wants before that. Nothing is refused for them.
+
+use ship::angle::to_deg;
 
 use super::kind::Kind;
-use super::quality::Quality;
+use super::pattern::Prepared;
+
+/// Share of missing headings worth a remark.
+const MISSING: f64 = 0.01;
+
+/// Rows without a heading, in usual steps, that make a gap.
+const GAP: f64 = 10.0;
+
+/// Difference between holds to one side worth a remark, degrees.
+const SPREAD_DEG: f64 = 1.5;
+
+/// Change of speed and revolutions, as a share, from the first third of an approach of full length to the last: 5 %
+/// over all of it.
+pub(crate) const STEADY_SPEED: f64 = 0.033;
+
+/// How a manoeuvre was approached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Approach {
+    /// On a steady course at a steady speed; the part begins with the end of it.
+    Steady,
+    /// By hand, turning, or at a changing speed; the part begins with the first execute.
+    Unsteady,
+    /// The log begins in the manoeuvre.
+    Absent,
+}
+
+/// How good a log is where a manoeuvre was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Quality {
+    /// Share of the rows without a heading, 0 to 1.
+    pub missing_headings: f64,
+    /// Longest time without a heading, s; `None` where it is not much longer than usual.
+    pub longest_gap: Option<f64>,
+    /// Largest difference between the rudder angles held to one side of a zig-zag, rad.
+    pub rudder_spread: f64,
+    /// How it was approached; `None` for a pull-out and a straight piece.
+    pub approach: Option<Approach>,
+    /// Change of speed from the first third of the approach, at most one hold long, to the last, as a share of the
+    /// larger; positive where it grew; `None` where it is not known.
+    pub speed_change: Option<f64>,
+}
+
+impl Quality {
+    /// What the rows of a part tell by themselves.
+    pub(crate) fn of(record: &Prepared, first: usize, last: usize) -> Self {
+        let (time, heading) = (&record.log.time[first..=last], &record.log.heading[first..=last]);
+        let mut longest = 0.0_f64;
+        let (mut read, mut missing) = (time[0], 0);
+        for (&t, psi) in time.iter().zip(heading) {
+            longest = longest.max(t - read);
+            if psi.is_finite() { read = t } else { missing += 1 }
+        }
+        Self {
+            missing_headings: f64::from(missing) / time.len() as f64,
+            longest_gap: (longest > GAP * record.rest.step).then_some(longest),
+            rudder_spread: 0.0,
+            approach: None,
+            speed_change: None,
+        }
+    }
+
+    /// What is worth knowing, in sentences; empty where there is nothing.
+    pub fn remarks(&self) -> Vec<String> {
+        let approach = match self.approach {
+            Some(Approach::Unsteady) => {
+                Some("The approach was not steady: the part begins at the first execute.".into())
+            }
+            Some(Approach::Absent) => Some("The log begins in the manoeuvre: there is no approach.".into()),
+            Some(Approach::Steady) | None => None,
+        };
+        let speed = self.speed_change.filter(|change| change.abs() > STEADY_SPEED).map(|change| {
+            let verb = if change > 0.0 { "grew" } else { "fell" };
+            format!("The speed still {verb} by {:.0} % in the approach.", 100.0 * change.abs())
+        });
+        let missing = (self.missing_headings > MISSING)
+            .then(|| format!("{:.0} % of the headings are missing.", 100.0 * self.missing_headings));
+        let gap = self.longest_gap.map(|gap| format!("There is no heading for {gap:.1} s."));
+        let spread = to_deg(self.rudder_spread);
+        let spread =
+            (spread > SPREAD_DEG).then(|| format!("The rudder angles held to one side differ by up to {spread:.1}°."));
+        [approach, speed, missing, gap, spread].into_iter().flatten().collect()
+    }
+}
 
 /// A manoeuvre inside a log.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,9 +15,6 @@ mod course;
 mod kind;
 mod manoeuvre;
 mod pattern;
-mod quality;
-mod signals;
-
 mod rest;
 mod spirals;
 mod straights;
@@ -31,9 +28,8 @@ use pattern::{Pattern, Prepared};
 use rest::{Hold, Rest};
 
 pub use kind::Kind;
-pub use manoeuvre::Manoeuvre;
-pub use quality::{Approach, Quality};
-pub use signals::Signals;
+pub use manoeuvre::{Approach, Manoeuvre, Quality};
+pub use pattern::Signals;
 
 /// The manoeuvres of a log in order of time; they do not overlap.
 ///
@@ -43,7 +39,7 @@ pub fn manoeuvres(log: &Signals) -> Vec<Manoeuvre> {
     if !log.is_sound() {
         return Vec::new();
     }
-    let course = Course::of(log);
+    let course = Course::of(log.time, log.heading);
     let rest = Rest::of(log.time, log.rudder);
     let record = Prepared { log, rest: &rest, course: &course };
     let mut found = spirals::spirals(&record);

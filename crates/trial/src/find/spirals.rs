@@ -3,8 +3,7 @@
 
 use super::kind::Kind;
 use super::pattern::{Pattern, Prepared};
-use super::rest::Hold;
-use estimation::statistics::median;
+use super::rest::{Hold, usual};
 
 /// Fewest holds of a way from side to side, and of a part of a way that leads up to it or goes on.
 const FEWEST: usize = 5;
@@ -51,8 +50,7 @@ pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
         let mut holds = group[0].to_vec();
         group[1..].iter().for_each(|way| holds.extend(&way[1..]));
         let largest = holds.iter().map(|hold| hold.level.abs()).fold(0.0, f64::max);
-        let mut durations: Vec<f64> = holds.iter().map(Hold::duration).collect();
-        let Some(scale) = median(&mut durations) else { continue };
+        let scale = usual(holds.iter().map(Hold::duration));
         let turns = holds.iter().filter_map(|hold| record.course.change(hold.from, hold.until));
         let swing = turns.map(f64::abs).fold(0.0, f64::max);
         found.push(Pattern { kind: Kind::Spiral { largest, steps: holds.len() }, holds, scale, swing });
@@ -92,9 +90,8 @@ fn is_from_side_to_side(way: &[Hold]) -> bool {
 
 /// Whether the ship turns steadily in every hold, the more to the side the rudder went to.
 fn is_answered(record: &Prepared, way: &[Hold]) -> bool {
-    let mut durations: Vec<f64> = way.iter().map(Hold::duration).collect();
-    let Some(usual) = median(&mut durations) else { return false };
-    if durations.iter().any(|duration| *duration < SHORTEST * usual) {
+    let usual = usual(way.iter().map(Hold::duration));
+    if way.iter().any(|hold| hold.duration() < SHORTEST * usual) {
         return false;
     }
     let thirds = |hold: &Hold| {

@@ -2,10 +2,11 @@
 //! hand, by autopilot or without either. A ship at rest keeps her heading, too, and is left out where her speed or her
 //! propeller tells.
 
+use std::ops::Range;
+
 use super::kind::Kind;
-use super::manoeuvre::Manoeuvre;
+use super::manoeuvre::{Manoeuvre, Quality};
 use super::pattern::{Pattern, Prepared};
-use super::quality::Quality;
 use super::rest::usual;
 
 /// Range of headings on one course, rad: an autopilot keeps ±1 degree, in waves ±2.
@@ -32,27 +33,42 @@ pub(crate) fn add(record: &Prepared, found: &[Pattern], list: &mut Vec<Manoeuvre
     let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
     let scale = usual(found.iter().map(|pattern| pattern.scale));
     let shortest = if scale > 0.0 { SHORTEST * scale } else { SHORTEST_SHARE * (end - begin) };
-    let steering = Steering::of(record);
+    // Speed and revolutions where they are known, and the least of each for a ship under way.
+    let channels = [record.log.speed, record.log.propeller].into_iter().flatten();
+    let under_way: Vec<(&[f64], f64)> = channels
+        .filter(|values| values.len() == time.len())
+        .map(|values| (values, AT_REST * usual(values.iter().map(|x| x.abs()))))
+        .collect();
+    let is_straight = |row: usize| {
+        let moves = |(values, least): &(&[f64], f64)| values[row].is_nan() || values[row].abs() >= *least;
+        under_way.iter().all(moves) && (record.rest.angle[row] - record.rest.neutral).abs() <= RUDDER
+    };
+    let pieces_in = |first, end| pieces_in(record, is_straight, first..end, shortest);
     let mut pieces = Vec::new();
     let mut first = 0;
     for manoeuvre in list.iter() {
-        pieces.extend(pieces_in(&steering, first, time.partition_point(|&t| t < manoeuvre.from), shortest));
+        pieces.extend(pieces_in(first, time.partition_point(|&t| t < manoeuvre.from)));
         first = time.partition_point(|&t| t <= manoeuvre.until);
     }
-    pieces.extend(pieces_in(&steering, first, time.len(), shortest));
+    pieces.extend(pieces_in(first, time.len()));
     list.extend(pieces);
     list.sort_by(|a, b| a.from.total_cmp(&b.from));
 }
 
-/// The straight pieces among rows `first..end`.
-fn pieces_in(steering: &Steering, first: usize, end: usize, shortest: f64) -> Vec<Manoeuvre> {
-    let record = steering.record;
+/// The straight pieces among some rows; `is_straight` says what of a row, but for its heading, tells that the ship goes
+/// straight.
+fn pieces_in(
+    record: &Prepared,
+    is_straight: impl Fn(usize) -> bool,
+    rows: Range<usize>,
+    shortest: f64,
+) -> Vec<Manoeuvre> {
     let log = record.log;
     let mut pieces = Vec::new();
     let mut piece: Option<Piece> = None;
-    for row in first..end {
+    for row in rows {
         let psi = log.heading[row];
-        let straight = steering.is_straight(row);
+        let straight = is_straight(row);
         if let Some(open) = piece.as_mut()
             && straight
             && log.time[row] - open.read <= 0.25 * shortest
@@ -65,30 +81,6 @@ fn pieces_in(steering: &Steering, first: usize, end: usize, shortest: f64) -> Ve
     }
     pieces.extend(piece.and_then(|piece| piece.manoeuvre(record, shortest)));
     pieces
-}
-
-/// What of a row, but for its heading, tells that the ship goes straight.
-struct Steering<'a> {
-    record: &'a Prepared<'a>,
-    /// Speed and revolutions where they are known, and the least of each for a ship under way.
-    under_way: [Option<(&'a [f64], f64)>; 2],
-}
-
-impl<'a> Steering<'a> {
-    fn of(record: &'a Prepared<'a>) -> Self {
-        let log = record.log;
-        let under_way = [log.speed, log.propeller].map(|channel| {
-            let values = channel.filter(|values| values.len() == log.time.len())?;
-            Some((values, AT_REST * usual(values.iter().map(|x| x.abs()))))
-        });
-        Self { record, under_way }
-    }
-
-    fn is_straight(&self, row: usize) -> bool {
-        let rest = self.record.rest;
-        let mut known = self.under_way.iter().flatten().map(|(values, least)| (values[row].abs(), *least));
-        known.all(|(value, least)| value.is_nan() || value >= least) && (rest.angle[row] - rest.neutral).abs() <= RUDDER
-    }
 }
 
 /// Rows on one course.

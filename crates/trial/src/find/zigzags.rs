@@ -5,7 +5,7 @@ use super::bounds::first_execute;
 use super::course::middle;
 use super::kind::Kind;
 use super::pattern::{Pattern, Prepared};
-use super::rest::Hold;
+use super::rest::{Hold, usual};
 use estimation::statistics::median;
 
 /// Largest ratio of the rudder angles to both sides.
@@ -216,14 +216,12 @@ fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Optio
         return None;
     }
     // Between the sides: a neutral rudder off zero adds to one what it takes from the other.
-    let level =
-        |first: usize| median(&mut holds.iter().skip(first).step_by(2).map(|hold| hold.level).collect::<Vec<_>>());
-    let rudder = 0.5 * (level(0)? - level(1)?).abs();
+    let level = |first: usize| usual(holds.iter().skip(first).step_by(2).map(|hold| hold.level));
+    let rudder = 0.5 * (level(0) - level(1)).abs();
     let heading = deviation(holds, headings)?;
     let clear = rudder >= CLEAR_RUDDER || heading >= CLEAR_HEADING;
     let kind = Kind::ZigZag { rudder, heading };
-    let mut durations: Vec<f64> = holds[..holds.len() - 1].iter().map(Hold::duration).collect();
-    let scale = median(&mut durations)?;
+    let scale = usual(holds[..holds.len() - 1].iter().map(Hold::duration));
     (clear && rudder >= SMALLEST_RUDDER && (SMALLEST_HEADING..=LARGEST_HEADING).contains(&heading)).then(|| Pattern {
         kind,
         holds: holds.to_vec(),
@@ -267,6 +265,5 @@ fn deviation(holds: &[Hold], headings: &[Option<f64>]) -> Option<f64> {
     let [port, starboard] = sides;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let base = 0.5 * (mean(&port) + mean(&starboard));
-    let mut off: Vec<f64> = port.iter().chain(&starboard).map(|psi| (psi - base).abs()).collect();
-    median(&mut off)
+    Some(usual(port.iter().chain(&starboard).map(|psi| (psi - base).abs())))
 }

@@ -1,7 +1,7 @@
 //! The two small regressions behind the checks of signs and units. Both work on integrals of what was recorded, so that
 //! noise is smoothed and no derivative is taken.
 
-use crate::record::Trial;
+use crate::record::{Trial, integrate};
 
 /// Most rows that enter a regression; longer records are thinned after they were integrated.
 const ROWS: usize = 2000;
@@ -21,26 +21,20 @@ pub(super) struct Slope {
 /// and rudder bias need not be known. `None` when nothing is left to explain, or numbers overflow.
 pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
-    let (mut once, mut twice, mut heading) = (0.0, 0.0, 0.0);
-    let mut last: Option<usize> = None;
-    let mut rows = Thinned::of(psi.iter().filter(|psi| psi.is_finite()).count());
-    for i in 0..time.len() {
-        if i > 0 {
-            // Exact for a rudder that is linear between rows.
-            let h = time[i] - time[i - 1];
-            twice += h * once + h * h * (2.0 * delta[i - 1] + delta[i]) / 6.0;
-            once += 0.5 * h * (delta[i - 1] + delta[i]);
-        }
-        if psi[i].is_finite() {
-            if let Some(last) = last {
-                heading += 0.5 * (time[i] - time[last]) * (psi[i] + psi[last]);
-            }
-            last = Some(i);
-            let t = time[i] - time[0];
-            rows.push([1.0, t, t * t, heading, twice, psi[i]]);
-        }
+    let (mut once, mut twice) = (0.0, vec![0.0]);
+    for i in 1..time.len() {
+        // Exact for a rudder that is linear between rows.
+        let h = time[i] - time[i - 1];
+        twice.push(twice[i - 1] + (h * once + h * h * (2.0 * delta[i - 1] + delta[i]) / 6.0));
+        once += 0.5 * h * (delta[i - 1] + delta[i]);
     }
-    partial_slope(rows.kept)
+    let heading = integrate(time, psi);
+    let observed = (0..time.len()).filter(|&i| psi[i].is_finite());
+    let row = |i: usize| {
+        let t = time[i] - time[0];
+        [1.0, t, t * t, heading[i], twice[i], psi[i]]
+    };
+    partial_slope(thinned(observed).map(row).collect())
 }
 
 /// K (1/s) of a ship that turns steadily, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a
@@ -74,40 +68,15 @@ pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<Slope> {
         return None;
     }
     let (time, psi, rate) = (trial.time(), trial.heading(), trial.yaw_rate()?);
-    let mut integral = 0.0;
-    let mut last: Option<usize> = None;
-    let both = psi.iter().zip(rate).filter(|(psi, rate)| psi.is_finite() && rate.is_finite());
-    let mut rows = Thinned::of(both.count());
-    for i in (0..time.len()).filter(|&i| rate[i].is_finite()) {
-        if let Some(last) = last {
-            integral += 0.5 * (time[i] - time[last]) * (rate[i] + rate[last]);
-        }
-        last = Some(i);
-        if psi[i].is_finite() {
-            rows.push([1.0, time[i] - time[0], integral, psi[i]]);
-        }
-    }
-    partial_slope(rows.kept)
+    let integral = integrate(time, rate);
+    let both = (0..time.len()).filter(|&i| psi[i].is_finite() && rate[i].is_finite());
+    partial_slope(thinned(both).map(|i| [1.0, time[i] - time[0], integral[i], psi[i]]).collect())
 }
 
-/// Every n-th of the rows that are given, so that at most [`ROWS`] are kept.
-struct Thinned<const N: usize> {
-    kept: Vec<[f64; N]>,
-    every: usize,
-    given: usize,
-}
-
-impl<const N: usize> Thinned<N> {
-    fn of(rows: usize) -> Self {
-        Self { kept: Vec::new(), every: rows / ROWS + 1, given: 0 }
-    }
-
-    fn push(&mut self, row: [f64; N]) {
-        if self.given.is_multiple_of(self.every) {
-            self.kept.push(row);
-        }
-        self.given += 1;
-    }
+/// Every n-th of some rows, so that at most [`ROWS`] are kept.
+fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterator<Item = usize> {
+    let every = rows.clone().count() / ROWS + 1;
+    rows.step_by(every)
 }
 
 /// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933).

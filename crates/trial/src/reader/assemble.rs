@@ -3,13 +3,10 @@
 //! between its readings, as the steering gear moves; so do the inputs of a model such as speed and wind. Nothing is
 //! made up over a gap.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
-
 use super::error::Problem;
-use super::limits::spoken;
 use super::source::Series;
 use crate::channel::{Channel, Unit};
+use crate::cleaning::draw_line;
 use crate::record::Columns;
 use crate::words::counted;
 use estimation::statistics::upper_median;
@@ -129,28 +126,19 @@ pub(super) fn straight_rudder(columns: &mut Columns) -> Option<String> {
     for pair in read.windows(2) {
         let (from, to) = (pair[0], pair[1]);
         if time[to] - time[from] <= longest {
-            let slope = (rudder[to] - rudder[from]) / (time[to] - time[from]);
-            for row in from + 1..to {
-                rudder[row] = rudder[from] + slope * (time[row] - time[from]);
-                filled += 1;
-            }
+            draw_line(time, rudder, from, to);
+            filled += to - from - 1;
         }
     }
     let keep: Vec<bool> = rudder.iter().map(|delta| delta.is_finite()).collect();
     let left_out = keep.iter().filter(|keep| !**keep).count();
     columns.retain(&keep);
-    let rows = |count: usize| counted(count, "row");
-    let mut told = Vec::new();
-    if filled > 0 {
-        told.push(format!("{} without rudder angle, which runs straight between its readings there", rows(filled)));
-    }
-    if left_out > 0 {
-        told.push(format!(
-            "{} without rudder angle left out, where none was read before or after for long",
-            rows(left_out)
-        ));
-    }
-    Some(told.join("; "))
+    let told = [
+        (filled, "without rudder angle, which runs straight between its readings there"),
+        (left_out, "without rudder angle left out, where none was read before or after for long"),
+    ];
+    let told = told.into_iter().filter(|(count, _)| *count > 0);
+    Some(told.map(|(count, text)| format!("{} {text}", counted(count, "row"))).collect::<Vec<_>>().join("; "))
 }
 
 /// Puts position in degrees on a plane about its first point, m (a sphere of the mean radius; 0.5 % of the distance).
@@ -160,13 +148,8 @@ pub(super) fn on_plane(latitude: Vec<f64>, longitude: Vec<f64>) -> Option<[(Chan
     let degree = Unit::Degree.to_si();
     let north = latitude.iter().map(|value| (value - latitude[first]) * degree * RADIUS).collect();
     let parallel = (latitude[first] * degree).cos();
-    let east = longitude
-        .iter()
-        .map(|value| {
-            let turn = shortest((value - longitude[first]) * degree);
-            turn * RADIUS * parallel
-        })
-        .collect();
+    let east =
+        longitude.iter().map(|value| shortest((value - longitude[first]) * degree) * RADIUS * parallel).collect();
     Some([(Channel::North, north), (Channel::East, east)])
 }
 
@@ -178,7 +161,7 @@ pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
     let heading = find([Channel::Heading, Channel::YawRate]);
     let (Some(rudder), Some(heading)) = (rudder, heading) else {
         let wanted = if rudder.is_none() { "rudder angle" } else { "heading and no yaw rate" };
-        let found = channels.keys().map(|&channel| spoken(channel).to_owned()).collect();
+        let found = channels.keys().map(|&channel| channel.spoken().to_owned()).collect();
         return Err(Problem::NoChannel { wanted, found });
     };
     let span = |values: &[f64]| {
@@ -196,16 +179,14 @@ pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
 
 /// One of each channel; the first file that has it gives it. The names of those that are not used.
 pub(super) fn once(series: Vec<Series>) -> (Vec<Series>, Vec<Channel>) {
-    let mut kept: BTreeMap<Channel, Series> = BTreeMap::new();
-    let mut doubled = Vec::new();
-    for series in series {
-        let channel = series.channel;
-        match kept.entry(channel) {
-            Entry::Occupied(_) => doubled.push(channel),
-            Entry::Vacant(free) => drop(free.insert(series)),
+    let (mut kept, mut doubled): (Vec<Series>, Vec<Channel>) = Default::default();
+    for own in series {
+        match kept.iter().any(|other| other.channel == own.channel) {
+            true => doubled.push(own.channel),
+            false => kept.push(own),
         }
     }
-    (kept.into_values().collect(), doubled)
+    (kept, doubled)
 }
 
 #[cfg(test)]

@@ -198,7 +198,7 @@ pub enum Problem {
     #[error(
         "more than {limit} rows{}, a record may have {limit} with {columns} columns; thin it with `every = {every}` under \
          [part] in a sidecar NAME.trial.toml, or use a part of it with `from-s` and `until-s`",
-        estimated(*estimate)
+        estimate.map_or_else(String::new, |rows| format!(" (about {rows} by the size of the file)"))
     )]
     TooManyRows { limit: usize, columns: usize, estimate: Option<u64>, every: u64 },
     /// A log of which little can be read.
@@ -238,8 +238,4 @@ pub enum Problem {
     /// The columns do not make a record.
     #[error(transparent)]
     Record(#[from] TrialError),
-}
-
-fn estimated(rows: Option<u64>) -> String {
-    rows.map_or_else(String::new, |rows| format!(" (about {rows} by the size of the file)"))
 }

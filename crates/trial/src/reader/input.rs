@@ -92,13 +92,9 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
         start if start.starts_with(b"MATLAB 7.3") => refused(MATLAB_7_3, AS_LEVEL_5),
         start => {
             let mut lines = start.split(|&byte| byte == b'\n').take(LOOKED_AT.1);
-            let has_sentence = lines.any(is_sentence);
+            let has_sentence = lines.any(|line| nmea::is_sentence(&String::from_utf8_lossy(line)));
             let text = Text { bytes, on_disk, is_made: false };
             Ok(if has_sentence { Content::Sentences(text) } else { Content::Table(text) })
         }
     }
-}
-
-fn is_sentence(line: &[u8]) -> bool {
-    nmea::is_sentence(&String::from_utf8_lossy(line))
 }

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use super::error::{Problem, ReadError};
 use super::head::Head;
-use super::limits::spoken;
 use crate::cells::cell;
 use crate::channel::{Channel, Unit};
 use crate::clock::Stamp;
@@ -232,7 +231,7 @@ impl Layout {
                 self.warnings.push(format!(
                     "the columns `{first}` and `{second}` could both be the {}; neither is used, unless a sidecar says \
                      which",
-                    spoken(channel)
+                    channel.spoken()
                 ));
                 continue;
             }

@@ -1,6 +1,5 @@
 //! How much a record may hold, and what is said where it holds nothing.
 
-use crate::channel::Channel;
 use crate::file::Kind;
 use crate::record::Trial;
 
@@ -23,14 +22,4 @@ pub(super) fn no_rows(line: usize) -> Problem {
 /// Whether a line is passed over.
 pub(super) fn is_comment(line: &str) -> bool {
     line.trim_start().starts_with('#')
-}
-
-/// What a needed channel is called in messages.
-pub(super) fn spoken(channel: Channel) -> &'static str {
-    match channel {
-        Channel::Heading => "heading",
-        Channel::YawRate => "yaw rate",
-        Channel::Rudder | Channel::RudderOrder => "rudder angle",
-        other => other.quantity(),
-    }
 }

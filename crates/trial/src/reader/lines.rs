@@ -25,7 +25,7 @@ impl Hash {
 
     /// The hash, hexadecimal; that of the file when it has been read to the end.
     pub fn finish(self) -> String {
-        in_hex(&self.0.take().finalize())
+        format!("{:x}", self.0.take().finalize())
     }
 }
 
@@ -79,37 +79,36 @@ impl<R: Read> Lines<R> {
         self.consumed
     }
 
-    /// Takes the bytes of a line, or of its begin where it is too long; how many there are, none at the end of the
-    /// file.
-    fn take_line(&mut self) -> Result<usize, Problem> {
+    /// Takes the bytes of a line without its end and without the mark of UTF-8, or those of its begin where it is too
+    /// long; how many were read, and whether the line ends with them. `None` at the end of the file.
+    fn take_line(&mut self) -> Result<Option<(usize, bool)>, Problem> {
         self.bytes.clear();
         let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
         let length = limited.read_until(b'\n', &mut self.bytes).map_err(Problem::of_input)?;
         self.number += usize::from(length > 0);
         self.consumed += length as u64;
-        Ok(length)
+        let whole = length <= LONGEST_LINE || self.bytes.last() == Some(&b'\n');
+        if self.number == 1 && self.bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
+            self.bytes.drain(..3);
+        }
+        while matches!(self.bytes.last(), Some(b'\n' | b'\r')) {
+            self.bytes.pop();
+        }
+        Ok((length > 0).then_some((length, whole)))
     }
 
     /// Reads past one line without decoding it; `false` at the end of the file.
     pub fn skip(&mut self) -> Result<bool, Problem> {
-        let length = self.take_line()?;
-        if length == 0 {
-            return Ok(false);
-        }
-        if self.number == 1 && (self.bytes.starts_with(&[0xff, 0xfe]) || self.bytes.starts_with(&[0xfe, 0xff])) {
+        let Some((length, _)) = self.take_line()? else { return Ok(false) };
+        let line = self.number;
+        if line == 1 && (self.bytes.starts_with(&[0xff, 0xfe]) || self.bytes.starts_with(&[0xfe, 0xff])) {
             return Err(Problem::Utf16);
         }
         if self.bytes.contains(&0) {
-            return Err(Problem::Binary { line: self.number });
+            return Err(Problem::Binary { line });
         }
         if length > LONGEST_LINE {
-            return Err(Problem::LongLine { line: self.number, longest: LONGEST_LINE });
-        }
-        if self.number == 1 && self.bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
-            self.bytes.drain(..3);
-        }
-        while self.bytes.last().is_some_and(|&byte| byte == b'\n' || byte == b'\r') {
-            self.bytes.pop();
+            return Err(Problem::LongLine { line, longest: LONGEST_LINE });
         }
         Ok(true)
     }
@@ -140,48 +139,17 @@ impl<R: Read> Lines<R> {
     /// A line longer than [`LONGEST_LINE`] is cut one byte beyond that, and the rest of it read past; `None` at the end
     /// of the file.
     pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
-        let length = self.take_line()?;
-        if length == 0 {
-            return Ok(None);
+        let Some((_, whole)) = self.take_line()? else { return Ok(None) };
+        if !whole {
+            self.consumed += self.input.skip_until(b'\n').map_err(Problem::of_input)? as u64;
         }
-        if length > LONGEST_LINE && self.bytes.last() != Some(&b'\n') {
-            self.pass_line_end()?;
-        }
-        let mark: &[u8] = &[0xef, 0xbb, 0xbf];
-        let begin = if self.number == 1 && self.bytes.starts_with(mark) { mark.len() } else { 0 };
-        while self.bytes.len() > begin && matches!(self.bytes.last(), Some(b'\n' | b'\r')) {
-            self.bytes.pop();
-        }
-        Ok(Some(&self.bytes[begin..]))
-    }
-
-    /// Reads past the end of a line too long to be held.
-    fn pass_line_end(&mut self) -> Result<(), Problem> {
-        loop {
-            let block = match self.input.fill_buf() {
-                Ok(block) => block,
-                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
-                Err(error) => return Err(Problem::of_input(error)),
-            };
-            let end = block.iter().position(|&byte| byte == b'\n');
-            let length = end.map_or(block.len(), |end| end + 1);
-            self.consumed += length as u64;
-            self.input.consume(length);
-            if end.is_some() || length == 0 {
-                return Ok(());
-            }
-        }
+        Ok(Some(&self.bytes))
     }
 
     /// SHA-256 of all bytes read, hexadecimal; that of the file after its last line.
     pub fn sha256(self) -> String {
         self.hash.finish()
     }
-}
-
-/// The bytes of a hash, hexadecimal.
-pub fn in_hex(hash: &[u8]) -> String {
-    hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// SHA-256 of a text, hexadecimal.

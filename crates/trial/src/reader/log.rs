@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use super::assemble::{check, columns, complete, once, series, straight_rudder};
 use super::error::{Problem, ReadError};
 use super::input::{self, Content};
-use super::limits::spoken;
 use super::lines::{self, Lines};
 use super::nmea::{self, ReadSentences};
 use super::source::{Log, Series};
@@ -124,7 +123,7 @@ impl Log {
         all.extend(series(joined.columns, offset));
         let (all, doubled) = once(all);
         self.warnings.extend(doubled.into_iter().map(|channel| {
-            of_file(format!("the {} is in an earlier file, too, and is taken from there", spoken(channel)))
+            of_file(format!("the {} is in an earlier file, too, and is taken from there", channel.spoken()))
         }));
         self.columns = columns(all);
         self.sha256 = joined_hash(&self.sha256, &joined.sha256);

@@ -296,12 +296,12 @@ impl<'a> Rows<'a> {
         if heading.is_nan() {
             return;
         }
-        if let Some(last) = self.last_heading.filter(|last| (heading - last).abs() > std::f64::consts::PI) {
-            let mut pair = [last, heading];
+        let mut pair = [self.last_heading.unwrap_or(heading), heading];
+        if (pair[1] - pair[0]).abs() > std::f64::consts::PI {
             unwrap_heading(&mut pair);
-            self.row[place] = pair[1];
         }
-        self.last_heading = Some(self.row[place]);
+        self.row[place] = pair[1];
+        self.last_heading = Some(pair[1]);
     }
 }
 

@@ -1,5 +1,5 @@
-//! A table from its first line to its columns. When the last row is read: instants of shared stamps, columns by channel,
-//! complaints about what is missing, and the list of what was decided.
+//! A table from its first line to its columns. When the last row is read: instants of shared stamps, columns by
+//! channel, complaints about what is missing, and the list of what was decided.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::head;
 use super::input::Text;
 use super::instants::spread;
 use super::layout::{Content, Layout, TableColumn};
-use super::limits::{no_rows, spoken};
+use super::limits::no_rows;
 use super::lines::Lines;
 use super::rows::Rows;
 use super::source::Log;
@@ -70,17 +70,7 @@ impl Rows<'_> {
         self.check_values()?;
         let mut warnings = self.warnings();
         if self.stamps.is_some() {
-            let usual = if self.whole_seconds { spread(&mut self.time) } else { None };
-            warnings.extend(usual.map(|usual| {
-                format!(
-                    "rows share their stamps, {usual} as a rule; they are spread evenly over the time to the next stamp"
-                )
-            }));
-            let thin = |values: &mut Vec<f64>| {
-                *values = std::mem::take(values).into_iter().step_by(self.every).collect();
-            };
-            thin(&mut self.time);
-            self.layout.columns.iter_mut().for_each(|column| thin(&mut column.values));
+            warnings.extend(self.spread_stamps());
         }
         let Layout { columns, understood, .. } = self.layout;
         let open_time = self.time_place.map(|place| &columns[place]).filter(|column| column.open);
@@ -125,6 +115,21 @@ impl Rows<'_> {
         Ok(log)
     }
 
+    /// Gives rows that share a stamp their instants, and leaves out those that are thinned; what was decided.
+    fn spread_stamps(&mut self) -> Option<String> {
+        let usual = if self.whole_seconds { spread(&mut self.time) } else { None };
+        let thin = |values: &mut Vec<f64>| {
+            *values = std::mem::take(values).into_iter().step_by(self.every).collect();
+        };
+        thin(&mut self.time);
+        self.layout.columns.iter_mut().for_each(|column| thin(&mut column.values));
+        usual.map(|usual| {
+            format!(
+                "rows share their stamps, {usual} as a rule; they are spread evenly over the time to the next stamp"
+            )
+        })
+    }
+
     /// Refuses a part without rows, and needed columns without a value.
     fn check_values(&self) -> Result<(), Problem> {
         let (counts, layout) = (&self.counts, &self.layout);
@@ -140,13 +145,13 @@ impl Rows<'_> {
         }
         let is_empty = |place: &usize| layout.columns[*place].values.iter().all(|value| value.is_nan());
         if let Some(place) = layout.rudder().filter(is_empty) {
-            return all_missing(place, spoken(Channel::Rudder));
+            return all_missing(place, Channel::Rudder.spoken());
         }
         let [heading, rate] = [Channel::Heading, Channel::YawRate].map(|channel| layout.place(channel));
         match (heading, rate) {
             (_, Some(rate)) if !is_empty(&rate) => Ok(()),
-            (Some(heading), _) if is_empty(&heading) => all_missing(heading, spoken(Channel::Heading)),
-            (None, Some(rate)) => all_missing(rate, spoken(Channel::YawRate)),
+            (Some(heading), _) if is_empty(&heading) => all_missing(heading, Channel::Heading.spoken()),
+            (None, Some(rate)) => all_missing(rate, Channel::YawRate.spoken()),
             _ => Ok(()),
         }
     }

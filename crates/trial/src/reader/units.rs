@@ -4,11 +4,10 @@
 use std::collections::BTreeMap;
 
 use super::error::Problem;
-use super::limits::spoken;
 use super::source::Log;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
-use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals};
+use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
 use crate::words::shortened;
 use estimation::statistics::upper_median;
 
@@ -70,7 +69,8 @@ pub(super) fn settle(
     for open in &open {
         let is_angle = open.channel.units().contains(&Unit::Radian);
         let unit = match open.channel {
-            Channel::Rudder | Channel::RudderOrder => rudder(open),
+            Channel::Rudder | Channel::RudderOrder if open.largest <= RUDDER_RAD => Some(Unit::Radian),
+            Channel::Rudder | Channel::RudderOrder => (open.largest > RUDDER_EITHER).then_some(Unit::Degree),
             Channel::Heading => heading(channels, open),
             Channel::YawRate => yaw_rate(time, channels),
             _ if is_angle && open.largest > std::f64::consts::TAU + 0.01 => Some(Unit::Degree),
@@ -82,9 +82,17 @@ pub(super) fn settle(
         match unit {
             Some(unit) => {
                 scale(channels, open.channel, unit);
-                decided.push(in_words(open, unit));
+                decided.push(format!(
+                    "`{}` is the {} in {}",
+                    shortened(&open.name),
+                    open.channel.spoken(),
+                    unit.spoken()
+                ));
             }
-            None if is_needed => return Err(refusal(open, line)),
+            None if is_needed => {
+                let UnitlessColumn { channel, name: column, largest } = open.clone();
+                return Err(Problem::OpenUnit { line, column, quantity: channel.spoken(), largest, channel });
+            }
             None if open.channel.units().len() > 1 => left_out.push(open),
             None => {}
         }
@@ -96,29 +104,23 @@ pub(super) fn settle(
     if !decided.is_empty() {
         told.push(format!("columns without a unit: {}, the only unit that fits their values", decided.join(", ")));
     }
-    for UnitlessColumn { channel, name, .. } in left_out {
-        let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
-        told.push(format!(
-            "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = \"{}\"` for it in a sidecar",
-            spoken(*channel),
-            shortened(name),
-            names.join(" or "),
-            channel.column_name()
-        ));
-    }
+    told.extend(left_out.into_iter().map(without_unit));
     if let Some(name) = open_time {
         told.push(seconds(log, &name, line)?);
     }
     Ok(told)
 }
 
-fn in_words(open: &UnitlessColumn, unit: Unit) -> String {
-    format!("`{}` is the {} in {}", shortened(&open.name), spoken(open.channel), unit.spoken())
-}
-
-fn refusal(open: &UnitlessColumn, line: usize) -> Problem {
-    let UnitlessColumn { channel, name, largest } = open.clone();
-    Problem::OpenUnit { line, column: name, quantity: spoken(channel), largest, channel }
+/// What is said of a column that is left out because its values do not show its unit.
+fn without_unit(UnitlessColumn { channel, name, .. }: &UnitlessColumn) -> String {
+    let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
+    format!(
+        "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = \"{}\"` for it in a sidecar",
+        channel.spoken(),
+        shortened(name),
+        names.join(" or "),
+        channel.column_name()
+    )
 }
 
 /// Values were read as if in the unit files are written in.
@@ -131,27 +133,12 @@ fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
     }
 }
 
-fn rudder(open: &UnitlessColumn) -> Option<Unit> {
-    match open.largest {
-        largest if largest <= RUDDER_RAD => Some(Unit::Radian),
-        largest if largest > RUDDER_EITHER => Some(Unit::Degree),
-        _ => None,
-    }
-}
-
 /// The unit of a heading that was read as degrees; removes the wrap at 2π where it is in radians.
 fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     let degree = Unit::Degree.to_si();
     let rudder = channels.get(&Channel::Rudder).or_else(|| channels.get(&Channel::RudderOrder)).cloned();
     let values = channels.get_mut(&Channel::Heading)?;
-    let seen = values.iter().filter(|psi| psi.is_finite()).map(|psi| psi / degree);
-    let steps = seen.clone().zip(seen.skip(1)).map(|(one, next)| (next - one).abs());
-    let (mut wraps, mut others) = (0, 0);
-    for step in steps {
-        wraps += usize::from((step - std::f64::consts::TAU).abs() < 0.3);
-        others += usize::from((1.0..5.9).contains(&step));
-    }
-    if open.largest <= std::f64::consts::TAU + 0.01 && wraps > 0 && others == 0 {
+    if open.largest <= std::f64::consts::TAU + 0.01 && wraps_at_two_pi_degrees(values) {
         let mut last = f64::NAN;
         for value in values.iter_mut().filter(|psi| psi.is_finite()) {
             if last.is_finite() {

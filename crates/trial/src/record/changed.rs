@@ -2,7 +2,7 @@
 
 use ship::Particulars;
 
-use super::{RejectedReading, Rudder, Trial, signal};
+use super::{RecordedRudder, RejectedReading, Trial, signal};
 use crate::channel::Channel;
 
 impl Trial {
@@ -48,12 +48,16 @@ impl Trial {
         let factor = |channel: Channel| own.factor_to(particulars, channel.dimension());
         let times = self.time().iter().map(|time| time * second).collect();
         let mut scaled = self.clone();
-        scaled.rudder = Rudder::new(signal(times, self.rudder().to_vec()).ok()?);
+        scaled.rudder = RecordedRudder::new(signal(times, self.rudder().to_vec()).ok()?);
         for (channel, values) in &mut scaled.channels {
             values.iter_mut().for_each(|value| *value *= factor(*channel));
         }
-        for mark in &mut scaled.marks {
-            *mark = RejectedReading { time: mark.time * second, value: mark.value * factor(mark.channel), ..*mark };
+        for reading in &mut scaled.rejected {
+            *reading = RejectedReading {
+                time: reading.time * second,
+                value: reading.value * factor(reading.channel),
+                ..*reading
+            };
         }
         scaled.noise.yaw_rate = self.noise.yaw_rate.map(|sd| sd * factor(Channel::YawRate));
         scaled.particulars = Some(particulars);

@@ -30,7 +30,7 @@ pub struct Corner {
 
 /// A recorded rudder: its rows, and what lies between them.
 #[derive(Debug, Clone)]
-pub(super) struct Rudder {
+pub(super) struct RecordedRudder {
     /// The rows.
     pub rows: Polyline,
     /// The corners between them.
@@ -39,7 +39,7 @@ pub(super) struct Rudder {
     path: Option<Polyline>,
 }
 
-impl Rudder {
+impl RecordedRudder {
     /// Looks for corners between rows.
     pub fn new(rows: Polyline) -> Self {
         let corners = corners(&rows);

@@ -3,7 +3,7 @@
 
 use ship::angle::{from_deg, to_deg};
 
-use super::executes::{Movement, Rudder};
+use super::executes::{Movement, RudderMovements};
 use super::findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
 use super::heading::Heading;
 use super::holds::{self, Hold};
@@ -40,7 +40,7 @@ impl ZigZag {
 fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     let time = trial.time();
     let holds = holds::holds(trial.rudder())?;
-    let rudder = Rudder::new(time, trial.rudder(), &holds, trial.noise().rudder);
+    let rudder = RudderMovements::new(time, trial.rudder(), &holds, trial.noise().rudder);
     let movements: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
     let rough_period =
         2.0 * (movements[movements.len() - 1].start.value - movements[0].start.value) / (movements.len() - 1) as f64;
@@ -198,7 +198,8 @@ fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Opti
     }
     let slack = to_deg(2.0 * middle.sd.unwrap_or(0.0));
     let heading = from_deg(holds::conventional_deg(angle, 0.05, 0.25, slack)?);
-    Some(Pair { rudder: holds::nominal_rudder(holds)?, heading })
+    let held = holds.iter().map(|hold| hold.level.abs()).sum::<f64>() / holds.len() as f64;
+    Some(Pair { rudder: from_deg(holds::conventional_deg(to_deg(held), 0.08, 0.08, 0.0)?), heading })
 }
 
 fn overshoots(executes: &[Execute], first_reversal: usize, end: f64, heading: &Heading) -> Vec<Overshoot> {
@@ -233,15 +234,10 @@ fn period(reversals: &[Execute], from_first_execute: bool) -> Option<Quantity> {
     let first = usize::from(from_first_execute && cycles > 1);
     // Sums telescope: only the first and last two executes carry error, each 1/n of its own.
     let cycles_used = (cycles - first) as f64;
-    let mut total = 0.0;
-    let mut variance = Some(0.0);
-    for index in first..cycles {
-        total += reversals[index + 2].time.value - reversals[index].time.value;
-    }
-    let (begin, end) = (&reversals[first..], &reversals[cycles..]);
-    for execute in begin.iter().take(2.min(cycles - first)).chain(end.iter().rev().take(2.min(cycles - first))) {
-        variance = variance.zip(execute.time.sd).map(|(sum, sd)| sum + sd * sd);
-    }
+    let total: f64 = (first..cycles).map(|index| reversals[index + 2].time.value - reversals[index].time.value).sum();
+    let ends = 2.min(cycles - first);
+    let ends = reversals[first..].iter().take(ends).chain(reversals[cycles..].iter().rev().take(ends));
+    let variance: Option<f64> = ends.map(|execute| execute.time.sd.map(|sd| sd * sd)).sum();
     Some(Quantity::new(total / cycles_used, variance.map(|sum| sum.sqrt() / cycles_used)))
 }
 

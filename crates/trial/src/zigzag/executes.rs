@@ -41,7 +41,7 @@ impl Level {
 }
 
 /// The rudder channel with what is needed to time its movements.
-pub struct Rudder<'a> {
+pub struct RudderMovements<'a> {
     time: &'a [f64],
     angle: &'a [f64],
     holds: &'a [Hold],
@@ -53,7 +53,7 @@ pub struct Rudder<'a> {
     rate_is_bound: bool,
 }
 
-impl<'a> Rudder<'a> {
+impl<'a> RudderMovements<'a> {
     /// The rudder with its holds; the noise is the declared one, or estimated from row to row within the holds.
     pub fn new(time: &'a [f64], angle: &'a [f64], holds: &'a [Hold], declared_noise: Option<f64>) -> Self {
         let noise = declared_noise.unwrap_or_else(|| {
@@ -108,8 +108,7 @@ impl<'a> Rudder<'a> {
         let look_back = (0.2 * to.level.abs()).max(8.0 * self.noise) / rate;
         let mut row = to.first;
         while row > 0 {
-            let earlier =
-                self.time.partition_point(|&t| t <= self.time[row] - look_back).saturating_sub(1).min(row - 1);
+            let earlier = row_before(self.time, row, look_back).min(row - 1);
             let gain = to.side * (self.angle[row] - self.angle[earlier]);
             let steep = (0.3 * rate * (self.time[row] - self.time[earlier])).min(0.15 * to.level.abs());
             if gain < steep {
@@ -119,7 +118,7 @@ impl<'a> Rudder<'a> {
         }
         // The lookback ends a little after the true foot. What counts is the angle the helm has just then, not the mean
         // of what he did before.
-        let clear = self.time.partition_point(|&t| t <= self.time[row] - 0.3 * look_back).saturating_sub(1).min(row);
+        let clear = row_before(self.time, row, 0.3 * look_back);
         let tolerance = (0.1 * to.level.abs()).max(5.0 * self.noise);
         let near = |&earlier: &usize| (self.angle[earlier] - self.angle[clear]).abs() <= tolerance;
         let mut steady: Vec<f64> = (0..=clear).rev().take_while(near).map(|row| self.angle[row]).collect();
@@ -184,25 +183,14 @@ impl<'a> Rudder<'a> {
         let n = ramp.len() as f64;
         let mean_time = ramp.iter().map(|&row| self.time[row]).sum::<f64>() / n;
         let mean_angle = ramp.iter().map(|&row| self.angle[row]).sum::<f64>() / n;
-        let (mut tt, mut ta) = (0.0, 0.0);
-        for &row in ramp {
-            let t = self.time[row] - mean_time;
-            tt += t * t;
-            ta += t * (self.angle[row] - mean_angle);
-        }
+        let off = |&row: &usize| (self.time[row] - mean_time, self.angle[row] - mean_angle);
+        let (tt, ta) = ramp.iter().map(off).fold((0.0, 0.0), |(tt, ta), (t, angle)| (tt + t * t, ta + t * angle));
         let own_rate = ta / tt;
         if direction * own_rate <= 0.0 {
             return None;
         }
-        let scatter = if ramp.len() > 2 {
-            let squares: f64 = ramp
-                .iter()
-                .map(|&row| (self.angle[row] - mean_angle - own_rate * (self.time[row] - mean_time)).powi(2))
-                .sum();
-            (squares / (n - 2.0)).sqrt()
-        } else {
-            0.0
-        };
+        let squares: f64 = ramp.iter().map(off).map(|(t, angle)| (angle - own_rate * t).powi(2)).sum();
+        let scatter = if ramp.len() > 2 { (squares / (n - 2.0)).sqrt() } else { 0.0 };
         let noise = self.noise.max(scatter);
         let common =
             self.rate.map(|rate| direction * rate).filter(|rate| (rate - own_rate).abs() <= 3.0 * noise / tt.sqrt());
@@ -212,6 +200,11 @@ impl<'a> Rudder<'a> {
         let gain = (1.0 / n + lever + level.gain * level.gain).sqrt();
         Some((Quantity::new(start, Some(noise / rate.abs() * gain)), own_rate))
     }
+}
+
+/// Last row at least `by` seconds before another one, the first row where there is none.
+pub(crate) fn row_before(time: &[f64], row: usize, by: f64) -> usize {
+    time.partition_point(|&t| t <= time[row] - by).saturating_sub(1).min(row)
 }
 
 /// Step of a rounded channel: the smallest distance between two of its values. Next to nothing for one not rounded.
@@ -250,7 +243,7 @@ mod tests {
 
     fn starts(time: &[f64], rudder: &[f64]) -> Vec<Quantity> {
         let holds = holds(rudder).expect("two reversals");
-        let rudder = Rudder::new(time, rudder, &holds, None);
+        let rudder = RudderMovements::new(time, rudder, &holds, None);
         let first = rudder.first().expect("starts before the hold").start;
         std::iter::once(first).chain((1..holds.len()).map(|index| rudder.reversal(index).start)).collect()
     }

@@ -2,6 +2,7 @@
 //! slopes, peaks and crossings with their uncertainty. It knows nothing of rudders or executes.
 
 use super::local::Cubic;
+use crate::plausibility::range;
 use crate::quantity::Quantity;
 use estimation::statistics::median;
 
@@ -79,9 +80,7 @@ impl Heading {
         let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let step = median(&mut steps)?;
         let noise = declared_noise.or_else(|| noise_sd(&time, &relative, (NOISE_WINDOW * period).max(3.0 * step)));
-        let lowest = relative.iter().copied().fold(f64::INFINITY, f64::min);
-        let highest = relative.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let amplitude = 0.5 * (highest - lowest);
+        let amplitude = 0.5 * range(&relative);
         let ratio = noise.unwrap_or(0.0) / amplitude.max(f64::MIN_POSITIVE);
         let best = 0.35 * period * (ratio * ratio * step / period).powf(1.0 / 7.0);
         let narrowest = 2.0 * step;
@@ -112,21 +111,19 @@ impl Heading {
 
     /// Heading at time `t` relative to the origin.
     pub fn at(&self, t: f64) -> Option<Quantity> {
-        let fit = self.local(t, self.half_width)?;
-        Some(Quantity::new(fit.value(t), self.noise.map(|sd| sd * fit.value_gain(t))))
+        Some(self.local(t, self.half_width)?.value_at(t, self.noise))
     }
 
     /// Yaw rate at time `t`, rad/s.
     pub fn rate_at(&self, t: f64) -> Option<Quantity> {
-        let fit = self.local(t, WIDENING * self.half_width)?;
-        Some(Quantity::new(fit.slope(t), self.noise.map(|sd| sd * fit.slope_gain(t))))
+        Some(self.local(t, self.slope_half_width())?.slope_at(t, self.noise))
     }
 
     /// The largest |yaw rate| between two times, at the rows whose fit has samples on both sides.
     ///
     /// It is the largest of many noisy slopes, so on a noisy record it is high by about one of its standard deviations.
     pub fn largest_rate(&self, from: f64, to: f64) -> Option<Quantity> {
-        let reach = WIDENING * self.half_width;
+        let reach = self.slope_half_width();
         let (start, end) = (self.time[0] + reach, self.time[self.time.len() - 1] - reach);
         let rows = self.rows(from.max(start), to.min(end));
         let every = rows.len().div_ceil(MOST_FITS).max(1);
@@ -148,24 +145,16 @@ impl Heading {
             .filter_map(|row| Some((row, side * self.local(self.time[row], self.half_width)?.value(self.time[row]))))
             .max_by(|a, b| a.1.total_cmp(&b.1))?
             .0;
-        let half_width = WIDENING * self.half_width;
+        let half_width = self.slope_half_width();
         let mut fit = self.local(self.time[highest], half_width)?;
         // Centred on the peak, a cubic has no first-order error there; two moves are enough to get there.
         for _ in 0..2 {
             fit = self.local(fit.stationary_point()?, half_width)?;
         }
         let t = fit.stationary_point()?;
-        let curvature = fit.curvature(t);
-        let end = to.min(self.time[self.time.len() - 1]);
-        if side * curvature >= 0.0
-            || t <= from
-            || t + self.half_width > end
-            || self.has_a_gap(from, t + self.half_width)
-        {
-            return None;
-        }
-        let time = Quantity::new(t, self.noise.map(|sd| sd * fit.slope_gain(t) / curvature.abs()));
-        Some((time, Quantity::new(fit.value(t), self.noise.map(|sd| sd * fit.value_gain(t)))))
+        let (end, reach) = (to.min(self.time[self.time.len() - 1]), t + self.half_width);
+        let is_seen = side * fit.curvature(t) < 0.0 && t > from && reach <= end && !self.has_a_gap(from, reach);
+        is_seen.then(|| (fit.time_of_peak(t, self.noise), fit.value_at(t, self.noise)))
     }
 
     /// Whether there is a gap of the headings between two times, longer than a local fit and its usual steps.
@@ -189,8 +178,7 @@ impl Heading {
             t = self.local(t, self.half_width)?.crossing(level)?;
         }
         let fit = self.local(t, self.half_width)?;
-        let slope = fit.slope(t);
-        (side * slope > 0.0).then(|| Quantity::new(t, self.noise.map(|sd| sd * fit.value_gain(t) / slope.abs())))
+        (side * fit.slope(t) > 0.0).then(|| fit.time_of_crossing(t, self.noise))
     }
 
     /// Rows between two times, both included.

@@ -1,7 +1,7 @@
 //! Where the rudder is laid to one side and held there, and which conventional angles a trial used. Works on drifting,
 //! quantised and noisy rudders; the moments at which the rudder moves are found in `executes`.
 
-use ship::angle::{from_deg, to_deg};
+use ship::angle::to_deg;
 
 use super::findings::ZigZagError;
 use estimation::statistics::median;
@@ -109,12 +109,6 @@ pub fn conventional_deg(measured_deg: f64, below: f64, above: f64, slack_deg: f6
         .filter(near)
         .min_by(|a, b| (a - measured_deg).abs().total_cmp(&(b - measured_deg).abs()))
         .or_else(|| (measured_deg.round() >= 1.0).then(|| measured_deg.round()))
-}
-
-/// Nominal rudder angle of the holds, rad.
-pub(super) fn nominal_rudder(holds: &[Hold]) -> Option<f64> {
-    let mean = holds.iter().map(|hold| hold.level.abs()).sum::<f64>() / holds.len() as f64;
-    conventional_deg(to_deg(mean), 0.08, 0.08, 0.0).map(from_deg)
 }
 
 #[cfg(test)]

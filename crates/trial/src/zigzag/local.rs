@@ -3,6 +3,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::quantity::Quantity;
+
 /// A polynomial with `N` coefficients, fitted with equal weights to the samples within `half_width` of `centre`.
 ///
 /// y(t) = Σ cₖ xᵏ, x = (t − centre)/half_width, k = 0..N−1.
@@ -88,6 +90,26 @@ impl<const N: usize> Local<N> {
     pub fn slope_gain(&self, t: f64) -> f64 {
         let slopes = slopes::<N>(self.x(t));
         slopes.dot(&(self.inverse_gram * slopes)).max(0.0).sqrt() / self.half_width
+    }
+
+    /// Value at time `t`, with its error where the standard deviation of white noise is known.
+    pub fn value_at(&self, t: f64, noise: Option<f64>) -> Quantity {
+        Quantity::new(self.value(t), noise.map(|sd| sd * self.value_gain(t)))
+    }
+
+    /// Slope at time `t`, per second, likewise.
+    pub fn slope_at(&self, t: f64, noise: Option<f64>) -> Quantity {
+        Quantity::new(self.slope(t), noise.map(|sd| sd * self.slope_gain(t)))
+    }
+
+    /// The time `t` of a stationary point, likewise.
+    pub fn time_of_peak(&self, t: f64, noise: Option<f64>) -> Quantity {
+        Quantity::new(t, noise.map(|sd| sd * self.slope_gain(t) / self.curvature(t).abs()))
+    }
+
+    /// The time `t` at which a level is crossed, likewise.
+    pub fn time_of_crossing(&self, t: f64, noise: Option<f64>) -> Quantity {
+        Quantity::new(t, noise.map(|sd| sd * self.value_gain(t) / self.slope(t).abs()))
     }
 
     /// The time near the centre at which the polynomial takes the value `level`; `None` when Newton's iteration leaves

@@ -83,10 +83,7 @@ pub fn extrema(time: &[f64], heading: &[f64], settings: &Settings) -> Vec<Extrem
         if outside || psi * curvature >= 0.0 || psi.abs() < SMALLEST_EXTREMUM * largest {
             continue;
         }
-        extrema.push(Extremum {
-            time: Quantity::new(t, noise.map(|sd| sd * fit.slope_gain(t) / curvature.abs())),
-            heading: Quantity::new(psi, noise.map(|sd| sd * fit.value_gain(t))),
-        });
+        extrema.push(Extremum { time: fit.time_of_peak(t, noise), heading: fit.value_at(t, noise) });
     }
     extrema
 }
@@ -103,11 +100,8 @@ pub fn zero_crossings(time: &[f64], heading: &[f64], settings: &Settings) -> Vec
         .filter_map(|passage| {
             let fit = Cubic::fit(&time, &heading, passage.time, settings.half_width)?;
             let t = fit.crossing(0.0)?;
-            let yaw_rate = fit.slope(t);
-            (passage.direction * yaw_rate > 0.0).then(|| Crossing {
-                time: Quantity::new(t, noise.map(|sd| sd * fit.value_gain(t) / yaw_rate.abs())),
-                yaw_rate: Quantity::new(yaw_rate, noise.map(|sd| sd * fit.slope_gain(t))),
-            })
+            let (time, yaw_rate) = (fit.time_of_crossing(t, noise), fit.slope_at(t, noise));
+            (passage.direction * yaw_rate.value > 0.0).then_some(Crossing { time, yaw_rate })
         })
         .collect()
 }

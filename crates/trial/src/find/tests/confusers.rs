@@ -3,9 +3,9 @@
 use proptest::prelude::*;
 use ship::angle::{from_deg, to_deg};
 
-use super::ship::Gaussian;
 use super::ship::Sea;
 use crate::find::{Signals, manoeuvres};
+use crate::testing::Gaussian;
 
 #[test]
 fn an_autopilot_keeps_a_straight_piece() {

@@ -4,22 +4,7 @@
 use ship::angle::from_deg;
 
 use crate::find::{Kind, Manoeuvre, Signals, manoeuvres};
-use rand::SeedableRng;
-use rand::rngs::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
-
-/// Numbers of the normal distribution with variance 1, in an order that the seed determines.
-pub struct Gaussian(ChaCha8Rng);
-
-impl Gaussian {
-    pub fn new(seed: u64) -> Self {
-        Self(ChaCha8Rng::seed_from_u64(seed))
-    }
-
-    pub fn draw(&mut self) -> f64 {
-        StandardNormal.sample(&mut self.0)
-    }
-}
+use crate::testing::Gaussian;
 
 /// A log under way.
 pub struct Sea {

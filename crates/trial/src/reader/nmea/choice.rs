@@ -5,7 +5,7 @@
 use ship::angle::to_deg;
 
 use super::epochs::{median, rounded};
-use super::log::Instrument;
+use super::log::NmeaInstrument;
 use super::position::plane;
 use super::sentence::{Slot, turned};
 use crate::channel::Channel;
@@ -15,7 +15,7 @@ use crate::words::counted;
 /// An instrument that may give a channel.
 #[derive(Clone, Copy)]
 struct Offer<'a> {
-    instrument: &'a Instrument,
+    instrument: &'a NmeaInstrument,
     /// Its place among the instruments.
     number: usize,
     /// The place of the quantity among its columns.
@@ -51,7 +51,7 @@ const RUDDERS_APART_DEG: f64 = 2.0;
 
 /// Makes the channels of a log.
 pub(super) struct Choice<'a> {
-    instruments: &'a [Instrument],
+    instruments: &'a [NmeaInstrument],
     pub series: Vec<Series>,
     /// One sentence each.
     pub warnings: Vec<String>,
@@ -59,7 +59,7 @@ pub(super) struct Choice<'a> {
 
 impl<'a> Choice<'a> {
     /// All channels that instruments give.
-    pub fn of(instruments: &'a [Instrument]) -> Self {
+    pub fn of(instruments: &'a [NmeaInstrument]) -> Self {
         let mut choice = Self { instruments, series: Vec::new(), warnings: Vec::new() };
         choice.heading();
         choice.rudder();
@@ -75,18 +75,18 @@ impl<'a> Choice<'a> {
     }
 
     /// The instruments that give one of some quantities, each with the class of the quantity.
-    fn offers(&self, slots: &[(Slot, usize)], wanted: impl Fn(&Instrument) -> bool) -> Vec<Offer<'a>> {
-        let of_slot = |&(slot, class): &(Slot, usize)| {
-            let wanted = &wanted;
-            self.instruments.iter().enumerate().filter(move |(_, own)| wanted(own)).filter_map(
-                move |(number, instrument)| {
-                    let place = instrument.place(slot)?;
-                    let readings = instrument.readings(place);
-                    (readings > 0).then_some(Offer { instrument, number, place, class, readings })
-                },
-            )
-        };
-        slots.iter().flat_map(of_slot).collect()
+    fn offers(&self, slots: &[(Slot, usize)], wanted: impl Fn(&NmeaInstrument) -> bool) -> Vec<Offer<'a>> {
+        let mut offers = Vec::new();
+        for &(slot, class) in slots {
+            for (number, instrument) in self.instruments.iter().enumerate().filter(|(_, own)| wanted(own)) {
+                let Some(place) = instrument.place(slot) else { continue };
+                let readings = instrument.readings(place);
+                if readings > 0 {
+                    offers.push(Offer { instrument, number, place, class, readings });
+                }
+            }
+        }
+        offers
     }
 
     /// The best offer; what was chosen among several is said, and always where `always`.
@@ -144,7 +144,7 @@ impl<'a> Choice<'a> {
     }
 
     /// A channel that is one column of one instrument.
-    fn one(&mut self, what: &str, slot: Slot, channel: Channel, wanted: impl Fn(&Instrument) -> bool) {
+    fn one(&mut self, what: &str, slot: Slot, channel: Channel, wanted: impl Fn(&NmeaInstrument) -> bool) {
         let offers = self.offers(&[(slot, 0)], wanted);
         if let Some(chosen) = self.pick(what, offers, false) {
             self.push_column(channel, chosen);
@@ -292,7 +292,7 @@ impl<'a> Choice<'a> {
     }
 
     fn wind(&mut self) {
-        let reference = |letter: u8| move |own: &Instrument| own.sends(b"MWV") && own.part[0] == letter;
+        let reference = |letter: u8| move |own: &NmeaInstrument| own.sends(b"MWV") && own.part[0] == letter;
         let relative = self.offers(&[(Slot::WindFrom, 0)], reference(b'R'));
         if let Some(chosen) = self.pick("relative wind", relative, false) {
             self.push_column(Channel::WindRelativeSpeed, chosen.beside(0));

@@ -2,7 +2,7 @@
 //! sentences of one instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than
 //! the others is filled at the usual pace, and the rest of it stays empty.
 
-use super::log::{Instrument, Log};
+use super::log::{Log, NmeaInstrument};
 use super::sentence::Slot;
 use crate::clock::{Clock, DAY, Stamp, Stamps};
 use crate::reader::error::Problem;
@@ -23,16 +23,11 @@ struct Group {
     length: f64,
 }
 
-/// The instants of a log.
-pub(super) struct Timed {
-    /// What the clock shows at time 0.
-    pub clock: Option<Clock>,
-    /// One sentence each.
-    pub warnings: Vec<String>,
-}
+/// What the clock shows at time 0, and what was found remarkable of the instants, one sentence each.
+type Timing = (Option<Clock>, Vec<String>);
 
 /// Gives every sentence its instant where the time is in stamps before the sentences.
-pub(super) fn from_stamps(log: &mut Log) -> Timed {
+pub(super) fn from_stamps(log: &mut Log) -> Timing {
     let (mut spread, mut disordered) = (0, 0);
     for instrument in &mut log.instruments {
         let mut latest = f64::NEG_INFINITY;
@@ -58,13 +53,11 @@ pub(super) fn from_stamps(log: &mut Log) -> Timed {
     .map(|(number, fault)| format!("{} {fault} {} left out", counted(number, "sentence"), are(number)))
     .collect();
     if spread > 0 {
-        warnings.push(
-            "several sentences of one instrument have the same time stamp; they are spread evenly over the time to the \
-             next stamp"
-                .to_owned(),
-        );
+        let text = "several sentences of one instrument have the same time stamp; they are spread evenly over the time to \
+                    the next stamp";
+        warnings.push(text.to_owned());
     }
-    Timed { clock: log.stamps.clock(), warnings }
+    (log.stamps.clock(), warnings)
 }
 
 /// Spreads sentences with the same stamp; whether there were such.
@@ -76,14 +69,9 @@ fn spread_stamps(at: &mut [f64]) -> bool {
     let times: Vec<f64> = begins.iter().map(|&row| at[row]).collect();
     let Some((lengths, usual)) = lengths(&times) else { return false };
     begins.push(at.len());
-    let group = |(place, pair): (usize, &[usize])| Group {
-        begin: pair[0],
-        end: pair[1],
-        time: times[place],
-        length: lengths[place],
-    };
-    let groups: Vec<Group> = begins.windows(2).enumerate().map(group).collect();
-    spread(at, &groups, usual)
+    let groups = begins.windows(2).zip(times.into_iter().zip(lengths));
+    let groups = groups.map(|(pair, (time, length))| Group { begin: pair[0], end: pair[1], time, length });
+    spread(at, &groups.collect::<Vec<_>>(), usual)
 }
 
 /// Times from each of some instants to the next, the last as long as the one before, and the usual one; `None` for
@@ -98,10 +86,10 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
 /// Gives every sentence its instant where the time is in some of the sentences.
 ///
 /// Fails without at least two different times, and where they go back for more than one sentence.
-pub(super) fn from_sentences(log: &mut Log) -> Result<Timed, Problem> {
-    let times = |own: &Instrument| own.place(Slot::Second).map_or(0, |place| own.readings(place));
+pub(super) fn from_sentences(log: &mut Log) -> Result<Timing, Problem> {
+    let times = |own: &NmeaInstrument| own.place(Slot::Second).map_or(0, |place| own.readings(place));
     let rank =
-        |own: &Instrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|formatter| own.sends(formatter));
+        |own: &NmeaInstrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|formatter| own.sends(formatter));
     let clocks = log.instruments.iter().filter(|own| times(own) > 0);
     let none = |clocks| Problem::NoClock { sentences: log.counts.sentences, clocks };
     let driver = clocks.min_by_key(|own| (std::cmp::Reverse(times(own)), rank(own))).ok_or_else(|| none(0))?;
@@ -141,7 +129,7 @@ pub(super) fn from_sentences(log: &mut Log) -> Result<Timed, Problem> {
     if strayed > 0 {
         warnings.push(format!("{} of {name} far from its neighbours left out", counted(strayed, "time")));
     }
-    Ok(Timed { clock: Some(clock), warnings })
+    Ok((Some(clock), warnings))
 }
 
 /// One time of the clock.
@@ -152,7 +140,7 @@ struct Epoch {
 }
 
 /// The times of one instrument, strictly increasing, what the clock shows at time 0, and times that were left out.
-fn epochs(instrument: &Instrument) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
+fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
     let second = &instrument.columns[instrument.place(Slot::Second).expect("only instruments with times are asked")];
     let days = instrument.place(Slot::Day).map(|place| &instrument.columns[place]);
     // Dates that are there at times only would be mixed with times of day alone.
@@ -195,7 +183,7 @@ fn epochs(instrument: &Instrument) -> Result<(Vec<Epoch>, Clock, usize), Problem
 }
 
 /// The day at time 0, from the first date of an instrument; `second` is what the clock shows then.
-fn first_day(instrument: &Instrument, epochs: &[Epoch], second: f64) -> Option<i64> {
+fn first_day(instrument: &NmeaInstrument, epochs: &[Epoch], second: f64) -> Option<i64> {
     let (seconds, days) = (instrument.place(Slot::Second)?, instrument.place(Slot::Day)?);
     let (seconds, days) = (&instrument.columns[seconds], &instrument.columns[days]);
     let row = (0..seconds.len()).find(|&row| seconds[row].is_finite() && days[row].is_finite())?;
@@ -227,7 +215,7 @@ fn spread(at: &mut [f64], groups: &[Group], usual: f64) -> bool {
 }
 
 /// Takes the rows without an instant out of the table of an instrument.
-fn drop_rows(instrument: &mut Instrument) {
+fn drop_rows(instrument: &mut NmeaInstrument) {
     if instrument.at.iter().all(|at| at.is_finite()) {
         return;
     }

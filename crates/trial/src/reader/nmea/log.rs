@@ -11,7 +11,7 @@ use crate::words::shortened;
 
 /// The sentences of one instrument.
 #[derive(Debug)]
-pub(super) struct Instrument {
+pub(super) struct NmeaInstrument {
     /// What it is called in messages: `$HEHDT`, `$HEHDT of GYRO1`.
     pub name: String,
     /// Talker and sentence.
@@ -32,7 +32,7 @@ pub(super) struct Instrument {
     summed: bool,
 }
 
-impl Instrument {
+impl NmeaInstrument {
     /// Whether it sends sentences with this formatter.
     pub fn sends(&self, formatter: &[u8; 3]) -> bool {
         self.address[2..] == *formatter
@@ -76,14 +76,14 @@ pub(super) struct Counts {
 /// What a log gave so far.
 #[derive(Debug)]
 pub(super) struct Log {
-    pub instruments: Vec<Instrument>,
+    pub instruments: Vec<NmeaInstrument>,
     /// What tells them apart, in the same order: apart from the tables, because every sentence looks through it.
     keys: Vec<u64>,
     pub counts: Counts,
     pub leading: Leading,
     pub stamps: Stamps,
     /// Whether the time is in stamps before the sentences.
-    stamped: bool,
+    pub stamped: bool,
     /// The latest stamp, the one before it, and the lines with the latest one, s.
     latest: (f64, f64, usize),
     /// Line and time of the stamp read last, where it lies before the latest one.
@@ -105,11 +105,6 @@ impl Log {
             late: None,
             numbers: 0,
         }
-    }
-
-    /// Whether the time is in stamps before the sentences.
-    pub fn is_stamped(&self) -> bool {
-        self.stamped
     }
 
     /// Takes one line.
@@ -182,7 +177,7 @@ impl Log {
             Some(place) => place,
             None if self.instruments.len() < MOST_INSTRUMENTS => {
                 self.keys.push(key);
-                self.instruments.push(Instrument {
+                self.instruments.push(NmeaInstrument {
                     name: self.name(frame.address, row.part, source),
                     address: frame.address,
                     slots,

@@ -1,5 +1,5 @@
-//! A log of NMEA 0183 sentences becomes [`ReadSentences`]: every quantity that is used at the instants its instrument sent
-//! it. Headings, rudder angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and the
+//! A log of NMEA 0183 sentences becomes [`ReadSentences`]: every quantity that is used at the instants its instrument
+//! sent it. Headings, rudder angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and the
 //! sentences of single makers are passed over. Time comes from stamps before the sentences, or from the sentences of a
 //! GPS or clock. What is damaged is left out and counted; a course over ground never stands for a heading. Whether
 //! heading and rudder are enough for a record is not decided here: they may lie in two files.
@@ -116,15 +116,15 @@ fn finish(mut log: Log, lines: usize, sha256: String) -> Result<ReadSentences, P
             Problem::NoReadings { sentences: counts.sentences }
         });
     }
-    let timed = if log.is_stamped() { from_stamps(&mut log) } else { from_sentences(&mut log)? };
+    let (clock, timing) = if log.stamped { from_stamps(&mut log) } else { from_sentences(&mut log)? };
     let mut warnings = of_counts(&counts, lines);
-    warnings.extend(timed.warnings);
+    warnings.extend(timing);
     let Choice { mut series, warnings: choices, .. } = Choice::of(&log.instruments);
     warnings.extend(choices);
     if series.is_empty() {
         return Err(Problem::NoReadings { sentences: counts.sentences });
     }
-    let clock = begin_at_zero(&mut series, timed.clock);
+    let clock = begin_at_zero(&mut series, clock);
     Ok(ReadSentences { series, clock, warnings, lines, sha256 })
 }
 

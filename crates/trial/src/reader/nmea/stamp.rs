@@ -1,9 +1,7 @@
 //! What a logger wrote before a sentence: a time stamp, the name of the port or instrument, or both, bare or in a tag
 //! block. The notations of stamps are those of [`crate::clock`]; seconds and milliseconds since 1970 are added here.
 
-use std::ops::Range;
-
-use super::frame::{Number, number, sum};
+use super::frame::sum;
 use crate::clock::{DAY, Stamp};
 
 /// Bytes before a sentence that are looked at.
@@ -18,42 +16,25 @@ const SOURCES: usize = 64;
 pub(super) struct Leading {
     /// Names of sources; the number of a source is its place here and one more, 0 where there is none.
     pub sources: Vec<String>,
-    text: String,
-    name: String,
     /// The words that made the stamp before: most lines of a log look alike.
     window: Option<(usize, usize)>,
+    /// What stood before the last sentence, and what was found in it.
     last: String,
     found: (Option<Stamp>, u8),
-    /// Bytes before and behind the stamp in `last`.
-    around: Option<(usize, usize)>,
 }
 
 impl Leading {
     /// The stamp before a sentence and the number of its source.
     pub fn read(&mut self, before: &str) -> (Option<Stamp>, u8) {
-        if before == self.last {
-            return self.found;
+        if before != self.last {
+            self.found = self.look(before);
+            self.last.clear();
+            self.last.push_str(before);
         }
-        match self.alike(before) {
-            Some(stamp) => self.found.0 = Some(stamp),
-            None => self.found = self.look(before),
-        }
-        self.last.clear();
-        self.last.push_str(before);
         self.found
     }
 
-    /// The stamp where all around it is as it was in the line before.
-    fn alike(&self, before: &str) -> Option<Stamp> {
-        let (front, behind) = self.around?;
-        let until = before.len().checked_sub(behind)?;
-        let same = before.get(..front)? == self.last.get(..front)?
-            && before.get(until..)? == self.last.get(self.last.len() - behind..)?;
-        parse(before.get(front..until)?).filter(|_| same)
-    }
-
     fn look(&mut self, before: &str) -> (Option<Stamp>, u8) {
-        self.around = None;
         if before.len() > LONGEST {
             return (None, 0);
         }
@@ -72,69 +53,42 @@ impl Leading {
             None => block,
         };
         let value = |key| content.split(',').find_map(|pair| pair.strip_prefix(key));
-        let stamp = value("c:").and_then(since_1970);
-        self.name.clear();
-        self.name.push_str(value("s:").unwrap_or(""));
-        (stamp, self.source())
+        (value("c:").and_then(since_1970), self.source(value("s:").unwrap_or("")))
     }
 
     /// Words with a stamp among them, and the name of a source.
     fn words(&mut self, before: &str) -> (Option<Stamp>, u8) {
-        self.text.clear();
-        self.text.extend(before.chars().filter(|c| !matches!(c, '"' | '\'' | '[' | ']' | '(' | ')' | '<' | '>')));
-        let mut words: [Range<usize>; WORDS] = Default::default();
-        let mut count = 0;
-        let mut begin = None;
-        for (at, byte) in self.text.bytes().chain([b' ']).enumerate() {
-            let parts = matches!(byte, b' ' | b'\t' | b',' | b';' | b'|');
-            match begin {
-                None if !parts => begin = Some(at),
-                Some(from) if parts && count < WORDS => {
-                    words[count] = from..at;
-                    (begin, count) = (None, count + 1);
-                }
-                _ => {}
-            }
-        }
-        let words = &words[..count];
-        let read = |&(from, until): &(usize, usize)| {
+        let text = before.replace(['"', '\'', '[', ']', '(', ')', '<', '>'], "");
+        let words: Vec<&str> =
+            text.split([' ', '\t', ',', ';', '|']).filter(|word| !word.is_empty()).take(WORDS).collect();
+        let begin = |word: &str| word.as_ptr() as usize - text.as_ptr() as usize;
+        let read = |(from, until): (usize, usize)| {
             let (first, last) = (words.get(from)?, words.get(until - 1)?);
-            parse(&self.text[first.start..last.end]).map(|stamp| (stamp, (from, until)))
+            Some((parse(&text[begin(first)..begin(last) + last.len()])?, (from, until)))
         };
         let search = || {
+            let count = words.len();
             let windows = (1..=count).rev().flat_map(|length| (0..=count - length).map(move |at| (at, at + length)));
-            windows.into_iter().find_map(|window| read(&window))
+            windows.into_iter().find_map(read)
         };
-        let found = self.window.as_ref().and_then(read).or_else(search);
-        let (stamp, taken) = found.map_or((None, (0, 0)), |(stamp, window)| (Some(stamp), window));
-        self.name.clear();
-        for (place, word) in words.iter().enumerate() {
-            let word = self.text[word.clone()].trim_end_matches(':');
-            if !(taken.0..taken.1).contains(&place) && word.starts_with(|c: char| c.is_ascii_alphabetic()) {
-                if !self.name.is_empty() {
-                    self.name.push(' ');
-                }
-                self.name.push_str(word);
-            }
-        }
-        self.window = stamp.map(|_| taken);
-        if stamp.is_some() {
-            let text = &self.text[words[taken.0].start..words[taken.1 - 1].end];
-            self.around = before.find(text).map(|front| (front, before.len() - front - text.len()));
-        }
-        (stamp, self.source())
+        let found = self.window.and_then(read).or_else(search);
+        self.window = found.map(|(_, window)| window);
+        let taken = self.window.map_or(0..0, |(from, until)| from..until);
+        let is_name = |word: &&str| word.starts_with(|c: char| c.is_ascii_alphabetic());
+        let others = words.iter().enumerate().filter(|(place, _)| !taken.contains(place));
+        let name: Vec<&str> = others.map(|(_, word)| word.trim_end_matches(':')).filter(is_name).collect();
+        let source = self.source(&name.join(" "));
+        (found.map(|(stamp, _)| stamp), source)
     }
 
     /// The number of the source that is named.
-    fn source(&mut self) -> u8 {
-        if self.name.is_empty() {
-            return 0;
-        }
-        let known = self.sources.iter().position(|source| *source == self.name);
+    fn source(&mut self, name: &str) -> u8 {
+        let known = self.sources.iter().position(|source| source == name);
         match known {
+            _ if name.is_empty() => 0,
             Some(place) => place as u8 + 1,
             None if self.sources.len() < SOURCES => {
-                self.sources.push(self.name.clone());
+                self.sources.push(name.to_owned());
                 self.sources.len() as u8
             }
             None => 0,
@@ -161,16 +115,9 @@ fn since_1970(text: &str) -> Option<Stamp> {
         _ => return None,
     };
     let whole: u64 = whole.parse().ok()?;
-    let decimals = if decimals.is_empty() { 0.0 } else { fraction(decimals)? };
+    let decimals: f64 = format!("0.{decimals}0").parse().ok()?;
     let (seconds, rest) = (whole / per_second, (whole % per_second) as f64);
     let day = seconds / DAY as u64;
     let second = (seconds % DAY as u64) as f64 + (rest + decimals) / per_second as f64;
     Some(Stamp::of(Some(day as i64), second))
-}
-
-fn fraction(decimals: &str) -> Option<f64> {
-    match number(decimals.as_bytes()) {
-        Number::Of(value) => Some(value / 10f64.powi(decimals.len() as i32)),
-        _ => None,
-    }
 }

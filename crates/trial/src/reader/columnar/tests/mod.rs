@@ -8,9 +8,7 @@ mod spreadsheet;
 use std::io::{Read, Write};
 use std::path::Path;
 
-use sha2::{Digest, Sha256};
-
-use crate::reader::lines::in_hex;
+use crate::reader::lines::sha256;
 use crate::reader::tests::{rows, simple};
 use crate::reader::{ReadError, ReadRecord, read, read_bytes};
 use crate::record::Origin;
@@ -46,7 +44,7 @@ fn assert_same(one: &ReadRecord, other: &ReadRecord) {
 fn assert_plain(bytes: &[u8]) -> ReadRecord {
     let reading = parse(bytes).unwrap_or_else(|error| panic!("{error}"));
     assert_same(&reading, &parse(simple().as_bytes()).expect("a plain table"));
-    assert_eq!(hash(&reading), in_hex(&Sha256::digest(bytes)));
+    assert_eq!(hash(&reading), sha256(bytes));
     reading
 }
 
@@ -93,7 +91,7 @@ fn the_hash_is_that_of_the_bytes_on_the_disk() {
             assert_plain(&bytes);
             let path = folder.path().join("run.gz");
             std::fs::write(&path, &bytes).expect("written");
-            assert_eq!(hash(&read(&path).expect("a record")), in_hex(&Sha256::digest(&bytes)));
+            assert_eq!(hash(&read(&path).expect("a record")), sha256(&bytes));
         }
     }
 }
