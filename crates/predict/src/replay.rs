@@ -39,7 +39,8 @@ pub struct Compared {
     pub inside90: bool,
 }
 
-/// A record with its prediction; its curves are beside the document ([`PredictCurves`](crate::document::PredictCurves)).
+/// A record with its prediction; its curves are beside the document
+/// ([`PredictCurves`](crate::document::PredictCurves)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RecordReplay {
     /// The file as the user named it.

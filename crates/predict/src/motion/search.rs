@@ -1,4 +1,5 @@
-//! Least squares over groups of rows, each of which depends on some of the unknowns, and the covariance of what is found.
+//! Least squares over groups of rows, each of which depends on some of the unknowns, and the covariance of what is
+//! found.
 
 use estimation::covariance::newey_west;
 use estimation::levenberg_marquardt::{End, Minimum, Normal, Objective, Rules, minimise};
@@ -98,8 +99,8 @@ impl GroupedSquares<'_> {
         Ok((free, inverse))
     }
 
-    /// A⁻¹ S A⁻¹ of all unknowns, zero of those at a bound, with A the normal matrix and S the long-run covariance of the
-    /// scores, whose lags follow from all unknowns or only from those that are at no bound.
+    /// A⁻¹ S A⁻¹ of all unknowns, zero of those at a bound, with A the normal matrix and S the long-run covariance of
+    /// the scores, whose lags follow from all unknowns or only from those that are at no bound.
     ///
     /// Fails as [`inverse`](Self::inverse) does.
     pub fn covariance(
