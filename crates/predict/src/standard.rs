@@ -1,4 +1,5 @@
-//! The manoeuvres that are predicted: those of the IMO criteria, and what the helm does in one whose ends are left open.
+//! The manoeuvres that are predicted: those of the IMO criteria, and what the helm does in one whose ends are left
+//! open.
 
 use ship::angle::from_deg;
 use simulate::Manoeuvre;
@@ -22,8 +23,8 @@ pub fn of_imo() -> Vec<Manoeuvre> {
     vec![zig_zag(10.0), zig_zag(20.0), Manoeuvre::turning_circle(from_deg(35.0))]
 }
 
-/// A manoeuvre as it was asked for with what ends it, for a ship with this time, s; `None` for a spiral, which is a curve
-/// of steady turns.
+/// A manoeuvre as it was asked for with what ends it, for a ship with this time, s; `None` for a spiral, which is a
+/// curve of steady turns.
 pub fn steered(asked: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
     let mut manoeuvre = asked.clone();
     match &mut manoeuvre {

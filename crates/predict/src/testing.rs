@@ -52,8 +52,8 @@ pub(crate) fn mixture(known: IdentifiedShip) -> ShipMixture {
     ShipMixture::new(vec![(known, 1.0)]).expect("made up")
 }
 
-/// A record of a drawn ship, a row every `period` s, with noise of the heading in rad; with number 0 of the most probable
-/// one in a calm.
+/// A record of a drawn ship, a row every `period` s, with noise of the heading in rad; with number 0 of the most
+/// probable one in a calm.
 pub(crate) fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64, period: f64) -> Trial {
     let ship = if number == 0 { mixture.most_probable() } else { mixture.draw(number, &UncertaintySource::ALL) };
     let asked: Manoeuvre = kind.parse().expect("known");

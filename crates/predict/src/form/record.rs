@@ -53,8 +53,8 @@ type Found = Result<((FormManoeuvre, &'static str), Vec<(&'static str, Quantity)
 
 impl<'a> TestedManoeuvre<'a> {
     /// The record as a manoeuvre of the form: a zig-zag of 10/10 or 20/20, or a circle with 35° (± 5 %) of rudder, from
-    /// a straight course: the rudder amidships, and, where the approach is recorded, a yaw rate below a twentieth of the
-    /// largest or below three times its error.
+    /// a straight course: the rudder amidships, and, where the approach is recorded, a yaw rate below a twentieth of
+    /// the largest or below three times its error.
     pub fn of(record: &FormRecord<'a>) -> Self {
         let found = match Measured::of(record.trial) {
             Ok(zigzag) if zigzag.executes.len() > 1 => zig_zag(record.trial, &zigzag),

@@ -1,5 +1,5 @@
-//! Remarks of the form of MSC/Circ.1053: conditions that are not met or not known, sides that were not tried, and records
-//! that are no manoeuvre of the form.
+//! Remarks of the form of MSC/Circ.1053: conditions that are not met or not known, sides that were not tried, and
+//! records that are no manoeuvre of the form.
 
 use indexmap::IndexMap;
 use ship::Particulars;

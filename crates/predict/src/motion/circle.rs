@@ -55,8 +55,8 @@ const STEADY: f64 = TAU;
 const ENOUGH: f64 = PI;
 
 /// The figures of a turn that was begun at the time `execute`, s: times (s, increasing), headings (rad, not wrapped),
-/// positions (m, north and east: measured, or those of [`track`]), surge and sway at the point whose positions these are
-/// (m/s), and yaw rates (rad/s).
+/// positions (m, north and east: measured, or those of [`track`]), surge and sway at the point whose positions these
+/// are (m/s), and yaw rates (rad/s).
 ///
 /// The course of the approach is the heading at the execute, the side of the turn that of the last heading. Between two
 /// rows the heading runs straight. The steady turn is what follows a heading change of 360° when that is at least half

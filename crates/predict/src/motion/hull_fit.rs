@@ -28,17 +28,17 @@ const JACKKNIFE: usize = 3;
 /// Fits surge, sway and yaw to records of a ship of length `length` (m) that have rudder, heading or yaw rate, surge
 /// and sway; others are left out.
 ///
-/// Surge and sway are fitted first, by [`fit()`](super::fit::fit()). The yaw equation follows by output error: driven by
-/// measured surge, sway and rudder it is integrated over windows of 10 L/U₀ that begin at measured states (all of them
-/// smoothed by a parabola within 0.25 L/U₀), and heading and yaw rate are compared, weighed with their standard
-/// deviations, which are taken twice from the residuals. With surge and sway measured the equation is damped, also
-/// that of a ship that is unstable on a straight course.
+/// Surge and sway are fitted first, by [`fit()`](super::fit::fit()). The yaw equation follows by output error: driven
+/// by measured surge, sway and rudder it is integrated over windows of 10 L/U₀ that begin at measured states (all of
+/// them smoothed by a parabola within 0.25 L/U₀), and heading and yaw rate are compared, weighed with their standard
+/// deviations, which are taken twice from the residuals. With surge and sway measured the equation is damped, also that
+/// of a ship that is unstable on a straight course.
 ///
 /// The covariance is that of the jackknife over records when there are three or more and every fit to the others has
 /// an answer, (n − 1)/n Σ (θᵢ − θ̄)(θᵢ − θ̄)ᵀ; else that of a sandwich. Field `spread` says which.
 ///
-/// Fails as [`fit()`](super::fit::fit()) does, with [`MotionError::NoDrift`] when no record has both surge and sway, and
-/// with [`MotionError::Undetermined`] when the records leave a coefficient of yaw open.
+/// Fails as [`fit()`](super::fit::fit()) does, with [`MotionError::NoDrift`] when no record has both surge and sway,
+/// and with [`MotionError::Undetermined`] when the records leave a coefficient of yaw open.
 pub fn fit_hull(trials: &[Trial], length: f64) -> Result<IdentifiedHull, MotionError> {
     positive("length", length)?;
     let is_usable = |trial: &&Trial| WindowedRecord::of(trial, length, 1.0).is_some();

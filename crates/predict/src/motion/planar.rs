@@ -18,8 +18,8 @@ pub struct Planar {
     pub length: f64,
     /// Speed of the straight approach U₀, m/s.
     pub approach_speed: f64,
-    /// Covariance of the coefficients in the order of [`SYMBOLS`](super::coefficients::SYMBOLS); zero for one that is known or that
-    /// lies at the end of what its sign allows.
+    /// Covariance of the coefficients in the order of [`SYMBOLS`](super::coefficients::SYMBOLS); zero for one that is
+    /// known or that lies at the end of what its sign allows.
     pub covariance: [[f64; COEFFICIENTS]; COEFFICIENTS],
     /// The records of the fit, in their order; none where the coefficients were given.
     pub records: Vec<MotionRecordFit>,
@@ -74,8 +74,9 @@ impl Planar {
         Ok(Self { length, approach_speed, ..self.clone() })
     }
 
-    /// The same ship with its coefficients changed by so much, in the order of [`SYMBOLS`](super::coefficients::SYMBOLS):
-    /// a draw from the covariance. A value of a sign that the equations do not allow is put to the nearest that they do.
+    /// The same ship with its coefficients changed by so much, in the order of
+    /// [`SYMBOLS`](super::coefficients::SYMBOLS): a draw from the covariance. A value of a sign that the equations do
+    /// not allow is put to the nearest that they do.
     pub fn stepped(&self, step: &[f64]) -> Self {
         let coefficients = PlanarCoefficients::from_array(moved(self.coefficients.to_array(), step));
         Self { coefficients, ..self.clone() }

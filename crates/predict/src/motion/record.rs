@@ -99,7 +99,8 @@ pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     upper_median(&mut values.filter(|value| value.is_finite()).collect::<Vec<f64>>())
 }
 
-/// Readings that are missing lie on the straight line between their neighbours, or are the nearest one; NaN without any.
+/// Readings that are missing lie on the straight line between their neighbours, or are the nearest one; NaN without
+/// any.
 pub(crate) fn filled(time: &[f64], values: &[f64]) -> Vec<f64> {
     let (known, read) = time.iter().zip(values).filter(|(_, value)| value.is_finite()).unzip();
     let line = Polyline::new(known, read);
