@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::correction::Correction;
-use crate::form::FormEntry;
+use crate::form::ImoFormEntry;
 use crate::imo::PredictedCriterion;
 use crate::known::ValidityRange;
 use crate::passage::SimulatedManoeuvre;
@@ -40,7 +40,7 @@ pub struct PredictDocument {
     pub corrected: Vec<Correction>,
     /// The form of MSC/Circ.1053, where it was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub form: Option<Vec<FormEntry>>,
+    pub form: Option<Vec<ImoFormEntry>>,
     /// What is to be said beside it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form_remarks: Option<Vec<String>>,

@@ -37,7 +37,7 @@ pub const DECIMALS: usize = 2;
 
 /// An entry of the form.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct FormEntry {
+pub struct ImoFormEntry {
     /// Heading it stands under.
     pub section: String,
     /// What it is called.
@@ -74,7 +74,7 @@ pub struct FormEntry {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form {
     /// Entries in the order of the form.
-    pub entries: Vec<FormEntry>,
+    pub entries: Vec<ImoFormEntry>,
     /// Conditions that are not met or not known, and what else is to be said.
     pub remarks: Vec<String>,
 }
@@ -133,9 +133,16 @@ fn number(value: impl Into<f64>) -> Option<Value> {
 }
 
 /// An entry of one value; without one its source says that it is missing.
-fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: String) -> FormEntry {
+fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: String) -> ImoFormEntry {
     let source = if value.is_some() { source } else { String::from("not in the records") };
-    FormEntry { section: section.into(), field: field.into(), unit: unit.into(), value, source, ..FormEntry::default() }
+    ImoFormEntry {
+        section: section.into(),
+        field: field.into(),
+        unit: unit.into(),
+        value,
+        source,
+        ..ImoFormEntry::default()
+    }
 }
 
 /// Fills in the form.
@@ -163,13 +170,13 @@ pub fn fill<'a>(
         let (source, value) = found.or_else(|| Some(("scale of the prediction".into(), scale?))).unzip();
         entry(section, name, unit, value, source.unwrap_or_default())
     };
-    let mut entries: Vec<FormEntry> = FIELDS.iter().map(field).collect();
+    let mut entries: Vec<ImoFormEntry> = FIELDS.iter().map(field).collect();
     entries.push(loading(&tested));
     // The order of the form.
     for limit in [4, 5, 1, 2, 3, 0].map(|place: usize| &LIMITS[place]) {
         for side in ["port", "starboard"] {
             let found = measured(limit, side, &tested);
-            entries.push(FormEntry {
+            entries.push(ImoFormEntry {
                 section: limit.section.into(),
                 field: limit.field.into(),
                 side: Some(side.into()),
@@ -179,7 +186,7 @@ pub fn fill<'a>(
             });
         }
     }
-    entries.push(FormEntry {
+    entries.push(ImoFormEntry {
         limit: Some(TRACK_REACH_LENGTHS),
         source: "never predicted: no model of this program goes astern; stop the ship and measure".into(),
         ..entry(STOPPING, "track reach", "ship lengths", None, String::new())
@@ -199,7 +206,7 @@ pub fn fill<'a>(
 
 /// Value and source of a figure that a record shows: what needs no correction, or has one, goes before what was made at
 /// partial load.
-fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<FormEntry> {
+fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<ImoFormEntry> {
     let show = |tested: &TestedManoeuvre| {
         let (record, quantity) = (tested.record, tested.figure(limit.figure)?);
         let file = file_of(record.trial);
@@ -219,7 +226,10 @@ fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<For
         let load = if is_partial { ", at partial load, not corrected" } else { "" };
         let sd = quantity.sd.map_or_else(String::new, |sd| format!(" ± {}", one_digit(sd)));
         let source = format!("measured, {file}{sd}{load}");
-        Some((is_partial, FormEntry { value: number(quantity.value), sd: quantity.sd, source, ..FormEntry::default() }))
+        Some((
+            is_partial,
+            ImoFormEntry { value: number(quantity.value), sd: quantity.sd, source, ..ImoFormEntry::default() },
+        ))
     };
     let found = tested.iter().filter(|tested| tested.is(limit.manoeuvre, side)).filter_map(show);
     found.min_by_key(|(is_partial, _)| *is_partial).map(|(_, entry)| entry)
@@ -232,8 +242,8 @@ fn predicted(
     predictions: &[Prediction],
     particulars: Option<Particulars>,
     models: &str,
-) -> FormEntry {
-    let untold = |why: &str| FormEntry { source: why.into(), ..FormEntry::default() };
+) -> ImoFormEntry {
+    let untold = |why: &str| ImoFormEntry { source: why.into(), ..ImoFormEntry::default() };
     let kind: Manoeuvre = limit.manoeuvre.parse().expect("the name of a manoeuvre");
     let kind = if side == "port" { kind.to(Side::Port) } else { kind };
     let Some(prediction) = predictions.iter().find(|prediction| prediction.kind == kind) else {
@@ -246,15 +256,15 @@ fn predicted(
     let beyond = if figure.extrapolated { ", extrapolated" } else { "" };
     let pass = passing.map_or_else(String::new, |share| format!("; {:.0} % pass", 100.0 * share));
     let source = format!("predicted from {models}, 90 % {}{beyond}{pass}", range(&figure.interval));
-    FormEntry {
+    ImoFormEntry {
         extrapolated: Some(figure.extrapolated),
         probability_of_passing: passing,
         ..of_interval(&figure.interval, source)
     }
 }
 
-fn of_interval(interval: &PredictionInterval, source: String) -> FormEntry {
-    FormEntry { median: Some(interval.median), ci90: Some(interval.ci90), source, ..FormEntry::default() }
+fn of_interval(interval: &PredictionInterval, source: String) -> ImoFormEntry {
+    ImoFormEntry { median: Some(interval.median), ci90: Some(interval.ci90), source, ..ImoFormEntry::default() }
 }
 
 /// Decimals of an entry.
@@ -284,7 +294,7 @@ fn range(interval: &PredictionInterval) -> String {
 }
 
 /// How the ship was loaded when she was tested.
-fn loading(tested: &[TestedManoeuvre]) -> FormEntry {
+fn loading(tested: &[TestedManoeuvre]) -> ImoFormEntry {
     let used: Vec<FormRecord> = tested.iter().filter(|one| one.what.is_some()).map(|one| one.record).collect();
     let any = |is: fn(&FormRecord) -> bool| used.iter().any(is);
     let is_partial = |record: &FormRecord| record.correction.is_none() && record.loading() == Some(Loading::Partial);
@@ -318,8 +328,8 @@ mod tests {
         manoeuvres().iter().map(|kind| mixture.predict(kind, 60, false).expect("sails")).collect()
     }
 
-    fn entry<'a>(form: &'a Form, section: &str, name: &str, side: Option<&str>) -> &'a FormEntry {
-        let is_it = |entry: &&FormEntry| {
+    fn entry<'a>(form: &'a Form, section: &str, name: &str, side: Option<&str>) -> &'a ImoFormEntry {
+        let is_it = |entry: &&ImoFormEntry| {
             entry.section.contains(section) && entry.field == name && entry.side.as_deref() == side
         };
         form.entries.iter().find(is_it).unwrap_or_else(|| panic!("{section} {name}: {form:?}"))
@@ -363,7 +373,7 @@ mod tests {
         assert!(starboard.extrapolated == Some(false) && starboard.probability_of_passing.is_some());
         // L/V = 12.5 s: 11.25 and 26.875 deg.
         assert!((port.limit.expect("known") - 11.25).abs() < 1e-12);
-        let value = |entry: &FormEntry| entry.value.as_ref().and_then(Value::as_f64);
+        let value = |entry: &ImoFormEntry| entry.value.as_ref().and_then(Value::as_f64);
         let (value, told) = (value(port).expect("measured"), starboard.median.expect("predicted"));
         assert!((value - told).abs() < 1.5 && port.sd.is_some_and(|sd| sd < 0.2), "{port:?} {told}");
         let turning = entry(&form, "initial", "distance to turn 10° with 10° rudder", Some("port"));
@@ -420,7 +430,7 @@ mod tests {
                 &[FormRecord { trial: &trial, correction: None, current: None }],
                 None,
             );
-            let measured = |entry: &FormEntry| entry.source.starts_with("measured");
+            let measured = |entry: &ImoFormEntry| entry.source.starts_with("measured");
             assert!(!form.entries.iter().any(measured), "{kind}");
             form.remarks.join("\n")
         };

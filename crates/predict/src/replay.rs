@@ -141,12 +141,7 @@ impl ShipMixture {
         enough(trial.name(), made.len(), draws)?;
         let (most_probable, _) = sail(0, &[]).ok_or_else(|| lost(trial.name(), made.len(), draws))?;
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
-        let mut values = Vec::with_capacity(made.len());
-        let quantiles = (0..rows.len()).map(|row| {
-            values.clear();
-            values.extend(headings.iter().map(|own| own[row]));
-            band(&mut values)
-        });
+        let quantiles = (0..rows.len()).map(|row| band(&mut headings.iter().map(|own| own[row]).collect::<Vec<_>>()));
         let heading = Bands { quantiles: quantiles.collect(), most_probable: at_rows(&most_probable), time };
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();

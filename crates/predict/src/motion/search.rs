@@ -32,7 +32,7 @@ const STEP: f64 = 1e-6;
 
 /// Residuals of a group, over their deviations, where the unknowns have some values: a row a time, a column an output,
 /// zero where nothing was read, not finite where the model has no answer.
-type Residuals<'a> = Box<dyn Fn(usize, &[f64]) -> DMatrix<f64> + 'a>;
+type GroupResiduals<'a> = Box<dyn Fn(usize, &[f64]) -> DMatrix<f64> + 'a>;
 
 /// A sum of squares over groups of rows, each of which depends on some of the unknowns.
 pub(crate) struct GroupedSquares<'a> {
@@ -42,7 +42,7 @@ pub(crate) struct GroupedSquares<'a> {
     pub bounds: Vec<[f64; 2]>,
     /// A usual size of every unknown.
     pub scales: Vec<f64>,
-    pub residuals: Residuals<'a>,
+    pub residuals: GroupResiduals<'a>,
 }
 
 /// Rows and columns of a matrix.

@@ -1,6 +1,6 @@
 //! The form for reporting manoeuvring data to IMO (MSC/Circ.1053, appendix 6) as a page.
 
-use predict::form::{DECIMALS, FormEntry, STOPPING, TRACK_REACH_LENGTHS};
+use predict::form::{DECIMALS, ImoFormEntry, STOPPING, TRACK_REACH_LENGTHS};
 use predict::interval::PredictionInterval;
 use report::markdown::text;
 use report::number::{fixed, significant};
@@ -17,7 +17,7 @@ fn decimals_of(sd: Option<f64>) -> usize {
 }
 
 /// A value as it is filled in, without its unit. Numbers of one side are results, others are declared.
-fn filled(entry: &FormEntry) -> String {
+fn filled(entry: &ImoFormEntry) -> String {
     if let (Some(median), Some(ci90)) = (entry.median, entry.ci90) {
         return fixed(median, PredictionInterval { median, ci50: ci90, ci90 }.decimals().min(DECIMALS));
     }
@@ -30,7 +30,7 @@ fn filled(entry: &FormEntry) -> String {
 }
 
 /// The page of the form.
-pub fn page(entries: &[FormEntry], remarks: &[String]) -> Page {
+pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
     let mut page = Page::titled("Form for reporting manoeuvring data to IMO");
     page.say(
         "MSC/Circ.1053 (2002), appendix 6; criteria of resolution MSC.137(76). Every entry names its source; what is predicted \
@@ -77,7 +77,7 @@ pub fn page(entries: &[FormEntry], remarks: &[String]) -> Page {
     page
 }
 
-fn criterion(entry: &FormEntry) -> String {
+fn criterion(entry: &ImoFormEntry) -> String {
     match entry.limit {
         Some(TRACK_REACH_LENGTHS) if entry.section == STOPPING => {
             String::from("≤ 15, up to 20 where the Administration allows")
@@ -87,6 +87,6 @@ fn criterion(entry: &FormEntry) -> String {
     }
 }
 
-fn unit(entry: &FormEntry) -> &str {
+fn unit(entry: &ImoFormEntry) -> &str {
     if entry.unit == "1" { "" } else { &entry.unit }
 }

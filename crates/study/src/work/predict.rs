@@ -147,6 +147,29 @@ fn asked_scale(options: &ReadingOptions) -> Option<Particulars> {
     Some(Particulars { length: options.length_m?, speed: options.speed().unwrap_or(f64::NAN) })
 }
 
+/// The manoeuvres that drawn ships come to the end of, and why the last of the others is lost; `file` is what messages
+/// call the model.
+fn predictions(
+    request: &PredictRequest,
+    mixture: &ShipMixture,
+    file: &str,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<Prediction>, Option<PredictError>), Failure> {
+    let (mut predictions, mut lost) = (Vec::new(), None);
+    for kind in &manoeuvres(request) {
+        match mixture.predict(kind, request.draws as usize, true) {
+            Ok(prediction) => predictions.push(prediction),
+            // One manoeuvre that the model cannot make says nothing of the others.
+            Err(error @ PredictError::Lost { .. }) => {
+                warnings.push(format!("{file}: {error}; it is left out"));
+                lost = Some(error);
+            }
+            Err(error) => return Err(Failure::input(format!("{file}: {error}"))),
+        }
+    }
+    Ok((predictions, lost))
+}
+
 /// Predicts the manoeuvres and replays the records.
 ///
 /// Fails when a model cannot be brought to the scale that is asked for, when a record does not say how the ship began,
@@ -168,19 +191,7 @@ pub fn predict(
     let refused = |error: PredictError| Failure::input(format!("{first}: {error}"));
     let mixture = mixture_of(models, scale).map_err(refused)?;
     let busy = progress::busy("predicting", quiet);
-    let mut predictions: Vec<Prediction> = Vec::new();
-    let mut lost = None;
-    for kind in &manoeuvres(request) {
-        match mixture.predict(kind, draws, true) {
-            Ok(prediction) => predictions.push(prediction),
-            // One manoeuvre that the model cannot make says nothing of the others.
-            Err(error @ PredictError::Lost { .. }) => {
-                warnings.push(format!("{first}: {error}; it is left out"));
-                lost = Some(error);
-            }
-            Err(error) => return Err(refused(error)),
-        }
-    }
+    let (predictions, lost) = predictions(request, &mixture, &first, warnings)?;
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
         return Err(refused(error));
     }
