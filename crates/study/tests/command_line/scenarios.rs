@@ -315,6 +315,7 @@ fn the_record_of_a_replay_is_read_with_the_scenario() {
             "[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 20.0",
             &format!("[manoeuvre.replay]\nfile = \"{file}\""),
         )
+        .replace("after-execute = 1\n", "")
     };
     refused(&replay("nope.csv"), 8, &["nope.csv", "no such file"]);
     refused(&replay("."), 8, &["folder"]);
@@ -322,6 +323,9 @@ fn the_record_of_a_replay_is_read_with_the_scenario() {
     desk.file("studies/case.toml", replay("../record.csv"));
     desk.file("record.csv", zig_zag_csv());
     desk.run(&["check", "studies/case.toml"]).is_done();
+    let late = replay("../record.csv").replace("duration-s = 270.0\n", "duration-s = 270.0\nafter-execute = 1\n");
+    desk.file("studies/case.toml", late);
+    desk.run(&["check", "studies/case.toml"]).is_refused(2, &["`recording.after-execute` is 1", "leave the key out"]);
 }
 
 #[test]
