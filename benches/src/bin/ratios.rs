@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use kempf_benches::work::{Cores, Reach, TimedWork, WorkGroup};
 use kempf_benches::works;
 use report::number::{self, MISSING, significant};
-use report::{TableColumn, Table};
+use report::{Table, TableColumn};
 use serde::Deserialize;
 
 /// Head of the report.
@@ -123,7 +123,8 @@ fn table(group: &WorkGroup, criterion: &Path) -> Option<Table> {
         Some(found.times(1.0 / row.work.units))
     };
     let rows: Vec<(&TimedWork, CriterionTime)> = group.rows.iter().filter_map(|row| Some((row, time(row)?))).collect();
-    let [work, times, beside, reach, verdict] = ["work", "time", "beside it", "reach", "verdict"].map(TableColumn::left);
+    let [work, times, beside, reach, verdict] =
+        ["work", "time", "beside it", "reach", "verdict"].map(TableColumn::left);
     let mut table =
         Table::new([work, times, beside, TableColumn::left("its time"), TableColumn::decimal("ratio"), reach, verdict]);
     for (row, own) in &rows {

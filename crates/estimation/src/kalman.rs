@@ -8,10 +8,9 @@
 //! Source: Harvey (1989) for the prediction error decomposition.
 
 mod matrix;
-mod smoother;
+pub mod smoother;
 
 pub use matrix::{identity, product, sandwich, sum};
-pub use smoother::Smoother;
 
 use crate::lanes::{Kernel, run};
 use crate::number::{Dual, Real};

@@ -1,4 +1,5 @@
-//! What can be said of a residual alone: whether it is white and of one variance, and its spectrum. Values may be missing.
+//! What can be said of a residual alone: whether it is white and of one variance, and its spectrum. Values may be
+//! missing.
 
 use crate::transform::{Complex, power, transform};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};

@@ -6,8 +6,8 @@ use crate::kalman::{Filter, MOST, Sensor, Step, System, Whitener};
 use crate::with_states;
 
 impl<const N: usize> Step<f64, N> {
-    /// The step over `h` of x' = G x + w with white w of the given intensity on the last state of G (Van Loan 1978). States
-    /// beyond those of G are zero.
+    /// The step over `h` of x' = G x + w with white w of the given intensity on the last state of G (Van Loan 1978).
+    /// States beyond those of G are zero.
     pub fn over(generator: &DMatrix<f64>, intensity: f64, h: f64) -> Self {
         let m = generator.nrows();
         let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);

@@ -1,5 +1,5 @@
-//! From a scene to SVG. Coordinates are whole numbers, many to the point. Lines of one stroke that follow each other are
-//! one path, and so are dots of one size and colour: a browser is slow with many elements, and a page carries more
+//! From a scene to SVG. Coordinates are whole numbers, many to the point. Lines of one stroke that follow each other
+//! are one path, and so are dots of one size and colour: a browser is slow with many elements, and a page carries more
 //! figures. Text stays text, which can be searched and edited.
 
 use std::fmt::Write as _;

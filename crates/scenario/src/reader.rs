@@ -1,6 +1,6 @@
 //! Reads typed values out of a TOML document that is already in memory, and says of every fault which key it belongs
-//! to, what was found there and what was expected. So a scenario as it is written and a scenario that a sweep has changed,
-//! which stands in no file, give the same messages.
+//! to, what was found there and what was expected. So a scenario as it is written and a scenario that a sweep has
+//! changed, which stands in no file, give the same messages.
 
 use std::fmt::Display;
 

@@ -34,10 +34,12 @@
 //! # Ok::<(), kempf_simulate::SimulateError>(())
 //! ```
 //!
-//! A setting is declared once: the types of a specification are those that a scenario file holds, with degrees and units
-//! in its keys. In the program time is in seconds from the beginning of the run, everything else in SI units and radians.
+//! A setting is declared once: the types of a specification are those that a scenario file holds, with degrees and
+//! units in its keys. In the program time is in seconds from the beginning of the run, everything else in SI units and
+//! radians.
 
 mod display;
+mod manoeuvre;
 mod measure;
 mod propagate;
 mod root;

@@ -16,7 +16,8 @@ use crate::disturbance::Disturbances;
 use crate::error::{self, Check, Expected, SimulateError, SpecificationError};
 use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Helm, HelmOrder, Helmsman};
-use crate::limits::{MOST_EXECUTES, MOST_ROWS};
+use crate::limits::MOST_ROWS;
+use crate::manoeuvre::{check_manoeuvre, key_of};
 use crate::measure::{self, Scene, View};
 use crate::numbers;
 use crate::propagate::{ClosedForm, Integrated, Propagator, ShipInWeather};
@@ -108,8 +109,8 @@ pub struct Simulation {
     pub longest_wait: f64,
 }
 
-/// What really happened, at the stamps of the rows of the record. SeaWaves are not part of it: they are a heading that is
-/// seen, not a response.
+/// What really happened, at the stamps of the rows of the record. SeaWaves are not part of it: they are a heading that
+/// is seen, not a response.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Truth {
     /// Time, s.
@@ -414,76 +415,6 @@ impl Truth {
         let columns = [time, heading, yaw_rate, yaw_acceleration, rudder, disturbance];
         columns.into_iter().chain(speed).for_each(|column| measure::keep(column, kept));
         left
-    }
-}
-
-/// Checks every value of a manoeuvre; fails with the first one that makes no sense.
-fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
-    let [rudder_key, duration_key] = key_of(manoeuvre);
-    if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
-        error::positive(rudder_key, manoeuvre.rudder())?;
-    }
-    match manoeuvre {
-        Manoeuvre::ZigZag { executes: Some(_), duration: Some(_), .. } => {
-            return error::refused(
-                "manoeuvre.zig-zag.duration-s",
-                Expected::Other([
-                    "`manoeuvre.zig-zag` has both `executes` and `duration-s`",
-                    "expected one end of the manoeuvre",
-                    "leave out `executes` or `duration-s`",
-                ]),
-            );
-        }
-        Manoeuvre::ZigZag { heading, executes, .. } => {
-            error::positive("manoeuvre.zig-zag.heading-deg", *heading)?;
-            error::count("manoeuvre.zig-zag.executes", executes.unwrap_or(1), MOST_EXECUTES)?;
-        }
-        Manoeuvre::TurningCircle { duration: Some(_), heading_change: Some(_), .. } => {
-            return error::refused(
-                "manoeuvre.turning-circle.heading-change-deg",
-                Expected::Other([
-                    "`manoeuvre.turning-circle` has both `duration-s` and `heading-change-deg`",
-                    "expected one end of the manoeuvre",
-                    "leave out `duration-s` or `heading-change-deg`",
-                ]),
-            );
-        }
-        Manoeuvre::TurningCircle { duration: None, heading_change: None, .. } => {
-            return error::refused(
-                "manoeuvre.turning-circle",
-                Expected::Other([
-                    "nothing ends the turning circle",
-                    "expected `duration-s` or `heading-change-deg` here",
-                    "add a line `heading-change-deg = 540.0`, or one with `duration-s`",
-                ]),
-            );
-        }
-        Manoeuvre::TurningCircle { heading_change: Some(angle), .. } => {
-            error::positive("manoeuvre.turning-circle.heading-change-deg", *angle)?;
-        }
-        Manoeuvre::PullOut { hold, .. } => error::positive_time("manoeuvre.pull-out.hold-s", *hold)?,
-        _ => {}
-    }
-    match manoeuvre {
-        Manoeuvre::ZigZag { duration: Some(duration), .. }
-        | Manoeuvre::TurningCircle { duration: Some(duration), .. }
-        | Manoeuvre::PullOut { duration, .. }
-        | Manoeuvre::Williamson { duration, .. } => error::positive_time(duration_key, *duration),
-        Manoeuvre::Replay { .. } => error::positive_time(duration_key, manoeuvre.length()),
-        _ => Ok(()),
-    }
-}
-
-/// Keys of the rudder angle and of the length of a manoeuvre in a scenario.
-fn key_of(manoeuvre: &Manoeuvre) -> [&'static str; 2] {
-    match manoeuvre {
-        Manoeuvre::ZigZag { .. } => ["manoeuvre.zig-zag.rudder-deg", "manoeuvre.zig-zag.duration-s"],
-        Manoeuvre::TurningCircle { .. } => {
-            ["manoeuvre.turning-circle.rudder-deg", "manoeuvre.turning-circle.duration-s"]
-        }
-        Manoeuvre::PullOut { .. } => ["manoeuvre.pull-out.rudder-deg", "manoeuvre.pull-out.duration-s"],
-        Manoeuvre::Replay { .. } => ["manoeuvre.replay.file"; 2],
-        _ => ["manoeuvre.rudder-deg", "manoeuvre.duration-s"],
     }
 }
 

@@ -261,8 +261,8 @@ pub fn log_normaliser(prior: Prior) -> f64 {
     -0.5 * std::f64::consts::TAU.ln() - prior.sd.ln() - inside.max(1e-12).ln()
 }
 
-/// Log of the marginal likelihood up to what all structures share (Laplace). The part of a normal law that lies beyond the
-/// end of a range is left out.
+/// Log of the marginal likelihood up to what all structures share (Laplace). The part of a normal law that lies beyond
+/// the end of a range is left out.
 fn evidence(structure: &Structure, at: &FitPoint, normal: &Normal) -> f64 {
     let Some(factor) = normal.matrix.clone().cholesky() else { return f64::NEG_INFINITY };
     let priors = structure.fitted_priors(&at.theta);

@@ -166,7 +166,8 @@ pub fn scenario(data: &[u8]) -> bool {
     }
 }
 
-/// StoredStudy rows of the small study, summarised. Who reads them has compared their SHA-256 before; here that is left out.
+/// StoredStudy rows of the small study, summarised. Who reads them has compared their SHA-256 before; here that is left
+/// out.
 pub fn rows(data: &[u8]) -> bool {
     summarised(data, &seeds::study().design)
 }

@@ -1,6 +1,6 @@
 //! Maps of cells: values over two lists of names, one panel each, as colours and as numbers in the cells. Many-coloured
-//! maps have the colours of viridis (Smith and van der Walt 2015): even steps look even, also in grey and with any common
-//! colour blindness.
+//! maps have the colours of viridis (Smith and van der Walt 2015): even steps look even, also in grey and with any
+//! common colour blindness.
 
 use super::panels::Division;
 use crate::axis::PlotAxis;

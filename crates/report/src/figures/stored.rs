@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::panels::{Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Ruler, Stack};
+use super::panels::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Ruler, Stack};
 use super::rows::{NamedRows, RowItem, RowKind, RowsColumn};
 use crate::curve::PlotCurve;
 use crate::markup::symbol;
@@ -40,7 +40,7 @@ impl CurveFit {
             Layer::line("", self.residual.clone(), Pen::new(RECORD).width(0.6)),
             Layer::new("", self.residual.clone(), LayerKind::Dots(INK)),
         ];
-        let residual = Ruler::new("residual [°]", super::Division::Angle);
+        let residual = Ruler::new("residual [°]", Division::Angle);
         let rows = vec![(PanelRow::new(Ruler::heading(), 0.32), upper), (PanelRow::zeroed(residual, 0.14), lower)];
         let finite = |value: Option<f64>| value.filter(|own| own.is_finite());
         // Five decimals, because the fit of a smooth record differs from 1 in the fourth.
@@ -147,7 +147,7 @@ impl Replays {
                 layers: vec![Layer::line("", own.residual.clone(), solid)],
             }
         };
-        let residual = Ruler::new("residual [°]", super::Division::Angle).about_zero(RESIDUAL_ROOM);
+        let residual = Ruler::new("residual [°]", Division::Angle).about_zero(RESIDUAL_ROOM);
         let across = if self.replays.len() < 3 { 1 } else { 2 };
         let multiples = self.replays.iter().map(below).collect();
         let lower = Stack::multiples(across, Ruler::time(), PanelRow::zeroed(residual, 0.085), multiples);

@@ -1,6 +1,6 @@
-//! A table in LaTeX: rules of `booktabs`, numbers in columns of `siunitx` below each other by their decimal point. On one
-//! page it is scaled down to the width of the text; what is too long runs over pages, a wide one best in landscape. Any
-//! LaTeX with the packages named in its first line compiles it.
+//! A table in LaTeX: rules of `booktabs`, numbers in columns of `siunitx` below each other by their decimal point. On
+//! one page it is scaled down to the width of the text; what is too long runs over pages, a wide one best in landscape.
+//! Any LaTeX with the packages named in its first line compiles it.
 
 use super::content::{Table, TableColumn};
 use super::latex_text::{escape, script, worded};

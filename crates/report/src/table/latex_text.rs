@@ -3,8 +3,8 @@
 
 use crate::printable::escaped;
 
-/// What becomes of a character: whether it is a sign of mathematics, of text or an accent of mathematics, its code point
-/// and how LaTeX writes it.
+/// What becomes of a character: whether it is a sign of mathematics, of text or an accent of mathematics, its code
+/// point and how LaTeX writes it.
 const SIGNS: &str = include_str!("latex_signs.tsv");
 
 /// Letters that every LaTeX knows as they are.

@@ -1,5 +1,5 @@
-//! `study bench`: the benchmark on measured and simulated trials. The numbers are made in `campaign::benchmark`; here its
-//! tables, figures and files.
+//! `study bench`: the benchmark on measured and simulated trials. The numbers are made in `campaign::benchmark`; here
+//! its tables, figures and files.
 
 use std::env;
 use std::path::PathBuf;

@@ -1,5 +1,5 @@
-//! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace or a prediction, from what is stored
-//! and nothing else.
+//! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace or a prediction, from what is
+//! stored and nothing else.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -1,5 +1,5 @@
-//! The figure that stands for a study: its finding above it, the last of its rows of panels (T before K), the methods it
-//! is about in colour and the others grey, methods with one line as one.
+//! The figure that stands for a study: its finding above it, the last of its rows of panels (T before K), the methods
+//! it is about in colour and the others grey, methods with one line as one.
 
 use report::figures::{Layer, LayerKind, LayeredPanel, NamedRows, Panels, Plot, RowItem, RowKind};
 use report::palette::QUIET;

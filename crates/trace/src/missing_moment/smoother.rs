@@ -5,7 +5,8 @@
 //! variances here are counted. Steps between rows are exact. The state begins with a large variance, so that the first
 //! heading, rate and moment are the smoother's.
 
-use estimation::kalman::{Smoother, Step, System};
+use estimation::kalman::smoother::Smoother;
+use estimation::kalman::{Step, System};
 use nalgebra::DMatrix;
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Polyline};

@@ -1,0 +1,76 @@
+//! What the values of a manoeuvre may be, and under which keys of a scenario a fault of them is reported.
+
+use trial::manoeuvre::Manoeuvre;
+
+use crate::error::{self, Check, Expected};
+use crate::limits::MOST_EXECUTES;
+
+/// Checks every value of a manoeuvre; fails with the first one that makes no sense.
+pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
+    let [rudder_key, duration_key] = key_of(manoeuvre);
+    if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
+        error::positive(rudder_key, manoeuvre.rudder())?;
+    }
+    match manoeuvre {
+        Manoeuvre::ZigZag { executes: Some(_), duration: Some(_), .. } => {
+            return error::refused(
+                "manoeuvre.zig-zag.duration-s",
+                Expected::Other([
+                    "`manoeuvre.zig-zag` has both `executes` and `duration-s`",
+                    "expected one end of the manoeuvre",
+                    "leave out `executes` or `duration-s`",
+                ]),
+            );
+        }
+        Manoeuvre::ZigZag { heading, executes, .. } => {
+            error::positive("manoeuvre.zig-zag.heading-deg", *heading)?;
+            error::count("manoeuvre.zig-zag.executes", executes.unwrap_or(1), MOST_EXECUTES)?;
+        }
+        Manoeuvre::TurningCircle { duration: Some(_), heading_change: Some(_), .. } => {
+            return error::refused(
+                "manoeuvre.turning-circle.heading-change-deg",
+                Expected::Other([
+                    "`manoeuvre.turning-circle` has both `duration-s` and `heading-change-deg`",
+                    "expected one end of the manoeuvre",
+                    "leave out `duration-s` or `heading-change-deg`",
+                ]),
+            );
+        }
+        Manoeuvre::TurningCircle { duration: None, heading_change: None, .. } => {
+            return error::refused(
+                "manoeuvre.turning-circle",
+                Expected::Other([
+                    "nothing ends the turning circle",
+                    "expected `duration-s` or `heading-change-deg` here",
+                    "add a line `heading-change-deg = 540.0`, or one with `duration-s`",
+                ]),
+            );
+        }
+        Manoeuvre::TurningCircle { heading_change: Some(angle), .. } => {
+            error::positive("manoeuvre.turning-circle.heading-change-deg", *angle)?;
+        }
+        Manoeuvre::PullOut { hold, .. } => error::positive_time("manoeuvre.pull-out.hold-s", *hold)?,
+        _ => {}
+    }
+    match manoeuvre {
+        Manoeuvre::ZigZag { duration: Some(duration), .. }
+        | Manoeuvre::TurningCircle { duration: Some(duration), .. }
+        | Manoeuvre::PullOut { duration, .. }
+        | Manoeuvre::Williamson { duration, .. } => error::positive_time(duration_key, *duration),
+        Manoeuvre::Replay { .. } => error::positive_time(duration_key, manoeuvre.length()),
+        _ => Ok(()),
+    }
+}
+
+/// Keys of the rudder angle and of the length of a manoeuvre in a scenario.
+pub(crate) fn key_of(manoeuvre: &Manoeuvre) -> [&'static str; 2] {
+    match manoeuvre {
+        Manoeuvre::ZigZag { .. } => ["manoeuvre.zig-zag.rudder-deg", "manoeuvre.zig-zag.duration-s"],
+        Manoeuvre::TurningCircle { .. } => {
+            ["manoeuvre.turning-circle.rudder-deg", "manoeuvre.turning-circle.duration-s"]
+        }
+        Manoeuvre::PullOut { .. } => ["manoeuvre.pull-out.rudder-deg", "manoeuvre.pull-out.duration-s"],
+        Manoeuvre::Replay { .. } => ["manoeuvre.replay.file"; 2],
+        _ => ["manoeuvre.rudder-deg", "manoeuvre.duration-s"],
+    }
+}
