@@ -248,6 +248,8 @@ impl Manoeuvre {
     pub fn most_executes(&self) -> usize {
         match self {
             Self::ZigZag { executes, .. } => executes.unwrap_or(usize::MAX),
+            // A record starts with its rudder, though nothing is ordered.
+            Self::Replay { .. } => 1,
             _ => self.steps().filter(|step| step.order.is_some()).count(),
         }
     }
