@@ -78,7 +78,7 @@ impl PlanarCoefficients {
         [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d]
     }
 
-    /// PlanarCoefficients in the order of [`SYMBOLS`]; a value of the wrong sign is put to the nearest of the right
+    /// Coefficients in the order of [`SYMBOLS`]; a value of the wrong sign is put to the nearest of the right
     /// one.
     pub fn from_array(values: [f64; COEFFICIENTS]) -> Self {
         let [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d] = within(values, BOUNDS);

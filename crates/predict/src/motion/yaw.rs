@@ -72,7 +72,7 @@ impl Yaw {
         [N_r, N_v, N_vrr, N_d, N_ud, N_0]
     }
 
-    /// PlanarCoefficients in the order of [`YAW_SYMBOLS`]; a value of the wrong sign is put to the nearest of the right
+    /// Coefficients in the order of [`YAW_SYMBOLS`]; a value of the wrong sign is put to the nearest of the right
     /// one.
     pub fn from_array(values: [f64; YAW_COEFFICIENTS]) -> Self {
         let [N_r, N_v, N_vrr, N_d, N_ud, N_0] = within(values, YAW_BOUNDS);
