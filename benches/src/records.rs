@@ -26,9 +26,7 @@ pub const KEY: StreamKey = StreamKey { seed: 1957, cell: 0, replicate: 0 };
 /// A 10/10 zig-zag of a first-order ship with K = 0.08 1/s and T = 25 s; rudder 2.5 deg/s, heading noise 0.1 deg, gyro
 /// noise 0.02 deg/s; `rows` rows half a second apart.
 pub fn first_order_zig_zag(rows: usize) -> Simulation {
-    let mut sensors = Sensors::default();
-    sensors.heading_noise = from_deg(0.1);
-    sensors.yaw_rate_noise = Some(from_deg(0.02));
+    let sensors = Sensors { heading_noise: from_deg(0.1), yaw_rate_noise: Some(from_deg(0.02)), ..Sensors::default() };
     Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
         recording: Recording { period: PERIOD, duration: Some(PERIOD * (rows - 1) as f64), ..Recording::default() },

@@ -35,7 +35,7 @@ pub enum PageBlock {
     /// A table.
     Table(Table),
     /// A figure.
-    Figure(PageFigure),
+    Figure(Box<PageFigure>),
 }
 
 /// Blocks in reading order.
@@ -89,12 +89,14 @@ impl Page {
 
     /// Adds figures.
     pub fn figures(&mut self, figures: impl IntoIterator<Item = PageFigure>) {
-        self.blocks.extend(figures.into_iter().map(PageBlock::Figure));
+        self.blocks.extend(figures.into_iter().map(|figure| PageBlock::Figure(Box::new(figure))));
     }
 
     /// The figures in reading order.
     pub fn drawings(&self) -> impl Iterator<Item = &PageFigure> {
-        self.blocks.iter().filter_map(|block| if let PageBlock::Figure(own) = block { Some(own) } else { None })
+        self.blocks
+            .iter()
+            .filter_map(|block| if let PageBlock::Figure(own) = block { Some(own.as_ref()) } else { None })
     }
 
     /// As Markdown (the GitHub flavour). HTML in it is shown and not obeyed.
@@ -104,7 +106,8 @@ impl Page {
             PageBlock::Prose(prose) => format!("{prose}\n"),
             PageBlock::List(entries) => entries.iter().map(|entry| format!("- {entry}\n")).collect(),
             PageBlock::Table(table) => table.to_markdown(),
-            PageBlock::Figure(PageFigure { stem, caption, .. }) => {
+            PageBlock::Figure(figure) => {
+                let PageFigure { stem, caption, .. } = figure.as_ref();
                 let caption = text(caption);
                 format!("![{caption}]({stem}.png)\n\n*{caption}*\n")
             }

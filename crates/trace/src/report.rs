@@ -191,7 +191,7 @@ impl TraceParts<'_> {
             let values = fit.physical()[range.clone()].to_vec();
             Some((weight, values, fit.structure.entries()[range.clone()].to_vec(), fit.theta[range].to_vec()))
         });
-        let fits: Vec<(f64, Vec<(f64, f64)>, Vec<ModelParameter>, Vec<f64>)> = with.collect();
+        let fits: Vec<_> = with.collect();
         let Some((_, _, entries, own)) = fits.first() else { return BTreeMap::new() };
         let of = |k: usize| {
             let parts = fits.iter().map(|(weight, values, ..)| (*weight, values[k].0, values[k].1));

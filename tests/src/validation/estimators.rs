@@ -34,7 +34,6 @@ fn published() -> Vec<Published> {
             harmonics: Order::Fixed(8),
             rudder,
             response: RegressionForm::YawRate,
-            ..Default::default()
         })
     };
     let triples = fourier_published::Settings {

@@ -72,7 +72,6 @@ pub fn section() -> Section {
             harmonics: Order::Fixed(HARMONICS),
             rudder: side,
             response: RegressionForm::YawRate,
-            ..Settings::default()
         };
         let method = settings.build().expect("valid settings");
         let found = method.identify(&[record(rudder, heading, Begin::Mid)]).expect("a zig-zag is identified").response;

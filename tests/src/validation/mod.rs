@@ -168,8 +168,11 @@ Three parts keep apart where a reference number comes from. *Difference* is ours
 difference may be, and each section says where its tolerances come from. A reference number has the digits it was given \
 with, ours has one more. Tests assert every line, and that this file is what the program writes.";
 
-/// The parts of VALIDATION.md: heading, what the reference numbers are, and whether a source is of the part.
-const PARTS: [(&str, &str, fn(&str) -> bool); 3] = [
+/// A part of VALIDATION.md: heading, what its reference numbers are, and whether a source is of it.
+type Part = (&'static str, &'static str, fn(&str) -> bool);
+
+/// The parts, of which every number belongs to one.
+const PARTS: [Part; 3] = [
     ("Published by others", "Numbers that stand in print.", |source| source != INDEPENDENT && !is_theory(source)),
     ("By theory", "Numbers that follow from a closed form, a bound or a definition.", is_theory),
     (

@@ -114,7 +114,7 @@ fn measured<'a>(
     }
     let key = StreamKey { seed: 0, cell: number as u64, replicate: 0 };
     let is_there = records.iter().any(Option::is_some);
-    let trial = is_there.then(|| BenchTrial { set, trial: None, records, truth: None, key });
+    let trial = is_there.then_some(BenchTrial { set, trial: None, records, truth: None, key });
     Ok((trial.into_iter().collect(), files))
 }
 

@@ -172,7 +172,7 @@ fn set_named(row: &mut StudyRow, text: &str) -> Result<(), String> {
 
 /// The same with the aliases of each.
 fn groups(row: &StudyRow) -> Option<Cow<'_, str>> {
-    let group = |effect: &NamedEffect| [&[effect.id.clone()], effect.aliases.as_slice()].concat().join("|");
+    let group = |effect: &NamedEffect| [std::slice::from_ref(&effect.id), effect.aliases.as_slice()].concat().join("|");
     Some(joined(&row.traced.as_ref()?.named, group))
 }
 

@@ -20,13 +20,7 @@ fn zigzag(rudder_deg: f64, heading_deg: f64) -> Case {
 
 /// The settings of the published method, samples instead of triples.
 fn plain(rudder: RudderTreatment) -> Settings {
-    Settings {
-        fundamental: Fundamental::Global,
-        harmonics: Order::Fixed(8),
-        rudder,
-        response: RegressionForm::YawRate,
-        ..Settings::default()
-    }
+    Settings { fundamental: Fundamental::Global, harmonics: Order::Fixed(8), rudder, response: RegressionForm::YawRate }
 }
 
 /// Noise-free records, global w, eight harmonics, regression on r, 5 % trimmed: values of an independent computation,

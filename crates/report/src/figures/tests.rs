@@ -164,7 +164,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let items = |row: usize| {
         let marks =
             methods().map(|own| RowItem::below(own.label(), own.look(), size(row), Some([0.0, 2.0 * size(row)])));
-        let look = Look { hollow: row % 2 == 0, ..CurveOrigin::After.look() };
+        let look = Look { hollow: row.is_multiple_of(2), ..CurveOrigin::After.look() };
         let others = [
             RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).softly(),
             RowItem::new("50 %", RowKind::Thick([0.1, size(row)])),
