@@ -13,7 +13,7 @@ use scenario::Scenario;
 /// search are exact. The search for the Fourier fundamental and the polish of output error, with which maximum
 /// likelihood begins, end where steps drown in rounding, and another mathematical library rounds otherwise.
 const WORK: &[(&str, usize, f64, &str)] = &[
-    ("fourier-published", 181, 0.1, "converged"),
+    ("fourier-published", 205, 0.1, "converged"),
     ("fourier-projected", 2, 0.0, "direct"),
     ("characteristic-points", 1, 0.0, "direct"),
     ("least-squares", 1, 0.0, "direct"),

@@ -2,7 +2,7 @@
 //!
 //! | for | read |
 //! |---|---|
-//! | sums over columns of numbers, with the same bits on every machine | [`column`], [`lanes`] |
+//! | sums over columns of numbers, with the same bits on every machine | [`mod@column`], [`lanes`] |
 //! | the Fourier transform | [`transform`] |
 //! | the Kalman filter with its smoother and its derivatives | [`kalman`] |
 //! | exact steps of such systems in time, and sample paths | [`stochastic`] |

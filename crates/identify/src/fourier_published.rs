@@ -54,7 +54,7 @@ pub struct Settings {
     pub harmonics: usize,
     /// How w is chosen.
     pub fundamental: Fundamental,
-    /// Triples n, at most [`MOST_TRIPLES`]; some 200 with the median make the answer independent of the seed.
+    /// Triples n, at most `MOST_TRIPLES`; some 200 with the median make the answer independent of the seed.
     pub triples: usize,
     /// Which triples are used.
     pub selection: Selection,

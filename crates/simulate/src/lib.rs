@@ -15,7 +15,7 @@
 //! | noise, quantisation, lag, coloured error, spikes, clocks, drop-outs | [`sensor`] |
 //! | which part of the run is recorded | [`recording`] |
 //! | where random numbers come from | [`stream`] |
-//! | numbers that a study draws | [`numbers`] |
+//! | numbers that a study draws | [`mod@numbers`] |
 //! | what is taken for granted | [`assumption`] |
 //! | what a run may cost | [`cost`], [`limits`] |
 //! | what can go wrong | [`error`] |

@@ -34,7 +34,7 @@ struct OrthogonalPart {
     qr: QR<f64, Dyn, Dyn>,
 }
 
-/// The basis of one of the [`Nested`] series.
+/// The basis of one of the `Nested` series.
 #[derive(Debug, Clone)]
 pub struct Basis {
     harmonics: usize,

@@ -6,11 +6,11 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | choosing w | [`fundamental`] |
-//! | the series on the instants of a record | [`basis`] |
-//! | RSS as a function of w | [`profile`] |
-//! | a record folded about its middle | [`nodes`] |
-//! | triples of instants, eq. (10) of the paper | [`triples`] |
+//! | choosing w | `fundamental` |
+//! | the series on the instants of a record | `basis` |
+//! | RSS as a function of w | `profile` |
+//! | a record folded about its middle | `nodes` |
+//! | triples of instants, eq. (10) of the paper | `triples` |
 //! | regression on a pair of projected signals | [`regression`] |
 
 pub(crate) mod basis;
