@@ -10,7 +10,7 @@ use study::work;
 use trial::Trial;
 
 use crate::curve::{ReplayArrays, curve};
-use crate::record::{PyRecord, trials};
+use crate::record::{PyRecord, read_warnings, trials};
 use crate::wait::patiently;
 
 /// What came out, with what its figures are made from.
@@ -48,12 +48,15 @@ pub fn fit(
     methods: Vec<String>,
     seed: Option<u64>,
 ) -> PyResult<PyFit> {
+    // The document has what reading warned of, as that of the command; Python has been told before.
+    let mut warnings = [read_warnings(&records), read_warnings(&validate)].concat();
+    let told = warnings.len();
     let (records, others) = (trials(&records), trials(&validate));
     patiently(py, move || {
         let methods = work::fit::methods(&methods, &[], seed)?;
-        let mut warnings = Vec::new();
         warn_of_repetition(&records, &others, &mut warnings);
         let done = work::fit::fit(&records, &others, &methods, true, &mut warnings)?;
+        warnings.drain(..told);
         for entry in &done.document.methods {
             warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
         }

@@ -31,6 +31,11 @@ impl PyRecord {
     }
 }
 
+/// What reading some records warned of, in their order.
+pub fn read_warnings(records: &[Py<PyRecord>]) -> Vec<String> {
+    records.iter().flat_map(|record| record.get().warnings.clone()).collect()
+}
+
 /// The records that Python handed in.
 pub fn trials(records: &[Py<PyRecord>]) -> Vec<Trial> {
     records.iter().map(|record| record.get().trial.clone()).collect()
