@@ -26,6 +26,7 @@ pub mod fourier_published;
 mod gaps;
 pub mod identifier;
 pub mod integral_least_squares;
+pub mod lack_of_fit;
 pub mod least_squares;
 pub mod likelihood;
 pub mod maximum_likelihood;
