@@ -9,16 +9,25 @@ use crate::estimate::{Covariance, Uncertainty};
 /// A residual whose neighbours are correlated by more than this is called coloured, if chance does not explain it.
 const COLOURED: f64 = 0.2;
 
-/// The error a method quotes: that of a white residual where it is white, else the robust one, with a sentence on it.
+/// The error a method quotes: that of a white residual where it is white, else the robust one, with a sentence on it. Where
+/// neighbours differ in sign the robust error would be smaller than the white one, which a record of two instruments read in
+/// turn does not deserve: the white one stays.
 pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<String>) {
     if lag1.abs() <= COLOURED.max(3.0 / (rows as f64).sqrt()) {
         return (Uncertainty::Covariance(white), None);
     }
+    if lag1 > 0.0 {
+        let warning = format!(
+            "the residual is coloured (lag-1 autocorrelation {lag1:.2}): intervals are from the Newey-West covariance, and \
+             the model lacks an effect"
+        );
+        return (Uncertainty::Covariance(robust.clone()), Some(warning));
+    }
     let warning = format!(
-        "the residual is coloured (lag-1 autocorrelation {lag1:.2}): intervals are from the Newey-West covariance, and \
-         the model lacks an effect"
+        "the residual alternates from reading to reading (lag-1 autocorrelation {lag1:.2}), as where two instruments that \
+         disagree are read in turn: intervals take it for white; look at the heading"
     );
-    (Uncertainty::Covariance(robust.clone()), Some(warning))
+    (Uncertainty::Covariance(white), Some(warning))
 }
 
 /// Lag-1 autocorrelation of residuals, pooled over trials.

@@ -66,6 +66,7 @@ pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) 
         done.extend(drop_repeats(columns, channel));
     }
     done.extend(drop_frozen(columns, rejected));
+    done.extend(readings::drop_lost_polls(columns, rejected));
     done.extend(readings::drop_spikes(columns, rejected));
     done.extend(readings::drop_clipped(columns, rejected));
     done

@@ -103,8 +103,20 @@ const ANSWERED_DEG: f64 = 1.0;
 /// Mean rates of turn of ships and models in a manoeuvre, deg/s.
 pub(crate) const MEAN_RATE_DEG_S: [f64; 2] = [0.01, 15.0];
 
-/// No rudder of a ship or a model moves as fast, deg/s.
-const FASTEST_RUDDER_DEG_S: f64 = 100.0;
+/// Rudders of ships move at 2 to 7°/s; a movement that takes one row and would need more than this is a step, deg/s.
+const FASTEST_RUDDER_DEG_S: f64 = 10.0;
+
+/// Way of a rudder from which on it is a movement of the steering gear and no correction, deg.
+const STROKE_DEG: f64 = 8.0;
+
+/// Share of the movements that are steps where the column is an order.
+const STEPS_OF_AN_ORDER: f64 = 0.8;
+
+/// How far the recorded angle may be from the order it holds, as a share of the order.
+const FEEDBACK_ERROR: f64 = 0.1;
+
+/// Ordered angles are no larger, deg: rudders stop at 35°, some at 45°.
+const LARGEST_HELD_DEG: f64 = 46.0;
 
 /// More reversals than any manoeuvre has: a dither, a pseudo-random sequence or an autopilot in waves.
 const REVERSALS_OF_A_DITHER: usize = 24;
@@ -132,7 +144,7 @@ pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
     let response = if turns { turn_with_rudder(trial) } else { rudder_on_heading(trial) };
     yaw_rate(trial, response, &mut warnings)?;
     rudder_sign(trial, response, &mut warnings)?;
-    rudder_speed(trial, &mut warnings);
+    rudder_movements(trial, &mut warnings);
     rate_of_turn(trial, &mut warnings);
     gaps(trial, &mut warnings);
     Ok(warnings)
@@ -295,20 +307,74 @@ fn rudder_sign(trial: &Trial, response: Option<Slope>, warnings: &mut Vec<String
     Ok(())
 }
 
-/// Does the rudder move as a steering gear does?
-fn rudder_speed(trial: &Trial, warnings: &mut Vec<String>) {
-    let (time, rudder) = (trial.time(), trial.rudder());
-    let steps = (1..trial.len()).map(|row| (rudder[row] - rudder[row - 1], time[row] - time[row - 1]));
-    let instant = steps.filter(|(way, step)| {
-        let way_deg = to_deg(way.abs());
-        way_deg > MOVED_DEG && way_deg > FASTEST_RUDDER_DEG_S * step
-    });
-    if instant.count() >= 2 && trial.channel(Channel::RudderOrder).is_none() {
-        warnings.push(String::from(
-            "the rudder moves faster than any steering gear: it looks like the order in place of the angle, and then the lag of \
-             the gear is in the response",
+/// Does the rudder move as a steering gear does, to where it was ordered?
+fn rudder_movements(trial: &Trial, warnings: &mut Vec<String>) {
+    if let Some(order) = trial.channel(Channel::RudderOrder) {
+        warnings.extend(feedback(trial, order));
+    } else {
+        warnings.extend(steps(trial));
+    }
+    let held_deg = trial.rudder().windows(3).filter(|rows| rows[0] == rows[1] && rows[1] == rows[2]);
+    let held_deg = to_deg(held_deg.fold(0.0, |largest: f64, rows| largest.max(rows[0].abs())));
+    if held_deg > LARGEST_HELD_DEG {
+        warnings.push(format!(
+            "the rudder is held at {held_deg:.0}°, rudders stop at 35 to 45°: it may be in per cent; then K is wrong by the factor \
+             between the two, give the angle in degrees"
         ));
     }
+}
+
+/// Steps in place of movements: an order under the name of the angle.
+fn steps(trial: &Trial) -> Option<String> {
+    let (time, rudder) = (trial.time(), trial.rudder());
+    let (mut strokes, mut steps, mut slowest_deg_s, mut longest) = (0, 0, f64::INFINITY, 0.0);
+    let mut row = 1;
+    while row < trial.len() {
+        // A movement to one side, from the row before its first change to its last one.
+        let (first, side) = (row - 1, (rudder[row] - rudder[row - 1]).signum());
+        while row < trial.len() && (rudder[row] - rudder[row - 1]) * side > 0.0 {
+            row += 1;
+        }
+        let way_deg = to_deg((rudder[row - 1] - rudder[first]).abs());
+        if way_deg >= STROKE_DEG {
+            let took = time[row - 1] - time[first];
+            let is_step = row - 1 == first + 1 && way_deg > FASTEST_RUDDER_DEG_S * took;
+            (strokes, steps) = (strokes + 1, steps + usize::from(is_step));
+            if is_step {
+                slowest_deg_s = way_deg.min(slowest_deg_s * took) / took;
+                longest = took.max(longest);
+            }
+        }
+        row = row.max(first + 2);
+    }
+    (steps >= 2 && steps as f64 >= STEPS_OF_AN_ORDER * strokes as f64).then(|| {
+        format!(
+            "the rudder jumps from one row to the next in {steps} of {strokes} movements, at {slowest_deg_s:.0}°/s or more, while \
+             steering gears move at 2 to 7°/s: it looks like the order in place of the angle, and then T is too long by about \
+             half the time of a movement; record the angle, or write `order-rate-deg-s = 2.5`, or what the gear does, under \
+             [rudder] in a sidecar NAME.trial.toml"
+        )
+    })
+}
+
+/// Rudder over order where both rest: 1 for a feedback that is right.
+fn feedback(trial: &Trial, order: &[f64]) -> Option<String> {
+    let rudder = trial.rudder();
+    let rests = |values: &[f64], row: usize| (row.saturating_sub(4)..=row).all(|k| values[k] == values[row]);
+    let settled = (4..trial.len()).filter(|&row| rests(order, row) && to_deg((rudder[row] - rudder[row - 4]).abs()) < 0.2);
+    let (mut cross, mut square, mut rows) = (0.0, 0.0, 0);
+    for row in settled.filter(|&row| to_deg(order[row].abs()) > 2.0) {
+        cross += rudder[row] * order[row];
+        square += order[row] * order[row];
+        rows += 1;
+    }
+    let ratio = cross / square;
+    (rows >= 10 && !(1.0 - FEEDBACK_ERROR..=1.0 + FEEDBACK_ERROR).contains(&ratio)).then(|| {
+        format!(
+            "the recorded rudder comes to {ratio:.2} of its order: if the feedback is not calibrated (or in per cent), K is wrong by \
+             that factor; check it against the rudder stops"
+        )
+    })
 }
 
 /// Does the ship turn as fast as ships and models do?

@@ -18,7 +18,7 @@ use crate::names::{ColumnMeaning, contract};
 use crate::record::Noise;
 use crate::sidecar_error::Fault;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
-use crate::sidecar_keys::{CheckKeys, ColumnKeys, PartKeys, ShipKeys, SidecarKeys, TableKeys};
+use crate::sidecar_keys::{CheckKeys, ColumnKeys, PartKeys, RudderKeys, ShipKeys, SidecarKeys, TableKeys};
 pub use crate::sidecar_keys::{Key, keys, schema};
 use crate::words::shortened;
 
@@ -53,6 +53,7 @@ pub struct Sidecar {
     pub(crate) part: PartKeys,
     pub(crate) check: CheckKeys,
     pub(crate) columns: Vec<DescribedColumn>,
+    pub(crate) rudder: RudderKeys,
     pub(crate) noise: Noise,
     /// Particulars and conditions that are declared for the form of MSC/Circ.1053.
     pub conditions: Conditions,
@@ -142,6 +143,10 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
         ("table", "time-step-s", _) | ("part", "every", _) | ("ship" | "noise", ..) => {
             (above_zero, "a finite number above zero")
         }
+        ("rudder", "late-s", _) => (number.is_some(), "a finite number of seconds"),
+        ("rudder", "order-rate-deg-s", _) => {
+            (number.is_some_and(|rate| (0.1..=200.0).contains(&rate)), "a rate from 0.1 to 200°/s")
+        }
         ("form", "trim-m", _) => (number.is_some(), "a number of metres, positive by the stern"),
         ("form", _, "m") => (above_zero, "a number of metres above 0"),
         ("form", _, "m²") => (above_zero, "a number of square metres above 0"),
@@ -188,7 +193,7 @@ fn syntax(error: toml::de::Error) -> Fault {
 fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     let document = DeTable::parse(text).map_err(syntax)?.into_inner();
     check_values(text, &document)?;
-    let SidecarKeys { table, part, column, ship, noise, check, form } = toml::from_str(text).map_err(syntax)?;
+    let SidecarKeys { table, part, column, rudder, ship, noise, check, form } = toml::from_str(text).map_err(syntax)?;
     let header = table.header.unwrap_or(true);
     let columns = column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
     let particulars = match ship {
@@ -210,7 +215,7 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
         yaw_rate: noise.yaw_rate_deg_s.map(from_deg),
         rudder: noise.rudder_deg.map(from_deg),
     };
-    let sidecar = Sidecar { file: file.to_path_buf(), table, part, check, columns, noise, conditions };
+    let sidecar = Sidecar { file: file.to_path_buf(), table, part, check, columns, rudder, noise, conditions };
     let (from_s, until_s) = sidecar.part().into_inner();
     // NaN is below nothing.
     if from_s.partial_cmp(&until_s) != Some(std::cmp::Ordering::Less) {

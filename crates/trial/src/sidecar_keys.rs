@@ -22,6 +22,8 @@ pub(crate) struct SidecarKeys {
     #[serde(default)]
     #[schemars(with = "Vec<ColumnKeys>")]
     pub column: Vec<Spanned<ColumnKeys>>,
+    #[serde(default)]
+    pub rudder: RudderKeys,
     pub ship: Option<ShipKeys>,
     #[serde(default)]
     pub noise: NoiseKeys,
@@ -79,6 +81,16 @@ pub(crate) struct ColumnKeys {
     /// Leave the column out. (true)
     #[serde(default)]
     pub ignore: bool,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct RudderKeys {
+    /// How much later than it was there the rudder is read on the clock of the record; below zero where it is read early.
+    /// (s)
+    pub late_s: Option<f64>,
+    /// The column is the order, and the rudder follows it at this rate; 2 to 7 are usual. (deg/s)
+    pub order_rate_deg_s: Option<f64>,
 }
 
 #[derive(Deserialize, schemars::JsonSchema)]

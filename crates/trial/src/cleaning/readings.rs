@@ -19,6 +19,12 @@ const ALONE: f64 = 4.0;
 /// Largest share of the readings that may be spikes: more are the noise of the sensor.
 const FEW: f64 = 0.05;
 
+/// Fewest readings of exactly zero that are lost polls, and the largest share of a channel they may be.
+const LOST_POLLS: (usize, f64) = (3, 0.4);
+
+/// A lost poll is as many times farther from its neighbours as they are apart.
+const FROM_BOTH: f64 = 2.0;
+
 /// Fewest rows at the end of the scale of a yaw rate.
 const CLIPPED: usize = 5;
 
@@ -49,6 +55,34 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
     let every = values.len() / ENOUGH + 1;
     let mut sizes: Vec<f64> = deviations(time, values).step_by(every).map(|(_, deviation)| deviation.abs()).collect();
     upper_median(&mut sizes).filter(|_| sizes.len() > 2 * CLIPPED).map(|size| 1.4826 * size)
+}
+
+/// Takes single readings of exactly zero as missing where both neighbours are far from zero and near each other: a poll
+/// that was not answered. A channel that passes through zero has neighbours on either side of it.
+pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<String> {
+    let time = &columns.time;
+    let mut told = Vec::new();
+    for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate] {
+        let Some(values) = columns.channels.get_mut(&channel) else { continue };
+        let rows: Vec<usize> = readings(values).collect();
+        let is_lost = |rows: &[usize]| {
+            let [before, at, after] = [values[rows[0]], values[rows[1]], values[rows[2]]];
+            let near = before.abs().min(after.abs());
+            at == 0.0 && before * after > 0.0 && near > LEAST && near > FROM_BOTH * (after - before).abs()
+        };
+        let lost: Vec<usize> = rows.windows(3).filter(|rows| is_lost(rows)).map(|rows| rows[1]).collect();
+        if lost.len() < LOST_POLLS.0 || lost.len() as f64 > LOST_POLLS.1 * rows.len() as f64 {
+            continue;
+        }
+        let times = reject(channel, time, values, &lost, rejected);
+        lost.iter().for_each(|&row| values[row] = f64::NAN);
+        // What is zero beside them may be lost, too, and nobody can tell.
+        told.push(format!(
+            "{} of exactly zero between others far from it taken as missing, as polls that were not answered, {times}",
+            counted(lost.len(), channel.spoken()),
+        ));
+    }
+    told
 }
 
 /// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.

@@ -8,6 +8,7 @@ use super::error::{Problem, ReadError};
 use super::input::{self, Content};
 use super::lines::{self, Lines};
 use super::nmea;
+use super::rudder;
 use super::source::{Log, Series};
 use super::table;
 use crate::channel::Channel;
@@ -133,6 +134,7 @@ impl Log {
 
     /// Adds what was not recorded and can be told.
     fn complete(&mut self) {
+        self.warnings.extend(rudder::describe(&mut self.columns, &self.sidecar.rudder));
         self.warnings.extend(complete(&mut self.columns));
         self.warnings.extend(straight_rudder(&mut self.columns));
     }

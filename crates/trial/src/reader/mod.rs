@@ -26,6 +26,7 @@ mod measured_tests;
 mod nmea;
 mod position;
 mod rows;
+mod rudder;
 mod source;
 mod table;
 #[cfg(test)]

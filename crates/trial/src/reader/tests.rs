@@ -16,16 +16,17 @@ use crate::sidecar::{Sidecar, SidecarProblem};
 
 /// Time, heading and rudder (s, deg, deg) of a plausible 10/10 zig-zag, one row a second, headings wrapped to 0..360.
 pub(super) fn rows() -> Vec<[f64; 3]> {
-    let (mut psi, mut r, mut delta) = (350.0_f64, 0.0, 10.0);
+    let (mut psi, mut r, mut order, mut delta) = (350.0_f64, 0.0, 10.0_f64, 10.0_f64);
     (0..240)
         .map(|t| {
             let row = [f64::from(t), psi.rem_euclid(360.0), delta];
             for _ in 0..20 {
+                delta += (order - delta).clamp(-0.25, 0.25);
                 r += 0.05 * (0.1 * delta - r) / 16.0;
                 psi += 0.05 * r;
             }
-            if (psi - 350.0) * delta > 0.0 && (psi - 350.0).abs() > 10.0 {
-                delta = -delta;
+            if (psi - 350.0) * order > 0.0 && (psi - 350.0).abs() > 10.0 {
+                order = -order;
             }
             row
         })
