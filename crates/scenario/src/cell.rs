@@ -11,7 +11,6 @@ use crate::draw::DrawnKey;
 use crate::method::{Method, Procedure, methods};
 use crate::part::ScenarioPart;
 use crate::problem::{KeyFault, KeyPath};
-use crate::ship::ShipWire;
 use crate::specification::Specification;
 use crate::wire::ScenarioWire;
 use crate::{limits, reader, resolve, sweep};
@@ -35,7 +34,6 @@ struct DrawnSettings {
     draws: Vec<DrawnKey>,
     /// The settings of the cell, with every drawn value in the middle.
     wire: ScenarioWire,
-    ship: ShipWire,
     folder: PathBuf,
 }
 
@@ -137,8 +135,7 @@ impl DrawnSettings {
             sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| blamed(0, problem))?;
         }
         let wire: ScenarioWire = reader::document(&document).map_err(|problem| blamed(0, problem))?;
-        let ship = ShipWire::read(&wire.ship).map_err(|problem| blamed(0, problem))?;
-        let drawn = Self { draws: draws.to_vec(), wire, ship, folder: folder.to_owned() };
+        let drawn = Self { draws: draws.to_vec(), wire, folder: folder.to_owned() };
         let specification = drawn.specification(&middle).map_err(|problem| blamed(0, problem))?;
         for (index, draw) in draws.iter().enumerate() {
             for value in draw.ends() {
@@ -152,16 +149,14 @@ impl DrawnSettings {
 
     /// The specification with these values; what they do not touch is as it is in the middle.
     fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
-        let (mut wire, mut ship) = (self.wire.clone(), self.ship.clone());
+        let mut wire = self.wire.clone();
         for (draw, &value) in self.draws.iter().zip(values) {
-            let key = draw.key.parts();
-            let is_set = if key[0] == "ship" { ship.set(&key[1..], value) } else { wire.set(key, value) };
-            if !is_set {
+            if !wire.set(draw.key.parts(), value) {
                 let found = format!("`{}` holds no number that can be drawn", draw.key);
                 return Err(KeyFault::name(draw.key.clone(), found, "expected the key of a number", "change the key"));
             }
         }
-        resolve::specification(&ship, &wire, &self.folder)
+        resolve::specification(&wire, &self.folder)
     }
 }
 
@@ -203,8 +198,7 @@ pub(crate) fn swept(
         sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(blame)?;
     }
     let wire: ScenarioWire = reader::document(&changed).map_err(blame)?;
-    let specification = ShipWire::read(&wire.ship).and_then(|ship| resolve::specification(&ship, &wire, folder));
-    let specification = specification.map_err(blame)?;
+    let specification = resolve::specification(&wire, folder).map_err(blame)?;
     let methods = methods(&wire.identifier, folder).map_err(blame)?;
     if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
         return Err(blame(KeyFault::value(

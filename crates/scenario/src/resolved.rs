@@ -6,9 +6,8 @@ use crate::keys::{LeftOut, ScenarioKey, keys};
 use crate::method::Method;
 use crate::problem::KeyFault;
 use crate::resolve::of_validation;
-use crate::ship::ShipWire;
 use crate::wire::ScenarioWire;
-use crate::{effect, reader};
+use crate::{effect, reader, ship};
 
 /// Parts of a scenario in the order in which a person reads them; what is not among them comes behind.
 const ORDER: [&str; 16] = [
@@ -37,8 +36,8 @@ const ORDER: [&str; 16] = [
 pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     let mut wire: ScenarioWire = reader::document(document)?;
     effect::complete(&mut wire.effect);
-    let own = ShipWire::read(&wire.ship)?;
-    let ship = effect::added(own.build()?, &wire.effect)?;
+    ship::complete(&mut wire.ship);
+    let ship = effect::added(ship::build(&wire.ship)?, &wire.effect)?;
     wire.steering_gear = wire.steering_gear.of(&ship);
     wire.steering_gear.rate.get_or_insert(f64::INFINITY);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {
@@ -50,7 +49,6 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     if let Some(validation) = &mut wire.validation {
         validation.recording.get_or_insert(of_validation(&wire.recording));
     }
-    wire.ship.values_mut().for_each(|table| *table = own.complete());
     let complete = Table::try_from(&wire).expect("what was read can be written");
     let mut lines = ResolvedText { keys: keys(), text: String::new() };
     lines.table(&[], &complete, Some(document));

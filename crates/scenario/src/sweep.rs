@@ -152,10 +152,10 @@ impl AxisWire {
         let odd = points.iter().position(|point| point.value.is_some_and(|value| !value.is_finite()));
         if let (Some(index), true) = (odd, self.points.is_some()) {
             let key = place.child("points").child(index).child("value");
-            let found = format!("`{key}` is {}", points[index].value.unwrap_or(f64::NAN));
-            return Err(KeyFault::value(
+            let value = points[index].value.unwrap_or(f64::NAN);
+            return Err(KeyFault::of(
                 key,
-                found,
+                value,
                 "expected a finite number",
                 "give the place of the point on its axis",
             ));
