@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::correction::Correction;
 use crate::form::ImoFormEntry;
+use crate::identified_ship::ValidityRange;
 use crate::imo::PredictedCriterion;
-use crate::known::ValidityRange;
-use crate::passage::SimulatedManoeuvre;
 use crate::prediction::{Bands, Prediction};
 use crate::replay::RecordReplay;
+use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::steady::SteadyCurve;
 
-/// `predict.json`. Its curves, which stand as `skip` where they are of use, are in a file beside it: [`PredictCurves`].
+/// `predict.json`. Its curves, which stand as `skip` where they are of use, are in a file beside it: PredictCurves.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictDocument {
     /// `predict/1`.

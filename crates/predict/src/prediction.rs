@@ -11,10 +11,10 @@ use trial::manoeuvre::InWords;
 
 use crate::error::PredictError;
 use crate::figures::{self, Figures};
+use crate::identified_ship::ValidityRange;
 use crate::interval::{PredictionInterval, band};
-use crate::known::ValidityRange;
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::passage::{self, SimulatedManoeuvre};
+use crate::simulated_manoeuvre::{SimulatedManoeuvre, period};
 use crate::steady::SteadyCurve;
 
 /// Draws for every source alone, as a share of all.
@@ -70,7 +70,7 @@ fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
     Ok(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
 }
 
-/// A manoeuvre predicted; its curves are beside the document ([`PredictCurves`](crate::document::PredictCurves)).
+/// A manoeuvre predicted; its curves are beside the document (PredictCurves).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.
@@ -151,7 +151,7 @@ impl ShipMixture {
         Ok(Prediction {
             kind: kind.clone(),
             figures: predicted(&values, extrapolated, sources, |number, sources| Some(sail(number, sources)?.0)),
-            heading: bands(&headings, most_probable.as_ref(), passage::period(self.timescale())),
+            heading: bands(&headings, most_probable.as_ref(), period(self.timescale())),
             lost: draws - made.len(),
             most_probable,
             tracks: made.into_iter().filter_map(|(.., track)| track).collect(),
@@ -244,10 +244,10 @@ fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::known::Moment;
+    use crate::identified_ship::Moment;
     use crate::testing;
 
-    fn mixture(change: impl Fn(&mut crate::known::IdentifiedShip)) -> ShipMixture {
+    fn mixture(change: impl Fn(&mut crate::identified_ship::IdentifiedShip)) -> ShipMixture {
         let mut known = testing::known();
         change(&mut known);
         testing::mixture(known)

@@ -9,26 +9,6 @@ use crate::resolve::of_validation;
 use crate::wire::ScenarioWire;
 use crate::{effect, reader, ship};
 
-/// Parts of a scenario in the order in which a person reads them; what is not among them comes behind.
-const ORDER: [&str; 16] = [
-    "question",
-    "analysis",
-    "finding",
-    "seed",
-    "replicates",
-    "ship",
-    "effect",
-    "manoeuvre",
-    "also",
-    "steering-gear",
-    "helmsman",
-    "approach",
-    "recording",
-    "sensor",
-    "disturbance",
-    "identifier",
-];
-
 /// The text of a scenario with nothing left out, as TOML. Sweeps and draws stay as they are: it is the scenario they
 /// change.
 ///
@@ -66,7 +46,8 @@ impl ResolvedText {
     fn table(&mut self, path: &[&str], table: &Table, given: Option<&Table>) {
         let mut entries: Vec<(&String, &Value)> = table.iter().collect();
         if path.is_empty() {
-            entries.sort_by_key(|(name, _)| ORDER.iter().position(|part| part == name).unwrap_or(ORDER.len()));
+            // In the order in which a person reads them, which is that of the types.
+            entries.sort_by_key(|(name, _)| self.keys.iter().position(|own| own.key == **name));
         }
         let (tables, values): (Vec<_>, Vec<_>) = entries.into_iter().partition(|(_, value)| is_of_tables(value));
         for (name, value) in values {

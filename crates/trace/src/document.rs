@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use trial::Quantity;
 
-use crate::judge::ReplayResult;
+use crate::comparison::ReplayResult;
 use crate::replay_errors::HORIZONS;
 
 /// Name of the schema.

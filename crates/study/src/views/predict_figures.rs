@@ -150,7 +150,7 @@ fn interval(of: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> {
 }
 
 fn limit(criterion: &PredictedCriterion) -> (String, Vec<RowItem>) {
-    let mut items = interval(&criterion.interval(), criterion.extrapolated);
+    let mut items = interval(&criterion.interval, criterion.extrapolated);
     items.insert(2, RowItem::new("IMO limit", RowKind::Limit(criterion.limit)));
     (criterion.criterion.clone(), items)
 }

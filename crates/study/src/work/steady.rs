@@ -1,6 +1,6 @@
 //! The steady turns of a traced model, as the diagram of a spiral test shows them.
 
-use predict::known::ValidityRange;
+use predict::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
 use predict::{IdentifiedShip, ShipMixture};
 use ship::angle::from_deg;
