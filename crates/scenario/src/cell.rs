@@ -125,23 +125,23 @@ impl DrawnSettings {
         if draws.is_empty() {
             return Ok(None);
         }
-        let blamed = |index: usize, problem: KeyFault| {
+        let attributed = |index: usize, problem: KeyFault| {
             let of_key = draws.iter().position(|draw| draw.key.is_related(&problem.key));
             (of_key.unwrap_or(index), problem)
         };
         let middle: Vec<f64> = draws.iter().map(DrawnKey::middle).collect();
         let mut document = only(document, &[ScenarioPart::Trial]);
         for (draw, &value) in draws.iter().zip(&middle) {
-            sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| blamed(0, problem))?;
+            sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| attributed(0, problem))?;
         }
-        let wire: ScenarioWire = reader::document(&document).map_err(|problem| blamed(0, problem))?;
+        let wire: ScenarioWire = reader::document(&document).map_err(|problem| attributed(0, problem))?;
         let drawn = Self { draws: draws.to_vec(), wire, folder: folder.to_owned() };
-        let specification = drawn.specification(&middle).map_err(|problem| blamed(0, problem))?;
+        let specification = drawn.specification(&middle).map_err(|problem| attributed(0, problem))?;
         for (index, draw) in draws.iter().enumerate() {
             for value in draw.ends() {
                 let mut values = middle.clone();
                 values[index] = value;
-                drawn.specification(&values).map_err(|problem| blamed(index, problem))?;
+                drawn.specification(&values).map_err(|problem| attributed(index, problem))?;
             }
         }
         Ok(Some((drawn, specification)))
@@ -186,38 +186,38 @@ pub(crate) fn swept(
     let cell = (labels.len() > 1).then(|| labels.join(", "));
     // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of
     // several.
-    let blame = |problem: KeyFault| {
+    let attribute = |problem: KeyFault| {
         let of_key = settings().rfind(|setting| setting.key.is_related(&problem.key));
         match of_key.or_else(|| settings().next_back()) {
-            Some(setting) => setting.blamed(problem, cell.as_deref()),
+            Some(setting) => setting.attributed(problem, cell.as_deref()),
             None => problem,
         }
     };
     let mut changed = document.clone();
     for setting in settings() {
-        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(blame)?;
+        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(attribute)?;
     }
-    let wire: ScenarioWire = reader::document(&changed).map_err(blame)?;
-    let specification = resolve::specification(&wire, folder).map_err(blame)?;
-    let methods = methods(&wire.identifier, folder).map_err(blame)?;
+    let wire: ScenarioWire = reader::document(&changed).map_err(attribute)?;
+    let specification = resolve::specification(&wire, folder).map_err(attribute)?;
+    let methods = methods(&wire.identifier, folder).map_err(attribute)?;
     if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
-        return Err(blame(KeyFault::value(
+        return Err(attribute(KeyFault::value(
             KeyPath::dotted("identifier"),
             "the methods are not the same in every cell",
             "expected settings of methods",
             "sweep settings only, and name every method once in an [[identifier]] of its own",
         )));
     }
-    limits::entries("draw", wire.draw.len(), limits::MOST_DRAWS).map_err(blame)?;
+    limits::entries("draw", wire.draw.len(), limits::MOST_DRAWS).map_err(attribute)?;
     let draws: Vec<DrawnKey> = wire
         .draw
         .iter()
         .enumerate()
         .map(|(index, draw)| draw.resolve(index))
         .collect::<Result<_, _>>()
-        .map_err(|problem| if points.is_empty() { problem } else { blame(problem) })?;
+        .map_err(|problem| if points.is_empty() { problem } else { attribute(problem) })?;
     let drawn = DrawnSettings::new(&draws, &changed, folder)
-        .map_err(|(draw, problem)| draws[draw].blamed(problem, cell.as_deref()))?;
+        .map_err(|(draw, problem)| draws[draw].attributed(problem, cell.as_deref()))?;
     let (drawn, specification) = match drawn {
         Some((drawn, specification)) => (Some(drawn), specification),
         None => (None, specification),

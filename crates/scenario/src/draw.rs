@@ -199,7 +199,7 @@ impl DrawnKey {
 
     /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution;
     /// `cell` names the cell where it helps.
-    pub fn blamed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
+    pub fn attributed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let (key, mark, what) = match problem.mark {
             AtFault::Name => (self.key_place(), AtFault::Value, "changes a key that cannot be drawn"),
