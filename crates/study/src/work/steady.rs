@@ -21,7 +21,7 @@ pub fn of_ship(known: &IdentifiedShip) -> Option<(Vec<SteadyCurve>, ValidityRang
     let seen = ship.seen;
     let [least, most] = RUDDER_DEG.map(from_deg);
     let kind = Manoeuvre::Spiral { rudder: (BEYOND * seen.rudder_rad).clamp(least, most) };
-    let curves = ShipMixture::new(vec![(ship, 1.0)]).ok()?.predict(&kind, DRAWS, false).ok()?.curves;
+    let curves = ShipMixture::new(vec![(ship, 1.0)]).ok()?.predict(&kind, DRAWS, false).ok()?.curves.steady;
     let has_turns = curves.first().is_some_and(|curve| curve.rudder.len() > 2);
     has_turns.then_some((curves, seen))
 }
