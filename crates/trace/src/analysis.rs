@@ -1,6 +1,6 @@
 //! The whole analysis of some records of one ship: a pipeline of stages, each a function of what the last one made.
 //!
-//! prepare → base → full fit → noise → structures → judge → document
+//! prepare → base → full fit → noise → structures → comparison → document
 
 use std::borrow::Cow;
 use std::sync::Arc;
