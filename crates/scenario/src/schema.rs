@@ -13,11 +13,3 @@ pub fn schema() -> Schema {
     schema.insert("title".into(), "Scenario of a study".into());
     schema
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn tmp() {
-        std::fs::write("/tmp/scenario.json", serde_json::to_string_pretty(&super::schema()).unwrap() + "\n").unwrap();
-    }
-}
