@@ -5,7 +5,7 @@ use serde::Deserialize;
 /// How bytes stand for characters.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 pub enum Encoding {
-    /// UTF-8, and so ASCII.
+    /// UTF-8, and so ASCII; lines that are not are read as Windows code page 1252 where that makes letters of them.
     #[default]
     #[serde(rename = "utf-8")]
     Utf8,

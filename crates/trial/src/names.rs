@@ -26,7 +26,8 @@ pub enum ColumnMeaning {
 /// Longest name and unit that are looked at, bytes.
 const LONGEST: usize = 80;
 
-/// Names of the quantities in small letters, words separated by one blank: English first, then German, French, Spanish.
+/// Names of the quantities in small letters, words separated by one blank: English first, then German, French, Spanish,
+/// Norwegian and Japanese in Latin letters.
 const NAMES: [(ColumnMeaning, &str); 20] = {
     use crate::channel::Channel as C;
     use ColumnMeaning::*;
@@ -35,33 +36,37 @@ const NAMES: [(ColumnMeaning, &str); 20] = {
             Time(None),
             "t, time, timestamp, time stamp, date time, datetime, date and time, utc, gmt, time utc, utc time, \
          local time, elapsed time, elapsed, zeit, uhrzeit, zeitstempel, datum zeit, temps, heure, tiempo, \
-         hora",
+         hora, tid, klokkeslett, jikoku, jikan",
         ),
         (Date, "date, datum, fecha"),
         (
             Channel(C::Heading, None),
             "heading, hdg, hdt, heading true, true heading, gyro, gyro heading, heading gyro, compass heading, \
          ship heading, ships heading, psi, ψ, yaw, yaw angle, heading angle, steuerkurs, kurs gyro, \
-         kreiselkurs, cap, rumbo",
+         kreiselkurs, kompasskurs, kurs rechtweisend, rwk, kurs, cap, cap gyro, cap vrai, rumbo, rumbo verdadero, \
+         rumbo giro, styrekurs, kurs rettvisende, shinro, shinrokaku, kaito kaku",
         ),
         (
             Channel(C::Rudder, None),
             "rudder, rudder angle, rudder actual, actual rudder, actual rudder angle, rudder angle actual, \
          rudder feedback, rudder position, rudder response, rudder indicator, rudder sensor angle, rsa, \
-         delta, δ, ruder, ruderlage, ruderwinkel, ruder ist, angle de barre, timon",
+         delta, δ, ruder, ruderlage, ruderwinkel, ruder ist, ruder istwert, angle de barre, barre, timon, angulo de timon, ángulo de timón, \
+         rorvinkel, rorutslag, ror, kaji, dakaku",
         ),
         (
             Channel(C::RudderOrder, None),
             "rudder order, ordered rudder, rudder angle order, rudder command, rudder cmd, commanded rudder, \
-         rudder demand, rudder setpoint, rudder set, ruder soll",
+         rudder demand, rudder setpoint, rudder set, ruder soll, ruder sollwert, ordre de barre, barre ordonnée, \
+         orden de timon, rorordre, shirei dakaku",
         ),
         (
             Channel(C::YawRate, None),
-            "rot, rate of turn, turn rate, yaw rate, yaw velocity, drehrate, wendegeschwindigkeit",
+            "rot, rate of turn, turn rate, yaw rate, yaw velocity, drehrate, wendegeschwindigkeit, vitesse de rotation, taux de giration, velocidad de giro, \
+         svinghastighet, kaito kakusokudo",
         ),
         (
             Channel(C::Speed, None),
-            "speed, stw, speed through water, water speed, log speed, ship speed, fahrt, fahrt durch wasser",
+            "speed, stw, speed through water, water speed, log speed, ship speed, fahrt, fahrt durch wasser, vitesse, vitesse surface, velocidad, fart, sokuryoku, sensoku",
         ),
         (OverGround(None), "sog, speed over ground, gps speed, fahrt über grund"),
         (Channel(C::Surge, None), "surge velocity, longitudinal speed"),

@@ -361,7 +361,8 @@ fn steps(trial: &Trial) -> Option<String> {
 fn feedback(trial: &Trial, order: &[f64]) -> Option<String> {
     let rudder = trial.rudder();
     let rests = |values: &[f64], row: usize| (row.saturating_sub(4)..=row).all(|k| values[k] == values[row]);
-    let settled = (4..trial.len()).filter(|&row| rests(order, row) && to_deg((rudder[row] - rudder[row - 4]).abs()) < 0.2);
+    let settled =
+        (4..trial.len()).filter(|&row| rests(order, row) && to_deg((rudder[row] - rudder[row - 4]).abs()) < 0.2);
     let (mut cross, mut square, mut rows) = (0.0, 0.0, 0);
     for row in settled.filter(|&row| to_deg(order[row].abs()) > 2.0) {
         cross += rudder[row] * order[row];

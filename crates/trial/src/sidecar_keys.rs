@@ -42,7 +42,7 @@ pub(crate) struct TableKeys {
     pub skip_lines: usize,
     /// What stands between cells; recognised when absent. (comma, semicolon, tab or blank)
     pub separator: Option<Separator>,
-    /// How bytes stand for letters; utf-8 when absent. (utf-8 or windows-1252)
+    /// How bytes stand for letters; when absent utf-8, and windows-1252 in lines that are not. (utf-8 or windows-1252)
     #[serde(default)]
     pub encoding: Encoding,
     /// Whether a line with names comes before the rows; true when absent. (true or false)

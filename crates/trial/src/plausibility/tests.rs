@@ -55,9 +55,7 @@ fn verdict(columns: Columns) -> Result<Vec<String>, Implausible> {
     let origin = Origin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
     let found = check(&Trial::new("record", origin, columns).expect("the columns make a record"));
     // The rudder of these records has no steering gear, and that is said of each.
-    found.map(|warnings| {
-        warnings.into_iter().filter(|warning| !warning.contains("looks like the order")).collect()
-    })
+    found.map(|warnings| warnings.into_iter().filter(|warning| !warning.contains("looks like the order")).collect())
 }
 
 const PER_DEGREE: f64 = std::f64::consts::PI / 180.0;

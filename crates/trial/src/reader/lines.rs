@@ -118,20 +118,19 @@ impl<R: Read> Lines<R> {
         if !self.skip()? {
             return Ok(None);
         }
-        match self.encoding {
-            Encoding::Utf8 => match std::str::from_utf8(&self.bytes) {
-                Ok(text) => Ok(Some(text)),
-                Err(error) => {
-                    let byte = self.bytes[error.valid_up_to()];
-                    Err(Problem::NotUtf8 { line: self.number, byte })
-                }
-            },
-            Encoding::Windows1252 => {
-                self.text.clear();
-                self.text.extend(self.bytes.iter().map(|&byte| windows_1252(byte)));
-                Ok(Some(&self.text))
+        if self.encoding == Encoding::Utf8 {
+            let valid = std::str::from_utf8(&self.bytes).map_or_else(|error| error.valid_up_to(), str::len);
+            if valid == self.bytes.len() {
+                return Ok(std::str::from_utf8(&self.bytes).ok());
+            }
+            // The degree sign and letters with accents, as old Windows programs write them.
+            if self.bytes.iter().any(|byte| matches!(byte, 0x80..=0x9f)) {
+                return Err(Problem::NotUtf8 { line: self.number, byte: self.bytes[valid] });
             }
         }
+        self.text.clear();
+        self.text.extend(self.bytes.iter().map(|&byte| windows_1252(byte)));
+        Ok(Some(&self.text))
     }
 
     /// The next line without its end as it stands, text or not: for logs, where noise spoils a line and not the file.
@@ -177,12 +176,12 @@ mod tests {
     }
 
     #[test]
-    fn windows_1252_is_decoded_and_utf8_is_strict() {
+    fn windows_1252_is_decoded_where_it_is_declared_or_plain() {
         let mut lines = Lines::new(&b"Z20\xb0 \x80\x9f"[..], Encoding::Windows1252);
         assert_eq!(lines.next_line().expect("text"), Some("Z20° €Ÿ"));
-        let mut lines = Lines::new(&b"ok\nZ20\xb0\n"[..], Encoding::Utf8);
-        lines.next_line().expect("text");
-        assert!(matches!(lines.next_line(), Err(Problem::NotUtf8 { line: 2, byte: 0xb0 })));
+        let mut lines = Lines::new(&b"Z20\xb0\n\x80 5\n"[..], Encoding::Utf8);
+        assert_eq!(lines.next_line().expect("text"), Some("Z20°"));
+        assert!(matches!(lines.next_line(), Err(Problem::NotUtf8 { line: 2, byte: 0x80 })));
     }
 
     #[test]

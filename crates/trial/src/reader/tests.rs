@@ -180,11 +180,14 @@ fn files_that_are_no_tables_are_named() {
     assert!(matches!(problem(b"\x89PNG\r\n\x1a\n\0\0", &["line 1", "0x89"]), Problem::NotUtf8 { .. }));
     assert!(matches!(problem(b"\x07\x03\x04\0\0", &["line 1", "zero byte"]), Problem::Binary { line: 1 }));
     assert!(matches!(problem(b"\xff\xfet\0_\0s\0", &["UTF-16"]), Problem::Utf16));
-    let latin = [simple().as_bytes(), b"# 20\xb0\n"].concat();
+    let page_1252 = [simple().as_bytes(), b"# \x9320\xb0\n"].concat();
     assert!(matches!(
-        problem(latin, &["line 242", "0xb0", "windows-1252"]),
-        Problem::NotUtf8 { line: 242, byte: 0xb0 }
+        problem(page_1252, &["line 242", "0x93", "windows-1252"]),
+        Problem::NotUtf8 { line: 242, byte: 0x93 }
     ));
+    let degrees = simple().replacen("heading_deg,rudder_deg", "Steuerkurs [\u{b0}],Ruderlage [\u{b0}]", 1);
+    let latin: Vec<u8> = degrees.chars().map(|letter| letter as u8).collect();
+    assert_eq!(parse(latin).expect("an old Windows program wrote it").trial.len(), 240);
     let headless = simple().lines().skip(1).collect::<Vec<_>>().join("\n");
     assert!(matches!(problem(headless, &["line 1", "0,350,10", "header = false"]), Problem::NoHeader { .. }));
     assert!(matches!(problem("hello\nworld\n", &["line 1", "rudder_deg", "`hello`"]), Problem::NoColumn { .. }));
