@@ -16,7 +16,7 @@ mod points;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::angle::from_deg;
-use ship::{FirstOrder, Shown};
+use ship::{FirstOrder, ShortNumber};
 use trial::Trial;
 
 use crate::error::IdentifyError;
@@ -83,10 +83,10 @@ impl Settings {
     /// Fails when the half width is not positive, an angle is not finite or the condition limit is not above 1.
     pub fn build(self) -> Result<CharacteristicPoints, SettingsError> {
         if let Some(width) = self.half_width_s {
-            require(width > 0.0 && width.is_finite(), "half-width-s", Shown(width), "a positive time")?;
+            require(width > 0.0 && width.is_finite(), "half-width-s", ShortNumber(width), "a positive time")?;
         }
         for (key, angle) in [("base-course-deg", self.base_course_deg), ("rudder-bias-deg", self.rudder_bias_deg)] {
-            angle.map_or(Ok(()), |angle| require(angle.is_finite(), key, Shown(angle), "an angle"))?;
+            angle.map_or(Ok(()), |angle| require(angle.is_finite(), key, ShortNumber(angle), "an angle"))?;
         }
         check_condition_limit(self.condition_limit)?;
         Ok(CharacteristicPoints { settings: self })

@@ -16,7 +16,7 @@
 //! by generalised cross-validation (Golub, Heath and Wahba 1979).
 
 use serde::{Deserialize, Serialize};
-use ship::Shown;
+use ship::ShortNumber;
 use ship::angle::to_deg;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -107,7 +107,7 @@ impl Settings {
         match self.harmonics {
             Order::Fixed(fixed) => require((1..=MOST_HARMONICS).contains(&fixed), "harmonics.fixed", fixed, "1 to 64"),
             Order::Gcv { reach } => {
-                require((1.5..=50.0).contains(&reach), "harmonics.reach", Shown(reach), "1.5 to 50")
+                require((1.5..=50.0).contains(&reach), "harmonics.reach", ShortNumber(reach), "1.5 to 50")
             }
         }?;
         self.fundamental.check()?;

@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use ship::first_order::State;
-use ship::{FirstOrder, Shown};
+use ship::{FirstOrder, ShortNumber};
 use trial::Trial;
 
 use crate::error::IdentifyError;
@@ -50,7 +50,7 @@ impl Settings {
         check_iterations("iterations", self.iterations)?;
         if let Some(smallest) = self.smallest_time_constant_s {
             let holds = TIME_CONSTANTS.contains(&smallest);
-            require(holds, "smallest-time-constant-s", Shown(smallest), "a time of 1e-6 to 1e6 s")?;
+            require(holds, "smallest-time-constant-s", ShortNumber(smallest), "a time of 1e-6 to 1e6 s")?;
         }
         Ok(OutputError { settings: self })
     }
@@ -309,7 +309,7 @@ impl RangeScan {
         let mut warnings = Vec::from_iter(warning);
         warnings.extend(response.is_course_unstable().then(|| COURSE_UNSTABLE.into()));
         if at_bound {
-            let (time, end) = (Shown(response.T()), Shown(1.0 / fastest));
+            let (time, end) = (ShortNumber(response.T()), ShortNumber(1.0 / fastest));
             warnings.push(format!("T = {time} s is at its bound or beyond: the search ends at ±{end} s"));
         }
         Ok(Estimate {

@@ -12,7 +12,7 @@ use ship::effects::{
     SpeedLoss, SteeringLag, TransientDisturbance, WaveYaw, WindMoment,
 };
 use ship::ships::Model;
-use ship::{ResponseModel, Ship, Shown};
+use ship::{ResponseModel, Ship, ShortNumber};
 
 use crate::problem::{KeyFault, KeyPath, suggestion};
 use crate::{limits, reader};
@@ -198,12 +198,12 @@ pub fn added(ship: Ship, entries: &[EffectEntry]) -> Result<Ship, KeyFault> {
             if !description.holds(setting.value) {
                 let key = key.child(setting.key);
                 let mut ends =
-                    [description.lowest, description.highest].map(|end| Shown::rounded(end / setting.unit, 4));
+                    [description.lowest, description.highest].map(|end| ShortNumber::rounded(end / setting.unit, 4));
                 // Divided by the T of a course-unstable ship, the lower end becomes the upper.
                 ends.sort_by(|one, other| one.0.total_cmp(&other.0));
                 return Err(KeyFault::value(
                     key.clone(),
-                    format!("`{key}` is {}", Shown(setting.written)),
+                    format!("`{key}` is {}", ShortNumber(setting.written)),
                     format!("expected a number from {} to {}", ends[0], ends[1]),
                     format!("change the value; the effect is {}", effect.equation()),
                 ));

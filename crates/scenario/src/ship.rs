@@ -7,7 +7,7 @@ use ::ship::angle::{KNOT, from_deg};
 use ::ship::effects::Parameter;
 use ::ship::linear::SecondOrderIndices;
 use ::ship::ships::{self, user, user::ShipError};
-use ::ship::{Particulars, Ship, Shown};
+use ::ship::{Particulars, Ship, ShortNumber};
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use simulate::numbers;
@@ -214,8 +214,8 @@ fn not_a_ship(key: &KeyPath, numbers: &[(&str, &str, Option<f64>)], bias_deg: f6
         ShipError::Value { symbol, reason, .. } => (symbol, reason.to_owned()),
         ShipError::Range { symbol, parameter, value } => {
             let Parameter { symbol: of, unit, lowest, highest, .. } = parameter;
-            let range = format!("from {} to {} {unit}", Shown(*lowest), Shown(*highest));
-            (symbol, format!("expected {of} {range}, and this makes it {}", Shown(value)))
+            let range = format!("from {} to {} {unit}", ShortNumber(*lowest), ShortNumber(*highest));
+            (symbol, format!("expected {of} {range}, and this makes it {}", ShortNumber(value)))
         }
     };
     let mut own = numbers.iter().filter(|number| number.0 == symbol);
@@ -239,7 +239,7 @@ fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> R
         let is_right = value.is_finite() && value > 0.0;
         is_right.then_some(value).ok_or_else(|| {
             let key = key.child(name);
-            let found = format!("`{key}` is {}", Shown(value));
+            let found = format!("`{key}` is {}", ShortNumber(value));
             KeyFault::value(key, found, "expected a finite number above 0", "change the number")
         })
     };

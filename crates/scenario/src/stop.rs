@@ -1,7 +1,7 @@
 //! The stopping rule of a scenario: `[stop]`. What it sees, and when it is met, is for those who run the study.
 
 use serde::{Deserialize, Serialize};
-use ship::Shown;
+use ship::ShortNumber;
 
 use crate::method::Method;
 use crate::problem::{KeyFault, KeyPath, suggestion};
@@ -94,7 +94,7 @@ impl StopWire {
     pub(crate) fn resolve(&self, methods: &[Method]) -> Result<StopRule, KeyFault> {
         let key = KeyPath::dotted("stop");
         if !(self.standard_error > 0.0 && self.standard_error.is_finite()) {
-            let found = format!("`stop.standard-error` is {}", Shown(self.standard_error));
+            let found = format!("`stop.standard-error` is {}", ShortNumber(self.standard_error));
             let advice = "give the standard error, in per cent, at which a cell has enough trials";
             return Err(KeyFault::value(
                 key.child("standard-error"),

@@ -32,7 +32,7 @@ pub mod particulars;
 pub mod replay;
 pub mod response;
 pub mod ships;
-pub mod shown;
+pub mod short_number;
 pub mod signal;
 pub mod vessel;
 
@@ -44,5 +44,5 @@ pub use number::{DIRECTIONS, Tangent};
 pub use particulars::Particulars;
 pub use response::{Response, ResponseModel};
 pub use ships::Ship;
-pub use shown::Shown;
+pub use short_number::ShortNumber;
 pub use signal::Polyline;
