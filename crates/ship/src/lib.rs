@@ -15,7 +15,7 @@
 //! | hulls with three degrees of freedom | [`vessel`] |
 //! | linear sway-yaw equations and their indices | [`linear`] |
 //! | parameter sets with their sources | [`ships`] |
-//! | numbers in messages | [`shown`] |
+//! | numbers in messages | [`short_number`] |
 //!
 //! Inside, everything is in SI units and radians. Positive rudder gives positive (starboard) yaw rate, heading
 //! grows clockwise seen from above, `v` is positive to starboard.
