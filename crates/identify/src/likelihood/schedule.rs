@@ -45,8 +45,6 @@ pub struct Schedule {
     pub spans: Vec<Span>,
     /// The readings.
     pub readings: Vec<ScheduledReading>,
-    /// For every reading, its number among those of its instrument.
-    numbers: Vec<usize>,
 }
 
 /// Kinds of steps that are remembered when the next one is looked for: clocks repeat themselves soon or not at all.
@@ -56,11 +54,10 @@ impl Schedule {
     /// Readings of a track; `by_row` keeps the rows of the rudder between them apart.
     pub fn new(track: &Track, by_row: bool) -> Self {
         let time = track.time();
-        let mut schedule = Self { spans: Vec::new(), readings: Vec::new(), numbers: Vec::new() };
+        let mut schedule = Self { spans: Vec::new(), readings: Vec::new() };
         let mut last = None;
         let (mut headings, mut rates) = (track.observed().iter().peekable(), track.observed_rates().iter().peekable());
         let mut pieces = Vec::new();
-        let (mut heading, mut rate) = (0, 0);
         while let Some(row) = [headings.peek(), rates.peek()].into_iter().flatten().min().map(|&&row| row) {
             let step = last.map(|last: usize| {
                 pieces.clear();
@@ -75,13 +72,9 @@ impl Schedule {
             let both = headings.peek() == rates.peek();
             if headings.next_if(|&&next| next == row).is_some() {
                 schedule.readings.push(ScheduledReading { step, of: ReadingKind::Heading });
-                schedule.numbers.push(heading);
-                heading += 1;
             }
             if rates.next_if(|&&next| next == row).is_some() {
                 schedule.readings.push(ScheduledReading { step: step.filter(|_| !both), of: ReadingKind::YawRate });
-                schedule.numbers.push(rate);
-                rate += 1;
             }
         }
         schedule
@@ -102,10 +95,11 @@ impl Schedule {
         if self.readings.len() == heading.len() {
             return heading.to_vec();
         }
-        let of = |(reading, &number): (&ScheduledReading, &usize)| match reading.of {
-            ReadingKind::Heading => heading[number],
-            ReadingKind::YawRate => yaw_rate[number],
+        let (mut heading, mut yaw_rate) = (heading.iter(), yaw_rate.iter());
+        let next = |reading: &ScheduledReading| match reading.of {
+            ReadingKind::Heading => heading.next(),
+            ReadingKind::YawRate => yaw_rate.next(),
         };
-        self.readings.iter().zip(&self.numbers).map(of).collect()
+        self.readings.iter().filter_map(next).copied().collect()
     }
 }

@@ -73,6 +73,8 @@ pub(super) struct Search<'a> {
     pub ranges: &'a [Ranges],
     pub iterations: usize,
     pub evaluations: usize,
+    /// Moments that no start showed, with what their BIC would be.
+    pub unseen: Vec<(Moment, f64)>,
 }
 
 /// The end of a search.
@@ -86,6 +88,13 @@ impl Search<'_> {
     fn evaluate(&mut self, inverse_time: f64, places: &[NoiseVector]) -> Option<Point> {
         self.evaluations += 1;
         evaluate(self.records, inverse_time, places)
+    }
+
+    fn linearise(&mut self, point: &Point) -> Option<Linearised> {
+        let found = linearise(self.records, point)?;
+        // One filter for 1/T and one for every entry.
+        self.evaluations += 1 + found.score.len() - SHARED;
+        Some(found)
     }
 
     /// The start with the lowest −2 log L, or restricted one where only the noise differs.
@@ -148,7 +157,7 @@ impl Search<'_> {
     /// digit.
     pub fn maximise(&mut self, start: Point) -> Option<Maximum> {
         let mut point = start;
-        let mut linearised = linearise(self.records, &point)?;
+        let mut linearised = self.linearise(&point)?;
         let mut free = self.free(&point, &linearised.score);
         let mut inverse = inverse_information(&linearised, &free);
         for _ in 0..self.iterations {
@@ -177,7 +186,7 @@ impl Search<'_> {
                 return Some(Maximum { point, linearised, converged: promise < SLACK });
             };
             point = lower;
-            linearised = linearise(self.records, &point)?;
+            linearised = self.linearise(&point)?;
             let now = self.free(&point, &linearised.score);
             if now == free && share == 1.0 {
                 learn(&mut inverse, &step, &(picked(&linearised.score, &free) - score));
