@@ -69,7 +69,9 @@ impl Recommendation {
         let is_random = lack.and_then(|lack| lack.unexplained()).is_some_and(|share| share >= RANDOM);
         let reason = match maximum_likelihood {
             None => Reason::NearestReplay,
-            Some(_) if trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0)) => Reason::RudderNoise,
+            Some(_) if trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0)) => {
+                Reason::RudderNoise
+            }
             Some(estimate) if output_error.is_none() || (is_random && moment(estimate)) => Reason::RandomMoment,
             Some(_) => Reason::NearestReplay,
         };
@@ -87,7 +89,10 @@ impl Recommendation {
     /// What the residual of output error looks like.
     pub fn residual(&self) -> Option<Residual> {
         let share = self.lack?.unexplained();
-        Some(share.map_or(Residual::Noise, |share| if share < RANDOM { Residual::LacksEffect } else { Residual::Random }))
+        Some(
+            share
+                .map_or(Residual::Noise, |share| if share < RANDOM { Residual::LacksEffect } else { Residual::Random }),
+        )
     }
 }
 

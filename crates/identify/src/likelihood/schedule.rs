@@ -1,24 +1,14 @@
 //! When a record was read, and what: the steps in time between readings, each kind once.
 
+use estimation::kalman::Reading;
+
 use super::track::{Track, differs};
 
-/// What is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ReadingKind {
-    /// The compass.
-    Heading,
-    /// The gyro.
-    YawRate,
-}
+/// Place of the compass among the sensors.
+pub const HEADING: usize = 0;
 
-/// A reading.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ScheduledReading {
-    /// The kind of step that leads to it; `None` when no time passes.
-    pub step: Option<usize>,
-    /// The instrument.
-    pub of: ReadingKind,
-}
+/// Place of the gyro among the sensors.
+pub const YAW_RATE: usize = 1;
 
 /// Time from one reading to the next, in pieces between rows of the rudder.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +34,7 @@ pub struct Schedule {
     /// The kinds of steps.
     pub spans: Vec<Span>,
     /// The readings.
-    pub readings: Vec<ScheduledReading>,
+    pub readings: Vec<Reading>,
 }
 
 /// Kinds of steps that are remembered when the next one is looked for: clocks repeat themselves soon or not at all.
@@ -71,10 +61,10 @@ impl Schedule {
             last = Some(row);
             let both = headings.peek() == rates.peek();
             if headings.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(ScheduledReading { step, of: ReadingKind::Heading });
+                schedule.readings.push(Reading { step, sensor: HEADING });
             }
             if rates.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(ScheduledReading { step: step.filter(|_| !both), of: ReadingKind::YawRate });
+                schedule.readings.push(Reading { step: step.filter(|_| !both), sensor: YAW_RATE });
             }
         }
         schedule
@@ -96,10 +86,7 @@ impl Schedule {
             return heading.to_vec();
         }
         let (mut heading, mut yaw_rate) = (heading.iter(), yaw_rate.iter());
-        let next = |reading: &ScheduledReading| match reading.of {
-            ReadingKind::Heading => heading.next(),
-            ReadingKind::YawRate => yaw_rate.next(),
-        };
+        let next = |reading: &Reading| if reading.sensor == HEADING { heading.next() } else { yaw_rate.next() };
         self.readings.iter().filter_map(next).copied().collect()
     }
 }

@@ -5,7 +5,7 @@ use trial::Trial;
 
 use super::outliers::{self, LARGEST_SHARE, Suspects};
 use super::point::{Point, Record, evaluate, readings};
-use super::search::{Maximum, Ranges, Search, gyro_start};
+use super::search::{Maximum, Ranges, Search, Start, gyro_start};
 use super::settings::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
@@ -309,7 +309,7 @@ fn of_moments(search: &mut Search, kinds: &[Moment], a: f64, none: &[NoiseVector
 
 /// 1/T and noises with which a compass error with a memory is looked for: where innovations have one, beside the best
 /// noise, and alone, since a white moment may be large enough to make anything white.
-fn with_memory(all: &Ranked, compass: CompassChoice) -> Vec<(f64, Vec<NoiseVector>)> {
+fn with_memory(all: &Ranked, compass: CompassChoice) -> Vec<Start> {
     let has_memory = |found: &&Maximum| {
         let readings: usize = found.point.parts.iter().map(|part| part.readings).sum();
         let whites = found.point.parts.iter().map(|part| part.innovations.as_slice());
