@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use ::trace::judge::RecordComparison;
+use ::trace::comparison::RecordComparison;
 use identify::replay::Replay;
 use scenario::failure::{Failure, OnPath};
 use ship::angle::{from_deg, to_deg};

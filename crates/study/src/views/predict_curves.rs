@@ -28,14 +28,14 @@ pub fn curves(document: &PredictDocument) -> Vec<(String, String)> {
         let table = match prediction.kind {
             Manoeuvre::Spiral { .. } => {
                 let mut table = String::from("ship,rudder_deg,yaw_rate_deg_s\n");
-                for (ship, curve) in prediction.curves.iter().enumerate() {
+                for (ship, curve) in prediction.curves.steady.iter().enumerate() {
                     for (rudder, rate) in curve.rudder.iter().zip(&curve.yaw_rate) {
                         let _ = writeln!(table, "{ship},{:.5},{:.6}", to_deg(*rudder), to_deg(*rate));
                     }
                 }
                 table
             }
-            _ => bands(&prediction.heading, None),
+            _ => bands(&prediction.curves.heading, None),
         };
         tables.push((stem, table));
     }
