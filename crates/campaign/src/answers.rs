@@ -82,7 +82,7 @@ const MOST_FAULTS: usize = 10;
 ///
 /// Fails when a column is missing, and with all lines that are not of one trial of the scenario, or hold no numbers.
 pub fn read(path: &Path, scenario: &Scenario, observer: &dyn Observer) -> Result<Answers, Failure> {
-    let refuse = |problem: String| Failure::input(format!("{}: {problem}", path.display()));
+    let refuse = |problem: String| Failure::about(path, problem);
     let text = file::read_text(path, TABLE).map_err(|error| refuse(error.to_string()))?;
     let text = text.trim_start_matches('\u{feff}');
     let head = text.lines().next().unwrap_or_default();

@@ -49,10 +49,10 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         own.sort();
         if own.is_empty() {
             let endings = ENDINGS.join(", .");
-            return Err(Failure::input(format!(
-                "{}: this folder holds no record; expected files that end in .{endings}",
-                path.display()
-            )));
+            return Err(Failure::about(
+                path,
+                format!("this folder holds no record; expected files that end in .{endings}"),
+            ));
         }
         files.extend(own);
     }
@@ -149,10 +149,10 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
         Some(TimePoint::Clock(stamp, text)) => {
             let time = log.clock().and_then(|clock| clock.time_of(stamp));
             time.map(Some).ok_or_else(|| {
-                Failure::input(format!(
-                    "{}: `{text}` is a time of day, and this record has no clock that shows it; give seconds",
-                    path.display()
-                ))
+                Failure::about(
+                    path,
+                    format!("`{text}` is a time of day, and this record has no clock that shows it; give seconds"),
+                )
             })
         }
     }
@@ -230,11 +230,7 @@ fn ask(log: &Log, path: &Path, several: &[(usize, &Manoeuvre)]) -> Failure {
             format!("\n  --trial {number}: {}, {} to {}", one.kind.name(), at(log, one.from), at(log, one.until))
         })
         .collect();
-    Failure::input(format!(
-        "{}: there are {} zig-zags in this log; say which one{lines}",
-        path.display(),
-        several.len()
-    ))
+    Failure::about(path, format!("there are {} zig-zags in this log; say which one{lines}", several.len()))
 }
 
 /// A time of a log for people: seconds, and what the clock shows.
@@ -333,7 +329,7 @@ mod tests {
     #[test]
     fn no_two_records_have_the_same_name() {
         assert_eq!(names(["a", "b", "a", "a"].into_iter()), ["a", "b", "a-2", "a-3"]);
-        assert_eq!(names(["a", "a-2", "a"].into_iter()), ["a", "a-2", "a-3"]);
+        assert_eq!(names(["a", "a-2", "a", "a"].into_iter()), ["a", "a-2", "a-3", "a-4"]);
         assert_eq!(names(["a", "a", "a-2"].into_iter()), ["a", "a-2", "a-2-2"]);
     }
 }

@@ -113,7 +113,7 @@ impl Definition {
     /// Fails with a message that names file, line and key, what was found and what was expected.
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let read = |path: &Path| file::read_text(path, DEFINITION).map_err(|error| error.to_string());
-        let text = read(path).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        let text = read(path).map_err(|error| Failure::about(path, error))?;
         Self::parse(path, &text, seed, &|place, _| read(place))
     }
 
@@ -142,11 +142,10 @@ impl Definition {
         }
         reader.distinct(groups.iter(), "set")?;
         if sets.is_empty() {
-            return Err(Failure::input(format!(
-                "{}: no set is defined; add [[measured]] or [[simulated]], as in {}",
-                path.display(),
-                embedded::PLACE
-            )));
+            return Err(Failure::about(
+                path,
+                format!("no set is defined; add [[measured]] or [[simulated]], as in {}", embedded::PLACE),
+            ));
         }
         let sha256 = hex(&digest.finalize());
         let DefinitionWire { name, about, reference, .. } = wire;

@@ -14,9 +14,8 @@ use scenario::{TRACE, name};
 use simulate::StreamKey;
 use trial::{Channel, Quantity, Trial};
 
-use crate::benchmark::statistics::grouped;
 use crate::engine::failure;
-use crate::statistics::Moments;
+use crate::statistics::{Moments, grouped};
 
 /// Label of the method that takes every ship to go straight on.
 pub const STRAIGHT_ON: &str = "straight-on";

@@ -9,8 +9,8 @@ use crate::benchmark::method::BenchMethod;
 use crate::benchmark::naming::{self, NamingLine};
 use crate::benchmark::overall::{OverallRanking, overall};
 use crate::benchmark::record_store::UsedFile;
-use crate::benchmark::statistics::grouped;
 use crate::benchmark::wire::words;
+use crate::statistics::grouped;
 
 /// Version of the file.
 pub const SCHEMA: &str = "bench/1";

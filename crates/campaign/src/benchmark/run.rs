@@ -14,8 +14,8 @@ use crate::benchmark::definition::{Definition, Question, RecordFile, RecordSet, 
 use crate::benchmark::method::{self, BenchMethod, BenchModel, Failed};
 use crate::benchmark::record_store::{RecordStore, UsedFile};
 use crate::benchmark::results::{BenchDocument, Present, Skipped};
-use crate::benchmark::statistics::grouped;
 use crate::engine::{self, simulate, truths};
+use crate::statistics::grouped;
 use crate::task::Task;
 
 /// The records of one set or of one trial of it.

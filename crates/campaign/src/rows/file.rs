@@ -152,8 +152,8 @@ impl<B: ChunkReader> ChunkReader for CheckedPages<B> {
 impl<'a> RowReader<'a, disk::File> {
     /// Opens a file. Fails as wrong input when there is none, or when its columns are not those of the layout.
     pub fn open(path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
-        let file = disk::File::open(path)
-            .map_err(|error| Failure::input(format!("{}: cannot be opened: {error}", path.display())))?;
+        let file =
+            disk::File::open(path).map_err(|error| Failure::about(path, format!("cannot be opened: {error}")))?;
         Self::new(file, path, layout)
     }
 }
@@ -167,8 +167,7 @@ impl<'a> RowReader<'a, Bytes> {
 
 impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
     fn new(file: B, path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
-        let refuse =
-            |problem: String| Failure::input(format!("{}: {problem}; expected the rows of this study", path.display()));
+        let refuse = |problem: String| Failure::about(path, format!("{problem}; expected the rows of this study"));
         trial::decoder::guarded(|| {
             let file = SerializedFileReader::new(CheckedPages(file)).map_err(|error| refuse(error.to_string()))?;
             let schema = file.metadata().file_metadata().schema_descr_ptr();
@@ -196,9 +195,8 @@ impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
     /// The next rows, a few thousand at most; nothing when all have been read.
     pub(super) fn next_rows(&mut self) -> Result<Vec<StudyRow>, Failure> {
         let path = self.path.clone();
-        trial::decoder::guarded(|| self.decoded()).unwrap_or_else(|| {
-            Err(Failure::input(format!("{}: it is damaged; expected the rows of this study", path.display())))
-        })
+        trial::decoder::guarded(|| self.decoded())
+            .unwrap_or_else(|| Err(Failure::about(&path, "it is damaged; expected the rows of this study")))
     }
 
     fn decoded(&mut self) -> Result<Vec<StudyRow>, Failure> {
@@ -222,7 +220,7 @@ impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
     }
 
     fn damaged(&self, problem: &str) -> Failure {
-        Failure::input(format!("{}: {problem}; the file was changed or is of another study", self.path.display()))
+        Failure::about(&self.path, format!("{problem}; the file was changed or is of another study"))
     }
 
     /// Hands every row to `take`, in order.

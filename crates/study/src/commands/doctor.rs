@@ -5,7 +5,7 @@ use std::path::Path;
 
 use campaign::folder::ResultFolder;
 use campaign::manifest;
-use report::{Table, TableColumn};
+use report::Table;
 use scenario::failure::Failure;
 use serde_json::json;
 
@@ -49,7 +49,7 @@ pub fn run(common: &Common) -> Result<(), Failure> {
             document::say("doctor/1", table.collect::<serde_json::Map<_, _>>().into())?;
         }
         format => {
-            let mut table = Table::new([TableColumn::left("what"), TableColumn::left("found")]);
+            let mut table = Table::headed("what | found");
             found.iter().for_each(|(name, value)| table.push([name, value.as_str()]));
             screen::say(format.render(&table).trim_end())?;
         }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use report::Table;
 use report::number::{MISSING, fixed, optional};
-use report::{Table, TableColumn};
 use serde_json::{Value, json};
 use ship::angle::to_deg;
 use trial::Log;
@@ -96,16 +96,9 @@ fn angles(one: &Manoeuvre) -> [Option<f64>; 2] {
 }
 
 fn table(log: &Log, found: &[Manoeuvre]) -> Table {
-    let mut table = Table::new([
-        TableColumn::decimal("--trial"),
-        TableColumn::left("manoeuvre"),
-        TableColumn::decimal("from").unit("s"),
-        TableColumn::decimal("until").unit("s"),
-        TableColumn::left("clock"),
-        TableColumn::decimal("executes"),
-        TableColumn::decimal("rudder").unit("deg"),
-        TableColumn::decimal("heading").unit("deg"),
-    ]);
+    let mut table = Table::headed(
+        ".--trial | manoeuvre | .from [s] | .until [s] | clock | .executes | .rudder [deg] | .heading [deg]",
+    );
     for (number, one) in (1..).zip(found) {
         let clock = log.clock().map(|clock| format!("{} to {}", clock.at(one.from), clock.at(one.until)));
         let missing = || MISSING.to_owned();

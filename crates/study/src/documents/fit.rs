@@ -17,9 +17,6 @@ use crate::records::file_of;
 /// Name of the file.
 pub const FIT: &str = "fit.json";
 
-/// Name of the file with the curves of its figures.
-pub const CURVES: &str = "curves.json";
-
 /// The method whose fit is drawn on its own where it has one.
 const SHOWN: &str = "output-error";
 

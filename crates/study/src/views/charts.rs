@@ -9,7 +9,7 @@ use scenario::TRACE;
 
 use campaign::curves;
 use campaign::design::Design;
-use campaign::statistics::{Statistic, Z95};
+use campaign::statistics::{Statistic, Z95, grouped};
 use campaign::summary::{Performance, Summary};
 
 /// What a chart over the axes of a design shows.
@@ -238,16 +238,12 @@ struct ChartGroup {
 }
 
 fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
-    let mut groups: Vec<ChartGroup> = Vec::new();
-    for (index, cell) in design.cells.iter().enumerate() {
-        let others = cell.labels.iter().enumerate().filter(|(axis, _)| *axis != x).map(|(_, label)| label.as_str());
-        let name = others.collect::<Vec<_>>().join(", ");
-        match groups.iter_mut().find(|group| group.name == name) {
-            Some(group) => group.cells.push(index),
-            None => groups.push(ChartGroup { name, cells: vec![index] }),
-        }
-    }
-    groups
+    let others = |cell: &usize| {
+        let labels = design.cells[*cell].labels.iter().enumerate().filter(|(axis, _)| *axis != x);
+        labels.map(|(_, label)| label.as_str()).collect::<Vec<_>>().join(", ")
+    };
+    let groups = grouped(0..design.cells.len(), others).into_iter();
+    groups.map(|(name, cells)| ChartGroup { name, cells }).collect()
 }
 
 /// How a method is drawn.

@@ -6,6 +6,7 @@ use report::{Table, TableColumn};
 use super::predict_tables::words;
 use super::tables::head_of_cells;
 use campaign::design::Design;
+use campaign::statistics::Statistic;
 use campaign::summary::PredictionSummary;
 
 /// Every figure of every cell and method.
@@ -52,8 +53,5 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
 
 /// The share of trials whose interval holds, with its own 95 % interval.
 fn percent(line: &PredictionSummary) -> [String; 3] {
-    let share = line.coverage();
-    let ends = share.and_then(|share| share.ci95);
-    [share.map(|share| share.value), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])]
-        .map(|value| optional(value.map(|value| 100.0 * value), 1))
+    Statistic::flat(line.coverage()).map(|value| optional(value.map(|value| 100.0 * value), 1))
 }

@@ -99,9 +99,7 @@ fn with_ends(name: &str, unit: &'static str) -> [TableColumn; 3] {
 
 /// A figure and the ends of its interval with the digits of a machine.
 fn all_digits(figure: Option<Statistic>) -> [String; 3] {
-    let text = |value: Option<f64>| value.map_or_else(|| MISSING.to_owned(), |value| number::significant(value, 6));
-    let ends = figure.and_then(|figure| figure.ci95);
-    [text(figure.map(|figure| figure.value)), text(ends.map(|ends| ends[0])), text(ends.map(|ends| ends[1]))]
+    Statistic::flat(figure).map(|value| number::significant(value.unwrap_or(f64::NAN), 6))
 }
 
 /// The same in the width of a screen or a page: failures, median and rms errors with interval, coverage, spread over

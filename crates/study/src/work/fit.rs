@@ -23,6 +23,7 @@ use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
 use campaign::curves::{curve, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
+use campaign::statistics::grouped;
 
 /// What came out.
 pub struct FitResult {
@@ -184,34 +185,23 @@ fn speakers<'a>(methods: &'a [Named], entries: &[MethodEntry]) -> Vec<&'a dyn Id
 
 /// The message when no method gives an answer: every reason once.
 fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[String]) -> Failure {
-    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
-    for entry in entries {
-        let reason = entry.reason.as_deref().unwrap_or("no answer");
-        match reasons.iter_mut().find(|(known, _)| *known == reason) {
-            Some((_, methods)) => methods.push(&entry.method),
-            None => reasons.push((reason, vec![&entry.method])),
-        }
-    }
-    let file = file_of(record).0;
+    let reasons = grouped(entries, |entry| entry.reason.as_deref().unwrap_or("no answer"));
     let mut message = match (entries, reasons.as_slice()) {
-        ([only], _) => {
-            let reason = only.reason.as_deref().unwrap_or("no answer");
-            format!("{file}: {} cannot identify this record: {reason}", only.method)
-        }
-        (_, [(reason, _)]) => format!("{file}: no method can identify this record: {reason}"),
+        ([only], [(reason, _)]) => format!("{} cannot identify this record: {reason}", only.method),
+        (_, [(reason, _)]) => format!("no method can identify this record: {reason}"),
         _ => {
-            let lines: Vec<String> =
-                reasons.iter().map(|(reason, methods)| format!("\n  {}: {reason}", methods.join(", "))).collect();
-            format!("{file}: no method can identify this record{}", lines.concat())
+            let line = |(reason, own): &(&str, Vec<&MethodEntry>)| {
+                let methods: Vec<&str> = own.iter().map(|entry| entry.method.as_str()).collect();
+                format!("\n  {}: {reason}", methods.join(", "))
+            };
+            format!("no method can identify this record{}", reasons.iter().map(line).collect::<String>())
         }
     };
-    for warning in warnings {
-        message += &format!("\nnote: {warning}");
-    }
+    warnings.iter().for_each(|warning| message += &format!("\nnote: {warning}"));
     if entries.iter().any(|entry| entry.failure.as_deref() != Some("not-excited")) {
         message += "\nhelp: give a zig-zag, or a record in which the rudder is put to both sides for as long as the ship needs to answer";
     }
-    Failure::input(message)
+    Failure::about(file_of(record).0, message)
 }
 
 fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {

@@ -4,7 +4,7 @@
 use ::trace::{Analysis, Settings, TraceError};
 use campaign::folder::ResultFolder;
 use campaign::known::{self, RecordFacts};
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
 use trial::{Channel, Trial};
 
 use super::planned;
@@ -34,8 +34,7 @@ impl Traced {
 
     /// Writes document and tables. Fails when a file cannot be written.
     pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
-        let text = documents::text(&self.document).on("describe", &folder.path().join(TRACE))?;
-        folder.keep(TRACE, text)?;
+        documents::keep(folder, TRACE, &self.document)?;
         self.tables.iter().try_for_each(|(name, table)| folder.write(name, table))
     }
 }
