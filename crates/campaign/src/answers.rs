@@ -251,9 +251,9 @@ mod tests {
     const TWO_CELLS: &str = "[[sweep]]\nkey = \"sensor.heading-noise-deg\"\nvalues = [0.1, 0.2]\n";
 
     #[derive(Default)]
-    struct Told(Mutex<String>);
+    struct KeptWarnings(Mutex<String>);
 
-    impl Observer for Told {
+    impl Observer for KeptWarnings {
         fn warn(&self, line: &str) {
             *self.0.lock().expect("nobody panics") += line;
         }
@@ -263,7 +263,7 @@ mod tests {
         let desk = tempfile::tempdir().expect("a folder");
         let path = desk.path().join("answers.csv");
         std::fs::write(&path, text).expect("written");
-        let told = Told::default();
+        let told = KeptWarnings::default();
         let read = read(&path, scenario, &told).map_err(|failure| failure.message);
         (read, told.0.into_inner().expect("nobody panics"))
     }

@@ -6,6 +6,7 @@ use report::figures::{OvershootMark, ReplayCurves, TimeSpan, ZigZagMark, ZigzagT
 use report::{CurveOrigin, PlotCurve};
 use scenario::MethodName;
 use ship::angle::to_deg;
+use trial::zigzag::PhasePlane;
 use trial::{Trial, ZigZag};
 
 use crate::answer::MethodEntry;
@@ -22,9 +23,26 @@ pub fn origin(names: &[MethodName], label: &str) -> CurveOrigin {
     }
 }
 
+/// Angles as degrees.
+pub fn degrees(values: &[f64]) -> Vec<f64> {
+    values.iter().copied().map(to_deg).collect()
+}
+
 /// Radians over seconds as degrees over seconds.
 pub fn curve(time: &[f64], angle: &[f64]) -> PlotCurve {
-    PlotCurve::new(time, angle.iter().map(|&angle| to_deg(angle)).collect::<Vec<_>>())
+    PlotCurve::new(time, degrees(angle))
+}
+
+/// Yaw rate over heading of a record, and whether the rate is the slope of its smoothed heading.
+pub fn phase_of(trial: &Trial) -> (Option<PlotCurve>, bool) {
+    let phase = PhasePlane::of(trial);
+    let smoothed = phase.as_ref().is_some_and(|phase| phase.smoothed);
+    (phase.map(|phase| phase_curve(&phase.heading, &phase.yaw_rate)), smoothed)
+}
+
+/// Yaw rate over heading, degrees.
+pub fn phase_curve(heading: &[f64], yaw_rate: &[f64]) -> PlotCurve {
+    PlotCurve::new(degrees(heading), degrees(yaw_rate))
 }
 
 /// The trial with its characteristic points marked.

@@ -22,7 +22,7 @@ use crate::reference::{TrialReference, nearest_first_order};
 use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::summary::effect_ids;
 use crate::task::Task;
-use crate::timings::Timing;
+use crate::timings::TrialTiming;
 use scenario::{Procedure, Scenario, Specification, TrialSpecification};
 
 /// Rows of one trial, and what they took.
@@ -30,7 +30,7 @@ pub struct TrialOutcome {
     /// One row per method, in the order of the scenario.
     pub rows: Vec<StudyRow>,
     /// Time to simulate, and of every method.
-    pub timing: Timing,
+    pub timing: TrialTiming,
 }
 
 /// Key of all that is random in one trial.
@@ -128,7 +128,7 @@ impl<'a> TrialRunner<'a> {
                 ((0..cell.methods.len()).map(|method| StudyRow { method, ..blank.clone() }).collect(), Vec::new())
             }
         };
-        TrialOutcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
+        TrialOutcome { rows, timing: TrialTiming { cell: task.cell as u64, simulation, methods } }
     }
 
     /// The answers of all methods to a trial, and the times they took.

@@ -13,7 +13,7 @@ use scenario::failure::Failure;
 const SIMULATION: &str = "(simulation)";
 
 /// Wall time of one trial.
-pub struct Timing {
+pub struct TrialTiming {
     /// Index of the cell.
     pub cell: u64,
     /// To simulate it.
@@ -49,7 +49,7 @@ impl Timings {
     }
 
     /// Takes note of one trial.
-    pub fn add(&mut self, timing: &Timing) {
+    pub fn add(&mut self, timing: &TrialTiming) {
         let moments = self.of_cell(timing.cell);
         let microseconds = |time: &Duration| time.as_secs_f64() * 1e6;
         moments[0].add(microseconds(&timing.simulation));

@@ -181,13 +181,7 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
     let found = manoeuvres(&log);
     let manoeuvre = match asked {
         Some(number) => number.checked_sub(1).and_then(|place| found.get(place)).ok_or_else(|| {
-            Failure::input(format!(
-                "{file}: there is no manoeuvre {number}; `study find {file}` lists {}",
-                match found.len() {
-                    0 => String::from("none"),
-                    count => format!("{count}"),
-                }
-            ))
+            Failure::about(path, format!("there is no manoeuvre {number}; `study find {file}` lists {}", found.len()))
         })?,
         None => {
             let zigzags: Vec<(usize, &Manoeuvre)> =
@@ -254,9 +248,8 @@ fn ship(
     let first = log.channel(Channel::Speed).map(|speed| &speed[..speed.len().div_ceil(10)]);
     let mut speeds: Vec<f64> = first.into_iter().flatten().copied().filter(|speed| *speed > 0.0).collect();
     let Some(speed) = upper_median(&mut speeds) else {
-        return Err(Failure::input(format!(
-            "{file}: the record has no speed; give the approach speed beside --length-m, --speed-kn or --speed-m-s"
-        )));
+        let advice = "give the approach speed beside --length-m, --speed-kn or --speed-m-s";
+        return Err(Failure::about(path, format!("the record has no speed; {advice}")));
     };
     warnings.push(format!(
         "{file}: the approach speed is taken from the record, {} kn in its first tenth",

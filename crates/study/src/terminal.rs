@@ -6,13 +6,12 @@ use campaign::Observer;
 use indicatif::ProgressBar;
 use scenario::failure::Failure;
 
-use crate::interrupt::{self, StopListener};
-use crate::{progress, screen};
+use crate::{interrupt, progress, screen};
 
 /// The terminal of a person who waits.
 pub struct Terminal {
     quiet: bool,
-    bar: OnceLock<(ProgressBar, StopListener)>,
+    bar: OnceLock<ProgressBar>,
 }
 
 impl Terminal {
@@ -24,18 +23,17 @@ impl Terminal {
 
 impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
-        self.bar.get_or_init(|| (progress::bar(most, done, self.quiet), StopListener::new()));
+        interrupt::listen(true);
+        self.bar.get_or_init(|| progress::bar(most, done, self.quiet));
     }
 
     fn advance(&self) {
-        self.bar.get().iter().for_each(|(bar, _)| bar.inc(1));
+        self.bar.get().iter().for_each(|bar| bar.inc(1));
     }
 
     fn end(&self) {
-        self.bar.get().iter().for_each(|(bar, listener)| {
-            bar.finish();
-            listener.end();
-        });
+        self.bar.get().iter().for_each(|bar| bar.finish());
+        interrupt::listen(false);
     }
 
     fn note(&self, line: &str) {
@@ -49,7 +47,7 @@ impl Observer for Terminal {
     }
 
     fn is_asked_to_stop(&self) -> bool {
-        self.bar.get().is_some_and(|(_, listener)| listener.is_asked())
+        interrupt::is_asked()
     }
 
     fn give_up(&self, failure: &Failure) {

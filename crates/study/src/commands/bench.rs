@@ -13,11 +13,11 @@ use scenario::problem::suggestion;
 
 use crate::bench_options::BenchRequest;
 use crate::options::Common;
+use crate::outside;
 use crate::screen::{self, CommandOutput};
 use crate::terminal::Terminal;
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{bench_figures, bench_page, bench_tables};
-use crate::{interrupt, outside};
 
 /// What other programs read.
 const BENCH: &str = "bench.json";
@@ -83,9 +83,6 @@ fn methods(request: &BenchRequest) -> Result<Vec<BenchMethod>, Failure> {
     methods.retain(|method| names.is_empty() || names.iter().any(|name| name == method.label()));
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let outside = outside::methods(&request.external, &known)?;
-    if !outside.is_empty() {
-        interrupt::install();
-    }
     methods.extend(outside.into_iter().map(|(label, method)| BenchMethod::new(label, Arc::from(method))));
     Ok(methods)
 }
@@ -111,12 +108,7 @@ fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Res
     folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
     bench_figures::remove(folder)?;
     let pages = folder.inside(METHODS)?;
-    for name in campaign::disk::names(pages.path()).on("list the folder", pages.path())? {
-        let old = pages.path().join(&name);
-        if name.ends_with(".md") {
-            campaign::disk::remove(&old).on("remove", &old)?;
-        }
-    }
+    pages.remove_all(|name| name.ends_with(".md"))?;
     for method in &results.methods {
         pages.write(&format!("{method}.md"), bench_page::of_method(results, method).to_markdown())?;
     }

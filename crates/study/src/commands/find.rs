@@ -10,10 +10,10 @@ use trial::Log;
 use trial::file::called;
 use trial::find::{Kind, Manoeuvre};
 
+use crate::documents;
 use crate::options::{Common, FindRequest, Format};
 use crate::records::{expand, manoeuvres, open};
 use crate::screen;
-use crate::views::document;
 use scenario::failure::Failure;
 
 /// Prints the manoeuvres of every log.
@@ -56,7 +56,7 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
     if common.format == Format::Json {
-        document::say("find/1", json!({ "logs": logs }))?;
+        documents::say("find/1", json!({ "logs": logs }))?;
     }
     screen::warn_of(&warnings);
     Ok(())

@@ -8,9 +8,9 @@ use serde_json::json;
 use ship::angle::KNOT;
 use ship::{effects, ships};
 
+use crate::documents;
 use crate::options::{Common, Format, Listed};
 use crate::screen;
-use crate::views::document;
 use trial::Channel;
 use trial::names::{self, ColumnMeaning};
 use trial::sidecar::{self, Key};
@@ -40,7 +40,7 @@ pub fn run(&ListRequest { what }: &ListRequest, common: &Common) -> Result<(), F
     };
     if common.format == Format::Json {
         let name = what.to_possible_value().map(|value| value.get_name().to_owned());
-        return document::say("list/1", json!({ "what": name, "entries": table.to_records() }));
+        return documents::say("list/1", json!({ "what": name, "entries": table.to_records() }));
     }
     // What stands before a list in Markdown, which is a page of the documentation.
     let head = match what {

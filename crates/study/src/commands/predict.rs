@@ -14,7 +14,7 @@ use crate::records::read_others;
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
-use crate::work::predict::{Model, PredictInput, predict};
+use crate::work::predict::{PredictInput, StoredModel, predict};
 use campaign::folder::ResultFolder;
 use scenario::failure::Failure;
 
@@ -36,8 +36,8 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         ));
     }
     let mut warnings = Vec::new();
-    let mut read = |paths: &[PathBuf]| -> Result<Vec<Model>, Failure> {
-        paths.iter().map(|path| Model::of_file(path, request, &mut warnings)).collect()
+    let mut read = |paths: &[PathBuf]| -> Result<Vec<StoredModel>, Failure> {
+        paths.iter().map(|path| StoredModel::of_file(path, request, &mut warnings)).collect()
     };
     let (models, ballast) = (read(&request.models)?, read(&request.ballast)?);
     let current = match &request.current_from {

@@ -1,12 +1,12 @@
 //! The curves behind the figures of a prediction, as tables.
 
+use campaign::curves::degrees;
 use predict::PredictDocument;
 use predict::prediction::Bands;
 use predict::steady::SteadyCurve;
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 
-use super::record_figures::degrees;
 use crate::documents::columns::CurveTable;
 use crate::records::names;
 use scenario::name::slug;

@@ -3,7 +3,7 @@
 
 use ::trace::document::{BeforeAfter, ErrorsEntry, Outcome};
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
-use campaign::curves::curve;
+use campaign::curves::{curve, degrees, phase_curve, phase_of};
 use estimation::residuals::{GappedSeries, SpectralLine, autocorrelation, spectrum};
 use identify::replay::Replay;
 use report::figures::{
@@ -17,7 +17,7 @@ use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
 use super::missing_moment;
-use super::record_figures::{ModelOverTime, degrees, over_time, phase_curve, phase_of, phase_plane};
+use super::record_figures::{ModelOverTime, over_time, phase_plane};
 use super::trace_tables::{horizon, term};
 use crate::documents::curves::{TraceCurves, TracedRecord};
 use crate::documents::trace::{RecordEntry, TraceDocument, slugs, suffix};

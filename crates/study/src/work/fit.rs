@@ -10,18 +10,17 @@ use report::figures::{Replays, ZigzagTrial};
 use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
 use ship::angle::to_deg;
-use trial::zigzag::PhasePlane;
 use trial::{Channel, Trial, ZigZag, ZigZagError};
 
 use super::every_scale;
 use super::single_records;
 use crate::documents::fit::{FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
 use crate::outside::{self, Named, NamedCommand};
+use crate::progress;
 use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
-use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
-use campaign::curves::{curve, replay_curves, zigzag_figure};
+use campaign::curves::{curve, phase_curve, phase_of, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
 use campaign::statistics::grouped;
 
@@ -53,11 +52,7 @@ impl FitResult {
     }
 
     fn record(&self, trial: &Trial, name: String, validation: bool) -> FitRecord {
-        let phase = |heading: &[f64], rate: &[f64]| {
-            let degrees = |values: &[f64]| values.iter().copied().map(to_deg).collect::<Vec<f64>>();
-            PlotCurve::new(degrees(heading), degrees(rate))
-        };
-        let own = PhasePlane::of(trial);
+        let (phase, smoothed) = phase_of(trial);
         let title = if validation { format!("{name} (validation)") } else { name.clone() };
         let zigzag = ZigZag::of(trial).ok().filter(|_| !validation);
         let rejected = |channel: Channel| {
@@ -81,9 +76,9 @@ impl FitResult {
             },
             rudder: curve(trial.time(), trial.rudder()),
             rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
-            smoothed: own.as_ref().is_some_and(|own| own.smoothed),
-            phase: own.map(|own| phase(&own.heading, &own.yaw_rate)),
-            phase_replay: shown.map(|own| phase(&own.heading, &own.yaw_rate)),
+            smoothed,
+            phase,
+            phase_replay: shown.map(|own| phase_curve(&own.heading, &own.yaw_rate)),
             name,
         }
     }
@@ -159,9 +154,6 @@ pub fn methods(names: &[String], external: &[NamedCommand], seed: Option<u64>) -
         return Err(Failure::input(format!("--method {unknown}: no such method; use one of {}", known.join(", "))));
     }
     let outside = outside::methods(external, &known)?;
-    if !outside.is_empty() {
-        interrupt::install();
-    }
     Ok(all
         .into_iter()
         .filter(|method| names.is_empty() || names.iter().any(|name| name == method.id()))

@@ -17,13 +17,13 @@ use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
 
 /// A trace before it is written: its document, and the tables of its curves under the names of their files.
-pub struct Traced {
+pub struct TraceResult {
     /// `trace.json`.
     pub document: TraceDocument,
     tables: Vec<(String, String)>,
 }
 
-impl Traced {
+impl TraceResult {
     /// The curves, as whoever reads the files has them.
     pub fn curves(&self) -> Result<TraceCurves, Failure> {
         TraceCurves::from_tables(&self.document, |name| {
@@ -49,7 +49,7 @@ pub fn trace(
     settings: &Settings,
     quiet: bool,
     warnings: &mut Vec<String>,
-) -> Result<Traced, Failure> {
+) -> Result<TraceResult, Failure> {
     let together = scales::together(records, others)?;
     let busy = progress::busy("tracing", quiet);
     let analysis = ::trace::trace(&together.trials, &together.others, settings);
@@ -95,7 +95,7 @@ pub fn trace(
         scales,
         trace: ::trace::Document { next_trial: next_trial(&analysis, &trials), ..analysis.document },
     };
-    Ok(Traced { document, tables })
+    Ok(TraceResult { document, tables })
 }
 
 /// Why there is no trace of some records.
@@ -107,7 +107,7 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
         TraceError::Asked { .. } => "; leave it out of the request",
         TraceError::Settings(_) => "",
     };
-    Failure::input(format!("{}: {error}{why}", file_of(first).0))
+    Failure::about(file_of(first).0, format!("{error}{why}"))
 }
 
 /// The trial that would tell most, in one sentence.

@@ -5,7 +5,7 @@ use crate::scenarios::GOOD;
 
 /// The page of a folder, which has every figure of the Markdown beside it.
 fn page(desk: &Desk, folder: &str) -> String {
-    let read = |name: &str| String::from_utf8(desk.bytes(&format!("{folder}/{name}"))).expect("UTF-8");
+    let read = |name: &str| desk.text(&format!("{folder}/{name}"));
     let (markdown, page) = (read("report.md"), read("report.html"));
     assert!(page.len() < 2_000_000, "{folder}: {} bytes", page.len());
     assert_eq!(page.matches("<figure>").count(), markdown.matches("![").count(), "{folder}");

@@ -152,7 +152,7 @@ fn what_cannot_be_predicted_is_refused_with_the_cure() {
     refused(&["other.json"], &["rows/1", "fit.json or trace.json"]);
     desk.file("old.json", r#"{"schema": "fit/1", "methods": []}"#);
     refused(&["old.json"], &["old.json", "older program", "study fit"]);
-    let text = String::from_utf8(desk.bytes("f/fit.json")).expect("text");
+    let text = desk.text("f/fit.json");
     desk.file("broken.json", text.replace("\"fitted\"", "\"fited\""));
     refused(&["broken.json"], &["broken.json", "fitted"]);
     // Without the sidecar beside it nobody knows how long the ship is.
@@ -218,7 +218,7 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     for part in ["3.0 mean draughts", "Beaufort 6", "tried to starboard only", "20/20 zig-zag: not tried"] {
         assert!(remarks.contains(part), "{part}: {remarks}");
     }
-    let page = String::from_utf8(desk.bytes("p/trial-form.md")).expect("text");
+    let page = desk.text("p/trial-form.md");
     for part in
         ["training \\| ship", "| track reach", "≤ 11.0", "measured, run.csv", "not in the records", "Beaufort 6"]
     {
@@ -280,7 +280,7 @@ fn a_trial_in_ballast_is_corrected_to_full_load() {
     assert_eq!(entry(&json, "loading condition", "")["value"], "tested at partial load and corrected");
     // The replay is that of the ship as she was tried.
     assert!(json["replays"][0]["band_coverage_90"].as_f64().is_some_and(|share| share > 0.6), "{}", json["replays"]);
-    let page = String::from_utf8(desk.bytes("p/report.md")).expect("text");
+    let page = desk.text("p/report.md");
     assert!(page.contains("## Corrected to full load") && page.contains("trial-form.md"), "{page}");
     // F = B corrects nothing.
     let same = ["predict", "f/fit.json", "--ballast", "f/fit.json", "--replay", "run.csv", "--out", "s"];

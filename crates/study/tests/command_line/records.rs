@@ -1,7 +1,7 @@
 //! Records, good and bad: `study fit`.
 
 use std::fmt::Write as _;
-use std::io::{BufRead, BufReader, Write as _};
+use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
 use crate::desk::{Desk, measured, of_repository, with_column, zig_zag_csv, zig_zag_csv_of};
@@ -137,19 +137,9 @@ fn only_files_and_pipes_are_read_and_only_so_far() {
     let columns = ["fit", "good.csv", "--columns", "long.toml"];
     desk.run(&columns).is_refused(2, &["long.toml", "1400000 bytes", "a sidecar has at most 1048576"]);
 
-    let piped = |arguments: &[&str], text: &[u8]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_study"));
-        command.args(arguments).current_dir(desk.path("")).stdin(Stdio::piped());
-        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
-        // The program may stop before it has read everything.
-        let _ = child.stdin.take().expect("piped").write_all(text);
-        let output = child.wait_with_output().expect("it ends");
-        (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
-    };
-    let (code, errors) = piped(&["fit", "/dev/stdin", "--method", "srivc", "--out", "piped"], zig_zag_csv().as_bytes());
-    assert_eq!(code, Some(0), "{errors}");
-    let (code, errors) = piped(&["check", "/dev/stdin"], &b"# a long note\n".repeat(100_000));
-    assert!(code == Some(2) && errors.contains("more bytes, a scenario has at most 1048576"), "{errors}");
+    desk.run_with_input(&["fit", "/dev/stdin", "--method", "srivc", "--out", "piped"], zig_zag_csv()).is_done();
+    let long = desk.run_with_input(&["check", "/dev/stdin"], "# a long note\n".repeat(100_000));
+    long.is_refused(2, &["more bytes, a scenario has at most 1048576"]);
 }
 
 /// A scenario may come from a stranger, and may name any file of the reader.

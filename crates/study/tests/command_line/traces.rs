@@ -97,7 +97,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     assert!(json["effects"][0]["delta_bic"].as_f64().is_some_and(|change| change < -10.0));
     let errors = &json["error"]["identification"][0];
     assert!(errors["after"]["heading_rmse_deg"].as_f64() < errors["before"]["heading_rmse_deg"].as_f64());
-    let report = String::from_utf8(desk.bytes("run-trace/report.md")).expect("UTF-8");
+    let report = desk.text("run-trace/report.md");
     for part in ["Records that were not fitted", "Evidence", "Effects", "Candidates", "Noise", "Model", "Next trial"] {
         assert!(report.contains(&format!("## {part}")), "{part}");
     }
@@ -109,7 +109,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     let tables =
         [("replay", 100), ("replay-other", 100), ("missing-moment-run", 100), ("missing-moment-run-curves", 20)];
     for (file, rows) in tables {
-        let table = String::from_utf8(desk.bytes(&format!("run-trace/{file}.csv"))).expect("UTF-8");
+        let table = desk.text(&format!("run-trace/{file}.csv"));
         let head = table.lines().next().unwrap_or_default();
         for column in head.split(',') {
             let listed = column.replace("before_", "MODEL_").replace("after_", "MODEL_");
@@ -132,7 +132,7 @@ fn a_trace_is_drawn_again_from_its_files() {
     for file in ["report.md", "report.html", "record.svg", "residual.svg", "evidence.svg", "missing-moment-run.svg"] {
         assert!(desk.bytes(&format!("t/{file}")) == desk.bytes(&format!("again/{file}")), "{file}");
     }
-    let text = String::from_utf8(desk.bytes("t/trace.json")).expect("UTF-8");
+    let text = desk.text("t/trace.json");
     desk.file("t/trace.json", text.replacen("\"headline\": \"", "\"headline\": \"Told anew. ", 1));
     assert!(desk.run(&["report", "t"]).is_done().out.starts_with("Told anew. "));
     desk.file("t/replay.csv", "t_s,heading_deg\n0,0\n");
@@ -155,7 +155,7 @@ fn the_missing_moment_is_written() {
     let best = &records[0]["over"][0];
     assert_eq!((&best["channel"], &best["shows"]), (&Value::from("yaw rate"), &Value::from(true)), "{records:?}");
     assert!(best["inside"].as_array().is_some_and(|inside| inside.contains(&"nonlinear_damping".into())), "{best}");
-    let table = String::from_utf8(desk.bytes("here/missing-moment-run-1.csv")).expect("UTF-8");
+    let table = desk.text("here/missing-moment-run-1.csv");
     let mut lines = table.lines();
     assert_eq!(
         lines.next(),
@@ -167,7 +167,7 @@ fn the_missing_moment_is_written() {
     let rows: Vec<Vec<f64>> =
         lines.map(|line| line.split(',').map(|value| value.parse().expect("a number")).collect()).collect();
     assert!(rows.len() > 100 && rows.iter().all(|row| row.len() == 9 && row[3] <= row[1] && row[1] <= row[4]));
-    let report = String::from_utf8(desk.bytes("here/report.md")).expect("UTF-8");
+    let report = desk.text("here/report.md");
     for ending in ["png", "svg"] {
         assert!(desk.path(&format!("here/missing-moment-run-1.{ending}")).exists(), "{ending}");
     }
