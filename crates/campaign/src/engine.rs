@@ -23,7 +23,7 @@ use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::TrialTiming;
-use scenario::{Procedure, Scenario, Specification, TrialSpecification};
+use scenario::{Method, Procedure, Scenario, Specification, TrialSpecification};
 
 /// Rows of one trial, and what they took.
 pub struct TrialOutcome {
@@ -161,10 +161,8 @@ impl<'a> TrialRunner<'a> {
         let check = self.scenario.predictions.as_ref();
         let check = check.map(|asked| PredictionCheck::new(asked, &specification.simulation, key, &trials));
         let question = TrialQuestion { trials: &trials, key, reference, missing: &specification.missing, check };
-        let methods = cell.methods.iter().enumerate();
-        methods
-            .map(|(index, method)| question.ask(&method.procedure, StudyRow { method: index, ..blank.clone() }))
-            .unzip()
+        let row = |(method, own): (usize, &Method)| question.ask(&own.procedure, StudyRow { method, ..blank.clone() });
+        cell.methods.iter().enumerate().map(row).unzip()
     }
 
     /// The reference of a cell whose trials all have one specification: made with its first trial, whichever trial
@@ -201,10 +199,8 @@ impl TrialQuestion<'_> {
             first_order => {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
                 let time = start.elapsed();
-                (
-                    answer.map(|estimate| self.estimated(&blank, &estimate)).map_err(|error| error.in_a_row().into()),
-                    time,
-                )
+                let row = answer.map(|estimate| self.estimated(&blank, &estimate));
+                (row.map_err(|error| error.in_a_row().into()), time)
             }
         };
         (row.unwrap_or_else(|reason| StudyRow { failure: Some(reason), ..blank }), time)
@@ -212,13 +208,10 @@ impl TrialQuestion<'_> {
 
     fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
         let error = |trials: &[Trial]| pooled_rmse_deg(trials, estimate);
+        let validation = self.reference.validation.as_ref();
         StudyRow {
             heading_rmse_deg: error(self.trials),
-            validation_rmse_deg: self
-                .reference
-                .validation
-                .as_ref()
-                .and_then(|trial| error(std::slice::from_ref(trial))),
+            validation_rmse_deg: validation.and_then(|trial| error(std::slice::from_ref(trial))),
             evaluations: Some(estimate.evaluations as f64),
             stop: Some(estimate.stop.as_str()),
             predicted: self.check.as_ref().map(|check| check.figures(|facts| known::of_estimate(estimate, facts))),

@@ -91,11 +91,7 @@ impl Manifest {
                 wall_time_s: 0.0,
             },
             assumptions: scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect(),
-            crates: env!("KEMPF_NUMERIC_CRATES")
-                .split(',')
-                .filter(|text| !text.is_empty())
-                .map(str::to_owned)
-                .collect(),
+            crates: env!("KEMPF_NUMERIC_CRATES").split_terminator(',').map(str::to_owned).collect(),
             sha256: BTreeMap::new(),
             scenario: scenario.text.clone(),
         }

@@ -59,14 +59,12 @@ pub fn run(
     let work: Vec<(&SharedFit, &BenchMethod)> =
         fits.iter().flat_map(|fit| methods.iter().map(move |method| (fit, method))).collect();
     observer.begin(work.len() as u64, 0);
-    let answers: Option<Vec<Vec<Option<CaseAnswer>>>> = work
-        .par_iter()
-        .map(|(fit, method)| {
-            let answers = (!observer.is_asked_to_stop()).then(|| answers(fit, method));
-            observer.advance();
-            answers
-        })
-        .collect();
+    let answer = |(fit, method): &(&SharedFit, &BenchMethod)| {
+        let answers = (!observer.is_asked_to_stop()).then(|| answers(fit, method));
+        observer.advance();
+        answers
+    };
+    let answers: Option<Vec<Vec<Option<CaseAnswer>>>> = work.par_iter().map(answer).collect();
     observer.end();
     let answers = answers.ok_or_else(|| Failure::work("stopped; nothing was written"))?;
     let mut cases = Vec::new();
@@ -172,11 +170,8 @@ fn answered(trial: &BenchTrial, question: &Question, model: &BenchModel) -> Resu
     match question.task {
         BenchTask::Name => {
             let named = model.named().unwrap_or_default();
-            Ok(CaseAnswer {
-                naming: Some(Naming::of(missing(trial).as_deref(), &named)),
-                named,
-                ..CaseAnswer::default()
-            })
+            let naming = Some(Naming::of(missing(trial).as_deref(), &named));
+            Ok(CaseAnswer { naming, named, ..CaseAnswer::default() })
         }
         BenchTask::Indices => indices(trial, model).ok_or_else(|| Failed::of("not-finite", &"K or T is not finite")),
         _ => {

@@ -66,12 +66,8 @@ fn studies(folder: &Path) -> Result<Vec<Study>, Failure> {
     let names = disk::names(folder).map_err(|error| {
         Failure::about(folder, format!("{error}; give the folder that holds the folders of studies"))
     })?;
-    let folders: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
-    let studies: Vec<Study> = folders
-        .iter()
-        .filter(|folder| folder.join(files::MANIFEST).is_file())
-        .map(|folder| study(folder))
-        .collect::<Result<_, _>>()?;
+    let folders = names.iter().map(|name| folder.join(name)).filter(|own| own.join(files::MANIFEST).is_file());
+    let studies: Vec<Study> = folders.map(|folder| study(&folder)).collect::<Result<_, _>>()?;
     if studies.is_empty() {
         let problem = format!("no folder in it holds a {}", files::MANIFEST);
         return Err(Failure::about(folder, format!("{problem}; run a scenario first")));

@@ -114,17 +114,12 @@ pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
             [value, low, high].map(text).to_vec()
         }
     };
-    for board in &results.boards {
-        for standing in &board.standings {
-            let held =
-                |place: usize| standing.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].of as f64);
-            let head = [board.task.id(), board.field.as_str()].map(str::to_owned);
-            let counts = [board.cases.to_string(), board.clusters.to_string(), standing.method.clone()];
-            let figures = [Some(standing.median), Some(standing.high), standing.ratio, standing.better.map(percent)];
-            let line = head.into_iter().chain(counts).chain([standing.failed.to_string()]);
-            let line = line.chain(figures.into_iter().flat_map(all));
-            table.push(line.chain([Some(standing.rank), held(0), held(1)].map(text)));
-        }
+    for (board, own) in results.boards.iter().flat_map(|board| board.standings.iter().map(move |own| (board, own))) {
+        let held = |place: usize| own.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].of as f64);
+        let head = [board.task.id(), &board.field, &board.cases.to_string(), &board.clusters.to_string(), &own.method];
+        let figures = [Some(own.median), Some(own.high), own.ratio, own.better.map(percent)];
+        let line = head.map(str::to_owned).into_iter().chain([own.failed.to_string()]);
+        table.push(line.chain(figures.into_iter().flat_map(all)).chain([Some(own.rank), held(0), held(1)].map(text)));
     }
     table
 }

@@ -172,9 +172,8 @@ impl<'a> ComparedMethods<'a> {
         let cells = || groups.iter().flat_map(|group| &group.cells);
         let places = cells().flat_map(|&cell| self.methods.iter().map(move |&method| (cell, method)));
         let panels = 0..self.measure.panels();
-        let figures: Vec<(Statistic, bool)> = places
-            .flat_map(|(cell, method)| panels.clone().filter_map(move |panel| self.of(cell, method, panel)))
-            .collect();
+        let of = |(cell, method)| panels.clone().filter_map(move |panel| self.of(cell, method, panel));
+        let figures: Vec<(Statistic, bool)> = places.flat_map(of).collect();
         let is_cut = figures.iter().any(|(_, is_worthless)| *is_worthless);
         let is_exact = self.measure == ErrorMeasure::Rms && figures.iter().any(|(figure, _)| figure.value == EXACT);
         let remarks =
@@ -288,10 +287,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
     let stack = Stack {
         x: vec![across; groups.len()],
         rows: titles.iter().map(row).collect(),
-        panels: (0..titles.len())
-            .flat_map(|row| groups.iter().map(move |group| (row, group)))
-            .map(|(r, g)| panel(r, g))
-            .collect(),
+        panels: (0..titles.len()).flat_map(|row| groups.iter().map(move |group| panel(row, group))).collect(),
         marks: marks.map(|mark| AxisLine { at: mark.at, label: mark.label.clone() }).collect(),
         ..Stack::default()
     };

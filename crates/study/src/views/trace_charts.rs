@@ -126,14 +126,15 @@ fn shares(
 /// Power over the expected likelihood ratio, for cells with one missing effect.
 pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
     let points = |needs_search: bool| -> Vec<MeasuredShare> {
-        let single = lines.iter().filter(|line| line.missing.len() == 1);
-        single
-            .filter(|line| is_of_time(&line.missing[0]) == needs_search)
-            .filter_map(|line| {
-                let share = line.complete_share()?.times(100.0);
-                Some((line.expected.filter(|expected| *expected > SMALLEST)?, share.value, share.ci95))
-            })
-            .collect()
+        let is_wanted = |line: &&TraceSummary| match &line.missing[..] {
+            [only] => is_of_time(only) == needs_search,
+            _ => false,
+        };
+        let point = |line: &TraceSummary| {
+            let share = line.complete_share()?.times(100.0);
+            Some((line.expected.filter(|expected| *expected > SMALLEST)?, share.value, share.ci95))
+        };
+        lines.iter().filter(is_wanted).filter_map(point).collect()
     };
     let series = [(false, "an effect of the ship or its gear"), (true, "a moment that depends on time")];
     let series = series.map(|(of_time, name)| (name, points(of_time)));
@@ -153,13 +154,11 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
 
 /// Probabilities and how often they came true, for traces of ships whose effects are known; `None` without any.
 pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
-    let points: Vec<MeasuredShare> = promised(lines)
-        .iter()
-        .filter_map(|range| {
-            let share = share(range.present, range.effects)?.times(100.0);
-            Some((100.0 * range.sum / range.effects as f64, share.value, share.ci95))
-        })
-        .collect();
+    let point = |range: &CalibrationBin| {
+        let share = share(range.present, range.effects)?.times(100.0);
+        Some((100.0 * range.sum / range.effects as f64, share.value, share.ci95))
+    };
+    let points: Vec<MeasuredShare> = calibration(lines).iter().filter_map(point).collect();
     let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
     let x = Ruler::new("mean probability given [%]", Division::Percent);
     let theory = vec![(String::from("as promised"), diagonal)];
@@ -167,7 +166,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
 }
 
 /// Effects by their probability, over all cells.
-pub fn promised(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
+pub fn calibration(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
     let mut all = vec![CalibrationBin::default(); CALIBRATION.len() - 1];
     for line in lines {
         all.iter_mut().zip(line.calibration).for_each(|(all, own)| *all += own);
@@ -183,13 +182,8 @@ fn is_of_time(id: &str) -> bool {
 fn exceeds(freedom: u32, noncentrality: f64, limit: f64) -> f64 {
     let Ok(mixture) = Poisson::new((0.5 * noncentrality).max(f64::MIN_POSITIVE)) else { return 0.0 };
     let reach = 0.5 * noncentrality + 10.0 * (0.5 * noncentrality).sqrt() + 20.0;
-    (0..reach as u64)
-        .map(|k| {
-            let central = ChiSquared::new(f64::from(freedom) + 2.0 * k as f64).map_or(0.0, |chi| chi.sf(limit));
-            mixture.pmf(k) * central
-        })
-        .sum::<f64>()
-        .min(1.0)
+    let central = |k: u64| ChiSquared::new(f64::from(freedom) + 2.0 * k as f64).map_or(0.0, |chi| chi.sf(limit));
+    (0..reach as u64).map(|k| mixture.pmf(k) * central(k)).sum::<f64>().min(1.0)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use report::number::{self, MISSING};
 use report::{Table, TableColumn};
 
 use super::tables::head_of_cells;
-use super::trace_charts::promised;
+use super::trace_charts::calibration;
 use campaign::design::Design;
 use campaign::statistics::{Statistic, share};
 use campaign::summary::{CALIBRATION, CLEAR, Performance, Summary, TraceSummary};
@@ -65,7 +65,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Table {
         ">probability from [%] | >to [%] | >effects | .mean probability [%] | .present [%] | \
             .low [%] | .high [%]",
     );
-    for (range, ends) in promised(lines).iter().zip(CALIBRATION.windows(2)) {
+    for (range, ends) in calibration(lines).iter().zip(CALIBRATION.windows(2)) {
         let mean = (range.effects > 0).then(|| 100.0 * range.sum / range.effects as f64);
         let present = share(range.present, range.effects);
         let mut cells: Vec<String> = ends.iter().map(|end| number::fixed(100.0 * end, 0)).collect();

@@ -28,14 +28,11 @@ pub fn compared(
         let own = |method: &dyn Identifier| -> Vec<Option<Estimate>> {
             groups.par_iter().map(|trials| method.identify(trials).ok()).collect()
         };
-        methods
-            .par_iter()
-            .zip(answers)
-            .filter_map(|((_, method), (entry, joint))| {
-                let terms = terms(joint.as_ref()?, &own(method.as_ref()), first);
-                Some(ComparedModel { model: entry.method.clone(), terms })
-            })
-            .collect()
+        let compared = |((_, method), (entry, joint)): (&Named, &(MethodEntry, Option<Estimate>))| {
+            let terms = terms(joint.as_ref()?, &own(method.as_ref()), first);
+            Some(ComparedModel { model: entry.method.clone(), terms })
+        };
+        methods.par_iter().zip(answers).filter_map(compared).collect()
     })
 }
 

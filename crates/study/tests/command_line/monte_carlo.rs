@@ -10,34 +10,19 @@ use crate::desk::{Desk, interrupted, killed};
 /// A study of some seconds in two cells.
 fn scenario(replicates: u32) -> String {
     format!(
-        r#"
-question = "How precise is the output error?"
+        r#"question = "How precise is the output error?"
 seed = 3
 replicates = {replicates}
-
-[ship.yukun]
-
-[manoeuvre.zig-zag]
-rudder-deg = 10.0
-heading-deg = 10.0
-
-[steering-gear]
-rate-deg-s = 2.5
-
-[recording]
-sampling-s = 1.0
-duration-s = 200.0
-
-[sensor]
-heading-noise-deg = 0.1
-
+ship.yukun = {{}}
+manoeuvre.zig-zag = {{ rudder-deg = 10.0, heading-deg = 10.0 }}
+steering-gear = {{ rate-deg-s = 2.5 }}
+recording = {{ sampling-s = 1.0, duration-s = 200.0 }}
+sensor = {{ heading-noise-deg = 0.1 }}
 [[sweep]]
 key = "sensor.heading-noise-deg"
 values = [0.1, 0.5]
-
 [[identifier]]
 method.output-error = {{}}
-
 [[identifier]]
 method.integral-least-squares = {{}}
 "#
@@ -253,10 +238,10 @@ fn a_stopping_rule_ends_a_cell_wherever_it_runs() {
 #[test]
 fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
     let desk = Desk::new();
-    let ship = "[ship.first-order]\nK-per-s = 0.1\nT-s = 16.3\n";
+    let ship = "ship.first-order = { K-per-s = 0.1, T-s = 16.3 }";
     let draws = "[[draw]]\nkey = \"ship.first-order.T-s\"\nlog-uniform = { from = 5.0, to = 50.0 }\n\
                  [[draw]]\nkey = \"steering-gear.rate-deg-s\"\nuniform = { from = 2.3, to = 7.0 }\n";
-    desk.file("study.toml", scenario(40).replace("[ship.yukun]\n", ship) + draws);
+    desk.file("study.toml", scenario(40).replace("ship.yukun = {}", ship) + draws);
     let whole = uninterrupted(&desk);
     for shard in ["1/3", "2/3", "3/3"] {
         desk.run(&["study.toml", "--quiet", "--shard", shard, "--threads", "2"]).is_done();

@@ -34,12 +34,3 @@ fn every_report_has_a_page_for_a_browser() {
     desk.run(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
     assert_eq!(page(&desk, "f"), fit, "the same bytes");
 }
-
-#[test]
-fn a_page_that_is_not_there_is_not_opened() {
-    let desk = Desk::new();
-    desk.file("old/fit.json", "{}");
-    desk.run(&["report", "old", "--open"]).is_refused(2, &["fit.json", "study fit"]);
-    desk.file("other/x", "");
-    desk.run(&["report", "other", "--open"]).is_refused(2, &["other", "finished study"]);
-}

@@ -316,14 +316,6 @@ fn any_file_name_and_line_ending_will_do() {
     assert!(desk.path("船 10°-fit/fit.json").is_file());
 }
 
-#[test]
-fn a_result_folder_that_cannot_be_made_is_a_failure_of_the_work() {
-    let desk = Desk::new();
-    desk.file("good.csv", zig_zag_csv());
-    desk.file("in-the-way", "");
-    desk.run(&["fit", "good.csv", "--out", "in-the-way"]).is_refused(1, &["in-the-way", "--out"]);
-}
-
 /// A reader that stops early (`study list effects | head -1`) is no reason to complain.
 #[test]
 fn a_closed_pipe_ends_the_output_quietly() {
