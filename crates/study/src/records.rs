@@ -218,12 +218,10 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
 
 /// The question which of several zig-zags is meant.
 fn ask(log: &Log, path: &Path, several: &[(usize, &Manoeuvre)]) -> Failure {
-    let lines: String = several
-        .iter()
-        .map(|(number, one)| {
-            format!("\n  --trial {number}: {}, {} to {}", one.kind.name(), at(log, one.from), at(log, one.until))
-        })
-        .collect();
+    let line = |(number, one): &(usize, &Manoeuvre)| {
+        format!("\n  --trial {number}: {}, {} to {}", one.kind.name(), at(log, one.from), at(log, one.until))
+    };
+    let lines: String = several.iter().map(line).collect();
     Failure::about(path, format!("there are {} zig-zags in this log; say which one{lines}", several.len()))
 }
 

@@ -121,9 +121,11 @@ impl BenchMethod {
     pub fn fit(&self, trials: &[Trial], key: &StreamKey) -> Result<BenchModel, Failed> {
         match &self.procedure {
             BenchProcedure::StraightOn => Ok(BenchModel::StraightOn),
-            BenchProcedure::Identify(identifier) => scenario::identify(identifier.as_ref(), trials, key)
-                .map(|estimate| BenchModel::Response(Box::new(estimate)))
-                .map_err(|error| Failed::of(error.kind(), &error)),
+            BenchProcedure::Identify(identifier) => {
+                let estimate = scenario::identify(identifier.as_ref(), trials, key);
+                let estimate = estimate.map_err(|error| Failed::of(error.kind(), &error))?;
+                Ok(BenchModel::Response(Box::new(estimate)))
+            }
             BenchProcedure::Trace { of_heading } => {
                 let shown: Cow<[Trial]> = match of_heading {
                     true => trials.iter().map(of_common).collect(),

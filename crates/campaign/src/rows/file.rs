@@ -206,10 +206,9 @@ impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
             }
             let group = self.file.get_row_group(self.group).map_err(|error| self.damaged(&error.to_string()))?;
             self.left = group.metadata().num_rows().unsigned_abs() as usize;
-            self.columns = (0..group.metadata().num_columns())
-                .map(|column| group.get_column_reader(column))
-                .collect::<Result<_, _>>()
-                .map_err(|error| self.damaged(&error.to_string()))?;
+            let columns = (0..group.metadata().num_columns()).map(|column| group.get_column_reader(column));
+            let columns: Result<Vec<ColumnReader>, _> = columns.collect();
+            self.columns = columns.map_err(|error| self.damaged(&error.to_string()))?;
             self.group += 1;
         }
         let length = self.left.min(BATCH);
@@ -267,8 +266,7 @@ fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<
     let (mut present, mut values) = (Vec::with_capacity(length), Vec::with_capacity(length));
     let mut read = 0;
     while read < length {
-        let (rows, ..) = reader
-            .read_records(length - read, Some(&mut present), None, &mut values)
+        let (rows, ..) = (reader.read_records(length - read, Some(&mut present), None, &mut values))
             .map_err(|error| error.to_string())?;
         if rows == 0 {
             return Err("it ends too early".to_owned());

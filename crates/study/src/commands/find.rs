@@ -48,11 +48,9 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
             screen::say(&format!("{head}\nno manoeuvre found\n"))?;
             continue;
         }
-        let remarks: String = (1..)
-            .zip(&found)
-            .filter(|(_, one)| !one.quality.remarks().is_empty())
-            .map(|(number, one)| format!("{number}: {}\n", one.quality.remarks().join(" ")))
-            .collect();
+        let remarked = (1..).zip(&found).filter(|(_, one)| !one.quality.remarks().is_empty());
+        let remarks = remarked.map(|(number, one)| format!("{number}: {}\n", one.quality.remarks().join(" ")));
+        let remarks: String = remarks.collect();
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
     if common.format == Format::Json {
@@ -65,17 +63,15 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
 /// A log with its manoeuvres for a program.
 fn entry(file: &Path, log: &Log, found: &[Manoeuvre]) -> Value {
     let clock = |time: f64| log.clock().map(|clock| clock.at(time).to_string());
-    let manoeuvres: Vec<Value> = (1..)
-        .zip(found)
-        .map(|(number, one)| {
-            let [rudder, heading] = angles(one).map(|angle| angle.map(to_deg));
-            json!({
-                "trial": number, "kind": one.kind.name(), "from_s": one.from, "until_s": one.until,
-                "clock": clock(one.from).zip(clock(one.until)), "executes": one.executes,
-                "rudder_deg": rudder, "heading_deg": heading, "remarks": one.quality.remarks(),
-            })
+    let manoeuvre = |(number, one): (usize, &Manoeuvre)| {
+        let [rudder, heading] = angles(one).map(|angle| angle.map(to_deg));
+        json!({
+            "trial": number, "kind": one.kind.name(), "from_s": one.from, "until_s": one.until,
+            "clock": clock(one.from).zip(clock(one.until)), "executes": one.executes,
+            "rudder_deg": rudder, "heading_deg": heading, "remarks": one.quality.remarks(),
         })
-        .collect();
+    };
+    let manoeuvres: Vec<Value> = (1..).zip(found).map(manoeuvre).collect();
     let (first, last) = (log.time()[0], log.time()[log.time().len() - 1]);
     let date = log.clock().and_then(|clock| clock.date_at(first)).map(|day| day.to_string());
     json!({

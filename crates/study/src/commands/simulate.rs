@@ -45,13 +45,9 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
         }
         (false, _) => (ResultFolder::hold(out)?, tasks.iter().map(|task| record_name(&scenario, *task)).collect()),
     };
-    first_failure(
-        tasks
-            .par_iter()
-            .zip(&names)
-            .progress_with(progress::of("records", tasks.len() as u64, common.quiet))
-            .map(|(task, name)| write(&scenario, *task, name, &folder)),
-    )?;
+    let bar = progress::of("records", tasks.len() as u64, common.quiet);
+    let work = tasks.par_iter().zip(&names).progress_with(bar);
+    first_failure(work.map(|(task, name)| write(&scenario, *task, name, &folder)))?;
     if !is_file {
         list(&scenario, &tasks, &names, &folder)?;
     }

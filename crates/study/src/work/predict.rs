@@ -172,11 +172,8 @@ pub fn predict(
 ) -> Result<PredictDocument, Failure> {
     let PredictInput { models, ballast, records, current, declared } = input;
     let (draws, scale) = (request.draws as usize, asked_scale(&request.reading));
-    let records: Vec<(Trial, Option<Current>)> = records
-        .into_iter()
-        .map(|record| at_own_scale(record, warnings))
-        .map(|record| turn::without_current(record, current))
-        .collect();
+    let mut in_still_water = |record| turn::without_current(at_own_scale(record, warnings), current);
+    let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
     let first = models[0].file.clone();
     let refused = |error: PredictError| Failure::about(&first, error);
     let mixture = mixture_of(models, scale).map_err(refused)?;
@@ -194,9 +191,12 @@ pub fn predict(
     busy.finish_and_clear();
     let particulars = mixture.particulars();
     let files = |models: &[StoredModel]| -> Vec<String> { models.iter().map(|model| model.file.clone()).collect() };
-    let held: Vec<FormRecord> = (records.iter().zip(&corrections))
-        .map(|((trial, current), correction)| FormRecord { trial, correction: correction.as_ref(), current: *current })
-        .collect();
+    let held = records.iter().zip(&corrections).map(|((trial, current), correction)| FormRecord {
+        trial,
+        correction: correction.as_ref(),
+        current: *current,
+    });
+    let held: Vec<FormRecord> = held.collect();
     let fill = || form::fill(&predictions, particulars, &files(models).join(", "), &held, declared);
     let form = request.form.then(fill);
     let (form, form_remarks) = form.map(|form| (form.entries, form.remarks)).unzip();

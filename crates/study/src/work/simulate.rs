@@ -9,7 +9,7 @@ use scenario::problem::suggestion;
 use ship::Particulars;
 use simulate::Simulated;
 
-use crate::documents::truth::TruthFile;
+use crate::documents::truth::truth;
 use crate::options::{Replicates, SimulateRequest};
 
 /// Most records that one call writes: more are a study, which keeps them as rows.
@@ -82,8 +82,7 @@ pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<Record
     let files = |(number, simulated): (usize, &Simulated)| {
         let mut table = Vec::new();
         trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
-        let truth = serde_json::to_string(&TruthFile::of(scenario, task, simulated, truths)?);
-        let truth = truth.map_err(|error| error.to_string())? + "\n";
+        let truth = format!("{}\n", truth(scenario, task, simulated, truths)?);
         let sidecar = |Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n");
         let sidecar = simulated.trial.particulars().map(sidecar);
         Ok(RecordFiles { name: part_name(name, number), table, sidecar, truth })

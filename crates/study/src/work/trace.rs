@@ -71,11 +71,9 @@ pub fn trace(
     };
     let entries: Vec<RecordEntry> = all.enumerate().zip(&names).map(entry).collect();
     let comparisons = analysis.identification.iter().chain(&analysis.validation);
-    let mut tables: Vec<(String, String)> = entries
-        .iter()
-        .zip(trials.iter().chain(&held_out).zip(comparisons))
-        .map(|(entry, (trial, comparison))| (entry.curves.clone(), curves::table(trial, comparison)))
-        .collect();
+    let compared = trials.iter().chain(&held_out).zip(comparisons);
+    let tables = compared.map(|(trial, comparison)| curves::table(trial, comparison));
+    let mut tables: Vec<(String, String)> = entries.iter().map(|entry| entry.curves.clone()).zip(tables).collect();
     let explains = analysis.structures.members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
     let mut moments = Vec::new();
     let slugs = slugs(&names);
