@@ -318,9 +318,8 @@ pub fn bound_percent2(scenario: &Scenario, cell: usize) -> Option<[[f64; 2]; 2]>
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
+    use crate::testing::scenario;
 
     const TEXT: &str = r#"
 question = "?"
@@ -345,8 +344,7 @@ method.output-error = {}
 "#;
 
     fn rows(more: &str) -> Vec<StudyRow> {
-        let scenario = Scenario::parse(Path::new("s.toml"), "s", format!("{TEXT}{more}"), None)
-            .unwrap_or_else(|failure| panic!("{failure}"));
+        let scenario = scenario(format!("{TEXT}{more}"));
         TrialRunner::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
     }
 
@@ -357,7 +355,7 @@ method.output-error = {}
         let further = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }\n";
         let linear = TEXT.replace("[[effect]]\nnonlinear_damping.n3-s2-per-deg2 = 1.0\n", "");
         let of = |text: &str, trials: u64| -> Vec<StudyRow> {
-            let scenario = Scenario::parse(Path::new("s.toml"), "s", text.to_owned(), None).expect("it is right");
+            let scenario = scenario(text);
             let runner = TrialRunner::new(&scenario, 0..=0);
             (0..trials).map(|replicate| runner.run(Task { cell: 0, replicate }).rows.remove(0)).collect()
         };
@@ -371,7 +369,7 @@ method.output-error = {}
         };
         assert!((0.8..1.25).contains(&(spread(&both) / bound(&both))), "{} {}", spread(&both), bound(&both));
         let first = |text: &str| {
-            let scenario = Scenario::parse(Path::new("s.toml"), "s", text.to_owned(), None).expect("it is right");
+            let scenario = scenario(text);
             simulate(&scenario, Task { cell: 0, replicate: 0 }).expect("records").into_iter().map(|one| one.trial)
         };
         let records: Vec<Trial> = first(&format!("{linear}{further}")).collect();

@@ -22,7 +22,7 @@ fn figure<'a>(json: &'a Value, kind: &str, name: &str) -> &'a Value {
     &own.unwrap_or_else(|| panic!("{kind}: {json}"))["figures"][name]
 }
 
-/// Every key of the contract, down to its parts.
+/// What the contract says beyond the schema, to which every run of these tests is held.
 fn keeps_the_contract(json: &Value) {
     assert_eq!(json["schema"], "predict/1");
     let weights: f64 =
@@ -37,7 +37,6 @@ fn keeps_the_contract(json: &Value) {
     for manoeuvre in json["manoeuvres"].as_array().expect("a list") {
         for figure in manoeuvre["figures"].as_object().expect("figures").values() {
             holds(figure);
-            assert!(figure["extrapolated"].is_boolean());
             let shares: f64 = figure["shares"].as_object().expect("shares").values().filter_map(Value::as_f64).sum();
             assert!(shares == 0.0 || (shares - 1.0).abs() < 1e-9, "{figure}");
         }
@@ -48,7 +47,6 @@ fn keeps_the_contract(json: &Value) {
     }
     for criterion in json["imo"].as_array().expect("a list") {
         assert!((0.0..=1.0).contains(&criterion["probability_of_passing"].as_f64().expect("a share")));
-        assert!(criterion["criterion"].is_string() && criterion["limit"].is_f64());
     }
 }
 

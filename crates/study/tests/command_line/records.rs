@@ -222,14 +222,10 @@ fn a_good_record_gives_a_table_figures_and_json() {
         );
     }
     assert!(exact["heading_rmse_deg"].as_f64().is_some_and(|rmse| rmse < 0.1), "{}", exact["heading_rmse_deg"]);
-    assert!(exact["validation"].as_array().is_some_and(Vec::is_empty) && exact["diagnostics"].is_object());
+    assert!(exact["validation"].as_array().is_some_and(Vec::is_empty));
     let zigzag = &fit["zigzag"];
-    for key in ["initial_turning_time_s", "period_s"] {
-        assert!(zigzag[key].is_number(), "{key}");
-    }
-    assert!(
-        zigzag["overshoots_deg"].as_array().is_some_and(|overshoots| overshoots.len() > 3) && zigzag["imo"].is_array()
-    );
+    assert!(["initial_turning_time_s", "period_s"].iter().all(|key| zigzag[*key].is_number()), "{zigzag}");
+    assert!(zigzag["overshoots_deg"].as_array().is_some_and(|overshoots| overshoots.len() > 3), "{zigzag}");
 }
 
 #[test]
@@ -255,23 +251,9 @@ fn options_of_fit_do_what_they_say() {
         with_column(&good, "heading_deg", |row, psi| (psi + 0.01 * (row as f64 * 2.3).sin()).to_string()),
     );
     desk.file("run.trial.toml", "[ship]\nlength-m = 105.0\nspeed-kn = 16.7\n");
-    let run = desk.run(&[
-        "fit",
-        "a/run.csv",
-        "b/run.csv",
-        "--validate",
-        "b/run.csv",
-        "--method",
-        "srivc",
-        "--method",
-        "output-error",
-        "--columns",
-        "run.trial.toml",
-        "--out",
-        "both",
-        "--threads",
-        "1",
-    ]);
+    let methods = ["--method", "srivc", "--method", "output-error", "--columns", "run.trial.toml"];
+    let records = ["fit", "a/run.csv", "b/run.csv", "--validate", "b/run.csv", "--out", "both", "--threads", "1"];
+    let run = desk.run(&[&records[..], &methods].concat());
     let fit = desk.json("both/fit.json");
     assert_eq!(fit["trials"].as_array().map(Vec::len), Some(2));
     assert_eq!(fit["methods"].as_array().map(Vec::len), Some(2));
