@@ -2,8 +2,7 @@
 //! read, so the filter is a linear map that makes columns of readings white.
 //!
 //! x ← F x + w before a reading, cov w = Q; a sensor sees the sum of one or two states and white noise. With one kind
-//! of reading at even times the gain settles; from there on no covariance is computed. Written for any
-//! [`Real`], so gains come with their derivatives by whatever moves the system.
+//! of reading at even times the gain settles; from there on no covariance is computed.
 //!
 //! Source: Harvey (1989) for the prediction error decomposition.
 
@@ -13,7 +12,6 @@ pub mod smoother;
 pub use matrix::{identity, product, sandwich, sum};
 
 use crate::lanes::{Kernel, run};
-use crate::number::{Dual, Real};
 
 /// Most states of a [`Whitener`].
 pub const MOST: usize = 5;
@@ -21,43 +19,42 @@ pub const MOST: usize = 5;
 /// Longest pattern of readings that repeats itself: that of two sensors in turn.
 const PATTERN: usize = 2;
 
-/// A gain that changes by less than this share, and its derivatives by less than the other, has settled.
+/// A gain that changes by less than this share has settled.
 const SETTLED: f64 = 1e-10;
-const SETTLED_SLOPE: f64 = 1e-7;
 
 /// Transition F and added covariance Q over a step of time.
 #[derive(Debug, Clone, Copy)]
-pub struct Step<R, const N: usize> {
+pub struct Step<const N: usize> {
     /// F.
-    pub transition: [[R; N]; N],
+    pub transition: [[f64; N]; N],
     /// Q.
-    pub added: [[R; N]; N],
+    pub added: [[f64; N]; N],
 }
 
-impl<R: Real, const N: usize> Step<R, N> {
+impl<const N: usize> Step<N> {
     /// This step and then another one.
     pub fn then(&self, next: &Self) -> Self {
         Self { transition: product(&next.transition, &self.transition), added: next.propagate(&self.added) }
     }
 
     /// The covariance after the step: F P Fᵀ + Q.
-    pub fn propagate(&self, covariance: &[[R; N]; N]) -> [[R; N]; N] {
+    pub fn propagate(&self, covariance: &[[f64; N]; N]) -> [[f64; N]; N] {
         sum(&self.added, &sandwich(&self.transition, covariance))
     }
 }
 
 /// What a sensor reads: a state, or the sum of two, and white noise of this variance.
 #[derive(Debug, Clone, Copy)]
-pub struct Sensor<R> {
+pub struct Sensor {
     /// Place of the state.
     pub state: usize,
     /// Place of the state that is added.
     pub beside: Option<usize>,
     /// Variance of the noise.
-    pub variance: R,
+    pub variance: f64,
 }
 
-impl<R: Real> Sensor<R> {
+impl Sensor {
     /// What it makes of states, or of states side by side.
     #[inline(always)]
     fn of<const N: usize, const COLUMNS: usize>(&self, x: &[[f64; COLUMNS]; N]) -> [f64; COLUMNS] {
@@ -80,27 +77,27 @@ pub struct Reading {
 
 /// A system and the order in which it is read.
 #[derive(Debug, Clone)]
-pub struct System<R, const N: usize> {
+pub struct System<const N: usize> {
     /// Kinds of steps.
-    pub steps: Vec<Step<R, N>>,
+    pub steps: Vec<Step<N>>,
     /// Sensors.
-    pub sensors: Vec<Sensor<R>>,
+    pub sensors: Vec<Sensor>,
     /// Readings in their order.
     pub readings: Vec<Reading>,
     /// Covariance of the state before the first reading.
-    pub initial: [[R; N]; N],
+    pub initial: [[f64; N]; N],
 }
 
-impl<const N: usize> System<f64, N> {
+impl<const N: usize> System<N> {
     /// A system of which every row is read once: its first state, or the sum of it and the one `beside`, with noise of
     /// a variance of its own; `of_row` has the step before every row, which counts from the second on.
     pub fn of_rows(
-        steps: Vec<Step<f64, N>>,
+        steps: Vec<Step<N>>,
         initial: [[f64; N]; N],
         (of_row, variances): (&[usize], &[f64]),
         beside: Option<usize>,
     ) -> Self {
-        let mut sensors: Vec<Sensor<f64>> = Vec::new();
+        let mut sensors: Vec<Sensor> = Vec::new();
         let reading = |(row, (&step, &variance)): (usize, (&usize, &f64))| {
             let known = sensors.iter().position(|sensor| sensor.variance == variance);
             let sensor = known.unwrap_or_else(|| {
@@ -116,38 +113,38 @@ impl<const N: usize> System<f64, N> {
 
 /// What the filter does with a reading.
 #[derive(Debug, Clone, Copy)]
-struct Gain<R, const N: usize> {
-    gain: [R; N],
+struct Gain<const N: usize> {
+    gain: [f64; N],
     /// Predicted variance S of the reading.
-    variance: R,
+    variance: f64,
 }
 
 /// Gains of all readings, each kind once.
 #[derive(Debug, Clone)]
-pub struct Filter<R, const N: usize> {
-    system: System<R, N>,
-    gains: Vec<Gain<R, N>>,
+pub struct Filter<const N: usize> {
+    system: System<N>,
+    gains: Vec<Gain<N>>,
     /// One over √S of every gain.
     weights: Vec<f64>,
     /// Gain of every reading.
     of: Vec<u32>,
 }
 
-impl<R: Real, const N: usize> Filter<R, N> {
+impl<const N: usize> Filter<N> {
     /// The filter of a system.
-    pub fn new(system: System<R, N>) -> Self {
+    pub fn new(system: System<N>) -> Self {
         Self::settling(system, SETTLED)
     }
 
     /// The same, whose gains count as settled when they change by less than this share.
-    pub fn settling(system: System<R, N>, share: f64) -> Self {
+    pub fn settling(system: System<N>, share: f64) -> Self {
         Self::visiting(system, share, |_| ())
     }
 
     /// The same, visiting the predicted covariance of every new gain.
-    fn visiting(system: System<R, N>, share: f64, mut visit: impl FnMut(&[[R; N]; N])) -> Self {
+    fn visiting(system: System<N>, share: f64, mut visit: impl FnMut(&[[f64; N]; N])) -> Self {
         let readings = &system.readings;
-        let mut filter = (Vec::<Gain<R, N>>::new(), Vec::<u32>::with_capacity(readings.len()));
+        let mut filter = (Vec::<Gain<N>>::new(), Vec::<u32>::with_capacity(readings.len()));
         let (gains, of) = (&mut filter.0, &mut filter.1);
         // Covariances after the last readings, by their place in a pattern.
         let mut after = [system.initial; PATTERN];
@@ -165,37 +162,32 @@ impl<R: Real, const N: usize> Filter<R, N> {
             after[number % PATTERN] = covariance;
             let settled = repeats && {
                 let before = &gains[of[number - PATTERN] as usize];
-                gain.gain.iter().zip(&before.gain).all(|(one, other)| has_settled(*one, *other, share))
+                gain.gain.iter().zip(&before.gain).all(|(now, before)| (now - before).abs() <= share * now.abs())
             };
             alike = if settled { alike + 1 } else { 0 };
             of.push(gains.len() as u32);
             gains.push(gain);
         }
         let (gains, of) = filter;
-        let weights = gains.iter().map(|gain| gain.variance.value().sqrt().recip()).collect();
+        let weights = gains.iter().map(|gain| gain.variance.sqrt().recip()).collect();
         Self { system, gains, weights, of }
     }
 
     /// Σ log S.
     pub fn log_variance(&self) -> f64 {
-        let logs: Vec<f64> = self.gains.iter().map(|gain| gain.variance.value().ln()).collect();
+        let logs: Vec<f64> = self.gains.iter().map(|gain| gain.variance.ln()).collect();
         self.of.iter().map(|&of| logs[of as usize]).sum()
     }
 
-    /// The filter without its derivatives.
+    /// The filter for any number of states.
     pub fn whitener(&self) -> Whitener {
-        let wide = |row: &[R; N]| -> [f64; MOST] { std::array::from_fn(|k| row.get(k).map_or(0.0, |x| x.value())) };
+        let wide = |row: &[f64; N]| -> [f64; MOST] { std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0)) };
         let matrix =
-            |f: &[[R; N]; N]| -> [[f64; MOST]; MOST] { std::array::from_fn(|k| f.get(k).map_or([0.0; MOST], wide)) };
-        let plain = |sensor: &Sensor<R>| Sensor {
-            state: sensor.state,
-            beside: sensor.beside,
-            variance: sensor.variance.value(),
-        };
+            |f: &[[f64; N]; N]| -> [[f64; MOST]; MOST] { std::array::from_fn(|k| f.get(k).map_or([0.0; MOST], wide)) };
         Whitener {
             states: N,
             transitions: self.system.steps.iter().map(|step| matrix(&step.transition)).collect(),
-            sensors: self.system.sensors.iter().map(plain).collect(),
+            sensors: self.system.sensors.clone(),
             gains: self.gains.iter().zip(&self.weights).map(|(gain, &weight)| (wide(&gain.gain), weight)).collect(),
             readings: self.system.readings.iter().copied().zip(self.of.iter().copied()).collect(),
             log_variance: self.log_variance(),
@@ -204,8 +196,8 @@ impl<R: Real, const N: usize> Filter<R, N> {
 }
 
 /// Takes a reading into account.
-fn correct<R: Real, const N: usize>(covariance: &mut [[R; N]; N], sensor: &Sensor<R>) -> Gain<R, N> {
-    let seen: [R; N] = std::array::from_fn(|i| match sensor.beside {
+fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &Sensor) -> Gain<N> {
+    let seen: [f64; N] = std::array::from_fn(|i| match sensor.beside {
         Some(beside) => covariance[i][sensor.state] + covariance[i][beside],
         None => covariance[i][sensor.state],
     });
@@ -222,13 +214,6 @@ fn correct<R: Real, const N: usize>(covariance: &mut [[R; N]; N], sensor: &Senso
         }
     }
     Gain { gain, variance }
-}
-
-/// Whether a number hardly changed, nor its derivatives.
-fn has_settled<R: Real>(now: R, before: R, share: f64) -> bool {
-    let size = now.value().abs();
-    let near = |(now, before): (&f64, &f64)| (now - before).abs() <= SETTLED_SLOPE * now.abs().max(1e-3 * size);
-    (now.value() - before.value()).abs() <= share * size && now.slopes().iter().zip(before.slopes()).all(near)
 }
 
 /// Picks the number of states when the program runs.
@@ -255,7 +240,7 @@ macro_rules! with_states {
 pub struct Whitener {
     states: usize,
     transitions: Vec<[[f64; MOST]; MOST]>,
-    sensors: Vec<Sensor<f64>>,
+    sensors: Vec<Sensor>,
     /// Gain and one over the predicted standard deviation.
     gains: Vec<([f64; MOST], f64)>,
     /// Every reading with its gain.
@@ -265,9 +250,10 @@ pub struct Whitener {
 }
 
 impl Whitener {
-    /// One over the standard deviation of the innovation of a reading.
-    pub fn weight(&self, reading: usize) -> f64 {
-        self.gains[self.readings[reading].1 as usize].1
+    /// log S of every reading.
+    pub fn log_variances(&self) -> Vec<f64> {
+        let logs: Vec<f64> = self.gains.iter().map(|(_, weight)| -2.0 * weight.ln()).collect();
+        self.readings.iter().map(|&(_, gain)| logs[gain as usize]).collect()
     }
 
     /// Makes columns white in place, several at once: the filter waits for the last reading of each, but not for the
@@ -362,65 +348,4 @@ fn advanced<const N: usize, const COLUMNS: usize>(
         }
     }
     next
-}
-
-impl<const LANES: usize, const N: usize> Filter<Dual<LANES>, N> {
-    /// One over the standard deviation of the innovations of a gain, and the variance with its derivatives.
-    pub fn variance(&self, gain: usize) -> (f64, Dual<LANES>) {
-        (self.weights[gain], self.gains[gain].variance)
-    }
-
-    /// Runs columns through the filter and visits every reading with the number of its gain and the derivatives of the
-    /// innovations.
-    #[inline(always)]
-    pub fn run<const COLUMNS: usize>(
-        &self,
-        column: impl Fn(usize) -> [f64; COLUMNS],
-        mut visit: impl FnMut(usize, usize, [[f64; COLUMNS]; LANES]),
-    ) {
-        let mut x = [[0.0; COLUMNS]; N];
-        let mut by = [[[0.0; COLUMNS]; N]; LANES];
-        for (row, (&Reading { step, sensor }, &place)) in self.system.readings.iter().zip(&self.of).enumerate() {
-            if let Some(step) = step {
-                let f = &self.system.steps[step].transition;
-                let mut next = [[0.0; COLUMNS]; N];
-                let mut next_by = [[[0.0; COLUMNS]; N]; LANES];
-                for i in 0..N {
-                    for (j, f) in f[i].iter().enumerate() {
-                        for k in 0..COLUMNS {
-                            next[i][k] += f.value * x[j][k];
-                        }
-                        for (lane, (next_by, by)) in next_by.iter_mut().zip(&by).enumerate() {
-                            for k in 0..COLUMNS {
-                                next_by[i][k] += f.value * by[j][k] + f.by[lane] * x[j][k];
-                            }
-                        }
-                    }
-                }
-                (x, by) = (next, next_by);
-            }
-            let place = place as usize;
-            let gain = &self.gains[place].gain;
-            let sensor = &self.system.sensors[sensor];
-            let (seen, reading) = (sensor.of(&x), column(row));
-            let innovation: [f64; COLUMNS] = std::array::from_fn(|k| reading[k] - seen[k]);
-            let mut innovation_by = [[0.0; COLUMNS]; LANES];
-            for (innovation_by, by) in innovation_by.iter_mut().zip(&by) {
-                *innovation_by = sensor.of(by).map(|seen| -seen);
-            }
-            for (x, gain) in x.iter_mut().zip(gain) {
-                for k in 0..COLUMNS {
-                    x[k] += gain.value * innovation[k];
-                }
-            }
-            for (lane, (by, innovation_by)) in by.iter_mut().zip(&innovation_by).enumerate() {
-                for (by, gain) in by.iter_mut().zip(gain) {
-                    for k in 0..COLUMNS {
-                        by[k] += gain.value * innovation_by[k] + gain.by[lane] * innovation[k];
-                    }
-                }
-            }
-            visit(row, place, innovation_by);
-        }
-    }
 }

@@ -27,22 +27,8 @@ pub trait Real:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
-    /// A variable of this value whose derivative in one direction is `slope` (of a plain number: the value).
-    fn variable(value: f64, direction: usize, slope: f64) -> Self;
-
     /// The value alone.
     fn value(self) -> f64;
-
-    /// Its derivatives, where it has some.
-    fn slopes(&self) -> &[f64];
-
-    /// A function of this number, from its value and its derivative there.
-    fn chained(self, value: f64, slope: f64) -> Self;
-
-    /// Whether it is zero, with all its derivatives.
-    fn vanishes(&self) -> bool {
-        self.value() == 0.0 && self.slopes().iter().all(|&by| by == 0.0)
-    }
 
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
@@ -79,23 +65,9 @@ pub trait Real:
 }
 
 impl Real for f64 {
-    fn variable(value: f64, _: usize, _: f64) -> Self {
-        value
-    }
-
     #[inline]
     fn value(self) -> f64 {
         self
-    }
-
-    #[inline]
-    fn slopes(&self) -> &[f64] {
-        &[]
-    }
-
-    #[inline]
-    fn chained(self, value: f64, _: f64) -> Self {
-        value
     }
 
     #[inline]
@@ -134,6 +106,19 @@ pub struct Dual<const DIRECTIONS: usize> {
 }
 
 impl<const N: usize> Dual<N> {
+    /// A variable of this value whose derivative in one direction is `slope`.
+    pub fn variable(value: f64, direction: usize, slope: f64) -> Self {
+        let mut by = [0.0; N];
+        by[direction] = slope;
+        Self { value, by }
+    }
+
+    /// A function of this number, from its value and its derivative there.
+    #[inline(always)]
+    fn chained(self, value: f64, slope: f64) -> Self {
+        Self { value, by: self.by.map(|d| slope * d) }
+    }
+
     /// Derivatives of both numbers, put together.
     #[inline(always)]
     fn joined(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
@@ -239,25 +224,9 @@ impl<const N: usize> Div<f64> for Dual<N> {
 }
 
 impl<const N: usize> Real for Dual<N> {
-    fn variable(value: f64, direction: usize, slope: f64) -> Self {
-        let mut by = [0.0; N];
-        by[direction] = slope;
-        Self { value, by }
-    }
-
     #[inline(always)]
     fn value(self) -> f64 {
         self.value
-    }
-
-    #[inline(always)]
-    fn slopes(&self) -> &[f64] {
-        &self.by
-    }
-
-    #[inline(always)]
-    fn chained(self, value: f64, slope: f64) -> Self {
-        Self { value, by: self.by.map(|d| slope * d) }
     }
 
     fn sin_cos(self) -> (Self, Self) {

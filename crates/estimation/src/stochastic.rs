@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use crate::kalman::{Filter, MOST, Sensor, Step, System, Whitener};
 use crate::with_states;
 
-impl<const N: usize> Step<f64, N> {
+impl<const N: usize> Step<N> {
     /// The step over `h` of x' = G x + w with white w of the given intensity on the last state of G (Van Loan 1978).
     /// States beyond those of G are zero.
     pub fn over(generator: &DMatrix<f64>, intensity: f64, h: f64) -> Self {
@@ -33,7 +33,7 @@ impl<const N: usize> Step<f64, N> {
     }
 }
 
-impl<const N: usize> System<f64, N> {
+impl<const N: usize> System<N> {
     /// What its sensors would read without their own noise along a sample path, from standard normal numbers.
     pub fn sample(&self, normal: &mut impl FnMut() -> f64) -> Vec<f64> {
         let roots: Vec<[[f64; N]; N]> = self.steps.iter().map(|step| root(&step.added)).collect();
@@ -54,7 +54,7 @@ impl<const N: usize> System<f64, N> {
     }
 }
 
-impl System<f64, MOST> {
+impl System<MOST> {
     /// The filter of its first `states` states, all others being zero; its gains settle within a share.
     pub fn whitener(&self, states: usize, share: f64) -> Whitener {
         with_states!(states, N => {

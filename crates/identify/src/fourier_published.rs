@@ -9,9 +9,7 @@
 //!
 //! Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, eqs. (9) to (11).
 
-use std::collections::VecDeque;
-use std::ops::Range;
-
+use estimation::column::extremes;
 use estimation::statistics::quantile;
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
@@ -113,14 +111,13 @@ impl FourierPublished {
         let rate = fitted.basis.derivative(&fitted.projection.coefficients);
         let yaw_rate = fitted.basis.values(&rate);
         let yaw_acceleration = fitted.basis.values(&fitted.basis.derivative(&rate));
-        let mut rudder_range = RudderRange::new(trial.rudder_signal());
         (0..samples.len())
             .filter(|&row| match self.settings.selection {
                 Selection::Uniform => true,
                 Selection::WellConditioned => {
                     let t = samples.time[row];
                     (t - 0.5 * length).abs() <= 0.5 * INTERIOR_SHARE * length
-                        && rudder_range.at(start + t, RUDDER_REST_S) < from_deg(RUDDER_REST_DEG)
+                        && range_about(trial.rudder_signal(), start + t, RUDDER_REST_S) < from_deg(RUDDER_REST_DEG)
                 }
             })
             .map(|row| EquationInstant {
@@ -241,52 +238,13 @@ fn warnings(fits: &[Fitted], drawn: &Drawn) -> Vec<String> {
     warnings
 }
 
-/// Range of the recorded rudder about instants that follow each other, at a cost that does not grow with the reach.
-struct RudderRange<'a> {
-    signal: &'a Polyline,
-    /// Points of the signal in the time looked at.
-    points: Range<usize>,
-    /// Of these the ones that no later one exceeds (falls below), from the highest (lowest) on.
-    highest: VecDeque<usize>,
-    lowest: VecDeque<usize>,
-}
-
-impl<'a> RudderRange<'a> {
-    fn new(signal: &'a Polyline) -> Self {
-        Self { signal, points: 0..0, highest: VecDeque::new(), lowest: VecDeque::new() }
-    }
-
-    /// From `reach` seconds before to `reach` after `t` (clock of the record), rad; `t` must not decrease.
-    fn at(&mut self, t: f64, reach: f64) -> f64 {
-        let (times, values) = (self.signal.times(), self.signal.values());
-        while self.points.end < times.len() && times[self.points.end] <= t + reach {
-            let new = self.points.end;
-            while self.highest.back().is_some_and(|&last| values[last] <= values[new]) {
-                self.highest.pop_back();
-            }
-            while self.lowest.back().is_some_and(|&last| values[last] >= values[new]) {
-                self.lowest.pop_back();
-            }
-            self.highest.push_back(new);
-            self.lowest.push_back(new);
-            self.points.end += 1;
-        }
-        while self.points.start < self.points.end && times[self.points.start] < t - reach {
-            self.points.start += 1;
-        }
-        for extremes in [&mut self.highest, &mut self.lowest] {
-            while extremes.front().is_some_and(|&point| point < self.points.start) {
-                extremes.pop_front();
-            }
-        }
-        let ends = [self.signal.at_from(t - reach, self.points.start), self.signal.at_from(t + reach, self.points.end)];
-        let inside = self.highest.front().into_iter().chain(self.lowest.front()).map(|&point| values[point]);
-        let (lo, hi) = ends
-            .into_iter()
-            .chain(inside)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
-        hi - lo
-    }
+/// Range of a signal from `reach` seconds before to `reach` after `t`, rad.
+fn range_about(signal: &Polyline, t: f64, reach: f64) -> f64 {
+    let place = |t: f64| signal.times().partition_point(|other| *other < t);
+    let (from, to) = (place(t - reach), place(t + reach));
+    let (lo, hi) = extremes(&signal.values()[from..to]);
+    let ends = [signal.at(t - reach), signal.at(t + reach)];
+    ends.into_iter().fold(hi, f64::max) - ends.into_iter().fold(lo, f64::min)
 }
 
 fn sorted(answers: &[Answer], of: impl Fn(&Answer) -> f64) -> Vec<f64> {

@@ -74,7 +74,7 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
 
 /// What is drawn of one structure on one record.
 struct ResidualSampler {
-    system: System<f64, MOST>,
+    system: System<MOST>,
     deviation: f64,
     /// Standard deviation of the white noise of every row, rad.
     white: Vec<f64>,

@@ -5,7 +5,7 @@ use estimation::levenberg_marquardt::Normal;
 use nalgebra::DVector;
 use rayon::prelude::*;
 use ship::DIRECTIONS;
-use ship::{Real, Tangent};
+use ship::Tangent;
 
 use crate::model::{Structure, headings};
 use crate::record::PreparedRecord;

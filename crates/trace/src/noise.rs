@@ -147,7 +147,7 @@ struct NoiseTransition {
     /// Variance of the states at the beginning.
     beginning: [f64; 3],
     /// Every distinct step.
-    steps: Vec<Step<f64, MOST>>,
+    steps: Vec<Step<MOST>>,
     /// The step before every observed row.
     of_row: Vec<usize>,
 }
@@ -213,7 +213,7 @@ impl RecordNoise {
     }
 
     /// Random moment and waves of this colour as one linear system, and the number of its states.
-    pub(crate) fn system(&self, colour: &NoiseColour) -> (System<f64, MOST>, usize) {
+    pub(crate) fn system(&self, colour: &NoiseColour) -> (System<MOST>, usize) {
         let drift = colour.wander.map(|(kind, level)| {
             let place = CorrelatedNoise::all().position(|other| other == kind).expect("a kind of the list");
             let new = || NoiseTransition::new(kind, self.damping, &self.durations, self.longest);
@@ -254,7 +254,7 @@ impl RecordNoise {
 }
 
 /// Puts waves into a step over h, as the two states from `own` on.
-fn add_waves(step: &mut Step<f64, MOST>, own: usize, waves: &NarrowBand, h: f64) {
+fn add_waves(step: &mut Step<MOST>, own: usize, waves: &NarrowBand, h: f64) {
     let sea = waves.step(h);
     let (a, b) = (sea.advance([1.0, 0.0], [0.0; 2]), sea.advance([0.0, 1.0], [0.0; 2]));
     let (c, d) = (sea.advance([0.0; 2], [1.0, 0.0]), sea.advance([0.0; 2], [0.0, 1.0]));

@@ -9,7 +9,7 @@ use identify::replay::Replay;
 use nalgebra::{Matrix2, Vector2};
 use ship::dynamics::Dynamics;
 use ship::replay::replay_states;
-use ship::{EffectReal, Real, Response, Tangent};
+use ship::{EffectReal, Response, Tangent};
 use trial::zigzag::Overshoot;
 use trial::{Channel, Columns, Trial, ZigZag};
 

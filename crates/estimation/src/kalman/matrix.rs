@@ -1,38 +1,34 @@
-//! Small square matrices of numbers that may carry derivatives.
-
-use crate::number::Real;
+//! Small square matrices.
 
 /// The unit matrix.
-pub fn identity<R: Real, const N: usize>() -> [[R; N]; N] {
-    std::array::from_fn(|i| std::array::from_fn(|j| R::from(f64::from(u8::from(i == j)))))
+pub fn identity<const N: usize>() -> [[f64; N]; N] {
+    std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))))
 }
 
 /// A sum of matrices.
-pub fn sum<R: Real, const N: usize>(one: &[[R; N]; N], other: &[[R; N]; N]) -> [[R; N]; N] {
+pub fn sum<const N: usize>(one: &[[f64; N]; N], other: &[[f64; N]; N]) -> [[f64; N]; N] {
     std::array::from_fn(|i| std::array::from_fn(|j| one[i][j] + other[i][j]))
 }
 
 /// A product of matrices of which the first has many zeros: nothing leads back from a ship to what disturbs it.
-pub fn product<R: Real, const N: usize>(one: &[[R; N]; N], other: &[[R; N]; N]) -> [[R; N]; N] {
-    let mut result = [[R::from(0.0); N]; N];
+pub fn product<const N: usize>(one: &[[f64; N]; N], other: &[[f64; N]; N]) -> [[f64; N]; N] {
+    let mut result = [[0.0; N]; N];
     for (result, one) in result.iter_mut().zip(one) {
-        for (one, other) in one.iter().zip(other).filter(|(one, _)| !one.vanishes()) {
-            for (result, other) in result.iter_mut().zip(other) {
-                *result = *result + *one * *other;
-            }
+        for (one, other) in one.iter().zip(other).filter(|(one, _)| **one != 0.0) {
+            result.iter_mut().zip(other).for_each(|(result, other)| *result += one * other);
         }
     }
     result
 }
 
 /// F P Fᵀ of a symmetric P.
-pub fn sandwich<R: Real, const N: usize>(f: &[[R; N]; N], p: &[[R; N]; N]) -> [[R; N]; N] {
+pub fn sandwich<const N: usize>(f: &[[f64; N]; N], p: &[[f64; N]; N]) -> [[f64; N]; N] {
     let half = product(f, p);
-    let mut result = [[R::from(0.0); N]; N];
+    let mut result = [[0.0; N]; N];
     for (j, f) in f.iter().enumerate() {
-        for (k, f) in f.iter().enumerate().filter(|(_, f)| !f.vanishes()) {
+        for (k, f) in f.iter().enumerate().filter(|(_, f)| **f != 0.0) {
             for i in j..N {
-                result[i][j] = result[i][j] + half[i][k] * *f;
+                result[i][j] += half[i][k] * f;
             }
         }
     }

@@ -7,14 +7,14 @@ use super::{Filter, Reading, SETTLED, Sensor, System, identity, sandwich};
 /// The states of a system given all readings.
 #[derive(Debug, Clone)]
 pub struct Smoother<const N: usize> {
-    filter: Filter<f64, N>,
+    filter: Filter<N>,
     /// Covariance of the state of every gain before the reading is known.
     predicted: Vec<[[f64; N]; N]>,
 }
 
 impl<const N: usize> Smoother<N> {
     /// The smoother of a system.
-    pub fn new(system: System<f64, N>) -> Self {
+    pub fn new(system: System<N>) -> Self {
         let mut predicted = Vec::new();
         let filter = Filter::visiting(system, SETTLED, |covariance| predicted.push(*covariance));
         Self { filter, predicted }
@@ -81,7 +81,7 @@ impl<const N: usize> Smoother<N> {
             let (own, Reading { step, sensor }) = (&self.filter.gains[place], self.filter.system.readings[row]);
             let Sensor { state: first, beside, .. } = self.filter.system.sensors[sensor];
             let seen = |k: usize| f64::from(u8::from(k == first)) + f64::from(u8::from(Some(k) == beside));
-            let unit = identity::<f64, N>();
+            let unit = identity::<N>();
             // Transposed, since N = Aᵀ N A.
             let through: [[f64; N]; N] =
                 std::array::from_fn(|i| std::array::from_fn(|j| unit[i][j] - own.gain[j] * seen(i)));

@@ -25,7 +25,7 @@ use ship::FirstOrder;
 use trial::Trial;
 use trial::noise_model::NoiseModel;
 
-pub use filter::{differentiated, whitener};
+pub use filter::whitener;
 pub use parameters::{NoiseParameters, NoiseVector};
 pub use schedule::Schedule;
 pub use track::{MotionColumns, Track};
@@ -39,8 +39,7 @@ pub use track::{MotionColumns, Track};
 pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64; 2]) -> f64 {
     let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
     let schedule = Schedule::new(&track, noise.rudder_sd > 0.0);
-    let parameters: NoiseParameters<f64> =
-        NoiseVector::of(noise, ship).parameters(ship.inverse_T, noise.yaw_rate_sd.is_some());
+    let parameters = NoiseVector::of(noise, ship).parameters(ship.inverse_T);
     let unit = noise.heading_sd;
     let filter = whitener(&schedule, &parameters, initial_sd.map(|sd| (sd / unit).powi(2)));
     // The columns are from rest at the first row, where the prior stands.

@@ -3,7 +3,6 @@
 
 use ship::FirstOrder;
 
-use estimation::number::Real;
 use trial::noise_model::{Moment, NoiseModel};
 
 /// Entries of a [`NoiseVector`].
@@ -79,49 +78,41 @@ impl NoiseVector {
         (0..ENTRIES).filter(move |&entry| there[entry])
     }
 
-    /// The parameters of the noise for this 1/T. The first lane of derivatives is that of 1/T, the others are those of
-    /// the entries that are there.
-    pub fn parameters<R: Real>(&self, inverse_time: f64, gyro: bool) -> NoiseParameters<R> {
-        let lane = |entry: usize| self.entries(gyro).position(|other| other == entry).map(|place| place + 1);
-        let exponential = |entry: usize, sign: f64| {
-            let value = (sign * self.log[entry]).exp();
-            lane(entry).map_or(R::from(value), |lane| R::variable(value, lane, sign * value))
-        };
+    /// The parameters of the noise for this 1/T.
+    pub fn parameters(&self, inverse_time: f64) -> NoiseParameters {
+        let size = |entry: usize| self.log[entry].exp();
         NoiseParameters {
-            inverse_time: R::variable(inverse_time, 0, 1.0),
+            inverse_time,
             moment: self.moment,
-            level: exponential(LEVEL, 1.0),
-            rate: match self.moment {
-                Moment::OrnsteinUhlenbeck => exponential(CORRELATION, -1.0),
-                Moment::None | Moment::White | Moment::Walk => R::from(0.0),
-            },
-            rudder: self.rudder.then(|| exponential(RUDDER, 1.0)),
-            compass_rate: self.coloured.then(|| exponential(COMPASS, -1.0)),
-            gyro: exponential(GYRO, 1.0),
+            level: size(LEVEL),
+            rate: if self.moment == Moment::OrnsteinUhlenbeck { (-self.log[CORRELATION]).exp() } else { 0.0 },
+            rudder: self.rudder.then(|| size(RUDDER)),
+            compass_rate: self.coloured.then(|| (-self.log[COMPASS]).exp()),
+            gyro: size(GYRO),
         }
     }
 }
 
 /// How the noise moves the state, in units of the compass error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NoiseParameters<R> {
+pub struct NoiseParameters {
     /// a = 1/T, 1/s.
-    pub inverse_time: R,
+    pub inverse_time: f64,
     /// Which yaw moment.
     pub moment: Moment,
     /// q/σ.
-    pub level: R,
+    pub level: f64,
     /// 1/τ, 1/s.
-    pub rate: R,
+    pub rate: f64,
     /// Standard deviation of the rudder error as yaw acceleration over σ, 1/s².
-    pub rudder: Option<R>,
+    pub rudder: Option<f64>,
     /// One over the correlation time of the compass error, 1/s.
-    pub compass_rate: Option<R>,
+    pub compass_rate: Option<f64>,
     /// σ_r/σ, 1/s.
-    pub gyro: R,
+    pub gyro: f64,
 }
 
-impl<R: Real> NoiseParameters<R> {
+impl NoiseParameters {
     /// Whether the moment is a state.
     pub fn has_moment_state(&self) -> bool {
         matches!(self.moment, Moment::OrnsteinUhlenbeck | Moment::Walk)
@@ -134,12 +125,12 @@ impl<R: Real> NoiseParameters<R> {
             + usize::from(self.compass_rate.is_some())
     }
 
-    /// NoiseVector of the rudder error among the states.
+    /// Place of the rudder error among the states.
     pub fn rudder_state(&self) -> Option<usize> {
         self.rudder.map(|_| 2 + usize::from(self.has_moment_state()))
     }
 
-    /// NoiseVector of the compass error among the states: the last.
+    /// Place of the compass error among the states: the last.
     pub fn compass_state(&self) -> Option<usize> {
         self.compass_rate.map(|_| self.states() - 1)
     }

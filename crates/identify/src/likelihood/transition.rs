@@ -1,8 +1,7 @@
-//! The exact step of the state over a time in which the noise goes on, with its derivatives.
+//! The exact step of the state over a time in which the noise goes on, as a series.
 
 use estimation::kalman::{Step, identity, product, sandwich, sum};
-use estimation::number::Real;
-use ship::first_order::TangentTransition;
+use ship::first_order::Transition;
 use trial::noise_model::Moment;
 
 use super::parameters::NoiseParameters;
@@ -26,39 +25,37 @@ const NODES: [(f64, f64); 8] = [
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_13),
 ];
 
-type Small<R> = [[R; 3]; 3];
+type Small = [[f64; 3]; 3];
 
 /// The step over the time between two readings.
-pub(crate) fn step<R: Real, const N: usize>(parameters: &NoiseParameters<R>, span: &Span) -> Step<R, N> {
-    let zero = [[R::from(0.0); N]; N];
+pub(crate) fn step<const N: usize>(parameters: &NoiseParameters, span: &Span) -> Step<N> {
     let mut whole = match parameters.rudder {
         None => of_moment(parameters, span.length()),
         Some(size) => {
             let mut pieces =
                 span.pieces.iter().map(|&length| with_rudder(of_moment(parameters, length), parameters, size, length));
-            let first = pieces.next().unwrap_or(Step { transition: identity(), added: zero });
+            let first = pieces.next().unwrap_or(Step { transition: identity(), added: [[0.0; N]; N] });
             pieces.fold(first, |before, piece| before.then(&piece))
         }
     };
     if let (Some(place), Some(rate)) = (parameters.compass_state(), parameters.compass_rate) {
-        let decay = (-rate.value() * span.length()).exp();
-        let decay = rate.chained(decay, -span.length() * decay);
+        let decay = (-rate * span.length()).exp();
         whole.transition[place][place] = decay;
-        whole.added[place][place] = -(decay * decay) + 1.0;
+        whole.added[place][place] = 1.0 - decay * decay;
     }
     whole
 }
 
 /// Ship and moment alone.
-fn of_moment<R: Real, const N: usize>(parameters: &NoiseParameters<R>, length: f64) -> Step<R, N> {
-    let rates = parameters.inverse_time.value().abs() + parameters.rate.value();
+fn of_moment<const N: usize>(parameters: &NoiseParameters, length: f64) -> Step<N> {
+    let rates = parameters.inverse_time.abs() + parameters.rate;
     let doublings = (rates * length / LONGEST).log2().ceil().max(0.0);
     let (mut f, mut q) = short(parameters, length / doublings.exp2());
     for _ in 0..doublings as usize {
         q = sum(&q, &sandwich(&f, &q));
         f = product(&f, &f);
     }
-    let mut step = Step { transition: identity(), added: [[R::from(0.0); N]; N] };
+    let mut step = Step { transition: identity(), added: [[0.0; N]; N] };
     let own = if parameters.has_moment_state() { 3 } else { 2 };
     for i in 0..own {
         for j in 0..own {
@@ -69,29 +66,21 @@ fn of_moment<R: Real, const N: usize>(parameters: &NoiseParameters<R>, length: f
 }
 
 /// With the error of the recorded rudder at both ends of a piece, between which it is linear.
-fn with_rudder<R: Real, const N: usize>(
-    mut own: Step<R, N>,
-    parameters: &NoiseParameters<R>,
-    size: R,
-    length: f64,
-) -> Step<R, N> {
+fn with_rudder<const N: usize>(mut own: Step<N>, parameters: &NoiseParameters, size: f64, length: f64) -> Step<N> {
     let Some(place) = parameters.rudder_state() else { return own };
-    let TangentTransition { value, by_inverse_T: by } = TangentTransition::new(parameters.inverse_time.value(), length);
-    let phi = |value: f64, slope: f64| parameters.inverse_time.chained(value, slope);
-    let [one, two, three] = [phi(value.phi1, by.phi1), phi(value.phi2, by.phi2), phi(value.phi3, by.phi3)];
+    let Transition { phi1: one, phi2: two, phi3: three, .. } = Transition::new(parameters.inverse_time, length);
     let after = [three / length, two / length];
     let before = [two - after[0], one - after[1]];
-    let zero = R::from(0.0);
-    let mut fresh = [zero; N];
+    let mut fresh = [0.0; N];
     for i in 0..2 {
         own.transition[i][place] = size * before[i];
         fresh[i] = size * after[i];
     }
-    own.transition[place] = [zero; N];
-    fresh[place] = R::from(1.0);
+    own.transition[place] = [0.0; N];
+    fresh[place] = 1.0;
     for (row, one) in own.added.iter_mut().zip(fresh) {
         for (value, other) in row.iter_mut().zip(fresh) {
-            *value = *value + one * other;
+            *value += one * other;
         }
     }
     own
@@ -99,14 +88,13 @@ fn with_rudder<R: Real, const N: usize>(
 
 /// Transition and covariance over a step that is short against T and τ. Time is counted in steps, so that the series
 /// has no units: z = (ψ, r h, m h²).
-fn short<R: Real>(parameters: &NoiseParameters<R>, h: f64) -> (Small<R>, Small<R>) {
-    let zero = R::from(0.0);
+fn short(parameters: &NoiseParameters, h: f64) -> (Small, Small) {
     let (x, y) = (parameters.inverse_time * h, parameters.rate * h);
     // Coefficients of the motion after an impulse on r, and on m: (ψ, r, m) as polynomials of time.
-    let mut of_rate = [[zero; TERMS]; 3];
-    let mut of_moment = [[zero; TERMS]; 3];
-    of_rate[1][0] = R::from(1.0);
-    of_moment[2][0] = R::from(1.0);
+    let mut of_rate = [[0.0; TERMS]; 3];
+    let mut of_moment = [[0.0; TERMS]; 3];
+    of_rate[1][0] = 1.0;
+    of_moment[2][0] = 1.0;
     for j in 1..TERMS {
         let per = 1.0 / j as f64;
         of_rate[0][j] = of_rate[1][j - 1] * per;
@@ -115,24 +103,24 @@ fn short<R: Real>(parameters: &NoiseParameters<R>, h: f64) -> (Small<R>, Small<R
         of_moment[1][j] = (of_moment[2][j - 1] - x * of_moment[1][j - 1]) * per;
         of_moment[2][j] = -(y * of_moment[2][j - 1]) * per;
     }
-    let at = |polynomial: &[R; TERMS], s: f64| polynomial.iter().rev().fold(zero, |sum, &term| sum * s + term);
+    let at = |polynomial: &[f64; TERMS], s: f64| polynomial.iter().rev().fold(0.0, |sum, &term| sum * s + term);
     let [r, m] = [&of_rate, &of_moment].map(|motion| motion.each_ref().map(|polynomial| at(polynomial, 1.0)));
-    let transition = [[R::from(1.0), r[0] * h, m[0] * (h * h)], [zero, r[1], m[1] * h], [zero, zero, m[2]]];
+    let transition = [[1.0, r[0] * h, m[0] * (h * h)], [0.0, r[1], m[1] * h], [0.0, 0.0, m[2]]];
 
     let (impulse, density) = match parameters.moment {
-        Moment::None => return (transition, [[zero; 3]; 3]),
+        Moment::None => return (transition, [[0.0; 3]; 3]),
         Moment::White => (&of_rate, parameters.level * parameters.level * h.powi(3)),
         Moment::Walk => (&of_moment, parameters.level * parameters.level * h.powi(5)),
         Moment::OrnsteinUhlenbeck => {
             (&of_moment, parameters.level * parameters.level * parameters.rate * (2.0 * h.powi(5)))
         }
     };
-    let mut added = [[zero; 3]; 3];
+    let mut added = [[0.0; 3]; 3];
     for (s, weight) in NODES {
         let motion = impulse.each_ref().map(|polynomial| at(polynomial, s));
         for i in 0..3 {
             for j in 0..=i {
-                added[i][j] = added[i][j] + motion[i] * motion[j] * weight;
+                added[i][j] += motion[i] * motion[j] * weight;
             }
         }
     }

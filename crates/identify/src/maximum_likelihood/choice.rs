@@ -33,9 +33,6 @@ const NEGLIGIBLE: f64 = 0.01;
 /// Gain in −2 log of the restricted likelihood from which on a moment is looked at more closely.
 const SEEN: f64 = 2.0;
 
-/// Headings of a record that a first look takes.
-const LOOKED_AT: usize = 200;
-
 /// Records ready to be fitted, with the answer of `output-error` to begin with.
 pub(super) struct PreparedRecords {
     records: Vec<Record>,
@@ -227,9 +224,7 @@ fn contest(
     none: &[NoiseVector],
     evaluations: &mut usize,
 ) -> Ranked {
-    let coarse: Option<Vec<Record>> = records.iter().map(|record| record.thinned(LOOKED_AT)).collect();
-    let iterations = settings.iterations;
-    let mut search = Search { records, ranges, coarse: coarse.as_deref(), iterations, evaluations: 0 };
+    let mut search = Search { records, ranges, iterations: settings.iterations, evaluations: 0 };
     let mut all = of_moments(&mut search, settings.moment.kinds(), a, none);
     let froms = with_memory(&all, settings.compass);
     if settings.compass == CompassChoice::Coloured {

@@ -36,33 +36,17 @@ pub(super) struct Record {
     pub declared: Option<f64>,
 }
 
-/// Columns of one record before they are white: motions of its own start and jumps, responses to rudder and constant,
-/// and the readings.
-#[derive(Debug)]
-pub(super) struct Raw {
-    pub own: Vec<Vec<f64>>,
-    pub rest: [Vec<f64>; 3],
-}
-
-/// The same, white; the own ones are orthonormal and taken out of the others.
+/// White columns of one record: motions of its own start and jumps, orthonormal; and responses to rudder and constant,
+/// and the readings, the own ones taken out of them.
 #[derive(Debug, Clone)]
 pub(super) struct White {
-    filter: Whitener,
+    pub filter: Whitener,
     pub own: Vec<Vec<f64>>,
     /// Leads from the orthonormal columns back to those of the start and the jumps.
-    pub triangle: DMatrix<f64>,
+    triangle: DMatrix<f64>,
     pub rest: [Vec<f64>; 3],
     /// Parts of the others along the own columns.
-    pub shares: [Vec<f64>; 3],
-}
-
-/// How the readings change with 1/T.
-#[derive(Debug, Clone)]
-pub(super) struct ByTime {
-    pub raw: Vec<f64>,
-    /// White, the own columns taken out, and its parts along them.
-    pub white: Vec<f64>,
-    pub shares: Vec<f64>,
+    shares: [Vec<f64>; 3],
 }
 
 /// What a record says at a point.
@@ -72,15 +56,18 @@ pub(super) struct RecordAtPoint {
     pub variance: f64,
     /// Number of readings.
     pub readings: usize,
-    /// Heading and yaw rate at the anchor, and the heights of the jumps, rad.
+    /// Heading and yaw rate at the anchor.
     pub anchor: State,
-    pub jumps: Vec<f64>,
     /// Innovations over √S, rad.
     pub innovations: Vec<f64>,
+    /// What it adds to −2 log L, and beside it to the restricted one.
+    pub deviance: f64,
+    pub determinant: f64,
     /// Products of what changes with 1/T, b and b δ_r.
     pub motion: Matrix3<f64>,
     pub white: White,
-    pub by_time: ByTime,
+    /// How the readings change with 1/T: white, the own columns taken out.
+    pub by_time: Vec<f64>,
 }
 
 /// The best fit for one 1/T and one noise of every record.
@@ -101,12 +88,6 @@ impl Record {
     pub fn new(track: Track, by_row: bool) -> Self {
         let schedule = Schedule::new(&track, by_row);
         Self { track, schedule, jumps: Vec::new(), declared: None }
-    }
-
-    /// About so many of the headings, for a first look; `None` where the record has more than headings to look at.
-    pub fn thinned(&self, rows: usize) -> Option<Self> {
-        let plain = !self.has_gyro() && self.jumps.is_empty() && self.track.observed().len() == self.track.time().len();
-        (plain && self.track.len() >= 2 * rows).then(|| Self::new(self.track.thinned(rows), false))
     }
 
     /// Number of readings.
@@ -139,8 +120,9 @@ impl Record {
         self.stacked(&heading, &vec![0.0; self.track.rates.len()])
     }
 
-    /// The columns for a value of 1/T.
-    pub fn raw(&self, inverse_time: f64) -> Raw {
+    /// The columns of a ship with this 1/T made white under a noise, whose filter may take another 1/T. `None` when a
+    /// column is not finite.
+    fn white(&self, inverse_time: f64, noise: &NoiseParameters) -> Option<White> {
         let mut columns = MotionColumns::default();
         self.track.fill(inverse_time, &mut columns);
         let MotionColumns { homogeneous, rudder, constant, rates } = &columns;
@@ -152,18 +134,17 @@ impl Record {
             self.stacked(constant, &rates.constant),
             self.stacked(&self.track.heading, &self.track.rates),
         ];
-        Raw { own, rest }
+        White::new(own, rest, whitener(&self.schedule, noise, [0.0; 2]))
     }
 
-    /// How the readings change with 1/T at known coefficients.
-    fn by_time(&self, white: &White, inverse_time: f64, coefficients: &Coefficients) -> ByTime {
+    /// How the readings change with 1/T at known coefficients: white, the own columns taken out.
+    fn by_time(&self, white: &White, inverse_time: f64, coefficients: &Coefficients) -> Vec<f64> {
         let (mut by_heading, mut by_rate) = (Vec::new(), Vec::new());
         self.track.sensitivities(inverse_time, coefficients, [&mut by_heading, &mut by_rate]);
-        let raw = self.stacked(&by_heading, &by_rate);
-        let mut column = raw.clone();
+        let mut column = self.stacked(&by_heading, &by_rate);
         white.filter.apply(&mut [&mut column]);
-        let shares = white.own.iter().map(|unit| take_out(unit, &mut column)).collect();
-        ByTime { raw, white: column, shares }
+        white.own.iter().for_each(|unit| _ = take_out(unit, &mut column));
+        column
     }
 
     /// Products of the whitened sensitivities by (1/T, b, b δ_r) at known coefficients, the start eliminated; over σ²
@@ -174,18 +155,11 @@ impl Record {
         place: &NoiseVector,
         coefficients: &Coefficients,
     ) -> Option<Matrix3<f64>> {
-        let parameters: NoiseParameters<f64> = place.parameters(inverse_time, self.has_gyro());
-        let white = White::new(self.raw(inverse_time), whitener(&self.schedule, &parameters, [0.0; 2]))?;
+        let white = self.white(inverse_time, &place.parameters(inverse_time))?;
         let by_time = self.by_time(&white, inverse_time, coefficients);
         let products = white.motion(&by_time);
         products.iter().all(|value| value.is_finite()).then_some(products)
     }
-}
-
-/// Divides a column by its length; a start that is over before the first row is not seen.
-pub(super) fn shrink(column: &mut [f64], length: f64) {
-    let per = if length > 0.0 { length.recip() } else { 0.0 };
-    column.iter_mut().for_each(|x| *x *= per);
 }
 
 /// Takes a unit column out of another one and returns its part along it.
@@ -196,9 +170,7 @@ pub(super) fn take_out(unit: &[f64], column: &mut [f64]) -> f64 {
 }
 
 impl White {
-    /// `None` when a column is not finite.
-    fn new(raw: Raw, filter: Whitener) -> Option<Self> {
-        let Raw { mut own, mut rest } = raw;
+    fn new(mut own: Vec<Vec<f64>>, mut rest: [Vec<f64>; 3], filter: Whitener) -> Option<Self> {
         let (first, jumps) = own.split_at_mut(2);
         let [one, two] = first else { return None };
         let [three, four, five] = &mut rest;
@@ -216,16 +188,18 @@ impl White {
             if length.is_nan() {
                 return None;
             }
-            shrink(&mut column[0], length);
+            // A start that is over before the first row is not seen.
+            let per = if length > 0.0 { length.recip() } else { 0.0 };
+            column[0].iter_mut().for_each(|x| *x *= per);
         }
         let shares = rest.each_mut().map(|column| own.iter().map(|unit| take_out(unit, column)).collect());
         Some(Self { filter, own, triangle, rest, shares })
     }
 
     /// Products of what changes with 1/T, b and b δ_r.
-    fn motion(&self, by_time: &ByTime) -> Matrix3<f64> {
+    fn motion(&self, by_time: &[f64]) -> Matrix3<f64> {
         let [rudder, constant, _] = &self.rest;
-        Matrix3::from(gram([by_time.white.as_slice(), rudder, constant]))
+        Matrix3::from(gram([by_time, rudder, constant]))
     }
 
     /// Readings less what steering explains.
@@ -234,8 +208,8 @@ impl White {
         readings.iter().zip(rudder.iter().zip(constant)).map(|(psi, (g, h))| psi - gain * g - offset * h).collect()
     }
 
-    /// Start at the anchor and heights of jumps.
-    fn start(&self, gain: f64, offset: f64) -> Option<(State, Vec<f64>)> {
+    /// State at the anchor.
+    fn start(&self, gain: f64, offset: f64) -> Option<State> {
         let [rudder, constant, readings] = &self.shares;
         let along = (0..readings.len()).map(|k| readings[k] - gain * rudder[k] - offset * constant[k]);
         let mut along = DVector::from_iterator(readings.len(), along);
@@ -247,7 +221,7 @@ impl White {
             }
         }
         let found = triangle.solve_upper_triangular(&along)?;
-        Some((State { heading: found[0], yaw_rate: found[1] }, found.iter().skip(2).copied().collect()))
+        Some(State { heading: found[0], yaw_rate: found[1] })
     }
 }
 
@@ -263,6 +237,19 @@ struct Weight {
 }
 
 impl Weight {
+    /// That of a record among so many readings of `all`.
+    fn new(record: &Record, place: &NoiseVector, white: &White, all: usize) -> Self {
+        let readings = record.len() as f64;
+        let fitted = record.own() as f64 + SHARED as f64 * readings / all as f64;
+        let [rudder, constant, measured] = &white.rest;
+        Self {
+            products: gram([rudder, constant, measured]),
+            readings,
+            freedom: readings - fitted,
+            tied: record.tied(place).map(|sd| sd / place.log[RUDDER].exp()),
+        }
+    }
+
     fn square(&self, b: f64, q: f64) -> f64 {
         let [[gg, gh, gy], [_, hh, hy], [.., yy]] = self.products;
         // Products know no square below their rounding: a record without noise keeps that much.
@@ -299,45 +286,64 @@ fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
     Some((best, variances))
 }
 
-/// The best fit for one 1/T and these places, one a record. `None` when it is no ship or not finite.
-pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[NoiseVector]) -> Option<Point> {
-    let columns = |(record, place): (&Record, &NoiseVector)| {
-        let parameters: NoiseParameters<f64> = place.parameters(inverse_time, record.has_gyro());
-        White::new(record.raw(inverse_time), whitener(&record.schedule, &parameters, [0.0; 2]))
-    };
-    let columns = records.iter().zip(places).map(columns).collect::<Option<Vec<White>>>()?;
-    let all: usize = records.iter().map(Record::len).sum();
-    let weight = |((record, place), white): ((&Record, &NoiseVector), &White)| {
-        let readings = record.len() as f64;
-        let fitted = record.own() as f64 + SHARED as f64 * readings / all as f64;
-        let [rudder, constant, measured] = &white.rest;
-        Weight {
-            products: gram([rudder, constant, measured]),
-            readings,
-            freedom: readings - fitted,
-            tied: record.tied(place).map(|sd| sd / place.log[RUDDER].exp()),
-        }
-    };
-    let weights: Vec<Weight> = records.iter().zip(places).zip(&columns).map(weight).collect();
-    let (steering, variances) = weigh(&weights)?;
-    let [gain, offset]: [f64; 2] = steering.into();
-    let (mut deviance, mut determinant) = (0.0, 0.0);
-    let mut motion = Matrix3::zeros();
-    let mut parts = Vec::with_capacity(records.len());
-    for (((white, weight), &variance), record) in columns.into_iter().zip(&weights).zip(&variances).zip(records) {
+impl RecordAtPoint {
+    /// What a record says at known steering, under the noise of a place whose filter may take another 1/T.
+    pub fn new(
+        record: &Record,
+        inverse_time: f64,
+        steering: [f64; 2],
+        noise: (&NoiseVector, f64),
+        readings: usize,
+    ) -> Option<Self> {
+        let white = record.white(inverse_time, &noise.0.parameters(noise.1))?;
+        let weight = Weight::new(record, noise.0, &white, readings);
+        let variance = weight.variance(steering[0], steering[1]);
+        Self::of(record, inverse_time, steering, white, (&weight, variance))
+    }
+
+    fn of(
+        record: &Record,
+        inverse_time: f64,
+        [gain, offset]: [f64; 2],
+        white: White,
+        (weight, variance): (&Weight, f64),
+    ) -> Option<Self> {
         let constant = (2.0 * std::f64::consts::PI * variance).ln();
-        deviance += weight.readings * constant + weight.square(gain, offset) / variance + white.filter.log_variance;
-        let (anchor, jumps) = white.start(gain, offset)?;
+        let deviance = weight.readings * constant + weight.square(gain, offset) / variance + white.filter.log_variance;
+        let anchor = white.start(gain, offset)?;
         let lengths = white.triangle.diagonal();
         let seen = lengths.iter().filter(|&&length| length > 0.0);
-        determinant += seen.map(|length| (length * length / variance).ln()).sum::<f64>();
+        let determinant = seen.map(|length| (length * length / variance).ln()).sum::<f64>();
         let by_time = record.by_time(&white, inverse_time, &Coefficients { anchor, gain, offset });
-        let own = white.motion(&by_time);
-        motion += own / variance;
-        let (readings, innovations) = (record.len(), white.residual(gain, offset));
-        parts.push(RecordAtPoint { variance, readings, anchor, jumps, innovations, motion: own, white, by_time });
+        let (motion, innovations) = (white.motion(&by_time), white.residual(gain, offset));
+        let readings = record.len();
+        Some(Self { variance, readings, anchor, innovations, deviance, determinant, motion, white, by_time })
     }
-    let restricted = deviance + determinant + motion.determinant().ln();
+}
+
+/// Readings of all records.
+pub(super) fn readings(records: &[Record]) -> usize {
+    records.iter().map(Record::len).sum()
+}
+
+/// The best fit for one 1/T and these places, one a record. `None` when it is no ship or not finite.
+pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[NoiseVector]) -> Option<Point> {
+    let columns =
+        |(record, place): (&Record, &NoiseVector)| record.white(inverse_time, &place.parameters(inverse_time));
+    let columns = records.iter().zip(places).map(columns).collect::<Option<Vec<White>>>()?;
+    let all = readings(records);
+    let weight = |((record, place), white): ((&Record, &NoiseVector), &White)| Weight::new(record, place, white, all);
+    let weights: Vec<Weight> = records.iter().zip(places).zip(&columns).map(weight).collect();
+    let (steering, variances) = weigh(&weights)?;
+    let steering: [f64; 2] = steering.into();
+    let parts = columns.into_iter().zip(weights.iter().zip(variances)).zip(records);
+    let parts = parts.map(|((white, weight), record)| RecordAtPoint::of(record, inverse_time, steering, white, weight));
+    let parts = parts.collect::<Option<Vec<_>>>()?;
+    let deviance = parts.iter().map(|part| part.deviance).sum::<f64>();
+    let motion: Matrix3<f64> = parts.iter().map(|part| part.motion / part.variance).sum();
+    let determinant = parts.iter().map(|part| part.determinant).sum::<f64>() + motion.determinant().ln();
+    let [gain, offset] = steering;
+    let restricted = deviance + determinant;
     let ship = gain > 0.0 && restricted.is_finite();
     ship.then(|| Point { inverse_time, places: places.to_vec(), deviance, restricted, gain, offset, parts })
 }

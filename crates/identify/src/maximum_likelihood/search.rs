@@ -71,8 +71,6 @@ impl Ranges {
 pub(super) struct Search<'a> {
     pub records: &'a [Record],
     pub ranges: &'a [Ranges],
-    /// The same records with fewer readings, for a first look.
-    pub coarse: Option<&'a [Record]>,
     pub iterations: usize,
     pub evaluations: usize,
 }
@@ -90,16 +88,10 @@ impl Search<'_> {
         evaluate(self.records, inverse_time, places)
     }
 
-    /// The start with the lowest −2 log L, or restricted one where only the noise differs; it is looked for in fewer
-    /// readings where there are many.
+    /// The start with the lowest −2 log L, or restricted one where only the noise differs.
     pub fn best(&mut self, starts: Vec<(f64, Vec<NoiseVector>)>, height: fn(&Point) -> f64) -> Option<Point> {
-        let records = self.coarse.unwrap_or(self.records);
-        self.evaluations += starts.len();
-        let of_start = |(a, places): &(f64, Vec<NoiseVector>)| {
-            evaluate(records, *a, places).map_or(f64::INFINITY, |point| height(&point))
-        };
-        let best = starts.iter().map(|start| (of_start(start), start)).min_by(|one, other| one.0.total_cmp(&other.0));
-        best.and_then(|(_, (a, places))| self.evaluate(*a, places))
+        let points = starts.iter().filter_map(|(a, places)| self.evaluate(*a, places));
+        points.min_by(|one, other| height(one).total_cmp(&height(other)))
     }
 
     /// Starts of several sizes for the moment of a kind.

@@ -33,7 +33,7 @@ pub(super) struct MomentRows {
     /// Variance of the noise of every row, in units of that of a full one.
     variance: Vec<f64>,
     /// Transition and covariance for λ = 1 of every distinct step.
-    steps: Vec<(f64, Step<f64, STATES>)>,
+    steps: Vec<(f64, Step<STATES>)>,
     /// The step before every row; the first has none.
     of_row: Vec<usize>,
     /// Large initial variances over σ².
@@ -47,7 +47,7 @@ impl MomentRows {
         generator[(0, 1)] = 1.0;
         generator[(1, 1)] = -base.inverse_T;
         generator[(1, 2)] = base.K_over_T;
-        let mut steps: Vec<(f64, Step<f64, STATES>)> = Vec::new();
+        let mut steps: Vec<(f64, Step<STATES>)> = Vec::new();
         let mut of_row = vec![0];
         for pair in time.windows(2) {
             let h = pair[1] - pair[0];
