@@ -34,7 +34,7 @@ pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<StoredStudy, Fail
     design.cells.iter_mut().for_each(|cell| cell.trials = 0..0);
     let layout = RowLayout::of(&design);
     let mut writer = RowWriter::create(out, ROWS, &layout)?;
-    let mut timings = Timings::new(design.methods.len());
+    let mut timings = Timings::default();
     let mut showcases = Vec::new();
     // One shard after the other: thousands of designs of thousands of cells do not fit into memory.
     for folder in folders {

@@ -8,8 +8,6 @@ use identify::{Identifier, Outside};
 use scenario::failure::Failure;
 use scenario::name;
 
-use crate::interrupt;
-
 /// A label and a command, such as `mine=python3 "my estimator.py"`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedCommand {
@@ -73,7 +71,6 @@ pub fn methods(commands: &[NamedCommand], known: &[&str]) -> Result<Vec<Named>, 
         let method = Settings::new(command).build(Path::new("")).map_err(|error| refuse(&error))?;
         method.find().map_err(|problem| refuse(&problem))?;
         methods.push((label.clone(), Box::new(method)));
-        interrupt::install();
     }
     Ok(methods)
 }

@@ -1,6 +1,7 @@
 //! Who watches a study at the command line: a bar, warnings on standard error, and Ctrl-C as a request to stop.
 
 use std::sync::OnceLock;
+use std::time::Duration;
 
 use campaign::Observer;
 use indicatif::ProgressBar;
@@ -24,7 +25,8 @@ impl Terminal {
 impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
         interrupt::listen(true);
-        self.bar.get_or_init(|| progress::bar(most, done, self.quiet));
+        let bar = || progress::of("trials", most, self.quiet).with_position(done).with_elapsed(Duration::ZERO);
+        self.bar.get_or_init(bar);
     }
 
     fn advance(&self) {

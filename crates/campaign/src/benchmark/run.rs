@@ -45,7 +45,7 @@ pub fn run(
     methods: &[BenchMethod],
     observer: &dyn Observer,
 ) -> Result<BenchDocument, Failure> {
-    method::distinct(methods)?;
+    method::check_labels(methods)?;
     let (mut trials, mut present, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
     for (number, set) in definition.sets.iter().enumerate() {
         let (own, found) = match &set.source {

@@ -12,3 +12,14 @@ pub fn grouped<K: PartialEq, T>(all: impl IntoIterator<Item = T>, key: impl Fn(&
     }
     found
 }
+
+/// Every one once, in the order in which they came.
+pub fn distinct<T: PartialEq>(all: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut found: Vec<T> = Vec::new();
+    for one in all {
+        if !found.contains(&one) {
+            found.push(one);
+        }
+    }
+    found
+}

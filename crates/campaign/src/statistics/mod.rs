@@ -10,7 +10,7 @@ mod statistic;
 mod sums;
 
 pub use bootstrap::Resamples;
-pub use groups::grouped;
+pub use groups::{distinct, grouped};
 pub use moments::Moments;
 pub use sample::{ErrorSample, Ordered};
 pub use statistic::{Statistic, Z95, share};

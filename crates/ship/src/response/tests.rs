@@ -1,10 +1,10 @@
 use super::*;
+use crate::Tangent;
 use crate::dynamics::Measured;
 use crate::effects;
 use crate::first_order::{State, Transition};
 use crate::replay::{Recorded, replay, replay_states};
 use crate::signal::Polyline;
-use crate::Tangent;
 use approx::assert_relative_eq;
 
 const BASE_VALUES: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.01];

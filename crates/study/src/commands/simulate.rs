@@ -8,7 +8,7 @@ use campaign::folder::ResultFolder;
 use campaign::task::Task;
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
-use report::{Table, TableColumn};
+use report::Table;
 use scenario::Scenario;
 use scenario::failure::{Failure, OnPath};
 use serde_json::json;
@@ -62,8 +62,7 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
 
 /// Writes which record is of which trial, and what it takes to make the trials again.
 fn list(scenario: &Scenario, tasks: &[Task], names: &[String], folder: &ResultFolder) -> Result<(), Failure> {
-    let columns = ["record", "cell", "label", "replicate", "also"];
-    let mut table = Table::new(columns.map(TableColumn::left));
+    let mut table = Table::headed("record | cell | label | replicate | also");
     for (task, name) in tasks.iter().zip(names) {
         let file = |number: usize| format!("{}.csv", part_name(name, number));
         let cell = &scenario.cells[task.cell];

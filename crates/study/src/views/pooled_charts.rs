@@ -2,7 +2,7 @@
 //! was asked for.
 
 use campaign::design::Design;
-use campaign::statistics::grouped;
+use campaign::statistics::{distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use report::figures::{
     CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, Reference95, RowItem,
@@ -18,9 +18,7 @@ const MAP: usize = 3;
 
 /// Maps of the errors of K, of T and of the validation for a design of two axes: stems, what they show, and the maps.
 pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, CellMap)> {
-    let labels = |axis: usize| -> Vec<String> {
-        grouped(&design.cells, |cell| cell.labels[axis].clone()).into_iter().map(|(label, _)| label).collect()
-    };
+    let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].clone()));
     if design.axes.len() != 2 {
         return Vec::new();
     }
@@ -136,8 +134,7 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
     if !is_named || design.cells.iter().all(|cell| !cell.is_nearest) || !summary.tracing.is_empty() {
         return None;
     }
-    let points = grouped(&design.cells, |cell| cell.labels[last].as_str());
-    let names: Vec<&str> = points.into_iter().map(|(name, _)| name).collect();
+    let names = distinct(design.cells.iter().map(|cell| cell.labels[last].as_str()));
     let series = grouped(0..design.cells.len(), |&cell| design.cells[cell].labels[..last].join(", "));
     if names.len() < 2 || series.iter().any(|(_, cells)| cells.len() != names.len()) {
         return None;

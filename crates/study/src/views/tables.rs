@@ -76,7 +76,8 @@ const ERRORS: [ErrorFigure; 14] = [
     ("sd/bound", "", |errors| errors.sd_over_bound),
 ];
 
-fn head(design: &Design) -> Vec<TableColumn> {
+/// One column for every axis, and the method.
+pub fn head(design: &Design) -> Vec<TableColumn> {
     head_of_cells(design).into_iter().chain([TableColumn::left("method")]).collect()
 }
 
@@ -85,7 +86,8 @@ pub fn head_of_cells(design: &Design) -> Vec<TableColumn> {
     design.axes.iter().map(|axis| TableColumn::left(axis.clone())).collect()
 }
 
-fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
+/// A cell and a method, in the columns of [`head`].
+pub fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
     let labels = design.cells[cell].labels.iter().cloned();
     labels.chain([design.methods[method].label.clone()]).collect()
 }

@@ -9,7 +9,7 @@ use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
-use campaign::statistics::{grouped, share};
+use campaign::statistics::{distinct, grouped, share};
 use campaign::summary::{CALIBRATION, CalibrationBin, TraceSummary};
 
 /// Name of the row of ships that lack nothing, and of the column of trials in which nothing was named.
@@ -45,13 +45,9 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     };
     let rows = grouped(lines.iter().copied(), name);
     // Columns stand in the order of the rows, so that what is right runs down a diagonal.
-    let mut columns: Vec<&str> = vec![NOTHING];
     let missing = rows.iter().flat_map(|(_, lines)| lines).flat_map(|line| &line.missing).filter(|id| *id != HULL);
-    for id in missing.chain(lines.iter().flat_map(|line| line.named.keys())) {
-        if !columns.contains(&id.as_str()) {
-            columns.push(id);
-        }
-    }
+    let named = missing.chain(lines.iter().flat_map(|line| line.named.keys())).map(String::as_str);
+    let columns = distinct([NOTHING].into_iter().chain(named));
     let cell = |lines: &[&TraceSummary], id: &str| {
         let count = |line: &&TraceSummary| match id {
             NOTHING => line.silent,

@@ -16,9 +16,9 @@ use super::every_scale::{self, PREFERRED_METHODS};
 use super::single_records;
 use crate::documents::fit::{FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
 use crate::outside::{self, Named, NamedCommand};
-use crate::progress;
 use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
+use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
 use campaign::curves::{curve, phase_curve, phase_of, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
@@ -147,6 +147,9 @@ pub fn methods(names: &[String], external: &[NamedCommand], seed: Option<u64>) -
         return Err(Failure::input(format!("--method {unknown}: no such method; use one of {}", known.join(", "))));
     }
     let outside = outside::methods(external, &known)?;
+    if !outside.is_empty() {
+        interrupt::install();
+    }
     let is_named = |id: &str| names.is_empty() || names.iter().any(|name| name == id);
     let own = all.into_iter().filter(|method| is_named(method.id())).map(|method| {
         let method = seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method);

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use campaign::rows::StudyRow;
-use campaign::store::StoredStudy;
 
 use crate::desk::{Desk, interrupted, killed};
+use crate::outside::rows;
 
 /// A study of some seconds in two cells.
 fn scenario(replicates: u32) -> String {
@@ -251,13 +251,7 @@ fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
     desk.run(&merge).is_done();
     assert!(whole == desk.bytes("joined/rows.parquet"));
 
-    let stored = StoredStudy::read(&desk.path("whole")).expect("it is finished");
-    let mut rows = Vec::new();
-    let read = stored.rows(|row| {
-        rows.push(row);
-        Ok(())
-    });
-    read.expect("they can be read");
+    let rows = rows(&desk, "whole");
     let ships: Vec<&[f64]> = rows.iter().map(|row| row.drawn.as_deref().expect("a ship of its own")).collect();
     assert_eq!(ships[..80], ships[80..], "paired over the cells");
     let is_truth = |row: &StudyRow, ship: &[f64]| row.true_t_s.is_some_and(|t| (t / ship[0] - 1.0).abs() < 1e-14);

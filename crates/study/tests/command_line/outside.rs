@@ -114,7 +114,8 @@ fn simulated(desk: &Desk) -> Vec<String> {
 
 const HEAD: &str = "record,K_per_s,T_s,delta_r_deg\n";
 
-fn rows(desk: &Desk, folder: &str) -> Vec<StudyRow> {
+/// The rows of a finished study.
+pub fn rows(desk: &Desk, folder: &str) -> Vec<StudyRow> {
     let mut rows = Vec::new();
     let keep = |row| {
         rows.push(row);

@@ -50,6 +50,10 @@ fn keeps_the_contract(json: &Value) {
     }
 }
 
+fn criteria(json: &Value) -> Vec<&str> {
+    json["imo"].as_array().into_iter().flatten().filter_map(|one| one["criterion"].as_str()).collect()
+}
+
 /// The first overshoot of the ship of that record is 6.82 deg in a 10/10, and the limit of 75 m at 6.2 m/s 11.0 deg.
 #[test]
 fn a_fit_tells_the_trials_of_the_imo() {
@@ -62,8 +66,7 @@ fn a_fit_tells_the_trials_of_the_imo() {
     assert!((first["median"].as_f64().expect("a number") - 6.82).abs() < 0.1, "{first}");
     assert_eq!(first["extrapolated"], false);
     assert_eq!(figure(&json, "zig-zag 20/20", "first_overshoot_deg")["extrapolated"], true);
-    let names: Vec<&str> =
-        json["imo"].as_array().expect("a list").iter().filter_map(|one| one["criterion"].as_str()).collect();
+    let names = criteria(&json);
     assert_eq!(names, ["initial turning", "10/10 first overshoot", "10/10 second overshoot", "20/20 first overshoot"]);
     for file in ["report.md", "zig-zag-10-10.png", "zig-zag-10-10.csv", "imo-overshoots.svg", "turning-circle-35.png"] {
         assert!(!desk.bytes(&format!("p/{file}")).is_empty(), "{file}");
@@ -87,8 +90,7 @@ fn a_trace_predicts_and_its_own_record_is_inside() {
     let json = desk.json("p/predict.json");
     keeps_the_contract(&json);
     assert_eq!(json["manoeuvres"].as_array().map(Vec::len), Some(5));
-    let criteria: Vec<&str> =
-        json["imo"].as_array().expect("a list").iter().filter_map(|one| one["criterion"].as_str()).collect();
+    let criteria = criteria(&json);
     assert_eq!(criteria, ["initial turning", "20/20 first overshoot"]);
     assert_eq!(figure(&json, "spiral 15", "loop_width_deg")["median"], 0.0);
     let replay = &json["replays"][0];

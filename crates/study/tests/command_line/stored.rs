@@ -4,7 +4,7 @@
 use std::fs;
 use std::time::Duration;
 
-use crate::desk::{Desk, interrupted, killed};
+use crate::desk::{Desk, copy, interrupted, killed};
 use crate::monte_carlo::parts;
 
 const STUDY: &str = r#"
@@ -31,24 +31,13 @@ fn desk() -> Desk {
     desk
 }
 
-fn copy(desk: &Desk, from: &str, to: &str) {
-    for entry in fs::read_dir(desk.path(from)).expect("a folder").flatten() {
-        if entry.path().is_file() {
-            desk.file(
-                &format!("{to}/{}", entry.file_name().to_string_lossy()),
-                fs::read(entry.path()).expect("a file"),
-            );
-        }
-    }
-}
-
 #[test]
 fn a_flipped_bit_is_noticed_by_every_reader() {
     let desk = desk();
     for name in ["rows.parquet", "cells.json", "showcase.json", "timings.csv"] {
         let bytes = desk.bytes(&format!("whole/{name}"));
         for place in [0, bytes.len() / 3, bytes.len() / 2, bytes.len() - 2] {
-            copy(&desk, "whole", "flipped");
+            copy(&desk.path("whole"), &desk.path("flipped"));
             let mut damaged = bytes.clone();
             damaged[place] ^= 0x10;
             desk.file(&format!("flipped/{name}"), &damaged);
