@@ -9,6 +9,8 @@
 //! Source: Nomoto (1960) for the method; the equations are derived anew.
 
 mod classic;
+mod equation_8;
+mod found;
 mod points;
 
 use nalgebra::Matrix3;
@@ -22,6 +24,7 @@ use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, require};
+use found::Analysed;
 use points::{BaseHeadingOrigin, Points};
 
 /// Which points are used, and how.
@@ -34,6 +37,13 @@ pub enum Variant {
     /// Three successive extrema and the two passages between them, as in an analysis by hand. Says nothing of its
     /// error.
     ThreePeaks,
+    /// The integrated equation at instants one window apart, with heading and yaw rate from local cubics.
+    #[serde(rename = "equation-8")]
+    Equation8,
+    /// The same equation at the extrema, referred to the first row, as Ge, Hu, Yin and Sun print it but with the sign
+    /// of r(0) mended. There T stands in it with r(0) alone: it cannot be found from a start at rest.
+    #[serde(rename = "equation-8-vertices")]
+    Equation8Vertices,
 }
 
 /// Settings of [`CharacteristicPoints`].
@@ -42,7 +52,7 @@ pub enum Variant {
 pub struct Settings {
     /// Which points are used, and how.
     pub variant: Variant,
-    /// Half width of the local fits, s; without it 7 % of half a period, at least three intervals.
+    /// Half width of the local fits, s; without it 7 % of half a period (equation 8: 14 %), at least three intervals.
     pub half_width_s: Option<f64>,
     /// Base course, deg; without it the mean heading before the first execute.
     pub base_course_deg: Option<f64>,
@@ -96,6 +106,17 @@ pub struct CharacteristicPoints {
     settings: Settings,
 }
 
+impl CharacteristicPoints {
+    /// Half width of the local fits in half periods. A parabola follows a peak over a shorter time than a cubic the
+    /// heading, and only equation (8) suffers when the noise of the yaw rate is large: it is a regressor there.
+    fn width_share(&self) -> f64 {
+        match self.settings.variant {
+            Variant::LeastSquares | Variant::ThreePeaks => 0.07,
+            Variant::Equation8 | Variant::Equation8Vertices => 0.14,
+        }
+    }
+}
+
 impl Identifier for CharacteristicPoints {
     fn id(&self) -> &'static str {
         "characteristic-points"
@@ -107,17 +128,24 @@ impl Identifier for CharacteristicPoints {
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let base = self.settings.base_course_deg.map(from_deg);
-        let find = |samples: &Samples| {
-            let mut points = Points::find(samples, base, self.settings.half_width_s);
-            if !self.settings.start_at_rest {
-                points.forget_rest();
-            }
-            points
-        };
-        let analysed: Vec<Points> = Samples::of_all(trials, Trial::FEWEST_ROWS)?.iter().map(find).collect();
+        let analysed: Vec<Analysed> = Samples::of_all(trials, Trial::FEWEST_ROWS)?
+            .into_iter()
+            .map(|samples| {
+                let mut points = Points::find(&samples, base, self.settings.half_width_s, self.width_share());
+                if !self.settings.start_at_rest {
+                    points.forget_rest();
+                }
+                Analysed { samples, points }
+            })
+            .collect();
         let bias = self.settings.rudder_bias_deg.map(from_deg);
-        let three_peaks = self.settings.variant == Variant::ThreePeaks;
-        let found = classic::identify(&analysed, bias, self.settings.condition_limit, three_peaks)?;
+        let limit = self.settings.condition_limit;
+        let found = match self.settings.variant {
+            Variant::LeastSquares => classic::identify(&analysed, bias, limit, false),
+            Variant::ThreePeaks => classic::identify(&analysed, bias, limit, true),
+            Variant::Equation8 => equation_8::identify_spread(&analysed, bias, limit),
+            Variant::Equation8Vertices => equation_8::identify_at_vertices(&analysed, bias, limit),
+        }?;
         let [gain, gain_bias, time] = found.parameters;
         let response = FirstOrder { inverse_T: 1.0 / time, K_over_T: gain / time, rudder_bias: gain_bias / gain };
         if !(response.K_over_T > 0.0 && response.K_over_T.is_finite()) {
@@ -134,10 +162,10 @@ impl Identifier for CharacteristicPoints {
             Err(reason) => Uncertainty::None { reason },
         };
         let mut diagnostics = found.diagnostics;
-        let count = |of: fn(&Points) -> usize| analysed.iter().map(|trial| of(trial) as f64).sum();
+        let count = |of: fn(&Points) -> usize| analysed.iter().map(|trial| of(&trial.points) as f64).sum();
         diagnostics.push(("instants_without_yaw_rate", count(|points| points.still.len())));
         diagnostics.push(("passages_of_base_course", count(|points| points.crossings.len())));
-        diagnostics.push(("half_width_s", analysed[0].half_width));
+        diagnostics.push(("half_width_s", analysed[0].points.half_width));
         Ok(Estimate {
             response,
             uncertainty,
@@ -161,9 +189,9 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
     Matrix3::new(0.0, 0.0, -1.0 / square, 1.0 / time, 0.0, -gain / square, -gain_bias / (gain * gain), 1.0 / gain, 0.0)
 }
 
-fn warnings(trials: &[Trial], analysed: &[Points]) -> Vec<String> {
-    let assumed = |(trial, points): (&Trial, &Points)| {
-        let taken = match points.base_from {
+fn warnings(trials: &[Trial], analysed: &[Analysed]) -> Vec<String> {
+    let told = |(trial, analysed): (&Trial, &Analysed)| {
+        let taken = match analysed.points.base_from {
             BaseHeadingOrigin::Given | BaseHeadingOrigin::Approach => return None,
             BaseHeadingOrigin::Zero => "heading 0",
             BaseHeadingOrigin::Middle => "the middle of its headings",
@@ -173,7 +201,7 @@ fn warnings(trials: &[Trial], analysed: &[Points]) -> Vec<String> {
             trial.name()
         ))
     };
-    trials.iter().zip(analysed).filter_map(assumed).collect()
+    trials.iter().zip(analysed).filter_map(told).collect()
 }
 
 #[cfg(test)]

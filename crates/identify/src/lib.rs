@@ -14,6 +14,7 @@
 //! | `output-error` | maximum likelihood by simulation with the recorded rudder, global in T |
 //! | `maximum-likelihood` | the same under a random yaw moment, rudder error and coloured compass error |
 //! | `srivc` | refined instrumental variables for continuous time (Young and Jakeman 1980) |
+//! | `recommended` | output error or maximum likelihood, by a rule made from the record |
 //! | `external` | another program, asked in a line of JSON for every trial |
 
 pub mod characteristic_points;
@@ -26,11 +27,13 @@ pub mod fourier_published;
 mod gaps;
 pub mod identifier;
 pub mod integral_least_squares;
+pub mod lack_of_fit;
 pub mod least_squares;
 pub mod likelihood;
 pub mod maximum_likelihood;
 pub mod output_error;
 mod profile;
+pub mod recommended;
 pub mod registry;
 pub mod replay;
 mod robust;

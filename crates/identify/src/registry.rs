@@ -59,7 +59,7 @@ methods! {
     OutputError(output_error),
     Srivc(srivc),
     MaximumLikelihood(maximum_likelihood);
-    in a folder: External(external),
+    in a folder: Recommended(recommended), External(external),
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@ use estimation::statistics::upper_median;
 use ship::Particulars;
 use ship::angle::KNOT;
 use trial::file::{STDIN, called};
-use trial::find::{Kind, Manoeuvre};
-use trial::{Channel, Log, Origin, ReadRecord, Sidecar, Trial};
+use trial::find::FoundManoeuvre;
+use trial::{Channel, Log, Manoeuvre, Origin, ReadRecord, Sidecar, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
 use campaign::answers::TRIALS;
@@ -159,7 +159,7 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
 }
 
 /// The manoeuvres of a log, in order of time; none where it has no heading.
-pub fn manoeuvres(log: &Log) -> Vec<Manoeuvre> {
+pub fn manoeuvres(log: &Log) -> Vec<FoundManoeuvre> {
     let (Some(rudder), Some(heading)) = (log.channel(Channel::Rudder), log.channel(Channel::Heading)) else {
         return Vec::new();
     };
@@ -184,11 +184,11 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
             Failure::about(path, format!("there is no manoeuvre {number}; `study find {file}` lists {}", found.len()))
         })?,
         None => {
-            let zigzags: Vec<(usize, &Manoeuvre)> =
-                (1..).zip(&found).filter(|(_, one)| matches!(one.kind, Kind::ZigZag { .. })).collect();
+            let zigzags: Vec<(usize, &FoundManoeuvre)> =
+                (1..).zip(&found).filter(|(_, one)| matches!(one.manoeuvre, Some(Manoeuvre::ZigZag { .. }))).collect();
             match zigzags.as_slice() {
                 [] => {
-                    if found.iter().any(|one| one.kind == Kind::Straight) {
+                    if found.iter().any(|one| one.manoeuvre.is_none()) {
                         warnings.push(format!(
                             "{file}: no zig-zag is recognised, the whole record is used; `study find {file}` lists what \
                              is, --from and --until choose a part"
@@ -209,7 +209,7 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
     }
     warnings.push(format!(
         "{file}: the {} from {} to {} is used, the rest is left out; --from and --until choose another part",
-        manoeuvre.kind.name(),
+        manoeuvre.name(),
         at(&log, from),
         at(&log, until)
     ));
@@ -217,9 +217,9 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
 }
 
 /// The question which of several zig-zags is meant.
-fn ask(log: &Log, path: &Path, several: &[(usize, &Manoeuvre)]) -> Failure {
-    let line = |(number, one): &(usize, &Manoeuvre)| {
-        format!("\n  --trial {number}: {}, {} to {}", one.kind.name(), at(log, one.from), at(log, one.until))
+fn ask(log: &Log, path: &Path, several: &[(usize, &FoundManoeuvre)]) -> Failure {
+    let line = |(number, one): &(usize, &FoundManoeuvre)| {
+        format!("\n  --trial {number}: {}, {} to {}", one.name(), at(log, one.from), at(log, one.until))
     };
     let lines: String = several.iter().map(line).collect();
     Failure::about(path, format!("there are {} zig-zags in this log; say which one{lines}", several.len()))

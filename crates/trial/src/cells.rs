@@ -24,11 +24,16 @@ impl Separator {
     pub const ALL: [Separator; 4] = [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Blank];
 
     fn is(self, character: char) -> bool {
+        self.mark().map_or(character.is_whitespace(), |mark| character == char::from(mark))
+    }
+
+    /// The byte between two cells; `None` for blanks, which are many.
+    fn mark(self) -> Option<u8> {
         match self {
-            Separator::Tab => character == '\t',
-            Separator::Semicolon => character == ';',
-            Separator::Comma => character == ',',
-            Separator::Blank => character.is_whitespace(),
+            Separator::Tab => Some(b'\t'),
+            Separator::Semicolon => Some(b';'),
+            Separator::Comma => Some(b','),
+            Separator::Blank => None,
         }
     }
 
@@ -41,12 +46,17 @@ impl Separator {
             let begin = cell.as_ptr() as usize - line.as_ptr() as usize;
             cells.push(begin..begin + cell.len());
         };
-        if line.contains('"') {
-            self.split_quoted(line, take);
-        } else if self == Separator::Blank {
-            line.split_whitespace().for_each(take);
-        } else {
-            line.split(|c| self.is(c)).for_each(|cell| take(cell.trim()));
+        match self.mark() {
+            _ if line.contains('"') => self.split_quoted(line, take),
+            None => line.split_whitespace().for_each(take),
+            Some(mark) => {
+                let mut rest = line;
+                while let Some(end) = rest.bytes().position(|byte| byte == mark) {
+                    take(rest[..end].trim());
+                    rest = &rest[end + 1..];
+                }
+                take(rest.trim());
+            }
         }
     }
 

@@ -6,12 +6,11 @@
 //! Sources: ITTC 7.5-04-02-01 Full Scale Manoeuvring Trials; MSC.137(76) for the initial turning test; IAMSAR Manual,
 //! volume III, for the Williamson turn.
 
-use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::fmt;
 use std::str::FromStr;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use ship::Polyline;
 use ship::angle::{DEGREE, from_deg, to_deg};
@@ -391,10 +390,10 @@ impl FromStr for Manoeuvre {
     }
 }
 
-/// A manoeuvre as the words of its [`Display`](fmt::Display): for `#[serde(with = "InWords")]`.
-pub struct InWords;
+/// A manoeuvre as the words of its [`Display`](fmt::Display): for `#[serde(with = "in_words")]`.
+pub mod in_words {
+    use super::{Deserialize, Deserializer, Manoeuvre, Serializer};
 
-impl InWords {
     /// Writes the words.
     pub fn serialize<S: Serializer>(manoeuvre: &Manoeuvre, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(manoeuvre)
@@ -403,20 +402,6 @@ impl InWords {
     /// Reads the words.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Manoeuvre, D::Error> {
         String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-impl JsonSchema for InWords {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        String::schema_name()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        String::json_schema(generator)
     }
 }
 

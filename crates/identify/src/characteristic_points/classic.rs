@@ -2,19 +2,10 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 
+use super::found::{Analysed, PointsFit};
 use super::points::{Point, Points};
 use crate::error::IdentifyError;
 use estimation::least_squares::LeastSquares;
-
-/// What is found, in the parameters of the integrated equation.
-#[derive(Debug)]
-pub(super) struct PointsFit {
-    /// K (1/s), K δ_r (rad/s), T (s).
-    pub parameters: [f64; 3],
-    /// Their covariance and degrees of freedom, or why there is none.
-    pub covariance: Result<(Matrix3<f64>, f64), &'static str>,
-    pub diagnostics: Vec<(&'static str, f64)>,
-}
 
 /// The points one trial contributes.
 struct Used<'a> {
@@ -60,14 +51,14 @@ struct GainFit {
 
 /// The traditional method on all points, or on the first three peaks of every trial.
 pub(super) fn identify(
-    trials: &[Points],
+    trials: &[Analysed],
     bias: Option<f64>,
     condition_limit: f64,
     three_peaks: bool,
 ) -> Result<PointsFit, IdentifyError> {
     let used = trials
         .iter()
-        .map(|trial| if three_peaks { first_three_peaks(trial) } else { Ok(all(trial)) })
+        .map(|trial| if three_peaks { first_three_peaks(&trial.points) } else { Ok(all(&trial.points)) })
         .collect::<Result<Vec<_>, _>>()?;
     let swings: Vec<Vec<Interval>> = used
         .iter()

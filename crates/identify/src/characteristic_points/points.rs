@@ -17,9 +17,6 @@ const APPROACH: f64 = 0.2;
 /// Moves of the window after which an extremum that will not settle is left where it was found.
 const MOVES: usize = 10;
 
-/// Half width of the local fits in half periods: a parabola follows a peak over a short time only.
-const WIDTH_SHARE: f64 = 0.07;
-
 /// Fewest intervals in half a window.
 const FEWEST_INTERVALS: f64 = 3.0;
 
@@ -58,7 +55,9 @@ pub struct Points {
     pub crossings: Vec<Point>,
     /// Whether the record starts at rest, so that the first of `still` is the execute and no extremum.
     pub from_rest: bool,
-    /// Where the base course comes from.
+    /// Base course, rad.
+    pub base: f64,
+    /// Where it comes from.
     pub base_from: BaseHeadingOrigin,
     /// Half width of the fits, s.
     pub half_width: f64,
@@ -77,8 +76,9 @@ impl Points {
         }
     }
 
-    /// Finds the points of a record. `base` (rad) and `half_width` (s) are found in the record when not given.
-    pub fn find(samples: &Samples, base: Option<f64>, half_width: Option<f64>) -> Self {
+    /// Finds the points of a record. `base` (rad) and `half_width` (s) are found in the record when not given, the
+    /// half width as the share `width_share` of half a period.
+    pub fn find(samples: &Samples, base: Option<f64>, half_width: Option<f64>, width_share: f64) -> Self {
         let time = &samples.time;
         let (lo, hi) =
             samples.heading.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &x| (lo.min(x), hi.max(x)));
@@ -94,7 +94,7 @@ impl Points {
         let off_course: Vec<f64> = samples.heading.iter().map(|heading| heading - base).collect();
         let interval = time[time.len() - 1] / (time.len() - 1) as f64;
         let half_width = half_width
-            .unwrap_or_else(|| (WIDTH_SHARE * half_period(time, &off_course)).max(FEWEST_INTERVALS * interval));
+            .unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(FEWEST_INTERVALS * interval));
         // Nothing here uses the uncertainty of a single point, so its noise need not be estimated.
         let fits = |half_width| points::Settings { noise: Some(0.0), ..points::Settings::new(half_width) };
         let point =
@@ -121,7 +121,7 @@ impl Points {
             // Noise on the approach crosses the base course too.
             .filter(|crossing| approach.is_none() || crossing.time > first_extremum)
             .collect();
-        Self { still, crossings, from_rest: approach.is_some(), base_from, half_width }
+        Self { still, crossings, from_rest: approach.is_some(), base, base_from, half_width }
     }
 }
 
@@ -181,7 +181,7 @@ fn centred(time: &[f64], heading: &[f64], half_width: f64, start: f64) -> Option
 }
 
 /// ∫δ at a time between rows: the parabola with the rudder at the row before and the exact integral at both rows.
-fn rudder_integral(samples: &Samples, time: f64) -> f64 {
+pub fn rudder_integral(samples: &Samples, time: f64) -> f64 {
     let next = samples.time.partition_point(|t| *t <= time).clamp(1, samples.len() - 1);
     let (k, h) = (next - 1, samples.time[next] - samples.time[next - 1]);
     let u = time - samples.time[k];

@@ -99,6 +99,40 @@ fn three_peaks_have_no_error_of_their_own() {
     assert_eq!(method(settings).identify(&[short]).expect_err("two peaks").kind(), "too-few-points");
 }
 
+/// With its mended sign equation (8) is exact: what is left comes from the local cubics.
+#[test]
+fn equation_8_at_many_instants_is_unbiased_and_knows_its_scatter() {
+    let settings = Settings { variant: Variant::Equation8, ..Settings::default() };
+    for start in [Start::Mid, Start::Rest] {
+        let [k, t] = errors(&identify(settings.clone(), &[Case { start, ..Case::default() }.trial()]));
+        assert!(k.abs() < 0.15 && t.abs() < 0.15, "K {k:+.3} %, T {t:+.3} %");
+    }
+    let (mut squares, mut reported) = ([0.0; 2], [0.0; 2]);
+    for seed in 0..200 {
+        let estimate = identify(settings.clone(), &[Case { noise_deg: 0.2, seed, ..Case::default() }.trial()]);
+        let sd = [estimate.K().sd.expect("sd") / 0.1, estimate.T().sd.expect("sd") / 16.3];
+        for (i, error) in errors(&estimate).into_iter().enumerate() {
+            squares[i] += error * error / 200.0;
+            reported[i] += 100.0 * sd[i] / 200.0;
+        }
+    }
+    for i in 0..2 {
+        let rms = squares[i].sqrt();
+        assert!((reported[i] / rms - 1.0).abs() < 0.2, "sd {:.3} %, rms {rms:.3} %", reported[i]);
+    }
+}
+
+/// At the vertices r(t) = 0: T stands in equation (8) with r(0) alone, and a start at rest leaves nothing of it.
+#[test]
+fn vertices_cannot_give_the_time_constant_from_rest() {
+    let settings = Settings { variant: Variant::Equation8Vertices, ..four_seconds() };
+    let rest = Case { start: Start::Rest, ..Case::default() }.trial();
+    let error = method(settings.clone()).identify(&[rest]).expect_err("T is not in the equations");
+    assert_eq!(error, IdentifyError::Singular { condition: f64::INFINITY, limit: 1e6 });
+    let [k, t] = errors(&identify(settings, &[Case::default().trial()]));
+    assert!(k.abs() < 1.0 && t.abs() < 1.0, "K {k:+.2} %, T {t:+.2} %");
+}
+
 #[test]
 fn trials_are_pooled_and_the_bias_is_found() {
     let small = Case { bias_deg: 1.5, samples: 401, ..Case::default() };
@@ -110,7 +144,7 @@ fn trials_are_pooled_and_the_bias_is_found() {
     let swapped = identify(four_seconds(), &[large.trial(), small.trial()]);
     assert_abs_diff_eq!(swapped.response.K(), both.response.K(), epsilon = 1e-9);
     let known = Settings { rudder_bias_deg: Some(1.5), ..four_seconds() };
-    for variant in [Variant::LeastSquares, Variant::ThreePeaks] {
+    for variant in [Variant::LeastSquares, Variant::ThreePeaks, Variant::Equation8] {
         let estimate = identify(Settings { variant, ..known.clone() }, &[small.trial()]);
         assert_abs_diff_eq!(to_deg(estimate.response.rudder_bias), 1.5, epsilon = 1e-9);
         let [k, t] = errors(&estimate);
@@ -155,14 +189,30 @@ fn uneven_rows_and_missing_headings_do_no_harm() {
     let thinned = record("thinned", kept(trial.time()), kept(trial.heading()), kept(trial.rudder()));
     let heading = (0..trial.len()).map(|k| if keep(k) { trial.heading()[k] } else { f64::NAN }).collect();
     let hidden = record("hidden", trial.time().to_vec(), heading, trial.rudder().to_vec());
-    for trial in [thinned, hidden] {
-        let [k, t] = errors(&identify(four_seconds(), &[trial]));
-        assert!(k.abs() < 1.0 && t.abs() < 1.0, "K {k:+.2} %, T {t:+.2} %");
+    for variant in [Variant::LeastSquares, Variant::Equation8] {
+        for trial in [&thinned, &hidden] {
+            let [k, t] = errors(&identify(Settings { variant, ..four_seconds() }, std::slice::from_ref(trial)));
+            assert!(k.abs() < 1.0 && t.abs() < 1.0, "{variant:?}: K {k:+.2} %, T {t:+.2} %");
+        }
     }
 }
 
 #[test]
 fn says_why_it_cannot() {
+    let line: Vec<f64> = (0..100).map(f64::from).collect();
+    let straight = record("straight", line.clone(), vec![0.2; 100], vec![0.0; 100]);
+    for variant in [Variant::LeastSquares, Variant::ThreePeaks, Variant::Equation8, Variant::Equation8Vertices] {
+        let method = method(Settings { variant, ..Settings::default() });
+        assert_eq!(method.identify(std::slice::from_ref(&straight)).expect_err("straight").kind(), "not-excited");
+        assert_eq!(method.identify(&[]).expect_err("nothing").kind(), "no-trial");
+        for samples in 8..60 {
+            let short = Case { samples, start: Start::Rest, ..Case::default() }.trial();
+            // Some answer, some refuse; none may panic.
+            if let Err(error) = method.identify(&[short]) {
+                assert!(!error.kind().is_empty());
+            }
+        }
+    }
     let short = Case { samples: 40, start: Start::Rest, ..Case::default() }.trial();
     let error = method(Settings::default()).identify(&[short]).expect_err("one peak");
     assert_eq!(error.kind(), "too-few-points");

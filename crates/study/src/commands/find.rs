@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use ship::angle::to_deg;
 use trial::Log;
 use trial::file::called;
-use trial::find::{Kind, Manoeuvre};
+use trial::find::FoundManoeuvre;
 
 use crate::documents;
 use crate::options::{Common, FindRequest, Format};
@@ -61,12 +61,12 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
 }
 
 /// A log with its manoeuvres for a program.
-fn entry(file: &Path, log: &Log, found: &[Manoeuvre]) -> Value {
+fn entry(file: &Path, log: &Log, found: &[FoundManoeuvre]) -> Value {
     let clock = |time: f64| log.clock().map(|clock| clock.at(time).to_string());
-    let manoeuvre = |(number, one): (usize, &Manoeuvre)| {
-        let [rudder, heading] = angles(one).map(|angle| angle.map(to_deg));
+    let manoeuvre = |(number, one): (usize, &FoundManoeuvre)| {
+        let [rudder, heading] = one.angles().map(|angle| angle.map(to_deg));
         json!({
-            "trial": number, "kind": one.kind.name(), "from_s": one.from, "until_s": one.until,
+            "trial": number, "kind": one.name(), "from_s": one.from, "until_s": one.until,
             "clock": clock(one.from).zip(clock(one.until)), "executes": one.executes,
             "rudder_deg": rudder, "heading_deg": heading, "remarks": one.quality.remarks(),
         })
@@ -80,28 +80,17 @@ fn entry(file: &Path, log: &Log, found: &[Manoeuvre]) -> Value {
     })
 }
 
-/// Rudder and heading that a manoeuvre is known by, rad.
-fn angles(one: &Manoeuvre) -> [Option<f64>; 2] {
-    match one.kind {
-        Kind::ZigZag { rudder, heading } => [Some(rudder), Some(heading)],
-        Kind::TurningCircle { rudder, turned } => [Some(rudder), Some(turned)],
-        Kind::PullOut { rudder } => [Some(rudder), None],
-        Kind::Spiral { largest, .. } => [Some(largest), None],
-        _ => [None, None],
-    }
-}
-
-fn table(log: &Log, found: &[Manoeuvre]) -> Table {
+fn table(log: &Log, found: &[FoundManoeuvre]) -> Table {
     let mut table = Table::headed(
         ".--trial | manoeuvre | .from [s] | .until [s] | clock | .executes | .rudder [deg] | .heading [deg]",
     );
     for (number, one) in (1..).zip(found) {
         let clock = log.clock().map(|clock| format!("{} to {}", clock.at(one.from), clock.at(one.until)));
         let missing = || MISSING.to_owned();
-        let [rudder, heading] = angles(one).map(|angle| optional(angle.map(to_deg), 1));
+        let [rudder, heading] = one.angles().map(|angle| optional(angle.map(to_deg), 1));
         table.push([
             number.to_string(),
-            one.kind.name(),
+            one.name(),
             fixed(one.from, 1),
             fixed(one.until, 1),
             clock.unwrap_or_else(missing),

@@ -2,10 +2,10 @@
 //! the last row before the rudder leaves its last hold or the propeller stops.
 
 use super::course::middle;
-use super::kind::Kind;
-use super::manoeuvre::{Approach, Manoeuvre, Quality, STEADY_SPEED};
+use super::found::{Approach, FoundManoeuvre, Quality, STEADY_SPEED};
 use super::pattern::{Pattern, Prepared};
 use super::rest::{Hold, usual};
+use crate::manoeuvre::Manoeuvre;
 use crate::plausibility::{extremes, range};
 use crate::zigzag::executes::{RudderMovements, row_before};
 use crate::zigzag::holds::{self, LAID};
@@ -41,14 +41,14 @@ const FEWEST_ON_RAMP: usize = 3;
 const ENOUGH_ROWS: usize = 8;
 
 /// The manoeuvres of patterns that are in order of time and apart.
-pub(crate) fn bounded(record: &Prepared, found: &[Pattern]) -> Vec<Manoeuvre> {
+pub(crate) fn bounded(record: &Prepared, found: &[Pattern]) -> Vec<FoundManoeuvre> {
     let time = record.log.time;
     let mut free = 0;
     let mut list = Vec::new();
     for pattern in found {
         let last = before_stop(record, pattern);
-        let (start, approach) = match pattern.kind {
-            Kind::PullOut { .. } => (pattern.first(), None),
+        let (start, approach) = match pattern.manoeuvre {
+            Manoeuvre::PullOut { .. } => (pattern.first(), None),
             _ => {
                 let start = first_execute(record, &pattern.holds, pattern.scale, free);
                 (start, Some(ApproachSegment::of(record, pattern, start, free)))
@@ -56,18 +56,15 @@ pub(crate) fn bounded(record: &Prepared, found: &[Pattern]) -> Vec<Manoeuvre> {
         };
         let first = approach.as_ref().map_or(start, |segment| segment.first);
         let last = last.max(start);
-        let executes = match pattern.kind {
-            Kind::Straight => 0,
-            _ => pattern.holds.iter().filter(|hold| hold.first <= last).count(),
-        };
+        let executes = pattern.holds.iter().filter(|hold| hold.first <= last).count();
         let mut quality = Quality::of(record, first, last);
         quality.rudder_spread = spread(pattern);
         if let Some(segment) = approach {
             quality.approach = Some(segment.approach);
             quality.speed_change = segment.speed_change;
         }
-        list.push(Manoeuvre {
-            kind: pattern.kind,
+        list.push(FoundManoeuvre {
+            manoeuvre: Some(pattern.manoeuvre.clone()),
             from: time[first],
             until: time[last],
             start: time[start],
@@ -81,7 +78,7 @@ pub(crate) fn bounded(record: &Prepared, found: &[Pattern]) -> Vec<Manoeuvre> {
 
 /// Largest difference between holds to one side, rad; 0 for a spiral, which means it.
 fn spread(pattern: &Pattern) -> f64 {
-    if !matches!(pattern.kind, Kind::ZigZag { .. }) {
+    if !matches!(pattern.manoeuvre, Manoeuvre::ZigZag { .. }) {
         return 0.0;
     }
     let of_side = |offset: usize| {
@@ -233,8 +230,8 @@ fn steady_rudder(record: &Prepared, pattern: &Pattern, earliest: usize, start: u
     let (time, angle) = (record.log.time, &record.rest.angle);
     let (lowest, highest) = extremes(pattern.holds.iter().map(|hold| hold.level));
     let largest = lowest.abs().max(highest.abs());
-    let amidships = match pattern.kind {
-        Kind::TurningCircle { .. } => record.rest.neutral,
+    let amidships = match pattern.manoeuvre {
+        Manoeuvre::TurningCircle { .. } => record.rest.neutral,
         _ => 0.5 * (highest + lowest),
     };
     let level = middle(&angle[start - (start - earliest).div_ceil(4)..start])?;

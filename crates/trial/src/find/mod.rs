@@ -12,8 +12,7 @@
 
 mod bounds;
 mod course;
-mod kind;
-mod manoeuvre;
+mod found;
 mod pattern;
 mod rest;
 mod spirals;
@@ -27,15 +26,14 @@ use course::Course;
 use pattern::{Pattern, Prepared};
 use rest::{Hold, Rest};
 
-pub use kind::Kind;
-pub use manoeuvre::{Approach, Manoeuvre, Quality};
+pub use found::{Approach, FoundManoeuvre, Quality};
 pub use pattern::Signals;
 
 /// The manoeuvres of a log in order of time; they do not overlap.
 ///
 /// Empty where nothing is recognised, and for a log that is not as [`Signals`] says. Time and memory grow in
 /// proportion to the rows.
-pub fn manoeuvres(log: &Signals) -> Vec<Manoeuvre> {
+pub fn manoeuvres(log: &Signals) -> Vec<FoundManoeuvre> {
     if !log.is_sound() {
         return Vec::new();
     }

@@ -1,8 +1,8 @@
 //! What a search looks at, a log with what is derived from it once, and the patterns that are looked for in it.
 
 use super::course::Course;
-use super::kind::Kind;
 use super::rest::{Hold, Rest};
+use crate::manoeuvre::Manoeuvre;
 
 /// The channels that a search looks at, row by row, in SI units and radians.
 ///
@@ -44,7 +44,7 @@ pub(crate) struct Prepared<'a> {
 /// A manoeuvre before its part is bounded.
 #[derive(Debug, Clone)]
 pub(crate) struct Pattern {
-    pub kind: Kind,
+    pub manoeuvre: Manoeuvre,
     /// Where the rudder was held; never empty.
     pub holds: Vec<Hold>,
     /// Longest approach that belongs to it, s; also its time scale.

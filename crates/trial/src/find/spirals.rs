@@ -1,9 +1,9 @@
 //! Spirals after Dieudonné in a log: the rudder goes from side to side in steps and rests at each until the ship turns
 //! steadily. Reverse spirals, where the rate is ordered and the rudder looked for, are not recognised.
 
-use super::kind::Kind;
 use super::pattern::{Pattern, Prepared};
 use super::rest::{Hold, usual};
+use crate::manoeuvre::Manoeuvre;
 
 /// Fewest holds of a way from side to side, and of a part of a way that leads up to it or goes on.
 const FEWEST: usize = 5;
@@ -49,11 +49,11 @@ pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
         }
         let mut holds = group[0].to_vec();
         group[1..].iter().for_each(|way| holds.extend(&way[1..]));
-        let largest = holds.iter().map(|hold| hold.level.abs()).fold(0.0, f64::max);
+        let rudder = holds.iter().map(|hold| hold.level.abs()).fold(0.0, f64::max);
         let scale = usual(holds.iter().map(Hold::duration));
         let turns = holds.iter().filter_map(|hold| record.course.change(hold.from, hold.until));
         let swing = turns.map(f64::abs).fold(0.0, f64::max);
-        found.push(Pattern { kind: Kind::Spiral { largest, steps: holds.len() }, holds, scale, swing });
+        found.push(Pattern { manoeuvre: Manoeuvre::Spiral { rudder }, holds, scale, swing });
     }
     found
 }

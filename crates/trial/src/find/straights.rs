@@ -4,8 +4,7 @@
 
 use std::ops::Range;
 
-use super::kind::Kind;
-use super::manoeuvre::{Manoeuvre, Quality};
+use super::found::{FoundManoeuvre, Quality};
 use super::pattern::{Pattern, Prepared};
 use super::rest::usual;
 
@@ -28,7 +27,7 @@ const FEWEST_ROWS: usize = 20;
 const AT_REST: f64 = 0.2;
 
 /// Adds the straight pieces to the manoeuvres of a log, in order of time.
-pub(crate) fn add(record: &Prepared, found: &[Pattern], list: &mut Vec<Manoeuvre>) {
+pub(crate) fn add(record: &Prepared, found: &[Pattern], list: &mut Vec<FoundManoeuvre>) {
     let time = record.log.time;
     let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
     let scale = usual(found.iter().map(|pattern| pattern.scale));
@@ -62,7 +61,7 @@ fn pieces_in(
     is_straight: impl Fn(usize) -> bool,
     rows: Range<usize>,
     shortest: f64,
-) -> Vec<Manoeuvre> {
+) -> Vec<FoundManoeuvre> {
     let log = record.log;
     let mut pieces = Vec::new();
     let mut piece: Option<Piece> = None;
@@ -109,10 +108,10 @@ impl Piece {
         near
     }
 
-    fn manoeuvre(&self, record: &Prepared, shortest: f64) -> Option<Manoeuvre> {
+    fn manoeuvre(&self, record: &Prepared, shortest: f64) -> Option<FoundManoeuvre> {
         let [from, until] = [self.first, self.last].map(|row| record.log.time[row]);
-        (until - from >= shortest && self.last + 1 - self.first >= FEWEST_ROWS).then(|| Manoeuvre {
-            kind: Kind::Straight,
+        (until - from >= shortest && self.last + 1 - self.first >= FEWEST_ROWS).then(|| FoundManoeuvre {
+            manoeuvre: None,
             from,
             until,
             start: from,

@@ -3,9 +3,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::kind::Kind;
 use super::pattern::{Pattern, Prepared};
 use super::rest::Hold;
+use crate::manoeuvre::Manoeuvre;
+use crate::zigzag::Side;
 
 /// Smallest rudder angle of a turn, rad.
 const SMALLEST_RUDDER: f64 = 3.0_f64.to_radians();
@@ -35,8 +36,9 @@ pub(crate) fn turns(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
         let Some(turned) = turned(record, hold) else { continue };
         let rate = turned.abs() / hold.duration();
         if turned.abs() >= CIRCLE {
-            let kind = Kind::TurningCircle { rudder: hold.level, turned };
-            found.push(Pattern { kind, holds: vec![*hold], scale: TURN / rate, swing: TURN });
+            let (side, heading_change) = (Side::of(hold.level), Some(turned.abs()));
+            let manoeuvre = Manoeuvre::TurningCircle { rudder: hold.level.abs(), side, duration: None, heading_change };
+            found.push(Pattern { manoeuvre, holds: vec![*hold], scale: TURN / rate, swing: TURN });
         }
         found.extend(pull_out(record, hold, &holds[index + 1..]));
     }
@@ -91,5 +93,7 @@ fn pull_out(record: &Prepared, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
     let first = (turn.last + 1).min(amidships.first);
     let [from, until] = [first, last].map(|row| record.log.time[row]);
     let hold = Hold { first, last, from, until, level: amidships.level };
-    Some(Pattern { kind: Kind::PullOut { rudder: turn.level }, holds: vec![hold], scale: time, swing: PULL_OUT })
+    let (rudder, side) = (turn.level.abs(), Side::of(turn.level));
+    let manoeuvre = Manoeuvre::PullOut { rudder, side, hold: turn.duration(), duration: until - from };
+    Some(Pattern { manoeuvre, holds: vec![hold], scale: time, swing: PULL_OUT })
 }

@@ -3,9 +3,10 @@
 
 use super::bounds::first_execute;
 use super::course::middle;
-use super::kind::Kind;
 use super::pattern::{Pattern, Prepared};
 use super::rest::{Hold, usual};
+use crate::manoeuvre::Manoeuvre;
+use crate::zigzag::Side;
 use estimation::statistics::median;
 
 /// Largest ratio of the rudder angles to both sides.
@@ -220,10 +221,10 @@ fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Optio
     let rudder = 0.5 * (level(0) - level(1)).abs();
     let heading = deviation(holds, headings)?;
     let clear = rudder >= CLEAR_RUDDER || heading >= CLEAR_HEADING;
-    let kind = Kind::ZigZag { rudder, heading };
+    let manoeuvre = Manoeuvre::zig_zag(rudder, heading).to(Side::of(holds[0].level));
     let scale = usual(holds[..holds.len() - 1].iter().map(Hold::duration));
     (clear && rudder >= SMALLEST_RUDDER && (SMALLEST_HEADING..=LARGEST_HEADING).contains(&heading)).then(|| Pattern {
-        kind,
+        manoeuvre,
         holds: holds.to_vec(),
         scale,
         swing,

@@ -5,7 +5,7 @@
 
 use super::error::Problem;
 use super::source::Series;
-use crate::channel::{Channel, Unit};
+use crate::channel::Channel;
 use crate::cleaning::draw_line;
 use crate::record::Columns;
 use crate::words::counted;
@@ -141,18 +141,6 @@ pub(super) fn straight_rudder(columns: &mut Columns) -> Option<String> {
     Some(told.map(|(count, text)| format!("{} {text}", counted(count, "row"))).collect::<Vec<_>>().join("; "))
 }
 
-/// Puts position in degrees on a plane about its first point, m (a sphere of the mean radius; 0.5 % of the distance).
-pub(super) fn on_plane(latitude: Vec<f64>, longitude: Vec<f64>) -> Option<[(Channel, Vec<f64>); 2]> {
-    const RADIUS: f64 = 6_371_008.8;
-    let first = (0..latitude.len()).find(|&row| latitude[row].is_finite() && longitude[row].is_finite())?;
-    let degree = Unit::Degree.to_si();
-    let north = latitude.iter().map(|value| (value - latitude[first]) * degree * RADIUS).collect();
-    let parallel = (latitude[first] * degree).cos();
-    let east =
-        longitude.iter().map(|value| shortest((value - longitude[first]) * degree) * RADIUS * parallel).collect();
-    Some([(Channel::North, north), (Channel::East, east)])
-}
-
 /// Refuses channels whose readings have no time in common, and names what is missing altogether.
 pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
     let Columns { time, channels, .. } = columns;
@@ -230,14 +218,5 @@ mod tests {
         let told = straight_rudder(&mut columns).expect("rows were left out");
         assert!(told.starts_with("10 rows without rudder angle left out"), "{told}");
         assert_eq!(columns.time.len(), 90);
-    }
-
-    #[test]
-    fn a_minute_of_latitude_is_a_sea_mile() {
-        let north = [54.0, 54.0 + 1.0 / 60.0].to_vec();
-        let east = [179.999, -179.999].to_vec();
-        let [(_, north), (_, east)] = on_plane(north, east).expect("there are positions");
-        approx::assert_relative_eq!(north[1], 1852.0, max_relative = 2e-3);
-        approx::assert_relative_eq!(east[1], 0.002 * 60.0 * 1852.0 * 54f64.to_radians().cos(), max_relative = 2e-3);
     }
 }

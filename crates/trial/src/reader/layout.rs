@@ -23,9 +23,9 @@ pub(super) enum Content {
     Date,
     /// A channel; the factor to SI units, negative where the sign is changed.
     Channel(Channel, f64),
-    /// Latitude, deg.
+    /// Latitude, rad.
     Latitude,
-    /// Longitude, deg.
+    /// Longitude, rad.
     Longitude,
     /// Carried as it is.
     Unknown,
@@ -265,7 +265,8 @@ impl Layout {
 
     /// Finds the column of time, and the dates that belong to it.
     fn settle_time(&mut self, head: &Head) -> Result<(), Problem> {
-        let first = |place: usize| head.first.get(place).map_or("", String::as_str);
+        let cells = head.first();
+        let first = |place: usize| cells.get(place).copied().unwrap_or_default();
         let is_number = |place: usize| cell(first(place), head.separator).number().is_some();
         let stamp = |place: usize| Stamp::parse(first(place));
         let is_whole = |stamp: Stamp| stamp.has_date() && stamp.has_time();

@@ -7,7 +7,7 @@ use super::assemble::{check, columns, complete, once, series, straight_rudder};
 use super::error::{Problem, ReadError};
 use super::input::{self, Content};
 use super::lines::{self, Lines};
-use super::nmea::{self, ReadSentences};
+use super::nmea;
 use super::source::{Log, Series};
 use super::table;
 use crate::channel::Channel;
@@ -233,23 +233,21 @@ fn joined_hash(one: &str, other: &str) -> String {
 }
 
 /// Channels with instants of their own, each cleaned by itself, and of them the part that the sidecar asks for.
-fn of_sentences(read: ReadSentences, sidecar: &Sidecar) -> Log {
-    let ReadSentences { series, clock, mut warnings, lines, sha256 } = read;
-    let mut rejected = Vec::new();
+fn of_sentences((series, mut log): (Vec<Series>, Log), sidecar: &Sidecar) -> Log {
     let cleaned = series.into_iter().map(|Series { channel, time, mut values }| {
         if channel == Channel::Heading {
             ship::angle::unwrap_heading(&mut values);
         }
         let mut own = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
         if sidecar.is_checked() {
-            warnings.extend(cleaning::clean(&mut own, &mut rejected));
+            log.warnings.extend(cleaning::clean(&mut own, &mut log.rejected));
         }
         Series { channel, values: own.channels.remove(&channel).unwrap_or_default(), time: own.time }
     });
     let mut columns = columns(cleaned.collect());
     let keep: Vec<bool> = columns.time.iter().map(|t| sidecar.part().contains(t)).collect();
     columns.retain(&keep);
-    Log { columns, clock, warnings, rejected, rows: lines, sha256, ..Log::default() }
+    Log { columns, ..log }
 }
 
 /// Reads the trial at `path`, with the sidecar beside it where there is one.

@@ -24,6 +24,7 @@ mod log;
 #[cfg(test)]
 mod measured_tests;
 mod nmea;
+mod position;
 mod rows;
 mod source;
 mod table;

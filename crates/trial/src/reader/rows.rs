@@ -3,7 +3,7 @@
 
 use std::ops::{Range, RangeInclusive};
 
-use ship::angle::unwrap_heading;
+use ship::angle::{DEGREE, unwrap_heading};
 
 use super::error::Problem;
 use super::layout::{Content, Layout};
@@ -216,7 +216,8 @@ impl<'a> Rows<'a> {
             let (channel, factor) = match column.content {
                 Content::Channel(channel, factor) => (Some(channel), factor),
                 Content::Time(factor) => (None, factor),
-                Content::Unknown | Content::Latitude | Content::Longitude => (None, 1.0),
+                Content::Latitude | Content::Longitude => (None, DEGREE),
+                Content::Unknown => (None, 1.0),
                 Content::Stamp | Content::Date | Content::Ignored => continue,
             };
             let read = match cell(text, self.separator) {

@@ -4,7 +4,6 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::assemble::on_plane;
 use super::error::{Problem, ReadError};
 use super::head;
 use super::input::Text;
@@ -12,6 +11,7 @@ use super::instants::spread;
 use super::layout::{Content, Layout, TableColumn};
 use super::limits::no_rows;
 use super::lines::Lines;
+use super::position::plane;
 use super::rows::Rows;
 use super::source::Log;
 use super::units::{self, UnitlessColumn};
@@ -95,11 +95,10 @@ impl Rows<'_> {
                 _ => unknown.push((name, values)),
             }
         }
-        if let Some(position) = latitude.zip(longitude).and_then(|(latitude, longitude)| on_plane(latitude, longitude))
+        for (channel, values) in
+            latitude.zip(longitude).and_then(|(one, other)| plane(&one, &other)).into_iter().flatten()
         {
-            for (channel, values) in position {
-                channels.entry(channel).or_insert(values);
-            }
+            channels.entry(channel).or_insert(values);
         }
         let clock = self.stamps.as_ref().and_then(Stamps::clock);
         let columns = Columns { time: self.time, channels, unknown };

@@ -395,3 +395,17 @@ fn speed_comes_from_surge_and_sway_where_it_was_not_recorded() {
     let speed = trial.channel(Channel::Speed).expect("surge and sway are there");
     assert_abs_diff_eq!(speed[5], (3.0 * ship::angle::KNOT).hypot(2.0), epsilon = 1e-15);
 }
+
+/// A minute of latitude about 45°, as in a log of sentences.
+#[test]
+fn latitude_and_longitude_are_metres_from_the_first() {
+    let degrees = |row: usize| format!("{},10.0", if row < 2 { 45.0 - 0.5 / 60.0 } else { 45.0 + 0.5 / 60.0 });
+    let lines = simple();
+    let lines = lines.lines().enumerate();
+    let text: String = lines
+        .map(|(row, line)| format!("{line},{}\n", if row == 0 { "Latitude,Longitude".into() } else { degrees(row) }))
+        .collect();
+    let trial = parse(text).expect("complete").trial;
+    assert_abs_diff_eq!(trial.channel(Channel::North).expect("a position")[1], 111_131.779 / 60.0, epsilon = 0.001);
+    assert_eq!(trial.channel(Channel::East).expect("a position")[1], 0.0);
+}

@@ -48,7 +48,7 @@ pub enum Side {
 
 impl Side {
     /// The side of a signed angle.
-    pub(super) fn of(angle: f64) -> Self {
+    pub fn of(angle: f64) -> Self {
         if angle < 0.0 { Self::Port } else { Self::Starboard }
     }
 

@@ -100,7 +100,7 @@ fn between_two_turns_there_is_no_pull_out() {
     }
     let log = Signals { time: &time, rudder: &rudder, heading: &heading, speed: None, propeller: None };
     let list = manoeuvres(&log);
-    let names: Vec<String> = list.iter().map(|found| found.kind.name()).collect();
+    let names: Vec<String> = list.iter().map(|found| found.name()).collect();
     assert_eq!(names, ["turning circle 10 to starboard", "turning circle 25 to port", "pull-out", "straight"]);
     assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from), "{list:?}");
 }

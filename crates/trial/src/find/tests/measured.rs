@@ -1,11 +1,11 @@
 //! Measured trials: the parts that the search finds against those bounded by hand.
 
-use crate::find::{Approach, Manoeuvre, Signals, manoeuvres};
+use crate::find::{Approach, FoundManoeuvre, Signals, manoeuvres};
 use crate::testing::measured;
 use crate::{Channel, Columns};
 
 /// The manoeuvres of a measured record.
-fn searched(columns: &Columns) -> Vec<Manoeuvre> {
+fn searched(columns: &Columns) -> Vec<FoundManoeuvre> {
     let channel = |channel| columns.channels.get(&channel).map(Vec::as_slice);
     manoeuvres(&Signals {
         time: &columns.time,
@@ -32,7 +32,7 @@ fn whole_logs_of_esso_osaka_give_the_parts_bounded_by_hand() {
         let Some(table) = measured(&format!("esso_osaka/{file}.csv")) else { return };
         let found = searched(&table);
         assert_eq!(found.len(), 1, "{file}: {found:?}");
-        assert_eq!(found[0].kind.name(), name, "{file}");
+        assert_eq!(found[0].name(), name, "{file}");
         assert!((found[0].from - from).abs() < 0.11, "{file}: from {}", found[0].from);
         assert!((found[0].until - until).abs() < 0.11, "{file}: until {}", found[0].until);
         assert_eq!(found[0].quality.approach, Some(Approach::Unsteady), "{file}");
@@ -53,7 +53,7 @@ fn turns_of_esso_osaka_are_found() {
         let Some(table) = measured(&format!("esso_osaka/{file}.csv")) else { return };
         let found = searched(&table);
         assert_eq!(found.len(), 1, "{file}: {found:?}");
-        assert_eq!(found[0].kind.name(), name, "{file}");
+        assert_eq!(found[0].name(), name, "{file}");
         assert!((found[0].from - from).abs() < 0.21, "{file}: from {}", found[0].from);
         assert!((found[0].until - until).abs() < 0.11, "{file}: until {}", found[0].until);
     }
@@ -80,7 +80,7 @@ fn records_filled_by_a_zig_zag_are_taken_whole() {
         let Some(table) = measured(file) else { return };
         let found = searched(&table);
         assert_eq!(found.len(), 1, "{file}: {found:?}");
-        assert_eq!((found[0].kind.name().as_str(), found[0].executes), (name, executes), "{file}");
+        assert_eq!((found[0].name().as_str(), found[0].executes), (name, executes), "{file}");
         let ends = (table.time[0], table.time[table.time.len() - 1]);
         assert_eq!((found[0].from, found[0].until), ends, "{file}");
         let row = 1.01 * (table.time[1] - table.time[0]);
@@ -94,7 +94,7 @@ fn records_filled_by_a_zig_zag_are_taken_whole() {
 fn a_turning_circle_is_followed_by_its_pull_out() {
     let Some(table) = measured("kvlcc2_marin/turning_35.csv") else { return };
     let found = searched(&table);
-    let names: Vec<String> = found.iter().map(|found| found.kind.name()).collect();
+    let names: Vec<String> = found.iter().map(|found| found.name()).collect();
     assert_eq!(names, ["turning circle 35 to port", "pull-out"]);
     assert_eq!(found[0].from, 0.0);
     assert!((found[0].start - 4.1).abs() < 0.6 && (found[0].until - 1513.0).abs() < 1.1, "{found:?}");

@@ -3,7 +3,7 @@
 
 use ship::angle::from_deg;
 
-use crate::find::{Kind, Manoeuvre, Signals, manoeuvres};
+use crate::find::{FoundManoeuvre, Signals, manoeuvres};
 use crate::testing::Gaussian;
 
 /// A log under way.
@@ -127,12 +127,12 @@ impl Sea {
     }
 
     /// The manoeuvres but for the straight pieces.
-    pub fn found(&self) -> Vec<Manoeuvre> {
-        manoeuvres(&self.log()).into_iter().filter(|found| found.kind != Kind::Straight).collect()
+    pub fn found(&self) -> Vec<FoundManoeuvre> {
+        manoeuvres(&self.log()).into_iter().filter(|found| found.manoeuvre.is_some()).collect()
     }
 
     /// Names of all of them.
     pub fn names(&self) -> Vec<String> {
-        manoeuvres(&self.log()).iter().map(|found| found.kind.name()).collect()
+        manoeuvres(&self.log()).iter().map(|found| found.name()).collect()
     }
 }

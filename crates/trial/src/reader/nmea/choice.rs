@@ -6,9 +6,9 @@ use ship::angle::to_deg;
 
 use super::epochs::{median, rounded};
 use super::log::NmeaInstrument;
-use super::position::plane;
 use super::sentence::{Slot, turned};
 use crate::channel::Channel;
+use crate::reader::position::plane;
 use crate::reader::source::Series;
 use crate::words::counted;
 
@@ -248,9 +248,10 @@ impl<'a> Choice<'a> {
     fn position(&mut self) {
         let offers = self.offers(&[(Slot::Latitude, 0)], |_| true);
         let Some(chosen) = self.pick("position", offers, false) else { return };
-        let (north, east) = plane(chosen.values(), chosen.beside(chosen.place + 1).values());
-        self.push(Channel::North, chosen, north);
-        self.push(Channel::East, chosen, east);
+        for (channel, values) in plane(chosen.values(), chosen.beside(chosen.place + 1).values()).into_iter().flatten()
+        {
+            self.push(channel, chosen, values);
+        }
     }
 
     /// Shafts before engines; several shafts give their mean.

@@ -2,7 +2,7 @@
 //! sentences of one instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than
 //! the others is filled at the usual pace, and the rest of it stays empty.
 
-use super::log::{Log, NmeaInstrument};
+use super::log::{NmeaInstrument, NmeaLog};
 use super::sentence::Slot;
 use crate::clock::{Clock, DAY, Stamp, Stamps};
 use crate::reader::error::Problem;
@@ -27,7 +27,7 @@ struct Group {
 type Timing = (Option<Clock>, Vec<String>);
 
 /// Gives every sentence its instant where the time is in stamps before the sentences.
-pub(super) fn from_stamps(log: &mut Log) -> Timing {
+pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
     let (mut spread, mut disordered) = (0, 0);
     for instrument in &mut log.instruments {
         let mut latest = f64::NEG_INFINITY;
@@ -86,7 +86,7 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
 /// Gives every sentence its instant where the time is in some of the sentences.
 ///
 /// Fails without at least two different times, and where they go back for more than one sentence.
-pub(super) fn from_sentences(log: &mut Log) -> Result<Timing, Problem> {
+pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
     let times = |own: &NmeaInstrument| own.place(Slot::Second).map_or(0, |place| own.readings(place));
     let rank =
         |own: &NmeaInstrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|formatter| own.sends(formatter));

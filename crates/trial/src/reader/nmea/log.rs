@@ -75,7 +75,7 @@ pub(super) struct Counts {
 
 /// What a log gave so far.
 #[derive(Debug)]
-pub(super) struct Log {
+pub(super) struct NmeaLog {
     pub instruments: Vec<NmeaInstrument>,
     /// What tells them apart, in the same order: apart from the tables, because every sentence looks through it.
     keys: Vec<u64>,
@@ -91,7 +91,7 @@ pub(super) struct Log {
     numbers: usize,
 }
 
-impl Log {
+impl NmeaLog {
     /// A log whose time is in stamps before its sentences, or in some of the sentences.
     pub fn new(stamped: bool) -> Self {
         Self {

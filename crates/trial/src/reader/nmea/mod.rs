@@ -1,4 +1,4 @@
-//! A log of NMEA 0183 sentences becomes [`ReadSentences`]: every quantity that is used at the instants its instrument
+//! A log of NMEA 0183 sentences becomes [`Series`]: every quantity that is used at the instants its instrument
 //! sent it. Headings, rudder angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and the
 //! sentences of single makers are passed over. Time comes from stamps before the sentences, or from the sentences of a
 //! GPS or clock. What is damaged is left out and counted; a course over ground never stands for a heading. Whether
@@ -8,7 +8,6 @@ mod choice;
 mod epochs;
 mod frame;
 mod log;
-mod position;
 mod sentence;
 mod stamp;
 #[cfg(test)]
@@ -19,11 +18,11 @@ use std::io::Read;
 use self::choice::Choice;
 use self::epochs::{are, from_sentences, from_stamps, rounded};
 use self::frame::{Line, frame};
-use self::log::{Counts, Log};
+use self::log::{Counts, NmeaLog};
 use self::stamp::Leading;
 use super::error::Problem;
 use super::lines::Lines;
-use super::source::Series;
+use super::source::{Log, Series};
 use crate::clock::{Clock, DAY};
 use crate::words::counted;
 
@@ -45,26 +44,11 @@ pub(super) fn is_sentence(line: &str) -> bool {
     !line.trim_start().starts_with('#') && (address(rest, 5) || of_maker)
 }
 
-/// What a log of sentences holds.
-#[derive(Debug, Clone)]
-pub(super) struct ReadSentences {
-    /// One for each channel.
-    pub series: Vec<Series>,
-    /// What the clock shows at time 0, where the file has one.
-    pub clock: Option<Clock>,
-    /// What was decided or found remarkable on the way, one sentence each.
-    pub warnings: Vec<String>,
-    /// Lines of the file.
-    pub lines: usize,
-    /// SHA-256 of its bytes, hexadecimal.
-    pub sha256: String,
-}
-
-/// Reads the whole log.
+/// Reads the whole log: one series for each channel, and a log that has no columns yet.
 ///
 /// Fails where more than half of its lines are damaged, where there is no time or it goes back, where dates may be read
 /// in two ways, and where no sentence gives a quantity that is used.
-pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<ReadSentences, Problem> {
+pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, Log), Problem> {
     let (mut begin, mut sentences) = (Vec::new(), 0);
     while sentences < LOOKED_AT
         && begin.len() < FIRST_LINES
@@ -73,7 +57,7 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<ReadSentences, Proble
         sentences += usize::from(matches!(frame(line), Line::Sentence(_)));
         begin.push(line.to_vec());
     }
-    let mut log = Log::new(is_stamped(&begin));
+    let mut log = NmeaLog::new(is_stamped(&begin));
     for (place, line) in begin.iter().enumerate() {
         log.take(line, place + 1)?;
     }
@@ -102,7 +86,7 @@ fn is_stamped(lines: &[Vec<u8>]) -> bool {
 }
 
 /// Makes channels of all that was read.
-fn finish(mut log: Log, lines: usize, sha256: String) -> Result<ReadSentences, Problem> {
+fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>, Log), Problem> {
     let counts = log.counts;
     let written = lines - counts.blank;
     let damaged = counts.wrong + counts.broken;
@@ -125,7 +109,7 @@ fn finish(mut log: Log, lines: usize, sha256: String) -> Result<ReadSentences, P
         return Err(Problem::NoReadings { sentences: counts.sentences });
     }
     let clock = begin_at_zero(&mut series, clock);
-    Ok(ReadSentences { series, clock, warnings, lines, sha256 })
+    Ok((series, Log { clock, warnings, rows: lines, sha256, ..Log::default() }))
 }
 
 /// Makes the first instant time 0.

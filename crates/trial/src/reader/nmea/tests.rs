@@ -15,32 +15,35 @@ fn summed(body: &str) -> String {
     format!("${body}*{:02X}", sum(body.as_bytes()))
 }
 
-fn read_bytes(bytes: &[u8]) -> Result<ReadSentences, Problem> {
+/// What a log of sentences holds.
+type Sentences = (Vec<Series>, Log);
+
+fn read_bytes(bytes: &[u8]) -> Result<Sentences, Problem> {
     read(Lines::new(bytes, Encoding::Utf8))
 }
 
-fn read_log(lines: &[String]) -> Result<ReadSentences, Problem> {
+fn read_log(lines: &[String]) -> Result<Sentences, Problem> {
     read_bytes(lines.join("\r\n").as_bytes())
 }
 
-fn source(lines: &[String]) -> ReadSentences {
+fn source(lines: &[String]) -> Sentences {
     read_log(lines).expect("a log that can be read")
 }
 
-fn series(source: &ReadSentences, channel: Channel) -> &Series {
-    source.series.iter().find(|series| series.channel == channel).expect("the channel is there")
+fn series(source: &Sentences, channel: Channel) -> &Series {
+    source.0.iter().find(|series| series.channel == channel).expect("the channel is there")
 }
 
-fn has(source: &ReadSentences, channel: Channel) -> bool {
-    source.series.iter().any(|series| series.channel == channel)
+fn has(source: &Sentences, channel: Channel) -> bool {
+    source.0.iter().any(|series| series.channel == channel)
 }
 
 fn degrees(series: &Series) -> Vec<f64> {
     series.values.iter().map(|value| (value.to_degrees() * 1e9).round() / 1e9).collect()
 }
 
-fn told(source: &ReadSentences, text: &str) -> bool {
-    source.warnings.iter().any(|warning| warning.contains(text))
+fn told(source: &Sentences, text: &str) -> bool {
+    source.1.warnings.iter().any(|warning| warning.contains(text))
 }
 
 /// `14:03:05` and so on, one sentence a second.
@@ -145,7 +148,7 @@ fn what_is_not_valid_is_not_read() {
     let heading = series(&mended, Channel::Heading);
     assert_eq!(heading.time.len(), 4);
     assert_eq!(heading.values.iter().filter(|value| value.is_nan()).count(), 2);
-    assert!(told(&mended, "1 entry of $HEHDT cannot be a heading"), "{:?}", mended.warnings);
+    assert!(told(&mended, "1 entry of $HEHDT cannot be a heading"), "{:?}", mended.1.warnings);
 }
 
 #[test]
@@ -166,13 +169,13 @@ fn checksums_are_counted_and_wrong_ones_left_out() {
     lines.push(String::from("recording goes on"));
     let source = source(&lines);
     assert_eq!(degrees(series(&source, Channel::Heading)), [1.0, 4.0]);
-    assert!(told(&source, "1 of 8 lines had a wrong checksum and is left out"), "{:?}", source.warnings);
-    assert!(told(&source, "1 of 8 lines is cut short"), "{:?}", source.warnings);
-    assert!(told(&source, "1 of 8 lines holds no sentence"), "{:?}", source.warnings);
+    assert!(told(&source, "1 of 8 lines had a wrong checksum and is left out"), "{:?}", source.1.warnings);
+    assert!(told(&source, "1 of 8 lines is cut short"), "{:?}", source.1.warnings);
+    assert!(told(&source, "1 of 8 lines holds no sentence"), "{:?}", source.1.warnings);
     let bare: Vec<String> = (0..5).map(|k| format!("14:00:0{k} $HEHDT,{k}.5,T")).collect();
     let bare = self::source(&bare);
     assert_eq!(degrees(series(&bare, Channel::Heading)), [0.5, 1.5, 2.5, 3.5, 4.5]);
-    assert!(told(&bare, "5 sentences have no checksum"), "{:?}", bare.warnings);
+    assert!(told(&bare, "5 sentences have no checksum"), "{:?}", bare.1.warnings);
 }
 
 #[test]
@@ -192,9 +195,9 @@ fn one_channel_is_one_instrument_and_the_choice_is_said() {
     let source = source(&lines);
     assert!(degrees(series(&source, Channel::Heading)).iter().all(|&heading| heading == 51.0));
     let expected = "heading from $GPHDT (60 readings); $HEHDT (60), $HCHDM (60) and $HCHDG (30) are not used";
-    assert!(source.warnings.iter().any(|told| told == expected), "{:?}", source.warnings);
+    assert!(source.1.warnings.iter().any(|told| told == expected), "{:?}", source.1.warnings);
     let speed = "speed through the water from $VWVHW (60 readings); $GPVTG (60) is not used";
-    assert!(source.warnings.iter().any(|told| told == speed), "{:?}", source.warnings);
+    assert!(source.1.warnings.iter().any(|told| told == speed), "{:?}", source.1.warnings);
     // The same sentence of two ports.
     let ports: Vec<String> = (0..20)
         .flat_map(|k| {
@@ -214,7 +217,7 @@ fn one_channel_is_one_instrument_and_the_choice_is_said() {
 #[test]
 fn a_magnetic_heading_is_said_and_a_variation_makes_it_true() {
     let magnetic = source(&stamped(&["HCHDG,101.1,,,,", "HCHDG,102.1,,,,"]));
-    assert!(told(&magnetic, "the heading of $HCHDG is magnetic"), "{:?}", magnetic.warnings);
+    assert!(told(&magnetic, "the heading of $HCHDG is magnetic"), "{:?}", magnetic.1.warnings);
     let held = source(&stamped(&["HCHDG,101.1,,,,", "HCHDG,102.1,,,2.0,E", "HCHDG,359.0,,,,"]));
     assert_eq!(degrees(series(&held, Channel::Heading)), [103.1, 104.1, 1.0]);
     assert!(!told(&held, "magnetic"));
@@ -234,8 +237,8 @@ fn damaged_lines_are_counted_and_read_past() {
     bytes.extend(b"\n\n\n");
     let source = read_bytes(&bytes).expect("most lines are sound");
     assert_eq!(series(&source, Channel::Heading).time.len(), 20);
-    assert_eq!(source.lines, 31);
-    assert!(told(&source, "9 of 31 lines are cut short or not text"), "{:?}", source.warnings);
+    assert_eq!(source.1.rows, 31);
+    assert!(told(&source, "9 of 31 lines are cut short or not text"), "{:?}", source.1.warnings);
 }
 
 #[test]
@@ -267,7 +270,7 @@ fn a_log_that_is_none_is_refused_with_the_numbers() {
 fn two_rudders_are_one_where_they_go_together() {
     let rudder = |bodies: &[&str]| {
         let source = source(&stamped(bodies));
-        (degrees(series(&source, Channel::Rudder)), source.warnings)
+        (degrees(series(&source, Channel::Rudder)), source.1.warnings)
     };
     let (mean, told) = rudder(&["IIRSA,10.0,A,11.0,A", "IIRSA,12.0,A,12.0,A"]);
     assert_eq!(mean, [10.5, 12.0]);
@@ -321,8 +324,8 @@ fn positions_are_metres_from_the_first() {
 fn lines_are_counted_and_the_hash_is_that_of_the_file() {
     let text = stamped(&["HEHDT,1.0,T", "HEHDT,2.0,T", "HEHDT,3.0,T"]).join("\n");
     let source = read_bytes(text.as_bytes()).expect("a log");
-    assert_eq!((source.lines, series(&source, Channel::Heading).time.len()), (3, 3));
-    assert_eq!(source.sha256, crate::reader::lines::sha256(text.as_bytes()));
+    assert_eq!((source.1.rows, series(&source, Channel::Heading).time.len()), (3, 3));
+    assert_eq!(source.1.sha256, crate::reader::lines::sha256(text.as_bytes()));
 }
 
 #[test]

@@ -29,10 +29,10 @@ fn any_sentence() -> impl Strategy<Value = String> {
 /// What must hold of whatever is read.
 fn check(bytes: &[u8]) {
     let Ok(source) = read_bytes(bytes) else { return };
-    assert!(!source.series.is_empty());
-    let first = source.series.iter().map(|series| series.time[0]).fold(f64::INFINITY, f64::min);
+    assert!(!source.0.is_empty());
+    let first = source.0.iter().map(|series| series.time[0]).fold(f64::INFINITY, f64::min);
     assert_eq!(first, 0.0);
-    for series in &source.series {
+    for series in &source.0 {
         assert_eq!(series.time.len(), series.values.len());
         assert!(series.time.windows(2).all(|pair| pair[0] < pair[1]), "{series:?}");
         assert!(series.time.iter().all(|time| time.is_finite()));
@@ -41,8 +41,8 @@ fn check(bytes: &[u8]) {
             assert!(series.values.iter().all(|value| value.is_nan() || (0.0..2.0 * PI).contains(value)));
         }
     }
-    for (place, series) in source.series.iter().enumerate() {
-        assert!(source.series[..place].iter().all(|other| other.channel != series.channel));
+    for (place, series) in source.0.iter().enumerate() {
+        assert!(source.0[..place].iter().all(|other| other.channel != series.channel));
     }
 }
 

@@ -35,7 +35,7 @@ fn every_notation_of_a_stamp_gives_the_same_series() {
         let heading = series(&source, Channel::Heading);
         assert_eq!(heading.time, [0.0, 0.25, 2.5], "{}", lines[0]);
         assert_eq!(degrees(heading), [359.5, 0.5, 2.5], "{}", lines[0]);
-        let clock = source.clock.expect("there are stamps");
+        let clock = source.1.clock.expect("there are stamps");
         assert_eq!(&clock.at(0.0)[3..], "03:05", "{}", lines[0]);
         let day = clock.day;
         assert!(day.is_none_or(|day| day == 20_777), "{}: {day:?}", lines[0]);
@@ -84,9 +84,9 @@ fn ten_headings_a_second_under_a_clock_of_one() {
     assert_eq!(series(&source, Channel::Speed).time, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
     let expected = "the time is that of $GPRMC (6 times, every 1.0 s): a sentence has the time before it, and heading and \
                     rudder may be apart by that much, and sentences between two of them are spread evenly over the time between";
-    assert!(told(&source, expected), "{:?}", source.warnings);
+    assert!(told(&source, expected), "{:?}", source.1.warnings);
     assert!(told(&source, "1 sentence before the first time is left out"));
-    let clock = source.clock.expect("RMC has one");
+    let clock = source.1.clock.expect("RMC has one");
     assert_eq!((clock.date_at(0.0), clock.at(0.0)), (Some("2026-11-20".into()), "14:03:05".into()));
 }
 
@@ -126,12 +126,12 @@ fn midnight_is_passed_with_and_without_dates() {
         let lines: Vec<String> = (0..4).flat_map(|k| [clock(k), summed("HEHDT,10.0,T")]).collect();
         let source = source(&lines);
         assert_eq!(series(&source, Channel::Heading).time, expected, "{}", lines[0]);
-        assert_eq!(source.clock.expect("it has one").at(0.0), "23:59:58");
+        assert_eq!(source.1.clock.expect("it has one").at(0.0), "23:59:58");
     }
     // The date of another sentence dates the clock.
     let mut lines: Vec<String> = (0..4).flat_map(|k| [clocks[1](k), summed("HEHDT,10.0,T")]).collect();
     lines.insert(6, summed("GPZDA,000000.00,21,11,2026,00,00"));
-    assert_eq!(source(&lines).clock.expect("it has one").date_at(0.0), Some("2026-11-20".into()));
+    assert_eq!(source(&lines).1.clock.expect("it has one").date_at(0.0), Some("2026-11-20".into()));
     let stamped: Vec<String> = ["23:59:58", "23:59:59", "00:00:00", "00:00:01"]
         .iter()
         .map(|time| format!("{time} {}", summed("HEHDT,10.0,T")))
@@ -150,7 +150,7 @@ fn a_clock_that_strays_once_is_left_out_and_one_that_starts_anew_is_refused() {
         for (time, value) in heading.time.iter().zip(degrees(heading)) {
             assert_abs_diff_eq!(*time, value, epsilon = 1e-5);
         }
-        assert!(told(&source, "1 time of $GPRMC far from its neighbours left out"), "{stray}: {:?}", source.warnings);
+        assert!(told(&source, "1 time of $GPRMC far from its neighbours left out"), "{stray}: {:?}", source.1.warnings);
     }
     let again = ten_to_one(&[10, 11, 12, 13, 1, 2, 3], |_, _| true);
     let problem = read_log(&again).expect_err("time starts anew");
@@ -169,7 +169,11 @@ fn a_stamp_that_strays_once_is_left_out_and_a_log_that_starts_anew_is_refused() 
     for (seconds, kept) in [([10, 11, 2, 13, 14], [0.0, 1.0, 3.0, 4.0]), ([10, 11, 50, 13, 14], [0.0, 1.0, 3.0, 4.0])] {
         let source = source(&write(&seconds));
         assert_eq!(series(&source, Channel::Heading).time, kept);
-        assert!(told(&source, "1 sentence with a stamp far from its neighbours is left out"), "{:?}", source.warnings);
+        assert!(
+            told(&source, "1 sentence with a stamp far from its neighbours is left out"),
+            "{:?}",
+            source.1.warnings
+        );
     }
     let problem = read_log(&write(&[10, 11, 12, 13, 1, 2, 3])).expect_err("time starts anew");
     assert!(problem.to_string().starts_with("line 5: the clock of the log goes back from 14:03:13 to 14:03:01"));

@@ -3,19 +3,22 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::channel::Channel;
+
 /// Semi-major axis of the ellipsoid, m (WGS 84; NIMA TR 8350.2, third edition, table 3.1).
 const A: f64 = 6_378_137.0;
 /// First eccentricity squared (same, table 3.3).
 const E2: f64 = 6.694_379_990_14e-3;
 
-/// Metres north and east of the first position, from latitude and longitude (rad); NaN where there is none.
+/// Metres north and east of the first position, from latitude and longitude (rad); NaN where there is none, and `None`
+/// where there is none at all.
 ///
 /// north = M (φ − φ₀) and east = N cos φₘ (λ − λ₀), with the radii of curvature M of the meridian and N of the prime
 /// vertical and the cosine at the mean φₘ of both latitudes, the former at φₘ as well. Of 10 miles the error is below a
 /// few decimetres away from the poles.
-pub(super) fn plane(latitude: &[f64], longitude: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let first = latitude.iter().zip(longitude).find(|(latitude, longitude)| (**latitude + **longitude).is_finite());
-    let (first_latitude, first_longitude) = first.map_or((f64::NAN, f64::NAN), |(phi, lambda)| (*phi, *lambda));
+pub(super) fn plane(latitude: &[f64], longitude: &[f64]) -> Option<[(Channel, Vec<f64>); 2]> {
+    let mut positions = latitude.iter().zip(longitude);
+    let (&first_latitude, &first_longitude) = positions.find(|(phi, lambda)| (**phi + **lambda).is_finite())?;
     let project = |(&phi, &lambda): (&f64, &f64)| {
         let mean = 0.5 * (phi + first_latitude);
         let w2 = 1.0 - E2 * mean.sin().powi(2);
@@ -25,5 +28,6 @@ pub(super) fn plane(latitude: &[f64], longitude: &[f64]) -> (Vec<f64>, Vec<f64>)
         let across = (lambda - first_longitude + PI).rem_euclid(TAU) - PI;
         (meridian * (phi - first_latitude), prime_vertical * mean.cos() * across)
     };
-    latitude.iter().zip(longitude).map(project).unzip()
+    let (north, east) = latitude.iter().zip(longitude).map(project).unzip();
+    Some([(Channel::North, north), (Channel::East, east)])
 }

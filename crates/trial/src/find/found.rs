@@ -3,8 +3,9 @@
 
 use ship::angle::to_deg;
 
-use super::kind::Kind;
 use super::pattern::Prepared;
+use crate::manoeuvre::Manoeuvre;
+use crate::zigzag::holds::conventional_deg;
 
 /// Share of missing headings worth a remark.
 const MISSING: f64 = 0.01;
@@ -92,9 +93,10 @@ impl Quality {
 
 /// A manoeuvre inside a log.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Manoeuvre {
-    /// What it is.
-    pub kind: Kind,
+pub struct FoundManoeuvre {
+    /// What it is, with its angles as executed: the rudder of a zig-zag is the mean of the medians over the holds to each
+    /// side, its heading the median over the executes; `None` where the ship keeps her course.
+    pub manoeuvre: Option<Manoeuvre>,
     /// First row of the part to analyse, s: the first execute, or before it where the approach was steady.
     pub from: f64,
     /// Last row of that part, s: the rudder is still held in it, and the propeller turns.
@@ -105,4 +107,37 @@ pub struct Manoeuvre {
     pub executes: usize,
     /// How good the log is there.
     pub quality: Quality,
+}
+
+impl FoundManoeuvre {
+    /// A name for lists, with conventional angles: "zig-zag 10/10", "turning circle 35 to starboard", "pull-out",
+    /// "spiral", "straight".
+    pub fn name(&self) -> String {
+        let Some(manoeuvre) = &self.manoeuvre else { return String::from("straight") };
+        let rudder = conventional(manoeuvre.rudder(), 0.08, 0.08);
+        match manoeuvre {
+            Manoeuvre::ZigZag { heading, .. } => format!("zig-zag {rudder}/{}", conventional(*heading, 0.05, 0.25)),
+            Manoeuvre::TurningCircle { side, .. } => format!("turning circle {rudder} to {side}"),
+            other => other.name().to_owned(),
+        }
+    }
+
+    /// Rudder and change of heading that it is known by, rad, positive to starboard; those of a zig-zag have no sign.
+    pub fn angles(&self) -> [Option<f64>; 2] {
+        let Some(manoeuvre) = &self.manoeuvre else { return [None; 2] };
+        let (rudder, sign) = (manoeuvre.rudder(), manoeuvre.side().sign());
+        match manoeuvre {
+            Manoeuvre::ZigZag { heading, .. } => [Some(rudder), Some(*heading)],
+            Manoeuvre::TurningCircle { heading_change, .. } => {
+                [Some(sign * rudder), heading_change.map(|change| sign * change)]
+            }
+            _ => [Some(sign * rudder), None],
+        }
+    }
+}
+
+/// The conventional angle near a measured one, for a name; see [`conventional_deg`].
+fn conventional(angle: f64, below: f64, above: f64) -> String {
+    let degrees = to_deg(angle);
+    conventional_deg(degrees, below, above, 0.0).map_or_else(|| format!("{degrees:.1}"), |angle| format!("{angle:.0}"))
 }

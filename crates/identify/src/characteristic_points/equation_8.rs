@@ -1,0 +1,132 @@
+//! The once-integrated equation at chosen instants: T [r(t) − r(0)] + ψ(t) − ψ(0) = K [δ_r t + ∫δ].
+//!
+//! Source: Ge, Hu, Yin and Sun, equation (8), whose printed + r(0) is a slip.
+
+use nalgebra::Matrix3;
+
+use super::found::{Analysed, PointsFit};
+use super::points::rudder_integral;
+use crate::error::IdentifyError;
+use crate::savitzky_golay::local_polynomial;
+use estimation::least_squares::LeastSquares;
+
+/// Columns of T, K, K δ_r and the right-hand side.
+#[derive(Debug, Default)]
+struct Equations {
+    time_constant: Vec<f64>,
+    rudder: Vec<f64>,
+    duration: Vec<f64>,
+    heading: Vec<f64>,
+    /// Where each trial ends.
+    ends: Vec<usize>,
+}
+
+/// Heading (rad) and yaw rate (rad/s) of a cubic through the rows within `half_width` of `about`, evaluated at `at`.
+fn local(trial: &Analysed, about: f64, at: f64) -> Option<[f64; 2]> {
+    let reach = trial.points.half_width * (1.0 + 1e-9);
+    let time = &trial.samples.time;
+    let rows = time.partition_point(|t| *t < about - reach)..time.partition_point(|t| *t <= about + reach);
+    // More rows than coefficients, or the fit smooths nothing.
+    if rows.len() < 5 {
+        return None;
+    }
+    local_polynomial(&time[rows.clone()], &trial.samples.heading[rows], at, 3).map(|fit| [fit[0], fit[1]])
+}
+
+/// The equation at instants one window apart, so that no row serves two of them. ψ(0) + T r(0) is an unknown of every
+/// trial, which spares the one-sided slope at the first row.
+pub(super) fn identify_spread(
+    trials: &[Analysed],
+    bias: Option<f64>,
+    condition_limit: f64,
+) -> Result<PointsFit, IdentifyError> {
+    let mut equations = Equations::default();
+    for trial in trials {
+        let (width, last) = (trial.points.half_width, trial.samples.time[trial.samples.len() - 1]);
+        // Windows must not touch: a row at the end of one would belong to the next as well.
+        let step = 2.0 * width + last / (trial.samples.len() - 1) as f64;
+        let mut at = width;
+        while at + width <= last {
+            if let Some([heading, rate]) = local(trial, at, at) {
+                equations.push(-rate, rudder_integral(&trial.samples, at), at, heading, bias);
+            }
+            at += step;
+        }
+        equations.ends.push(equations.heading.len());
+    }
+    let origins: Vec<Vec<f64>> = (0..trials.len()).map(|index| equations.origin(index)).collect();
+    equations.solve(&origins, bias, condition_limit)
+}
+
+/// The equation as printed, at the heading extrema: r(t) = 0, so that T stands with r(0) alone.
+pub(super) fn identify_at_vertices(
+    trials: &[Analysed],
+    bias: Option<f64>,
+    condition_limit: f64,
+) -> Result<PointsFit, IdentifyError> {
+    let mut equations = Equations::default();
+    for trial in trials {
+        let [start_heading, start_rate] = if trial.points.from_rest {
+            let rest = trial.points.still[0];
+            [rest.heading + trial.points.base, 0.0]
+        } else {
+            local(trial, trial.points.half_width, 0.0).ok_or(IdentifyError::TooFewPoints {
+                what: "headings in the first window",
+                needed: 5,
+                found: trial.samples.time.partition_point(|t| *t <= 2.0 * trial.points.half_width),
+            })?
+        };
+        for point in trial.points.extrema() {
+            let heading = point.heading + trial.points.base - start_heading;
+            equations.push(start_rate, point.rudder_integral, point.time, heading, bias);
+        }
+        equations.ends.push(equations.heading.len());
+    }
+    let found = equations.solve(&[], bias, condition_limit)?;
+    Ok(PointsFit { covariance: Err("all of T rests on one slope, whose error no residual shows"), ..found })
+}
+
+impl Equations {
+    fn push(&mut self, time_constant: f64, rudder_integral: f64, duration: f64, heading: f64, bias: Option<f64>) {
+        self.time_constant.push(time_constant);
+        self.rudder.push(rudder_integral + bias.unwrap_or(0.0) * duration);
+        self.duration.push(duration);
+        self.heading.push(heading);
+    }
+
+    /// The column that is one in the rows of a trial.
+    fn origin(&self, trial: usize) -> Vec<f64> {
+        let start = if trial == 0 { 0 } else { self.ends[trial - 1] };
+        (0..self.heading.len()).map(|row| if (start..self.ends[trial]).contains(&row) { 1.0 } else { 0.0 }).collect()
+    }
+
+    fn solve(self, origins: &[Vec<f64>], bias: Option<f64>, condition_limit: f64) -> Result<PointsFit, IdentifyError> {
+        let mut columns: Vec<&[f64]> = vec![&self.rudder, &self.time_constant];
+        if bias.is_none() {
+            columns.push(&self.duration);
+        }
+        columns.extend(origins.iter().map(Vec::as_slice));
+        let solution = LeastSquares::solve(&columns, &self.heading, condition_limit)?;
+        let (gain, time) = (solution.parameters[0], solution.parameters[1]);
+        let gain_bias = bias.map_or_else(|| solution.parameters[2], |bias| bias * gain);
+        let covariance = solution.variance().ok_or("no more equations than unknowns").map(|variance| {
+            // Order (K, K δ_r, T); a given δ_r makes K δ_r follow K.
+            let entry = |i: usize, j: usize| {
+                let column = |index: usize| match (index, bias) {
+                    (0, _) => (0, 1.0),
+                    (1, Some(bias)) => (0, bias),
+                    (1, None) => (2, 1.0),
+                    _ => (1, 1.0),
+                };
+                let ((p, by), (q, and)) = (column(i), column(j));
+                by * and * variance * solution.unscaled_covariance[(p, q)]
+            };
+            (Matrix3::from_fn(entry), solution.degrees_of_freedom)
+        });
+        Ok(PointsFit {
+            parameters: [gain, gain_bias, time],
+            covariance,
+            diagnostics: vec![("condition", solution.condition), ("equations", self.heading.len() as f64)],
+        })
+    }
+}

@@ -1,0 +1,23 @@
+//! What the variants start from, and what they find.
+
+use nalgebra::Matrix3;
+
+use super::points::Points;
+use crate::samples::Samples;
+
+/// One trial with its points.
+#[derive(Debug)]
+pub(super) struct Analysed {
+    pub(super) samples: Samples,
+    pub(super) points: Points,
+}
+
+/// What a variant finds, in the parameters of the integrated equation.
+#[derive(Debug)]
+pub(super) struct PointsFit {
+    /// K (1/s), K δ_r (rad/s), T (s).
+    pub(super) parameters: [f64; 3],
+    /// Their covariance and degrees of freedom, or why there is none.
+    pub(super) covariance: Result<(Matrix3<f64>, f64), &'static str>,
+    pub(super) diagnostics: Vec<(&'static str, f64)>,
+}

@@ -1,0 +1,184 @@
+//! What a first-order response leaves of a record: does the ship lack a term, or does chance move her?
+//!
+//! The residual ψ − ψ̂ of the replay is regressed on what terms of a larger model would add to it. To first order a term
+//! f in the yaw equation r' = −r/T + (K/T)(δ + δ_r) + c f adds c s to the heading, where s'' = −s'/T + f. The terms are
+//! those of ships: r³, r|r|, r², δ³, |δ|, r'' and δ' (second order, lag and dead time), and r and δ times a filtered r²
+//! (loss of speed). K, T, δ_r and the initial states of all records are free beside them. Terms of a ship return with
+//! every rudder movement, random moments do not: nine terms explain nearly all of the one and part of the other.
+//!
+//! It is a test of first order in small terms. It names nothing; [`Share`](LackOfFit::unexplained) is compared with a
+//! limit that simulated trials gave.
+
+use estimation::column::dot;
+use ship::FirstOrder;
+use ship::first_order::{State, Transition};
+use trial::{Trial, zigzag};
+
+use crate::replay::{Replay, replay};
+
+/// Half-width of the local fits that tell the noise of the heading, in T; bends of the heading last longer.
+const HALF_WIDTH: f64 = 0.25;
+
+/// Time constant of the loss of speed, in T.
+const SPEED_LAG: f64 = 3.0;
+
+/// A column that keeps less than this share of its length beside the others is one of them.
+const INDEPENDENT: f64 = 1e-6;
+
+/// How far the replays of a response are from the records, and how far they would be with the terms of a larger ship.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LackOfFit {
+    /// Root mean square of the residual of all records, rad.
+    pub residual: f64,
+    /// The same with nine terms of a ship fitted to it, rad, corrected for their number.
+    pub with_ship_terms: f64,
+    /// Standard deviation of the white noise of the heading, rad.
+    pub noise: f64,
+}
+
+impl LackOfFit {
+    /// Of a response on the records it was fitted to; `None` where a replay is not finite, and where so few headings were
+    /// read that their noise is not known.
+    pub fn of(trials: &[Trial], response: &FirstOrder) -> Option<Self> {
+        let mut residual = Vec::new();
+        let mut terms: Vec<Vec<f64>> = Vec::new();
+        let (mut noise, mut initial) = (0.0, 0);
+        for trial in trials {
+            let replayed = replay(trial, response)?;
+            let own = Rows::of(trial, &replayed, response);
+            terms.resize(own.terms.len(), Vec::new());
+            let half_width = (HALF_WIDTH * response.T().abs()).max(3.0 * trial.sampling_period());
+            let sd = zigzag::noise_sd(trial.time(), trial.heading(), half_width)?;
+            noise += sd * sd * own.residual.len() as f64;
+            initial += own.initial;
+            terms.iter_mut().zip(&own.terms).for_each(|(all, one)| all.extend(one));
+            residual.extend(own.residual);
+        }
+        let rows = residual.len() as f64;
+        let rms = |values: &[f64], free: usize| (dot(values, values) / (rows - free as f64).max(1.0)).sqrt();
+        let before = rms(&residual, 0);
+        let mut basis = Vec::new();
+        for column in terms {
+            extend(&mut basis, column);
+        }
+        remove(&basis, &mut residual);
+        let after = rms(&residual, basis.len() + initial);
+        let found = Self { residual: before, with_ship_terms: after, noise: (noise / rows).sqrt() };
+        (before.is_finite() && after.is_finite() && noise.is_finite()).then_some(found)
+    }
+
+    /// Which share of the residual beyond the noise the terms of a ship leave, from 0 to 1: small where the ship lacks a
+    /// term, large where chance moves her. `None` where the residual is no larger than the noise.
+    pub fn unexplained(&self) -> Option<f64> {
+        let beyond = |rms: f64| (rms * rms - self.noise * self.noise).max(0.0);
+        let all = beyond(self.residual);
+        (all > 0.1 * self.noise * self.noise).then(|| (beyond(self.with_ship_terms) / all).sqrt().min(1.0))
+    }
+}
+
+/// Residual and terms of one record at the rows with a heading, its initial state taken out of both.
+struct Rows {
+    residual: Vec<f64>,
+    terms: Vec<Vec<f64>>,
+    initial: usize,
+}
+
+impl Rows {
+    fn of(trial: &Trial, replayed: &Replay, response: &FirstOrder) -> Self {
+        let FirstOrder { inverse_T: a, K_over_T: b, rudder_bias } = *response;
+        let (time, r) = (&replayed.time[..], &replayed.yaw_rate[..]);
+        let first = trial.time().iter().position(|t| *t == time[0]).unwrap_or(0);
+        let rudder = &trial.rudder()[first..first + time.len()];
+        let turning = slopes(time, rudder);
+        let acceleration = |row: usize| -a * r[row] + b * (rudder[row] + rudder_bias);
+        let speed = filtered_square(time, r, SPEED_LAG / a.abs());
+        let inputs: [&dyn Fn(usize) -> f64; 12] = [
+            &|row| r[row],
+            &|row| rudder[row],
+            &|_| 1.0,
+            &|row| r[row].powi(3),
+            &|row| r[row] * r[row].abs(),
+            &|row| r[row].powi(2),
+            &|row| rudder[row].powi(3),
+            &|row| rudder[row].abs(),
+            &|row| -a * acceleration(row) + b * turning[row],
+            &|row| turning[row],
+            &|row| speed[row] * r[row],
+            &|row| speed[row] * rudder[row],
+        ];
+        let observed: Vec<usize> = (0..time.len()).filter(|&row| replayed.residual[row].is_finite()).collect();
+        let at_observed = |column: Vec<f64>| -> Vec<f64> { observed.iter().map(|&row| column[row]).collect() };
+        let mut basis = Vec::new();
+        extend(&mut basis, vec![1.0; observed.len()]);
+        extend(&mut basis, at_observed(headings(time, a, 1.0, |_| 0.0)));
+        let without_initial = |mut column: Vec<f64>| {
+            remove(&basis, &mut column);
+            column
+        };
+        Self {
+            terms: inputs.iter().map(|input| without_initial(at_observed(headings(time, a, 0.0, input)))).collect(),
+            residual: without_initial(at_observed(replayed.residual.clone())),
+            initial: basis.len(),
+        }
+    }
+}
+
+/// Heading of s'' = −a s' + f, with f linear between rows and s' = `rate` where it begins. For a < 0 it begins at the end
+/// and runs backwards, in which it does not grow; the two differ by the motion of an initial yaw rate.
+fn headings(time: &[f64], a: f64, rate: f64, input: impl Fn(usize) -> f64) -> Vec<f64> {
+    let rows = time.len();
+    let place = |k: usize| if a < 0.0 { rows - 1 - k } else { k };
+    let sign = if a < 0.0 { -1.0 } else { 1.0 };
+    let mut state = State { heading: 0.0, yaw_rate: rate };
+    let mut headings = vec![0.0; rows];
+    let mut step = Transition::new(a.abs(), 0.0);
+    for k in 1..rows {
+        let (from, to) = (place(k - 1), place(k));
+        let h = (time[to] - time[from]).abs();
+        if h != step.h {
+            step = Transition::new(a.abs(), h);
+        }
+        let (start, end) = (sign * input(from), sign * input(to));
+        state = step.advance(state, start, (end - start) / h);
+        headings[to] = sign * state.heading;
+    }
+    headings
+}
+
+/// Slope of a signal that is linear between rows, the mean of both sides.
+fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
+    let last = time.len() - 1;
+    let slope = |from: usize, to: usize| (values[to] - values[from]) / (time[to] - time[from]);
+    (0..=last).map(|row| slope(row.saturating_sub(1), (row + 1).min(last))).collect()
+}
+
+/// r² through a first-order filter, over its mean.
+fn filtered_square(time: &[f64], r: &[f64], lag: f64) -> Vec<f64> {
+    let mean = dot(r, r) / r.len() as f64;
+    let mut filtered = vec![0.0; r.len()];
+    for row in 1..r.len() {
+        let share = 1.0 - (-(time[row] - time[row - 1]) / lag).exp();
+        filtered[row] = filtered[row - 1] + share * (r[row - 1].powi(2) / mean - filtered[row - 1]);
+    }
+    filtered
+}
+
+/// Adds what is new in a column to an orthonormal basis (Gram and Schmidt, twice).
+fn extend(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
+    let length = dot(&column, &column).sqrt();
+    remove(basis, &mut column);
+    remove(basis, &mut column);
+    let rest = dot(&column, &column).sqrt();
+    if rest > INDEPENDENT * length {
+        column.iter_mut().for_each(|value| *value /= rest);
+        basis.push(column);
+    }
+}
+
+/// Takes out of a column what lies in the basis.
+fn remove(basis: &[Vec<f64>], column: &mut [f64]) {
+    for direction in basis {
+        let size = dot(direction, column);
+        column.iter_mut().zip(direction).for_each(|(value, own)| *value -= size * own);
+    }
+}

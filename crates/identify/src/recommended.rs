@@ -1,0 +1,137 @@
+//! Which answer to take: one rule, made from the record alone.
+//!
+//! Output error is the answer, because no other first-order response is nearer to the headings, with two exceptions. Where
+//! the recorded rudder has declared noise, maximum likelihood counts it. Where maximum likelihood finds a random yaw moment
+//! that the terms of a ship cannot explain ([`LackOfFit`]), it is the answer, too: output error takes the work of gusts for
+//! that of the rudder. Where terms of a ship explain the residual, the model lacks one of them. A random moment then stands
+//! for it, and K, T of maximum likelihood are those of small and fast motions.
+//!
+//! As a method of its own it makes both fits and returns the one that the rule names, so that a study can hold the rule.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use trial::Trial;
+
+use crate::error::IdentifyError;
+use crate::estimate::Estimate;
+use crate::identifier::Identifier;
+use crate::lack_of_fit::LackOfFit;
+use crate::settings::SettingsError;
+use crate::{maximum_likelihood, output_error};
+
+/// Share of the residual that the terms of a ship leave where a random moment is believed. On simulated hulls and measured
+/// zig-zags it is below 0.37, under gusts and walks of the moment mostly above 0.3 (scenario `recommended`).
+const RANDOM: f64 = 0.33;
+
+/// Diagnostics of maximum likelihood that stand for a random moment.
+const MOMENTS: [&str; 3] =
+    ["white_moment_rudder_deg_root_s", "moment_walk_rudder_deg_per_root_s", "gusts_sd_rudder_deg"];
+
+/// Why an answer is to be taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reason {
+    /// No first-order response replays the headings nearer.
+    NearestReplay,
+    /// A random yaw moment acts, and maximum likelihood counts it.
+    RandomMoment,
+    /// The recorded rudder is noisy, and maximum likelihood counts it.
+    RudderNoise,
+}
+
+/// What the residual of the answer looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Residual {
+    /// No larger than the noise of the heading.
+    Noise,
+    /// Terms of a ship explain most of it: the model lacks an effect.
+    LacksEffect,
+    /// Terms of a ship do not explain it: random moments, waves or an error of the compass.
+    Random,
+}
+
+/// Which answer to take and what to think of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recommendation {
+    /// Why.
+    pub reason: Reason,
+    /// What output error leaves of the records; `None` where it has no answer or the noise is not known.
+    pub lack: Option<LackOfFit>,
+}
+
+impl Recommendation {
+    /// From the answers of output error and maximum likelihood on these records.
+    pub fn of(trials: &[Trial], output_error: Option<&Estimate>, maximum_likelihood: Option<&Estimate>) -> Self {
+        let lack = output_error.and_then(|estimate| LackOfFit::of(trials, &estimate.response));
+        let moment = |estimate: &Estimate| estimate.diagnostics.iter().any(|(name, _)| MOMENTS.contains(name));
+        let is_random = lack.and_then(|lack| lack.unexplained()).is_some_and(|share| share >= RANDOM);
+        let reason = match maximum_likelihood {
+            None => Reason::NearestReplay,
+            Some(_) if trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0)) => {
+                Reason::RudderNoise
+            }
+            Some(estimate) if output_error.is_none() || (is_random && moment(estimate)) => Reason::RandomMoment,
+            Some(_) => Reason::NearestReplay,
+        };
+        Self { reason, lack }
+    }
+
+    /// The method whose answer is to be taken.
+    pub fn method(&self) -> &'static str {
+        match self.reason {
+            Reason::NearestReplay => "output-error",
+            Reason::RandomMoment | Reason::RudderNoise => "maximum-likelihood",
+        }
+    }
+
+    /// What the residual of output error looks like.
+    pub fn residual(&self) -> Option<Residual> {
+        let share = self.lack?.unexplained();
+        Some(
+            share
+                .map_or(Residual::Noise, |share| if share < RANDOM { Residual::LacksEffect } else { Residual::Random }),
+        )
+    }
+}
+
+/// The rule as a method; it has no settings.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {}
+
+impl Settings {
+    /// Makes the method; no file is looked for.
+    pub fn build(self, _folder: &Path) -> Result<Recommended, SettingsError> {
+        Ok(Recommended {
+            output_error: output_error::Settings::default().build()?,
+            maximum_likelihood: maximum_likelihood::Settings::default().build()?,
+        })
+    }
+}
+
+/// Output error or maximum likelihood, as the record says.
+pub struct Recommended {
+    output_error: output_error::OutputError,
+    maximum_likelihood: maximum_likelihood::MaximumLikelihood,
+}
+
+impl Identifier for Recommended {
+    fn id(&self) -> &'static str {
+        "recommended"
+    }
+
+    fn summary(&self) -> &'static str {
+        "output error, or maximum likelihood where a random moment or a noisy rudder asks for it"
+    }
+
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
+        let nearest = self.output_error.identify(trials);
+        let likely = self.maximum_likelihood.identify(trials);
+        match Recommendation::of(trials, nearest.as_ref().ok(), likely.as_ref().ok()).reason {
+            Reason::NearestReplay => nearest,
+            Reason::RandomMoment | Reason::RudderNoise => likely,
+        }
+    }
+}
