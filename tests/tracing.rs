@@ -269,6 +269,8 @@ fn nothing_is_named_where_nothing_is_missing() {
             if name == "white noise" {
                 assert_eq!((analysis.document.verdict, named.len()), (Verdict::Clean, 0));
                 assert!(analysis.document.residual.before.whiteness_p > 1e-4);
+                let one = &analysis.identification[0];
+                assert!(one.after.errors.heading <= 1.0001 * one.before.errors.heading);
             }
             if !named.is_empty() {
                 mistaken.push(format!("{name}, {replicate}: {named:?}"));

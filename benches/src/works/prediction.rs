@@ -1,6 +1,6 @@
 //! Predicting a manoeuvre from a thousand drawn ships.
 
-use predict::known::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
+use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
 use predict::{IdentifiedShip, ShipMixture};
 use ship::angle::from_deg;
 use ship::effects::{Effect, NonlinearDamping};

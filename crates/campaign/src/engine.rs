@@ -6,8 +6,8 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
+use ::trace::comparison::ReplayResult;
 use ::trace::document::EffectEntry;
-use ::trace::judge::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use identify::{Estimate, StopReason};
 use ship::FirstOrder;

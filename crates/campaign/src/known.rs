@@ -4,7 +4,7 @@ use identify::estimate::{Estimate, Uncertainty};
 use identify::replay::{Replay, replay};
 use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
-use predict::known::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
+use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
 use predict::motion::{self, IdentifiedHull, Planar};
 use ship::Particulars;
 use ship::angle::{from_deg, to_deg};

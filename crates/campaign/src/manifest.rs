@@ -129,7 +129,7 @@ impl Manifest {
                      method that a program gave, has changed"
                         .to_owned(),
                 ),
-                false => differences.extend(found.iter().map(ToString::to_string)),
+                false => differences.extend(found),
             }
         }
         let of = |manifest: &Self| [("seed", manifest.seed.to_string()), ("shard", manifest.shard.to_string())];

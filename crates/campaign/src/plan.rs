@@ -42,7 +42,7 @@ impl<'a> TrialPlan<'a> {
                 (whole(cells.start), whole(cells.end))
             }
         };
-        let verdict = scenario.stop.as_ref().map(|rule| StopCheck::new(rule, scenario.labels().count()));
+        let verdict = scenario.stop.as_ref().map(|rule| StopCheck::new(rule, scenario.labels()));
         Self { scenario, first, end, next: first, verdict }
     }
 

@@ -1,6 +1,6 @@
 //! Manoeuvres predicted from an answer, and the same ship making them: whether intervals hold.
 
-use predict::passage::SimulatedManoeuvre;
+use predict::simulated_manoeuvre::SimulatedManoeuvre;
 use predict::{IdentifiedShip, ShipMixture, figures, standard};
 use scenario::Predictions;
 use simulate::{Manoeuvre, Sensors, Simulation, StreamKey};

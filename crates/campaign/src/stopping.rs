@@ -8,14 +8,18 @@ use scenario::{Index, StopFigure, StopRule};
 #[derive(Clone)]
 pub struct StopCheck {
     rule: StopRule,
+    /// Place of the method that the rule is about; all have to meet it when there is none.
+    method: Option<usize>,
     cell: u64,
     methods: Vec<FigureSums>,
 }
 
 impl StopCheck {
     /// Before any row.
-    pub fn new(rule: &StopRule, methods: usize) -> Self {
-        Self { rule: rule.clone(), cell: 0, methods: vec![FigureSums::default(); methods] }
+    pub fn new<'a>(rule: &StopRule, labels: impl Iterator<Item = &'a str>) -> Self {
+        let labels: Vec<&str> = labels.collect();
+        let method = rule.method.as_deref().and_then(|own| labels.iter().position(|label| *label == own));
+        Self { rule: rule.clone(), method, cell: 0, methods: vec![FigureSums::default(); labels.len()] }
     }
 
     /// Takes note of a row; one of another cell begins anew.
@@ -41,9 +45,9 @@ impl StopCheck {
     /// Whether the standard error is at most what the rule asks for, for its method or for all.
     pub fn is_met(&self) -> bool {
         let met = |sums: &FigureSums| {
-            sums.standard_error(self.rule.figure).is_some_and(|error| error <= self.rule.standard_error_percent)
+            sums.standard_error(self.rule.figure).is_some_and(|error| error <= self.rule.standard_error)
         };
-        match self.rule.method {
+        match self.method {
             Some(method) => met(&self.methods[method]),
             None => self.methods.iter().all(met),
         }

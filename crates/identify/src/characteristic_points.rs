@@ -46,7 +46,7 @@ pub enum Variant {
     Equation8Vertices,
 }
 
-/// Settings of [`CharacteristicPoints`].
+/// Settings of CharacteristicPoints.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {

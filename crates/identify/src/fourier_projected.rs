@@ -76,7 +76,7 @@ pub enum RudderTreatment {
     Recorded,
 }
 
-/// Settings of [`FourierProjected`].
+/// Settings of FourierProjected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {

@@ -44,7 +44,7 @@ pub enum Aggregation {
     Median,
 }
 
-/// Settings of [`FourierPublished`].
+/// Settings of FourierPublished.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {

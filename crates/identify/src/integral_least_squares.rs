@@ -29,13 +29,13 @@ use noise::HeadingNoise;
 /// Fewest headings in a stretch between gaps that can say more than its own initial state.
 const FEWEST_IN_PIECE: usize = 4;
 
-/// Settings of [`IntegralLeastSquares`].
+/// Settings of IntegralLeastSquares.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
     /// Longest interval between headings that is integrated across, s; without it five mean intervals of the record.
     pub longest_gap_s: Option<f64>,
-    /// Largest accepted condition number of the equations (see [`IntegralLeastSquares`]).
+    /// Largest accepted condition number of the equations (see IntegralLeastSquares).
     pub condition_limit: f64,
 }
 

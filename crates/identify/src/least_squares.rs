@@ -36,7 +36,7 @@ pub enum Signal {
     YawRate,
 }
 
-/// Settings of [`MotionRegression`].
+/// Settings of MotionRegression.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {

@@ -24,7 +24,7 @@ use crate::samples::track;
 use crate::scan::{self, Fit};
 use crate::settings::{SettingsError, check_iterations, require};
 
-/// Settings of [`OutputError`].
+/// Settings of OutputError.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {

@@ -18,11 +18,11 @@ macro_rules! methods {
         #[serde(rename_all = "kebab-case")]
         pub enum IdentifierSettings {
             $(
-                #[doc = concat!("Settings of [`", stringify!($file), "`](crate::", stringify!($file), ").")]
+                #[doc = concat!("Settings of ", stringify!($file), ".")]
                 $Method(crate::$file::Settings),
             )+
             $(
-                #[doc = concat!("Settings of [`", stringify!($outside), "`](crate::", stringify!($outside), ").")]
+                #[doc = concat!("Settings of ", stringify!($outside), ".")]
                 $Outside(crate::$outside::Settings),
             )+
         }

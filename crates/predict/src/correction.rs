@@ -18,13 +18,13 @@ use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
+use crate::helm_replay::{DrawResult, SteeredZigZag};
+use crate::identified_ship::{IdentifiedShip, is_same_length};
 use crate::interval::PredictionInterval;
-use crate::known::{IdentifiedShip, is_same_length};
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::passage::SimulatedManoeuvre;
 use crate::prediction::{drawn, enough};
 use crate::replay::{file_of, thinned};
-use crate::steered::{DrawResult, SteeredZigZag};
+use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn};
 
 /// Half width of the 90 % interval of F/B, as a share of its median, above which R says little more than F.
@@ -327,7 +327,7 @@ mod tests {
     fn without_doubt_the_answer_is_the_truth() {
         let [full, ballast] = ships().map(|mut known| {
             (known.members[0].covariance, known.members[0].fitted) = (Vec::new(), Vec::new());
-            known.noise.moment = crate::known::Moment::None;
+            known.noise.moment = crate::identified_ship::Moment::None;
             if let Some(gear) = &mut known.gear {
                 gear.sd_rad_s = 0.0;
             }

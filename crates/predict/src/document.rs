@@ -6,14 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::correction::Correction;
 use crate::form::ImoFormEntry;
+use crate::identified_ship::ValidityRange;
 use crate::imo::PredictedCriterion;
-use crate::known::ValidityRange;
-use crate::passage::SimulatedManoeuvre;
-use crate::prediction::{Bands, Prediction};
+use crate::prediction::{Bands, ManoeuvreCurves, Prediction};
 use crate::replay::RecordReplay;
-use crate::steady::SteadyCurve;
 
-/// `predict.json`. Its curves, which stand as `skip` where they are of use, are in a file beside it: [`PredictCurves`].
+/// `predict.json`. Its curves, which stand as `skip` where they are of use, are in a file beside it: PredictCurves.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictDocument {
     /// `predict/1`.
@@ -73,36 +71,19 @@ pub struct PredictCurves {
     pub replays: Vec<([Vec<f64>; 2], Bands, Vec<f64>)>,
 }
 
-/// The curves of a manoeuvre; as in [`Prediction`].
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct ManoeuvreCurves {
-    heading: Bands,
-    most_probable: Option<SimulatedManoeuvre>,
-    tracks: Vec<Vec<[f64; 2]>>,
-    curves: Vec<SteadyCurve>,
-}
-
 impl PredictDocument {
     /// The curves, which [`with_curves`](Self::with_curves) puts back.
     pub fn curves(&self) -> PredictCurves {
-        let of_manoeuvre = |own: &Prediction| {
-            let Prediction { heading, most_probable, tracks, curves, .. } = own.clone();
-            ManoeuvreCurves { heading, most_probable, tracks, curves }
-        };
         let of_replay = |own: &RecordReplay| (own.rudder.clone(), own.heading.clone(), own.measured.clone());
         PredictCurves {
-            manoeuvres: self.manoeuvres.iter().map(of_manoeuvre).collect(),
+            manoeuvres: self.manoeuvres.iter().map(|own| own.curves.clone()).collect(),
             replays: self.replays.iter().map(of_replay).collect(),
         }
     }
 
     /// The document that was read from its file, with the curves from theirs.
     pub fn with_curves(mut self, curves: PredictCurves) -> Self {
-        for (own, ManoeuvreCurves { heading, most_probable, tracks, curves }) in
-            self.manoeuvres.iter_mut().zip(curves.manoeuvres)
-        {
-            *own = Prediction { heading, most_probable, tracks, curves, ..own.clone() };
-        }
+        self.manoeuvres.iter_mut().zip(curves.manoeuvres).for_each(|(own, curves)| own.curves = curves);
         for (own, curves) in self.replays.iter_mut().zip(curves.replays) {
             (own.rudder, own.heading, own.measured) = curves;
         }

@@ -9,7 +9,7 @@ use simulate::Manoeuvre;
 use trial::manoeuvre::INITIAL_TURN;
 
 use crate::motion::turning_circle;
-use crate::passage::{PlanarMotion, SimulatedManoeuvre};
+use crate::simulated_manoeuvre::{PlanarMotion, SimulatedManoeuvre};
 use crate::standard::EXECUTES;
 
 /// Figures of merit by name.

@@ -313,7 +313,7 @@ fn loading(tested: &[TestedManoeuvre]) -> ImoFormEntry {
 mod tests {
     use super::*;
     use crate::correction;
-    use crate::known::IdentifiedShip;
+    use crate::identified_ship::IdentifiedShip;
     use crate::mixture::ShipMixture;
     use crate::testing;
     use ship::angle::from_deg;

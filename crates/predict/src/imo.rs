@@ -30,13 +30,6 @@ pub struct PredictedCriterion {
     pub extrapolated: bool,
 }
 
-impl PredictedCriterion {
-    /// The predicted value with its intervals.
-    pub fn interval(&self) -> PredictionInterval {
-        self.interval
-    }
-}
-
 /// A manoeuvre of the criteria and of the form of MSC/Circ.1053, as it is asked for at a positive rudder.
 pub(crate) type FormManoeuvre = &'static str;
 

@@ -7,7 +7,7 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | what is known of a ship, as files hold it | [`known`] |
+//! | what is known of a ship, as files hold it | [`identified_ship`] |
 //! | speed, drift and hulls fitted to records, tracks, turning circles | [`motion`] |
 //! | ships drawn from it | [`mixture`] |
 //! | the manoeuvres, and what ends them | [`standard`] |
@@ -28,25 +28,25 @@ pub mod document;
 pub mod error;
 pub mod figures;
 pub mod form;
+mod helm_replay;
+pub mod identified_ship;
 pub mod imo;
 pub mod interval;
-pub mod known;
 mod line;
 pub mod mixture;
 pub mod motion;
-pub mod passage;
 pub mod prediction;
 pub mod replay;
+pub mod simulated_manoeuvre;
 pub mod standard;
 pub mod steady;
-mod steered;
 #[cfg(test)]
 mod testing;
 pub mod turn;
 
 pub use document::PredictDocument;
 pub use error::PredictError;
+pub use identified_ship::IdentifiedShip;
 pub use interval::PredictionInterval;
-pub use known::IdentifiedShip;
 pub use mixture::{ShipMixture, UncertaintySource};
 pub use prediction::Prediction;

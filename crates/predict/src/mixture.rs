@@ -10,7 +10,7 @@ use simulate::disturbance::GaussMarkov;
 use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
 
 use crate::error::PredictError;
-use crate::known::{IdentifiedShip, KnownNoise, Moment, WeightedStructure};
+use crate::identified_ship::{IdentifiedShip, KnownNoise, Moment, WeightedStructure};
 
 /// Where an interval comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

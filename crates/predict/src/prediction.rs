@@ -11,10 +11,10 @@ use trial::manoeuvre::in_words;
 
 use crate::error::PredictError;
 use crate::figures::{self, Figures};
+use crate::identified_ship::ValidityRange;
 use crate::interval::{PredictionInterval, band};
-use crate::known::ValidityRange;
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::passage::{self, SimulatedManoeuvre};
+use crate::simulated_manoeuvre::{SimulatedManoeuvre, period};
 use crate::steady::SteadyCurve;
 
 /// Draws for every source alone, as a share of all.
@@ -70,7 +70,7 @@ fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
     Ok(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
 }
 
-/// A manoeuvre predicted; its curves are beside the document ([`PredictCurves`](crate::document::PredictCurves)).
+/// A manoeuvre predicted; its curves are beside the document (PredictCurves).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.
@@ -81,18 +81,23 @@ pub struct Prediction {
     pub figures: IndexMap<String, Predicted>,
     /// Draws that did not come to the end.
     pub lost: usize,
-    /// Heading, but for a spiral.
+    /// Its curves.
     #[serde(skip)]
+    pub curves: ManoeuvreCurves,
+}
+
+/// The curves of a manoeuvre; angles in rad.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ManoeuvreCurves {
+    /// Heading, but for a spiral.
     pub heading: Bands,
     /// The most probable ship without chance, but for a spiral.
-    #[serde(skip)]
     pub most_probable: Option<SimulatedManoeuvre>,
     /// Tracks of some of the draws, north and east, m; empty where nothing is known of speed and drift.
-    #[serde(skip)]
     pub tracks: Vec<Vec<[f64; 2]>>,
     /// Steady curves of the most probable ship and of some others, for a spiral.
-    #[serde(skip)]
-    pub curves: Vec<SteadyCurve>,
+    #[serde(rename = "curves")]
+    pub steady: Vec<SteadyCurve>,
 }
 
 impl Prediction {
@@ -145,19 +150,19 @@ impl ShipMixture {
         let (values, series): (Vec<Option<Figures>>, Vec<_>) = all.into_iter().map(Option::unzip).unzip();
         let made: Vec<(Vec<f64>, f64, Option<_>)> = series.into_iter().flatten().collect();
         enough(kind, made.len(), draws)?;
+        let lost = draws - made.len();
         let extrapolated = self.is_unseen(kind.rudder(), made.iter().map(|(_, rate, _)| *rate));
         let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
         let headings: Vec<&[f64]> = made.iter().map(|(heading, ..)| heading.as_slice()).collect();
-        Ok(Prediction {
-            kind: kind.clone(),
-            figures: predicted(&values, extrapolated, sources, |number, sources| Some(sail(number, sources)?.0)),
-            heading: bands(&headings, most_probable.as_ref(), passage::period(self.timescale())),
-            lost: draws - made.len(),
+        let curves = ManoeuvreCurves {
+            heading: bands(&headings, most_probable.as_ref(), period(self.timescale())),
             most_probable,
             tracks: made.into_iter().filter_map(|(.., track)| track).collect(),
-            curves: Vec::new(),
-        })
+            steady: Vec::new(),
+        };
+        let figures = predicted(&values, extrapolated, sources, |number, sources| Some(sail(number, sources)?.0));
+        Ok(Prediction { kind: kind.clone(), figures, lost, curves })
     }
 
     /// Steady turns; chance has no part in them.
@@ -171,15 +176,10 @@ impl ShipMixture {
         let most_probable = curve(0, &[]);
         let rates = std::iter::once(most_probable.yaw_rate.iter().fold(0.0, |most: f64, rate| most.max(rate.abs())));
         let alone = |number, sources: &[UncertaintySource]| Some(curve(number, sources).figures(kind.rudder()));
-        Prediction {
-            kind: kind.clone(),
-            figures: predicted(&values, self.is_unseen(kind.rudder(), rates), sources, alone),
-            lost: 0,
-            heading: Bands::default(),
-            most_probable: None,
-            tracks: Vec::new(),
-            curves: std::iter::once(most_probable).chain(all).collect(),
-        }
+        let figures = predicted(&values, self.is_unseen(kind.rudder(), rates), sources, alone);
+        let steady = std::iter::once(most_probable).chain(all).collect();
+        let curves = ManoeuvreCurves { steady, ..ManoeuvreCurves::default() };
+        Prediction { kind: kind.clone(), figures, lost: 0, curves }
     }
 
     /// Whether a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond what the records have seen.
@@ -245,10 +245,10 @@ fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::known::Moment;
+    use crate::identified_ship::Moment;
     use crate::testing;
 
-    fn mixture(change: impl Fn(&mut crate::known::IdentifiedShip)) -> ShipMixture {
+    fn mixture(change: impl Fn(&mut crate::identified_ship::IdentifiedShip)) -> ShipMixture {
         let mut known = testing::known();
         change(&mut known);
         testing::mixture(known)
@@ -274,7 +274,7 @@ mod tests {
             assert!(figure.shares.is_empty() && figure.defined == 1.0);
         }
         assert!(!prediction.is_extrapolated() && prediction.lost == 0);
-        assert!(prediction.heading.time.len() > 100);
+        assert!(prediction.curves.heading.time.len() > 100);
     }
 
     /// A source that is not there has no share, and shares are shares.
@@ -300,7 +300,7 @@ mod tests {
         assert!(ship.predict(&kind("turning-circle:35"), 8, false).expect("a turn").is_extrapolated());
         assert!(!ship.predict(&kind("zig-zag:10/10"), 8, false).expect("a zig-zag").is_extrapolated());
         let spiral = ship.predict(&kind("spiral:15"), 8, true).expect("a curve");
-        assert_eq!(spiral.curves.len(), 9);
+        assert_eq!(spiral.curves.steady.len(), 9);
         assert_eq!(spiral.figures[2].interval.median, 0.0, "a stable ship has no loop");
     }
 

@@ -13,12 +13,12 @@ use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
 use crate::figures::Figures;
+use crate::helm_replay::{self, SteeredZigZag};
 use crate::interval::{PredictionInterval, band};
 use crate::line::StraightLine;
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::passage::SimulatedManoeuvre;
 use crate::prediction::{Bands, drawn, enough, lost};
-use crate::steered::{self, SteeredZigZag};
+use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn};
 
 /// Beginning of a record from which its first heading and yaw rate are read, in times of the ship.
@@ -40,7 +40,7 @@ pub struct Compared {
 }
 
 /// A record with its prediction; its curves are beside the document
-/// ([`PredictCurves`](crate::document::PredictCurves)).
+/// (PredictCurves).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RecordReplay {
     /// The file as the user named it.
@@ -180,7 +180,7 @@ impl ShipMixture {
         let own = self.particulars();
         let has_way = self.first().motion.is_some() || self.first().hull.is_some();
         let stand_in = trial.particulars().or(own).filter(|_| !has_way);
-        steered::shown(trial, measured, name, own.map(|own| own.length), stand_in)
+        helm_replay::shown(trial, measured, name, own.map(|own| own.length), stand_in)
     }
 
     /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, as this ship explains them: a

@@ -4,7 +4,9 @@ use ship::angle::from_deg;
 use simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
 use trial::Trial;
 
-use crate::known::{IdentifiedShip, KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
+use crate::identified_ship::{
+    IdentifiedShip, KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure,
+};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::standard;
 

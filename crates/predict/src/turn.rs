@@ -9,7 +9,7 @@ use simulate::{Purpose, StreamKey};
 use trial::{Channel, Trial};
 
 use crate::figures::{self, Figures};
-use crate::passage::{self, PlanarMotion, SimulatedManoeuvre};
+use crate::simulated_manoeuvre::{self, PlanarMotion, SimulatedManoeuvre};
 
 /// Share of the largest angle above which a rudder is held.
 const HELD: f64 = 0.8;
@@ -124,7 +124,7 @@ impl HeldTurn {
 /// A record on rows of a time of the ship, s; with its way where it has a track and the length is known, m. `None`
 /// without headings.
 pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<SimulatedManoeuvre> {
-    let period = passage::period(timescale);
+    let period = simulated_manoeuvre::period(timescale);
     let count = (trial.duration() / period) as usize + 1;
     let on_rows = |rows: &mut dyn Iterator<Item = usize>, values: &[f64]| -> Option<Vec<f64>> {
         let read =

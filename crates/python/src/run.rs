@@ -1,9 +1,8 @@
 //! `run`: a whole scenario, as the command line runs it.
 
 use std::path::PathBuf;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use campaign::Observer;
 use campaign::collect::collect;
@@ -26,20 +25,14 @@ struct Watch {
     is_asked: AtomicBool,
     most: AtomicU64,
     done: AtomicU64,
-    said: Mutex<StudyMessages>,
+    /// Notes and warnings.
+    said: Mutex<[Vec<String>; 2]>,
     threads: Option<ThreadPool>,
 }
 
-/// What a study had to say.
-#[derive(Default)]
-struct StudyMessages {
-    notes: Vec<String>,
-    warnings: Vec<String>,
-}
-
 impl Watch {
-    fn said(&self, add: impl FnOnce(&mut StudyMessages)) {
-        add(&mut self.said.lock().unwrap_or_else(PoisonError::into_inner));
+    fn said(&self) -> MutexGuard<'_, [Vec<String>; 2]> {
+        self.said.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -54,11 +47,11 @@ impl Observer for Watch {
     }
 
     fn note(&self, line: &str) {
-        self.said(|said| said.notes.push(line.to_owned()));
+        self.said()[0].push(line.to_owned());
     }
 
     fn warn(&self, line: &str) {
-        self.said(|said| said.warnings.push(line.to_owned()));
+        self.said()[1].push(line.to_owned());
     }
 
     fn is_asked_to_stop(&self) -> bool {
@@ -132,12 +125,7 @@ pub fn run(
             return Err(stopped(py, &watch, underway, raised));
         }
     };
-    let mut notes = Vec::new();
-    let mut warnings = Vec::new();
-    watch.said(|said| {
-        notes = std::mem::take(&mut said.notes);
-        warnings = std::mem::take(&mut said.warnings);
-    });
+    let [notes, warnings] = std::mem::take(&mut *watch.said());
     Ok((text, notes, warnings))
 }
 

@@ -11,7 +11,6 @@ use crate::draw::DrawnKey;
 use crate::method::{Method, Procedure, methods};
 use crate::part::ScenarioPart;
 use crate::problem::{KeyFault, KeyPath};
-use crate::ship::ShipWire;
 use crate::specification::Specification;
 use crate::wire::ScenarioWire;
 use crate::{limits, reader, resolve, sweep};
@@ -35,7 +34,6 @@ struct DrawnSettings {
     draws: Vec<DrawnKey>,
     /// The settings of the cell, with every drawn value in the middle.
     wire: ScenarioWire,
-    ship: ShipWire,
     folder: PathBuf,
 }
 
@@ -127,24 +125,23 @@ impl DrawnSettings {
         if draws.is_empty() {
             return Ok(None);
         }
-        let blamed = |index: usize, problem: KeyFault| {
+        let attributed = |index: usize, problem: KeyFault| {
             let of_key = draws.iter().position(|draw| draw.key.is_related(&problem.key));
             (of_key.unwrap_or(index), problem)
         };
         let middle: Vec<f64> = draws.iter().map(DrawnKey::middle).collect();
         let mut document = only(document, &[ScenarioPart::Trial]);
         for (draw, &value) in draws.iter().zip(&middle) {
-            sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| blamed(0, problem))?;
+            sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| attributed(0, problem))?;
         }
-        let wire: ScenarioWire = reader::document(&document).map_err(|problem| blamed(0, problem))?;
-        let ship = ShipWire::read(&wire.ship).map_err(|problem| blamed(0, problem))?;
-        let drawn = Self { draws: draws.to_vec(), wire, ship, folder: folder.to_owned() };
-        let specification = drawn.specification(&middle).map_err(|problem| blamed(0, problem))?;
+        let wire: ScenarioWire = reader::document(&document).map_err(|problem| attributed(0, problem))?;
+        let drawn = Self { draws: draws.to_vec(), wire, folder: folder.to_owned() };
+        let specification = drawn.specification(&middle).map_err(|problem| attributed(0, problem))?;
         for (index, draw) in draws.iter().enumerate() {
             for value in draw.ends() {
                 let mut values = middle.clone();
                 values[index] = value;
-                drawn.specification(&values).map_err(|problem| blamed(index, problem))?;
+                drawn.specification(&values).map_err(|problem| attributed(index, problem))?;
             }
         }
         Ok(Some((drawn, specification)))
@@ -152,16 +149,14 @@ impl DrawnSettings {
 
     /// The specification with these values; what they do not touch is as it is in the middle.
     fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
-        let (mut wire, mut ship) = (self.wire.clone(), self.ship.clone());
+        let mut wire = self.wire.clone();
         for (draw, &value) in self.draws.iter().zip(values) {
-            let key = draw.key.parts();
-            let is_set = if key[0] == "ship" { ship.set(&key[1..], value) } else { wire.set(key, value) };
-            if !is_set {
+            if !wire.set(draw.key.parts(), value) {
                 let found = format!("`{}` holds no number that can be drawn", draw.key);
                 return Err(KeyFault::name(draw.key.clone(), found, "expected the key of a number", "change the key"));
             }
         }
-        resolve::specification(&ship, &wire, &self.folder)
+        resolve::specification(&wire, &self.folder)
     }
 }
 
@@ -191,39 +186,38 @@ pub(crate) fn swept(
     let cell = (labels.len() > 1).then(|| labels.join(", "));
     // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of
     // several.
-    let blame = |problem: KeyFault| {
+    let attribute = |problem: KeyFault| {
         let of_key = settings().rfind(|setting| setting.key.is_related(&problem.key));
         match of_key.or_else(|| settings().next_back()) {
-            Some(setting) => setting.blamed(problem, cell.as_deref()),
+            Some(setting) => setting.attributed(problem, cell.as_deref()),
             None => problem,
         }
     };
     let mut changed = document.clone();
     for setting in settings() {
-        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(blame)?;
+        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(attribute)?;
     }
-    let wire: ScenarioWire = reader::document(&changed).map_err(blame)?;
-    let specification = ShipWire::read(&wire.ship).and_then(|ship| resolve::specification(&ship, &wire, folder));
-    let specification = specification.map_err(blame)?;
-    let methods = methods(&wire.identifier, folder).map_err(blame)?;
+    let wire: ScenarioWire = reader::document(&changed).map_err(attribute)?;
+    let specification = resolve::specification(&wire, folder).map_err(attribute)?;
+    let methods = methods(&wire.identifier, folder).map_err(attribute)?;
     if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
-        return Err(blame(KeyFault::value(
+        return Err(attribute(KeyFault::value(
             KeyPath::dotted("identifier"),
             "the methods are not the same in every cell",
             "expected settings of methods",
             "sweep settings only, and name every method once in an [[identifier]] of its own",
         )));
     }
-    limits::entries("draw", wire.draw.len(), limits::MOST_DRAWS).map_err(blame)?;
+    limits::entries("draw", wire.draw.len(), limits::MOST_DRAWS).map_err(attribute)?;
     let draws: Vec<DrawnKey> = wire
         .draw
         .iter()
         .enumerate()
         .map(|(index, draw)| draw.resolve(index))
         .collect::<Result<_, _>>()
-        .map_err(|problem| if points.is_empty() { problem } else { blame(problem) })?;
+        .map_err(|problem| if points.is_empty() { problem } else { attribute(problem) })?;
     let drawn = DrawnSettings::new(&draws, &changed, folder)
-        .map_err(|(draw, problem)| draws[draw].blamed(problem, cell.as_deref()))?;
+        .map_err(|(draw, problem)| draws[draw].attributed(problem, cell.as_deref()))?;
     let (drawn, specification) = match drawn {
         Some((drawn, specification)) => (Some(drawn), specification),
         None => (None, specification),

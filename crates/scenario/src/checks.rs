@@ -7,7 +7,7 @@ use crate::draw::DrawWire;
 use crate::limits;
 use crate::method::Method;
 use crate::name::{self, LONGEST_NAME};
-use crate::problem::{KeyFault, KeyPath, of_text, suggestion};
+use crate::problem::{KeyFault, KeyPath, of_text, place_among};
 use crate::sweep::SweepAxis;
 use crate::words::MarkedValue;
 
@@ -86,31 +86,21 @@ pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
     let Some((index, title)) = titles.iter().enumerate().find(|(_, title)| !places.contains(title.as_str())) else {
         return Ok(());
     };
-    let advice = match &known[..known.len().min(20)] {
-        [] => "leave the key out: a study without a sweep shows its only cell".to_owned(),
-        shown => suggestion(title, shown),
-    };
-    Err(KeyFault::value(
-        KeyPath::dotted("output.detail").child(index),
-        format!("no cell is called {title:?}"),
-        "expected labels of points, joined by commas",
-        advice,
-    ))
+    let key = KeyPath::dotted("output.detail").child(index);
+    let words = ["no cell is called", "expected labels of points, joined by commas"];
+    let fault = place_among(title, &known[..known.len().min(20)], key, words);
+    fault.map(|_| ()).map_err(|fault| match known.is_empty() {
+        true => KeyFault { advice: "leave the key out: a study without a sweep shows its only cell".into(), ..fault },
+        false => fault,
+    })
 }
 
 /// Every mark is on an axis, at a number, and has a name.
 pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> {
-    let known: Vec<String> = axes.iter().map(|axis| axis.name.clone()).collect();
+    let known: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
     for (index, mark) in marks.iter().enumerate() {
         let key = KeyPath::dotted("output.marks").child(index);
-        if !known.contains(&mark.axis) {
-            return Err(KeyFault::value(
-                key.child("axis"),
-                format!("no axis is called {:?}", mark.axis),
-                "expected the name of a sweep",
-                suggestion(&mark.axis, &known),
-            ));
-        }
+        place_among(&mark.axis, &known, key.child("axis"), ["no axis is called", "expected the name of a sweep"])?;
         if !mark.at.is_finite() {
             let advice = "give the place of the mark on the axis";
             return Err(KeyFault::value(key.child("at"), format!("found {}", mark.at), "expected a number", advice));
@@ -122,14 +112,9 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
 
 /// Every label is that of a method.
 pub fn about(labels: &[String], methods: &[Method]) -> Result<(), KeyFault> {
-    let known: Vec<String> = methods.iter().map(|method| method.label.clone()).collect();
-    let unknown = labels.iter().enumerate().find(|(_, label)| !known.contains(label));
-    unknown.map_or(Ok(()), |(index, label)| {
-        Err(KeyFault::value(
-            KeyPath::dotted("output.methods").child(index),
-            format!("no method is called {label:?}"),
-            "expected the id or the label of an [[identifier]]",
-            suggestion(label, &known),
-        ))
+    let known: Vec<&str> = methods.iter().map(|method| method.label.as_str()).collect();
+    let words = ["no method is called", "expected the id or the label of an [[identifier]]"];
+    labels.iter().enumerate().try_for_each(|(index, label)| {
+        place_among(label, &known, KeyPath::dotted("output.methods").child(index), words).map(|_| ())
     })
 }

@@ -73,14 +73,25 @@ pub struct DrawnKey {
 /// A distribution of the value, or of its natural logarithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct DrawnDistribution {
+    /// Its key.
+    name: &'static str,
     of_logarithm: bool,
     law: Distribution,
 }
 
+/// Numbers that have been checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Distribution {
-    Normal(Normal<f64>),
-    Uniform { uniform: Uniform<f64>, ends: [f64; 2] },
+    Normal {
+        mean: f64,
+        sd: f64,
+    },
+    /// `ends` are those of the value.
+    Uniform {
+        from: f64,
+        to: f64,
+        ends: [f64; 2],
+    },
 }
 
 /// Least probability of the range that is kept: below it, drawing again and again would take for ever.
@@ -108,9 +119,10 @@ impl DrawWire {
                 "for instance `ship.first-order.T-s` or `sensor.heading-noise-deg`",
             ));
         }
-        let (shape, support, name) = self.shape(&place)?;
-        let [low, high] = self.between.unwrap_or(support);
-        let draw = DrawnKey { key, place: place.child(name), index: index as u32, shape, between: [low, high] };
+        let shape = self.shape(&place)?;
+        let between = self.between.unwrap_or_else(|| shape.support());
+        let [low, high] = between;
+        let draw = DrawnKey { key, place: place.child(shape.name), index: index as u32, shape, between };
         if !(low < high && draw.probability() >= LEAST_PROBABILITY) {
             return Err(KeyFault::value(
                 place.child("between"),
@@ -122,64 +134,43 @@ impl DrawWire {
         Ok(draw)
     }
 
-    /// The distribution, where it lives, and its name.
-    fn shape(&self, place: &KeyPath) -> Result<(DrawnDistribution, [f64; 2], &'static str), KeyFault> {
-        let number = |name: &str, number: &str, value: f64, least: f64| {
-            let is_within_reach = least == f64::NEG_INFINITY || (value - least).is_finite();
-            if value.is_finite() && value > least && is_within_reach {
-                return Ok(value);
+    /// The distribution.
+    fn shape(&self, place: &KeyPath) -> Result<DrawnDistribution, KeyFault> {
+        let (name, numbers) = match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
+            (Some(own), None, None, None) => ("normal", [("mean", own.mean), ("sd", own.sd)]),
+            (None, Some(own), None, None) => ("log-normal", [("median", own.median), ("sigma", own.sigma)]),
+            (None, None, Some(own), None) => ("uniform", [("from", own.from), ("to", own.to)]),
+            (None, None, None, Some(own)) => ("log-uniform", [("from", own.from), ("to", own.to)]),
+            _ => {
+                return Err(KeyFault::name(
+                    place.clone(),
+                    format!("the draw of `{}` does not say from which distribution", self.key),
+                    "expected one of `normal`, `log-normal`, `uniform`, `log-uniform`",
+                    "for instance `uniform = { from = 0.5, to = 3.0 }`",
+                ));
             }
-            let found = format!("`{number}` of the `{name}` distribution of `{}` is {}", self.key, Shown(value));
-            let expected = match least {
-                f64::NEG_INFINITY => "expected a finite number".to_owned(),
-                _ => format!("expected a finite number above {}", Shown(least)),
-            };
-            Err(KeyFault::value(place.child(name).child(number), found, expected, "change the number"))
         };
-        let everything = [f64::NEG_INFINITY, f64::INFINITY];
-        match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
-            (Some(NormalWire { mean, sd }), None, None, None) => {
-                let mean = number("normal", "mean", mean, f64::NEG_INFINITY)?;
-                let law = normal(mean, number("normal", "sd", sd, 0.0)?);
-                Ok((DrawnDistribution { of_logarithm: false, law }, everything, "normal"))
+        let (of_logarithm, is_uniform) = (name.starts_with("log-"), name.ends_with("uniform"));
+        let [first, second] = numbers.map(|(_, value)| value);
+        let least = [if of_logarithm { 0.0 } else { f64::NEG_INFINITY }, if is_uniform { first } else { 0.0 }];
+        for ((number, value), least) in numbers.into_iter().zip(least) {
+            let is_within_reach = least == f64::NEG_INFINITY || (value - least).is_finite();
+            if !(value.is_finite() && value > least && is_within_reach) {
+                let found = format!("`{number}` of the `{name}` distribution of `{}` is {}", self.key, Shown(value));
+                let expected = match least {
+                    f64::NEG_INFINITY => "expected a finite number".to_owned(),
+                    _ => format!("expected a finite number above {}", Shown(least)),
+                };
+                return Err(KeyFault::value(place.child(name).child(number), found, expected, "change the number"));
             }
-            (None, Some(LogNormalWire { median, sigma }), None, None) => {
-                let median = number("log-normal", "median", median, 0.0)?;
-                let law = normal(median.ln(), number("log-normal", "sigma", sigma, 0.0)?);
-                Ok((DrawnDistribution { of_logarithm: true, law }, [0.0, f64::INFINITY], "log-normal"))
-            }
-            (None, None, Some(RangeWire { from, to }), None) => {
-                let from = number("uniform", "from", from, f64::NEG_INFINITY)?;
-                let to = number("uniform", "to", to, from)?;
-                Ok((DrawnDistribution { of_logarithm: false, law: uniform(from, to) }, [from, to], "uniform"))
-            }
-            (None, None, None, Some(RangeWire { from, to })) => {
-                let from = number("log-uniform", "from", from, 0.0)?;
-                let to = number("log-uniform", "to", to, from)?;
-                Ok((
-                    DrawnDistribution { of_logarithm: true, law: uniform(from.ln(), to.ln()) },
-                    [from, to],
-                    "log-uniform",
-                ))
-            }
-            _ => Err(KeyFault::name(
-                place.clone(),
-                format!("the draw of `{}` does not say from which distribution", self.key),
-                "expected one of `normal`, `log-normal`, `uniform`, `log-uniform`",
-                "for instance `uniform = { from = 0.5, to = 3.0 }`",
-            )),
         }
+        let of_value = |value: f64| if of_logarithm { value.ln() } else { value };
+        let law = match is_uniform {
+            true => Distribution::Uniform { from: of_value(first), to: of_value(second), ends: [first, second] },
+            false => Distribution::Normal { mean: of_value(first), sd: second },
+        };
+        Ok(DrawnDistribution { name, of_logarithm, law })
     }
-}
-
-/// A normal law; both numbers have been checked.
-fn normal(mean: f64, sd: f64) -> Distribution {
-    Distribution::Normal(Normal::new(mean, sd).expect("a finite standard deviation"))
-}
-
-/// A uniform law; both ends have been checked.
-fn uniform(from: f64, to: f64) -> Distribution {
-    Distribution::Uniform { uniform: Uniform::new_inclusive(from, to).expect("finite ends in order"), ends: [from, to] }
 }
 
 impl DrawnKey {
@@ -208,7 +199,7 @@ impl DrawnKey {
 
     /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution;
     /// `cell` names the cell where it helps.
-    pub fn blamed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
+    pub fn attributed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let (key, mark, what) = match problem.mark {
             AtFault::Name => (self.key_place(), AtFault::Value, "changes a key that cannot be drawn"),
@@ -231,11 +222,11 @@ impl DrawnKey {
 
 impl DrawnDistribution {
     fn one(&self, rng: &mut ChaCha8Rng) -> f64 {
-        let drawn = match &self.law {
-            Distribution::Normal(normal) => normal.sample(rng),
-            Distribution::Uniform { uniform, .. } => uniform.sample(rng),
-        };
-        if self.of_logarithm { drawn.exp() } else { drawn }
+        const CHECKED: &str = "its numbers have been checked";
+        self.to_value(match self.law {
+            Distribution::Normal { mean, sd } => Normal::new(mean, sd).expect(CHECKED).sample(rng),
+            Distribution::Uniform { from, to, .. } => Uniform::new_inclusive(from, to).expect(CHECKED).sample(rng),
+        })
     }
 
     /// What the law is about: the value, or its logarithm.
@@ -243,22 +234,32 @@ impl DrawnDistribution {
         if self.of_logarithm { value.ln() } else { value }
     }
 
+    fn to_value(&self, drawn: f64) -> f64 {
+        if self.of_logarithm { drawn.exp() } else { drawn }
+    }
+
     fn middle(&self) -> f64 {
-        let middle = match &self.law {
-            Distribution::Normal(normal) => normal.mean(),
-            Distribution::Uniform { ends, .. } => 0.5 * (ends[0] + ends[1]),
-        };
-        if self.of_logarithm { middle.exp() } else { middle }
+        self.to_value(match self.law {
+            Distribution::Normal { mean, .. } => mean,
+            Distribution::Uniform { from, to, .. } => 0.5 * (from + to),
+        })
+    }
+
+    /// Where it lives.
+    fn support(&self) -> [f64; 2] {
+        match self.law {
+            Distribution::Normal { .. } => [f64::NEG_INFINITY, f64::INFINITY].map(|end| self.to_value(end)),
+            Distribution::Uniform { ends, .. } => ends,
+        }
     }
 
     fn probability_below(&self, value: f64) -> f64 {
         let x = self.of_value(value);
-        match &self.law {
-            Distribution::Normal(normal) => match statrs::distribution::Normal::new(normal.mean(), normal.std_dev()) {
-                Ok(law) => law.cdf(x),
-                Err(_) => f64::NAN,
-            },
-            Distribution::Uniform { ends: [from, to], .. } => ((x - from) / (to - from)).clamp(0.0, 1.0),
+        match self.law {
+            Distribution::Normal { mean, sd } => {
+                statrs::distribution::Normal::new(mean, sd).map_or(f64::NAN, |law| law.cdf(x))
+            }
+            Distribution::Uniform { from, to, .. } => ((x - from) / (to - from)).clamp(0.0, 1.0),
         }
     }
 }

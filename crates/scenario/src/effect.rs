@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
 use schemars::{Schema, SchemaGenerator, json_schema};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, json};
 use ship::angle::DEGREE;
 use ship::effects::{
     Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, RudderDeadband, RudderSaturation, SecondOrder,
@@ -14,18 +14,19 @@ use ship::effects::{
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, Shown};
 
+use crate::number_table::{self, NamedNumbers, NumberKey, closed};
 use crate::problem::{KeyFault, KeyPath, suggestion};
 use crate::{limits, reader};
 
-/// An effect as it is written: its id, and below it its numbers by their keys.
-pub type EffectEntry = BTreeMap<String, BTreeMap<String, f64>>;
+/// A number of an effect: the effect in its form, the key and what it means.
+type EffectNumber = (fn() -> Arc<dyn Effect>, &'static str, &'static str);
 
-/// A number of an effect: the effect in its form, the key, whose end says the unit, and what it means.
-type Number = (fn() -> Arc<dyn Effect>, &'static str, &'static str);
+/// What holds when the exponent of the gain is left out; all other numbers are needed.
+const GAIN_EXPONENT: (&str, f64) = ("gain-exponent", 2.0);
 
 /// Every number of every effect that a scenario can add, in the order of lists and of the parameters.
 #[rustfmt::skip]
-const NUMBERS: [Number; 24] = [
+const NUMBERS: [EffectNumber; 24] = [
     (|| Arc::new(SecondOrder), "T2-s", "Smaller time constant T2."),
     (|| Arc::new(SecondOrder), "T3-s", "Time constant T3 of the rudder rate."),
     (|| Arc::new(NonlinearDamping::Cubic), "n3-s2-per-deg2", "+ n3 r³ on the left (Norrbin, Bech)."),
@@ -69,10 +70,10 @@ const MEANINGS: [(&str, &str); 11] = [
     ("wave_yaw", "Narrow-band yaw from waves."),
 ];
 
-/// An effect in one of the forms in which a scenario adds it, with the keys of its numbers and what they mean.
+/// An effect in one of the forms in which a scenario adds it, with the keys of its numbers.
 struct EffectForm {
     effect: Arc<dyn Effect>,
-    keys: Vec<(&'static str, &'static str)>,
+    keys: Vec<NumberKey>,
 }
 
 /// The forms in the order of [`NUMBERS`].
@@ -80,9 +81,13 @@ static FORMS: LazyLock<Vec<EffectForm>> = LazyLock::new(|| {
     let mut forms: Vec<EffectForm> = Vec::new();
     for (effect, key, meaning) in NUMBERS {
         let effect = effect();
+        let number = match key == GAIN_EXPONENT.0 {
+            true => NumberKey::optional(key, meaning, Some(GAIN_EXPONENT.1)),
+            false => NumberKey::required(key, meaning),
+        };
         match forms.last_mut().filter(|last| is_same(last.effect.as_ref(), effect.as_ref())) {
-            Some(form) => form.keys.push((key, meaning)),
-            None => forms.push(EffectForm { effect, keys: vec![(key, meaning)] }),
+            Some(form) => form.keys.push(number),
+            None => forms.push(EffectForm { effect, keys: vec![number] }),
         }
     }
     forms
@@ -95,11 +100,6 @@ fn is_same(one: &dyn Effect, other: &dyn Effect) -> bool {
 /// The forms of an effect; none where there is no such effect.
 fn forms_of(id: &str) -> Vec<&'static EffectForm> {
     FORMS.iter().filter(|form| form.effect.id() == id).collect()
-}
-
-/// What holds when a key is left out.
-fn default(key: &str) -> Option<f64> {
-    (key == "gain-exponent").then_some(2.0)
 }
 
 /// Size in SI of the unit of a key.
@@ -115,56 +115,43 @@ fn unit(key: &str) -> f64 {
 /// The keys a scenario has for an effect in one of its forms; `None` for a form that needs a measured record.
 pub fn keys(effect: &dyn Effect) -> Option<String> {
     let form = FORMS.iter().find(|form| is_same(form.effect.as_ref(), effect))?;
-    Some(form.keys.iter().map(|(key, _)| *key).collect::<Vec<_>>().join(", "))
+    Some(form.keys.iter().map(|own| own.key).collect::<Vec<_>>().join(", "))
 }
 
 /// The effects with nothing left out.
-pub fn complete(entries: &mut [EffectEntry]) {
+pub fn complete(entries: &mut [NamedNumbers]) {
     for (id, numbers) in entries.iter_mut().flatten() {
-        for (key, _) in forms_of(id).iter().flat_map(|form| &form.keys) {
-            if let Some(default) = default(key) {
-                numbers.entry((*key).to_owned()).or_insert(default);
-            }
-        }
+        forms_of(id).iter().for_each(|form| number_table::complete(numbers, &form.keys));
     }
 }
 
 /// The form that an entry asks for, with the key of it and its numbers.
 fn asked<'a>(
-    entry: &'a EffectEntry,
+    entry: &'a NamedNumbers,
     place: &KeyPath,
 ) -> Result<(&'static EffectForm, KeyPath, &'a BTreeMap<String, f64>), KeyFault> {
     let ids = MEANINGS.map(|(id, _)| id);
-    let mut names = entry.iter();
-    let (Some((id, numbers)), None) = (names.next(), names.next()) else {
-        return Err(reader::not_one_name(place.clone(), entry.keys(), &ids));
-    };
-    let key = place.child(id);
+    let (id, key, numbers) = number_table::only(entry, place, &ids)?;
     let forms = forms_of(id);
     if forms.is_empty() {
         return Err(KeyFault::name(key, format!("no effect is called `{id}`"), "no such name", suggestion(id, &ids)));
     }
-    let known: Vec<&str> = forms.iter().flat_map(|form| form.keys.iter().map(|(key, _)| *key)).collect();
-    if let Some(name) = numbers.keys().find(|name| !known.contains(&name.as_str())) {
-        let found = format!("`{key}` has no key `{name}`");
-        return Err(KeyFault::name(key.child(name), found, "no such key here", suggestion(name, &known)));
-    }
+    let known: Vec<NumberKey> = forms.iter().flat_map(|form| form.keys.iter().copied()).collect();
+    number_table::refuse_unknown(numbers, &known, &key)?;
     if forms.len() > 1 && numbers.len() != 1 {
-        return Err(reader::not_one_name(key, numbers.keys(), &known));
+        return Err(reader::not_one_name(key, numbers.keys(), &known.iter().map(|own| own.key).collect::<Vec<_>>()));
     }
-    let has_all = |form: &&EffectForm| numbers.keys().all(|name| form.keys.iter().any(|(key, _)| key == name));
+    let has_all = |form: &&EffectForm| numbers.keys().all(|name| form.keys.iter().any(|own| own.key == name));
     let form = forms.into_iter().find(has_all).expect("every key is known");
-    match form.keys.iter().find(|(key, _)| default(key).is_none() && !numbers.contains_key(*key)) {
-        Some((missing, _)) => Err(reader::missing(&key, missing)),
-        None => Ok((form, key, numbers)),
-    }
+    number_table::refuse_incomplete(numbers, &form.keys, &key)?;
+    Ok((form, key, numbers))
 }
 
 /// The ship with effects added to its response.
 ///
 /// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, and
 /// for a parameter outside its range.
-pub fn added(ship: Ship, entries: &[EffectEntry]) -> Result<Ship, KeyFault> {
+pub fn added(ship: Ship, entries: &[NamedNumbers]) -> Result<Ship, KeyFault> {
     if entries.is_empty() {
         return Ok(ship);
     }
@@ -201,12 +188,9 @@ pub fn added(ship: Ship, entries: &[EffectEntry]) -> Result<Ship, KeyFault> {
                     [description.lowest, description.highest].map(|end| Shown::rounded(end / setting.unit, 4));
                 // Divided by the T of a course-unstable ship, the lower end becomes the upper.
                 ends.sort_by(|one, other| one.0.total_cmp(&other.0));
-                return Err(KeyFault::value(
-                    key.clone(),
-                    format!("`{key}` is {}", Shown(setting.written)),
-                    format!("expected a number from {} to {}", ends[0], ends[1]),
-                    format!("change the value; the effect is {}", effect.equation()),
-                ));
+                let expected = format!("expected a number from {} to {}", ends[0], ends[1]);
+                let advice = format!("change the value; the effect is {}", effect.equation());
+                return Err(KeyFault::of(key, Shown(setting.written), expected, advice));
             }
         }
         effects.push(effect);
@@ -217,7 +201,7 @@ pub fn added(ship: Ship, entries: &[EffectEntry]) -> Result<Ship, KeyFault> {
 }
 
 /// One parameter and the key it comes from.
-struct EffectNumber {
+struct EffectParameter {
     /// Value, SI and rad.
     value: f64,
     /// Key below the effect.
@@ -229,19 +213,19 @@ struct EffectNumber {
 }
 
 /// The parameters of an effect; nonlinear damping is written for T r' + r and stored for r', divided by T.
-fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f64) -> Vec<EffectNumber> {
-    let one = |&(key, _): &(&'static str, &str)| {
-        let written = numbers.get(key).copied().or(default(key)).unwrap_or(f64::NAN);
-        let unit = unit(key) * if form.effect.id() == "nonlinear_damping" { inverse_time } else { 1.0 };
-        EffectNumber { value: written * unit, key, written, unit }
+fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f64) -> Vec<EffectParameter> {
+    let one = |own: &NumberKey| {
+        let written = numbers.get(own.key).copied().or(own.default).unwrap_or(f64::NAN);
+        let unit = unit(own.key) * if form.effect.id() == "nonlinear_damping" { inverse_time } else { 1.0 };
+        EffectParameter { value: written * unit, key: own.key, written, unit }
     };
-    let settings: Vec<EffectNumber> = form.keys.iter().map(one).collect();
+    let settings: Vec<EffectParameter> = form.keys.iter().map(one).collect();
     if let ("wind_moment", [moment, from]) = (form.effect.id(), settings.as_slice()) {
         // w sin 2(ψ_w − ψ) by its components along sin and cos of 2ψ.
         let twice = 2.0 * from.value;
         let component = |share: f64| match from.written.is_finite() {
-            true => EffectNumber { value: moment.value * share, ..*moment },
-            false => EffectNumber { ..*from },
+            true => EffectParameter { value: moment.value * share, ..*moment },
+            false => EffectParameter { ..*from },
         };
         return vec![component(twice.sin()), component(-twice.cos())];
     }
@@ -250,27 +234,9 @@ fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f6
 
 /// The effects: a list, each with one key, its id.
 pub fn schema(_: &mut SchemaGenerator) -> Schema {
-    let closed = |properties: Map<String, Value>, required: Vec<&str>| {
-        json!({
-            "type": "object", "properties": properties, "required": required, "additionalProperties": false,
-        })
-    };
-    let table = |form: &EffectForm| {
-        let number = |&(key, meaning): &(&str, &str)| {
-            let mut number = json!({ "type": "number", "format": "double", "description": meaning });
-            if let Some(default) = default(key) {
-                number["default"] = default.into();
-            }
-            (key.to_owned(), number)
-        };
-        let required = form.keys.iter().map(|(key, _)| *key).filter(|key| default(key).is_none());
-        closed(form.keys.iter().map(number).collect(), required.collect())
-    };
     let effects = MEANINGS.into_iter().map(|(id, meaning)| {
-        let below = match forms_of(id).as_slice() {
-            [form] => table(form),
-            forms => json!({ "oneOf": forms.iter().map(|form| table(form)).collect::<Vec<_>>() }),
-        };
+        let forms: Vec<_> = forms_of(id).iter().map(|form| number_table::schema(&form.keys)).collect();
+        let below = if let [form] = forms.as_slice() { form.clone() } else { json!({ "oneOf": forms }) };
         let mut effect = closed(Map::from_iter([(id.to_owned(), below)]), vec![id]);
         effect["description"] = meaning.into();
         effect

@@ -2,8 +2,8 @@
 //! give the same rows; where they differ, the keys say how.
 
 use std::collections::BTreeSet;
+use std::io;
 use std::path::Path;
-use std::{fmt, io};
 
 use sha2::{Digest, Sha256};
 use toml::{Table, Value};
@@ -11,7 +11,6 @@ use trial::file::{self, FileError, Kind};
 use trial::reader::RECORD;
 
 use crate::failure::{Failure, OnPath};
-
 use crate::part::ScenarioPart;
 
 /// The document without prose and presentation; comments and layout are gone by themselves.
@@ -79,55 +78,41 @@ pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// A key with different values in two documents; `None` where it has none.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Difference {
-    key: String,
-    there: Option<Value>,
-    here: Option<Value>,
-}
-
-impl fmt::Display for Difference {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let shown = |value: &Option<Value>| value.as_ref().map_or_else(|| "nothing".to_owned(), shortened);
-        write!(f, "`{}`: {} there, {} here", self.key, shown(&self.there), shown(&self.here))
-    }
-}
-
 /// Most letters of a value in a message.
 const LONGEST: usize = 60;
 
-fn shortened(value: &Value) -> String {
-    let text = value.to_string();
+fn shortened(value: Option<&Value>) -> String {
+    let text = value.map_or_else(|| "nothing".to_owned(), Value::to_string);
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text,
     }
 }
 
-/// Keys in which two documents differ, with dots, entries of lists counted from 0.
-pub fn differences(there: &Table, here: &Table) -> Vec<Difference> {
+/// Keys in which two documents differ, with dots, entries of lists counted from 0, and both values in words.
+pub fn differences(there: &Table, here: &Table) -> Vec<String> {
     let mut found = Vec::new();
-    compare("", Some(&Value::Table(there.clone())), Some(&Value::Table(here.clone())), &mut found);
+    compare_tables("", there, here, &mut found);
     found
 }
 
-fn compare(key: &str, there: Option<&Value>, here: Option<&Value>, found: &mut Vec<Difference>) {
-    let below = |name: &str| if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
+fn compare_tables(path: &str, there: &Table, here: &Table, found: &mut Vec<String>) {
+    let only = here.keys().filter(|name| !there.contains_key(*name));
+    for name in there.keys().chain(only) {
+        compare(&format!("{path}{name}"), there.get(name), here.get(name), found);
+    }
+}
+
+fn compare(key: &str, there: Option<&Value>, here: Option<&Value>, found: &mut Vec<String>) {
     match (there, here) {
-        (Some(Value::Table(one)), Some(Value::Table(other))) => {
-            let only = other.keys().filter(|name| !one.contains_key(*name));
-            for name in one.keys().chain(only) {
-                compare(&below(name), one.get(name), other.get(name), found);
-            }
-        }
+        (Some(Value::Table(one)), Some(Value::Table(other))) => compare_tables(&format!("{key}."), one, other, found),
         (Some(Value::Array(one)), Some(Value::Array(other))) => {
             for index in 0..one.len().max(other.len()) {
-                compare(&below(&index.to_string()), one.get(index), other.get(index), found);
+                compare(&format!("{key}.{index}"), one.get(index), other.get(index), found);
             }
         }
         (Some(one), Some(other)) if same(one, other) => {}
-        (there, here) => found.push(Difference { key: key.to_owned(), there: there.cloned(), here: here.cloned() }),
+        (there, here) => found.push(format!("`{key}`: {} there, {} here", shortened(there), shortened(here))),
     }
 }
 
@@ -154,9 +139,8 @@ mod tests {
             document("seed = 1\nsensor.heading-noise-deg = 0.1\nidentifier = [{ method.srivc = {} }]\n[ship.yukun]");
         let here =
             document("seed = 1.0\nsensor.heading-noise-deg = 0.2\nidentifier = []\nstop.every = 20\n[ship.yukun]");
-        let found: Vec<String> = differences(&there, &here).iter().map(ToString::to_string).collect();
         assert_eq!(
-            found,
+            differences(&there, &here),
             [
                 "`identifier.0`: { method = { srivc = {} } } there, nothing here",
                 "`sensor.heading-noise-deg`: 0.1 there, 0.2 here",

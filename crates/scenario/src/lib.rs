@@ -4,7 +4,7 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | what a file says, and how it is read | `wire`, `ship`, `effect`, `reader`, [`part`], [`words`] |
+//! | what a file says, and how it is read | `wire`, `ship`, `effect`, `number_table`, `reader`, [`part`], [`words`] |
 //! | what is wrong with it, and where | [`problem`], `locate`, [`failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
 //! | answers that were found elsewhere | [`answers`] |
@@ -25,6 +25,7 @@ mod limits;
 mod locate;
 pub mod method;
 pub mod name;
+mod number_table;
 pub mod part;
 pub mod predictions;
 pub mod problem;

@@ -175,8 +175,7 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath, folder: &Path) -> Result<Pro
 /// A setting that its owner refuses, at the table in which it stands.
 fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
     let key = error.key.split('.').fold(table.clone(), |key, part| key.child(part));
-    let found = format!("`{key}` is {}", error.found);
-    KeyFault::value(key, found, format!("expected {}", error.expected), "change the value, or leave the key out")
+    KeyFault::of(key, &error.found, format!("expected {}", error.expected), "change the value, or leave the key out")
 }
 
 /// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.

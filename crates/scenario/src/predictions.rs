@@ -38,18 +38,12 @@ impl PredictWire {
     pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
         let key = KeyPath::dotted("predict");
         if !DRAWS.contains(&self.draws) {
-            let found = format!("`predict.draws` is {}", self.draws);
-            return Err(KeyFault::value(
-                key.child("draws"),
-                found,
-                "expected 50 to 10000",
-                "200 tell an interval of 90 %",
-            ));
+            let advice = "200 tell an interval of 90 %";
+            return Err(KeyFault::of(key.child("draws"), self.draws, "expected 50 to 10000", advice));
         }
         if self.manoeuvres.is_empty() {
-            let found = "`predict.manoeuvres` is empty";
             let expected = "expected at least one, such as \"zig-zag:20/20\"";
-            return Err(KeyFault::value(key.child("manoeuvres"), found, expected, "name one, or leave [predict] out"));
+            return Err(KeyFault::of(key.child("manoeuvres"), "empty", expected, "name one, or leave [predict] out"));
         }
         let mut kinds: Vec<Manoeuvre> = Vec::with_capacity(self.manoeuvres.len());
         for text in &self.manoeuvres {

@@ -84,6 +84,12 @@ impl KeyFault {
         Self { key, mark: AtFault::Value, found: found.into(), expected: expected.into(), advice: advice.into() }
     }
 
+    /// The value of a key, which is at fault.
+    pub fn of(key: KeyPath, value: impl fmt::Display, expected: impl Into<String>, advice: impl Into<String>) -> Self {
+        let found = format!("`{key}` is {value}");
+        Self::value(key, found, expected, advice)
+    }
+
     /// A key at fault.
     pub fn name(
         key: KeyPath,
@@ -111,8 +117,18 @@ impl From<SpecificationError> for KeyFault {
 
 /// The problem of a text that cannot be used.
 pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> KeyFault {
-    let found = format!("`{key}` is {}", shown(text));
-    KeyFault::value(key, found, unfit.to_string(), "change the text")
+    KeyFault::of(key, shown(text), unfit.to_string(), "change the text")
+}
+
+/// The place of a name among those that are known; else what was `found` at its key, and what was `expected`.
+pub fn place_among<S: AsRef<str>>(
+    name: &str,
+    known: &[S],
+    key: KeyPath,
+    [found, expected]: [&str; 2],
+) -> Result<usize, KeyFault> {
+    let place = known.iter().position(|own| own.as_ref() == name);
+    place.ok_or_else(|| KeyFault::value(key, format!("{found} {name:?}"), expected, suggestion(name, known)))
 }
 
 /// The names in backquotes, joined by commas.

@@ -82,20 +82,16 @@ impl<'de> Deserializer<'de> for Node<'de> {
         visitor.visit_newtype_struct(self)
     }
 
-    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadFault> {
-        match self.0 {
-            Value::Table(_) => self.deserialize_any(visitor),
-            _ => Err(ReadFault::Kind(A_TABLE.to_owned())),
-        }
-    }
-
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _: &'static str,
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, ReadFault> {
-        self.deserialize_map(visitor)
+        match self.0 {
+            Value::Table(table) => visitor.visit_map(entries(table)),
+            _ => Err(ReadFault::Kind(A_TABLE.to_owned())),
+        }
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
@@ -114,7 +110,7 @@ impl<'de> Deserializer<'de> for Node<'de> {
 
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
-        tuple_struct identifier ignored_any
+        tuple_struct map identifier ignored_any
     }
 }
 
@@ -243,6 +239,7 @@ fn in_toml(expected: &str) -> &str {
         "a string" => "a text in quotes",
         "unit" => "the name alone, as a text in quotes",
         "newtype variant" => SETTINGS,
+        "a map" => A_TABLE,
         "a sequence" => A_LIST,
         "an array of length 2" => "a list of two numbers",
         other => other,

@@ -6,15 +6,14 @@ use ::ship::Ship;
 use ::ship::ships::Model;
 use simulate::{Assumption, Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
-use crate::effect;
 use crate::problem::{KeyFault, KeyPath};
-use crate::ship::ShipWire;
 use crate::specification::{HULL, Specification};
-use crate::wire::{AlsoWire, ScenarioWire, ValidationWire};
+use crate::wire::{FurtherWire, ScenarioWire};
+use crate::{effect, ship};
 
-/// Resolves everything about a trial of `ship`.
-pub fn specification(ship: &ShipWire, wire: &ScenarioWire, folder: &Path) -> Result<Specification, KeyFault> {
-    let ship = effect::added(ship.build()?, &wire.effect)?;
+/// Resolves everything about a trial.
+pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification, KeyFault> {
+    let ship = effect::added(ship::build(&wire.ship)?, &wire.effect)?;
     let simulation = Simulation {
         gear: wire.steering_gear.of(&ship),
         helmsman: wire.helmsman,
@@ -25,10 +24,24 @@ pub fn specification(ship: &ShipWire, wire: &ScenarioWire, folder: &Path) -> Res
         ..Simulation::new(Vessel::ship(&ship), manoeuvre(&wire.manoeuvre, folder)?)
     };
     simulation.validate()?;
-    let also = wire.also.iter().enumerate();
-    let also =
-        also.map(|(index, further)| also_steered(further, index, &simulation, folder)).collect::<Result<_, _>>()?;
-    let validation = wire.validation.as_ref().map(|second| validation(second, &simulation, folder)).transpose()?;
+    // A further record has the same ship, gear, helmsman, weather and instruments.
+    let also = wire.also.iter().enumerate().map(|(index, own)| {
+        let what = format!("in the further record {}", index + 1);
+        let record = Simulation { recording: own.recording.unwrap_or(wire.recording), ..simulation.clone() };
+        further(own, record, (KeyPath::dotted("also").child(index), &what), folder)
+    });
+    let also = also.collect::<Result<_, _>>()?;
+    // A validation is in a calm and perfectly recorded, so that the error of a replay is that of the response.
+    let validation = wire.validation.as_ref().map(|own| {
+        let record = Simulation {
+            recording: own.recording.unwrap_or_else(|| of_validation(&wire.recording)),
+            disturbances: Disturbances::default(),
+            sensors: Sensors::default(),
+            ..simulation.clone()
+        };
+        further(own, record, (KeyPath::dotted("validation"), "in the validation manoeuvre"), folder)
+    });
+    let validation = validation.transpose()?;
     let base = match &ship.model {
         Model::Response(response) => Some(response.first_order()),
         Model::Hull(_) => None,
@@ -64,42 +77,21 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     missing
 }
 
-/// A further record: the same ship, gear, helmsman, weather and instruments in another manoeuvre.
-fn also_steered(wire: &AlsoWire, index: usize, trial: &Simulation, folder: &Path) -> Result<Simulation, KeyFault> {
-    let what = format!("in the further record {}", index + 1);
-    inside(KeyPath::dotted("also").child(index), &what, || {
-        let manoeuvre = manoeuvre(&wire.manoeuvre, folder)?;
-        Ok(Simulation { recording: wire.recording.unwrap_or(trial.recording), manoeuvre, ..trial.clone() })
-    })
-}
-
-/// The second manoeuvre: the same ship, gear and helmsman in a calm, perfectly recorded from the start of the run, so
-/// that the error of a replay is that of the response.
-fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Result<Simulation, KeyFault> {
-    inside(KeyPath::dotted("validation"), "in the validation manoeuvre", || {
-        Ok(Simulation {
-            recording: wire.recording.unwrap_or_else(|| of_validation(&trial.recording)),
-            disturbances: Disturbances::default(),
-            sensors: Sensors::default(),
-            manoeuvre: manoeuvre(&wire.manoeuvre, folder)?,
-            ..trial.clone()
-        })
-    })
-}
-
 /// The recording of a validation that has none of its own.
 pub fn of_validation(trial: &Recording) -> Recording {
     Recording { duration: trial.duration, ..Recording::every(trial.period) }
 }
 
-/// Another manoeuvre of the ship. What both share has been checked with the first one, so what is wrong now is of this
-/// one.
-fn inside(
-    place: KeyPath,
-    what: &str,
-    simulation: impl FnOnce() -> Result<Simulation, KeyFault>,
+/// Another manoeuvre of the ship, recorded as `record` says. What both share has been checked with the first one, so what
+/// is wrong now is of this one.
+fn further(
+    wire: &FurtherWire,
+    record: Simulation,
+    (place, what): (KeyPath, &str),
+    folder: &Path,
 ) -> Result<Simulation, KeyFault> {
-    let checked = simulation().and_then(|simulation| {
+    let checked = manoeuvre(&wire.manoeuvre, folder).and_then(|manoeuvre| {
+        let simulation = Simulation { manoeuvre, ..record };
         simulation.validate()?;
         Ok(simulation)
     });

@@ -6,29 +6,8 @@ use crate::keys::{LeftOut, ScenarioKey, keys};
 use crate::method::Method;
 use crate::problem::KeyFault;
 use crate::resolve::of_validation;
-use crate::ship::ShipWire;
 use crate::wire::ScenarioWire;
-use crate::{effect, reader};
-
-/// Parts of a scenario in the order in which a person reads them; what is not among them comes behind.
-const ORDER: [&str; 16] = [
-    "question",
-    "analysis",
-    "finding",
-    "seed",
-    "replicates",
-    "ship",
-    "effect",
-    "manoeuvre",
-    "also",
-    "steering-gear",
-    "helmsman",
-    "approach",
-    "recording",
-    "sensor",
-    "disturbance",
-    "identifier",
-];
+use crate::{effect, reader, ship};
 
 /// The text of a scenario with nothing left out, as TOML. Sweeps and draws stay as they are: it is the scenario they
 /// change.
@@ -37,8 +16,8 @@ const ORDER: [&str; 16] = [
 pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     let mut wire: ScenarioWire = reader::document(document)?;
     effect::complete(&mut wire.effect);
-    let own = ShipWire::read(&wire.ship)?;
-    let ship = effect::added(own.build()?, &wire.effect)?;
+    ship::complete(&mut wire.ship);
+    let ship = effect::added(ship::build(&wire.ship)?, &wire.effect)?;
     wire.steering_gear = wire.steering_gear.of(&ship);
     wire.steering_gear.rate.get_or_insert(f64::INFINITY);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {
@@ -50,7 +29,6 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     if let Some(validation) = &mut wire.validation {
         validation.recording.get_or_insert(of_validation(&wire.recording));
     }
-    wire.ship.values_mut().for_each(|table| *table = own.complete());
     let complete = Table::try_from(&wire).expect("what was read can be written");
     let mut lines = ResolvedText { keys: keys(), text: String::new() };
     lines.table(&[], &complete, Some(document));
@@ -68,7 +46,8 @@ impl ResolvedText {
     fn table(&mut self, path: &[&str], table: &Table, given: Option<&Table>) {
         let mut entries: Vec<(&String, &Value)> = table.iter().collect();
         if path.is_empty() {
-            entries.sort_by_key(|(name, _)| ORDER.iter().position(|part| part == name).unwrap_or(ORDER.len()));
+            // In the order in which a person reads them, which is that of the types.
+            entries.sort_by_key(|(name, _)| self.keys.iter().position(|own| own.key == **name));
         }
         let (tables, values): (Vec<_>, Vec<_>) = entries.into_iter().partition(|(_, value)| is_of_tables(value));
         for (name, value) in values {

@@ -19,7 +19,6 @@ use crate::method::{Method, MethodName, Procedure, methods};
 use crate::part::ScenarioPart;
 use crate::predictions::Predictions;
 use crate::problem::{KeyFault, KeyPath, of_text};
-use crate::ship::ShipWire;
 use crate::stop::StopRule;
 use crate::sweep::{self, SweepAxis};
 use crate::wire::ScenarioWire;
@@ -118,10 +117,10 @@ impl Scenario {
         };
         words.check()?;
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
-        resolve::specification(&ShipWire::read(&wire.ship)?, &wire, folder)?;
+        resolve::specification(&wire, folder)?;
         let methods = methods(&wire.identifier, folder)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose()?;
-        let stop = wire.stop.as_ref().map(|stop| stop.resolve(&methods)).transpose()?;
+        wire.stop.as_ref().map_or(Ok(()), |stop| stop.check(&methods))?;
         let axes = wire.sweep.iter().enumerate().map(|(index, axis)| axis.resolve(index));
         let axes: Vec<SweepAxis> = axes.collect::<Result<_, _>>()?;
         let combinations = sweep::product(&axes)?;
@@ -144,7 +143,7 @@ impl Scenario {
             cells,
             published: wire.published,
             words,
-            stop,
+            stop: wire.stop,
             predictions,
             design_sha256: String::new(),
             sha256: String::new(),

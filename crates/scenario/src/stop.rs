@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 use ship::Shown;
 
 use crate::method::Method;
-use crate::problem::{KeyFault, KeyPath, suggestion};
+use crate::problem::{KeyFault, KeyPath, place_among};
 
 /// When a cell has had enough trials; `replicates` is then the most.
-#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct StopWire {
+pub struct StopRule {
     /// What has to be known well enough.
     pub figure: StopFigure,
     /// Label of a method; all of them when left out.
@@ -63,19 +63,6 @@ pub enum StopFigure {
     CoverageT,
 }
 
-/// A rule that has been checked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StopRule {
-    /// The figure.
-    pub figure: StopFigure,
-    /// Index of the method it is about; all have to meet it when there is none.
-    pub method: Option<usize>,
-    /// The standard error at which a cell has enough trials, per cent.
-    pub standard_error_percent: f64,
-    /// Trials between two looks.
-    pub every: u64,
-}
-
 /// Fewest trials between two looks: a standard error of fewer is chance itself.
 const FEWEST: u64 = 20;
 
@@ -89,45 +76,23 @@ impl StopFigure {
     }
 }
 
-impl StopWire {
+impl StopRule {
     /// Checks the rule against the methods there are.
-    pub(crate) fn resolve(&self, methods: &[Method]) -> Result<StopRule, KeyFault> {
+    pub(crate) fn check(&self, methods: &[Method]) -> Result<(), KeyFault> {
         let key = KeyPath::dotted("stop");
         if !(self.standard_error > 0.0 && self.standard_error.is_finite()) {
-            let found = format!("`stop.standard-error` is {}", Shown(self.standard_error));
             let advice = "give the standard error, in per cent, at which a cell has enough trials";
-            return Err(KeyFault::value(
-                key.child("standard-error"),
-                found,
-                "expected a finite number above 0",
-                advice,
-            ));
+            let expected = "expected a finite number above 0";
+            return Err(KeyFault::of(key.child("standard-error"), Shown(self.standard_error), expected, advice));
         }
         if self.every < FEWEST {
-            return Err(KeyFault::value(
-                key.child("every"),
-                format!("`stop.every` is {}", self.every),
-                format!("expected at least {FEWEST}"),
-                "look less often, or leave the key out for 100",
-            ));
+            let expected = format!("expected at least {FEWEST}");
+            let advice = "look less often, or leave the key out for 100";
+            return Err(KeyFault::of(key.child("every"), self.every, expected, advice));
         }
         let labels: Vec<&str> = methods.iter().map(|method| method.label.as_str()).collect();
-        let method = self.method.as_ref().map(|label| {
-            labels.iter().position(|known| known == label).ok_or_else(|| {
-                let found = format!("`stop.method` is {label:?}");
-                KeyFault::value(
-                    key.child("method"),
-                    found,
-                    "no such method in this scenario",
-                    suggestion(label, &labels),
-                )
-            })
-        });
-        Ok(StopRule {
-            figure: self.figure,
-            method: method.transpose()?,
-            standard_error_percent: self.standard_error,
-            every: self.every,
-        })
+        let words = ["`stop.method` is", "no such method in this scenario"];
+        let own = self.method.as_ref().map(|label| place_among(label, &labels, key.child("method"), words));
+        own.transpose().map(|_| ())
     }
 }

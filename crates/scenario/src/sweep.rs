@@ -118,7 +118,7 @@ impl SweepSetting {
     }
 
     /// The problem of a changed scenario, moved to the sweep that caused it; `cell` names the cell where it helps.
-    pub fn blamed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
+    pub fn attributed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
         let name = problem.mark == AtFault::Name;
         let place = if name { &self.key_place } else { &self.value_place };
         // Where the point itself names the key, its name is underlined and not its value.
@@ -152,10 +152,10 @@ impl AxisWire {
         let odd = points.iter().position(|point| point.value.is_some_and(|value| !value.is_finite()));
         if let (Some(index), true) = (odd, self.points.is_some()) {
             let key = place.child("points").child(index).child("value");
-            let found = format!("`{key}` is {}", points[index].value.unwrap_or(f64::NAN));
-            return Err(KeyFault::value(
+            let value = points[index].value.unwrap_or(f64::NAN);
+            return Err(KeyFault::of(
                 key,
-                found,
+                value,
                 "expected a finite number",
                 "give the place of the point on its axis",
             ));
@@ -170,20 +170,17 @@ impl AxisWire {
     fn points(&self, place: &KeyPath) -> Result<Vec<SweepPoint>, KeyFault> {
         let single =
             |key: &str, value: Value, value_place: KeyPath| SweepPoint::of(key, value, place.child("key"), value_place);
+        let spread = |key: &str, values: Vec<f64>, how: &str| -> Vec<SweepPoint> {
+            values.into_iter().map(|value| single(key, Value::Float(value), place.child(how))).collect()
+        };
         Ok(match (&self.key, &self.values, &self.linear, &self.log, &self.points) {
             (Some(key), Some(values), None, None, None) => values
                 .iter()
                 .enumerate()
                 .map(|(i, value)| single(key, value.clone(), place.child("values").child(i)))
                 .collect(),
-            (Some(key), None, Some(range), None, None) => {
-                let place = place.child("linear");
-                range.linear(&place)?.map(|value| single(key, Value::Float(value), place.clone())).collect()
-            }
-            (Some(key), None, None, Some(range), None) => {
-                let place = place.child("log");
-                range.log(&place)?.map(|value| single(key, Value::Float(value), place.clone())).collect()
-            }
+            (Some(key), None, Some(range), None, None) => spread(key, range.linear(&place.child("linear"))?, "linear"),
+            (Some(key), None, None, Some(range), None) => spread(key, range.log(&place.child("log"))?, "log"),
             (None, None, None, None, Some(points)) => {
                 points.iter().enumerate().map(|(i, point)| point.resolve(&place.child("points").child(i))).collect()
             }
@@ -243,31 +240,33 @@ impl PointWire {
 }
 
 impl RangeWire {
-    fn linear(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, KeyFault> {
+    fn linear(&self, place: &KeyPath) -> Result<Vec<f64>, KeyFault> {
         if !(self.from.is_finite() && self.to.is_finite()) {
             return Err(self.problem(place, "expected finite ends"));
         }
-        if !(2..=MOST_CELLS).contains(&self.points) {
-            return Err(self.problem(place, &format!("expected 2 to {MOST_CELLS} points")));
-        }
-        let Self { from, to, points } = *self;
-        let step = (to - from) / (points - 1) as f64;
-        Ok((0..points).map(move |k| if k + 1 == points { to } else { from + k as f64 * step }))
+        let step = (self.to - self.from) / (self.points.max(2) - 1) as f64;
+        self.spread(place, |k| self.from + k as f64 * step)
     }
 
-    fn log(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, KeyFault> {
+    fn log(&self, place: &KeyPath) -> Result<Vec<f64>, KeyFault> {
         if !(self.from > 0.0 && self.to > 0.0) {
             return Err(self.problem(place, "expected both ends of a logarithmic range to be above 0"));
         }
+        if !(self.from.is_finite() && self.to.is_finite()) {
+            return Err(self.problem(place, "expected finite ends"));
+        }
+        // Evenly spaced shares of the range of the logarithm.
+        let ratio = (self.to / self.from).ln();
+        self.spread(place, |k| self.from * (ratio * k as f64 / (self.points - 1) as f64).exp())
+    }
+
+    /// The values: between the ends, which are exact, those at a place.
+    fn spread(&self, place: &KeyPath, between: impl Fn(usize) -> f64) -> Result<Vec<f64>, KeyFault> {
         let Self { from, to, points } = *self;
-        // Between the ends, which are exact: evenly spaced shares of the range of the logarithm.
-        let ratio = (to / from).ln();
-        let exact = move |k: usize| match k {
-            0 => from,
-            k if k + 1 == points => to,
-            k => from * (ratio * k as f64 / (points - 1) as f64).exp(),
-        };
-        Ok(self.linear(place)?.enumerate().map(move |(k, _)| exact(k)))
+        if !(2..=MOST_CELLS).contains(&points) {
+            return Err(self.problem(place, &format!("expected 2 to {MOST_CELLS} points")));
+        }
+        Ok(std::iter::once(from).chain((1..points - 1).map(between)).chain([to]).collect())
     }
 
     fn problem(&self, place: &KeyPath, expected: &str) -> KeyFault {

@@ -2,17 +2,16 @@
 //! believed yet; [`crate::resolve`] turns it into specifications the engine accepts. How a trial is made is declared in
 //! [`simulate`] itself.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 use simulate::{BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear, numbers};
 
 use crate::draw::DrawWire;
-use crate::effect::{self, EffectEntry};
+use crate::effect;
 use crate::method::IdentifierWire;
+use crate::number_table::NamedNumbers;
 use crate::predictions::PredictWire;
 use crate::ship;
-use crate::stop::StopWire;
+use crate::stop::StopRule;
 use crate::sweep::AxisWire;
 use crate::words::{Presentation, Published};
 
@@ -34,19 +33,19 @@ pub struct ScenarioWire {
     #[serde(default = "one")]
     pub replicates: u64,
     /// When a cell has had enough trials.
-    pub stop: Option<StopWire>,
+    pub stop: Option<StopRule>,
     /// One key: the id of a ship of the registry, `first-order` or `second-order`.
     #[schemars(schema_with = "ship::schema")]
-    pub ship: BTreeMap<String, toml::Table>,
+    pub ship: NamedNumbers,
     /// What a first-order ship lacks; on response models alone.
     #[serde(default)]
     #[schemars(schema_with = "effect::schema")]
-    pub effect: Vec<EffectEntry>,
+    pub effect: Vec<NamedNumbers>,
     /// What the ship does.
     pub manoeuvre: Manoeuvre,
-    /// Further records of the same ship.
+    /// Further records of the same ship, in the same weather and with the same instruments.
     #[serde(default)]
-    pub also: Vec<AlsoWire>,
+    pub also: Vec<FurtherWire>,
     /// How the rudder follows its order.
     #[serde(default)]
     pub steering_gear: SteeringGear,
@@ -64,8 +63,8 @@ pub struct ScenarioWire {
     /// Wind, waves and other moments.
     #[serde(default)]
     pub disturbance: Disturbances,
-    /// A second manoeuvre, on which answers are replayed.
-    pub validation: Option<ValidationWire>,
+    /// A second manoeuvre, which no method sees: answers are replayed on it.
+    pub validation: Option<FurtherWire>,
     /// What every answer has to predict.
     pub predict: Option<PredictWire>,
     /// The methods, all on the same trials.
@@ -88,27 +87,17 @@ fn one() -> u64 {
     1
 }
 
-/// A further record of the same ship, in the same weather and with the same instruments.
+/// Another manoeuvre of the same ship.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct AlsoWire {
+pub struct FurtherWire {
     /// What the ship does.
     pub manoeuvre: Manoeuvre,
-    /// That of the trial when left out.
-    pub recording: Option<Recording>,
-}
-
-/// A second manoeuvre, which no method sees.
-#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct ValidationWire {
-    /// What the ship does.
-    pub manoeuvre: Manoeuvre,
-    /// That of the trial, from the start of the run, when left out.
+    /// That of the trial when left out; of a validation from the start of the run.
     pub recording: Option<Recording>,
 }
 
 numbers! {
-    ScenarioWire: "effect" effect, "manoeuvre" manoeuvre, "steering-gear" steering_gear, "helmsman" helmsman,
+    ScenarioWire: "ship" ship, "effect" effect, "manoeuvre" manoeuvre, "steering-gear" steering_gear, "helmsman" helmsman,
         "approach" approach, "recording" recording, "sensor" sensor, "disturbance" disturbance;
 }

@@ -97,9 +97,12 @@ impl Published {
         for (name, value) in [("K-per-s", self.K_per_s), ("T-s", self.T_s)] {
             if let Some(value) = value.filter(|value| !value.is_finite()) {
                 let key = KeyPath::dotted("published").child(name);
-                let found = format!("`{key}` is {value}");
-                let advice = "give the number, or leave the key out";
-                return Err(KeyFault::value(key, found, "expected a finite number", advice));
+                return Err(KeyFault::of(
+                    key,
+                    value,
+                    "expected a finite number",
+                    "give the number, or leave the key out",
+                ));
             }
         }
         Ok(())

@@ -51,29 +51,19 @@ pub fn unit(key: &str) -> f64 {
     if key.split(['-', '.']).any(|word| word == "deg") { DEGREE } else { 1.0 }
 }
 
-/// Implements [`Numbers`]: `Type: "key" field, …;`. A number in SI is set in the unit of its key; `Type as written: …`
-/// keeps the unit.
+/// Implements [`Numbers`]: `Type: "key" field, …;`. A number in SI is set in the unit of its key.
 #[macro_export]
 macro_rules! numbers {
-    () => {};
-    ($type:ty: $($key:literal $field:ident),*; $($rest:tt)*) => {
-        $crate::numbers!(@table $type, $crate::numbers::unit, $($key $field),*);
-        $crate::numbers!($($rest)*);
-    };
-    ($type:ty as written: $($key:literal $field:ident),*; $($rest:tt)*) => {
-        $crate::numbers!(@table $type, |_: &str| 1.0, $($key $field),*);
-        $crate::numbers!($($rest)*);
-    };
-    (@table $type:ty, $unit:expr, $($key:literal $field:ident),*) => {
+    ($($type:ty: $($key:literal $field:ident),*;)*) => {$(
         impl $crate::numbers::Numbers for $type {
             fn set(&mut self, key: &[String], value: f64) -> bool {
                 let Some((name, below)) = key.split_first() else { return false };
-                let value = if below.is_empty() { value * ($unit)(name) } else { value };
+                let value = if below.is_empty() { value * $crate::numbers::unit(name) } else { value };
                 match name.as_str() {
                     $($key => $crate::numbers::Numbers::set(&mut self.$field, below, value),)*
                     _ => false,
                 }
             }
         }
-    };
+    )*};
 }

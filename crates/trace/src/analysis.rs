@@ -1,6 +1,6 @@
 //! The whole analysis of some records of one ship: a pipeline of stages, each a function of what the last one made.
 //!
-//! prepare → base → full fit → noise → structures → judge → document
+//! prepare → base → full fit → noise → structures → comparison → document
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -12,15 +12,15 @@ use rayon::prelude::*;
 use ship::{Regressor, Response, effects};
 use trial::Trial;
 
-use crate::average::{After, Average};
+use crate::average::{Average, AveragedModel};
 use crate::base::Base;
 use crate::candidates;
+use crate::comparison::{RecordComparison, ReplayResult, before, starts};
 use crate::document::Document;
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::{self, Full};
-use crate::judge::{RecordComparison, ReplayResult, before, starts};
-use crate::left_out::leave_one_out;
+use crate::leave_one_out::leave_one_out;
 use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::remainder::{Remainder, squares};
@@ -124,7 +124,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let members = structures.members();
     let mut identification = fitted(&trials, &base, &full, &members, settings.thorough, time)?;
     let no_nearer = keep_nearest(&mut identification);
-    let unseen = After { members: &members, law: &full.law, known: None, time };
+    let unseen = AveragedModel { members: &members, law: &full.law, known: None, time };
     let judged: Vec<RecordComparison> =
         validation.par_iter().map(|trial| unseen.compared(trial, &response)).collect::<Result<_, _>>()?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
@@ -178,7 +178,7 @@ fn fitted(
         let record = PreparedRecord::whole(trial);
         let before = before(trial, &record, response, thorough)?;
         let is_base = members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
-        let after = After { members, law: &full.law, known: Some(number), time };
+        let after = AveragedModel { members, law: &full.law, known: Some(number), time };
         let mut after = after.on(trial, &record, &starts(trial, response), thorough)?;
         if is_base {
             // Nothing is added: the base stays what it is.
@@ -268,7 +268,7 @@ impl Analysis {
     pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
-        let after = After { members: &members, law: &calm, known: None, time: self.problem.time };
+        let after = AveragedModel { members: &members, law: &calm, known: None, time: self.problem.time };
         after.on(trial, &PreparedRecord::whole(trial), &[start], true).ok()
     }
 }

@@ -20,7 +20,7 @@ pub struct Average {
 }
 
 /// Members of an average on a record, `known` being its number among those that were fitted.
-pub struct After<'a> {
+pub struct AveragedModel<'a> {
     /// Structures with their weights.
     pub members: &'a [(f64, &'a StructureFit)],
     /// The noise.

@@ -16,7 +16,7 @@ use rand_distr::StandardNormal;
 use ship::Polyline;
 use trial::Trial;
 
-use crate::average::After;
+use crate::average::AveragedModel;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::record::PreparedRecord;
 
@@ -27,7 +27,7 @@ const QUANTILE: f64 = 1.959_963_984_540_054;
 const DRAWS: usize = 100;
 
 /// Half the width of the band at every row of a replay, rad; `None` where the records do not tell the parameters apart.
-pub fn of(after: &After, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
+pub fn of(after: &AveragedModel, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
     let record = PreparedRecord::averaged(trial, after.time);
     let first = after.members.first()?.1;
     let problem = FittedRecords::new(vec![record], first.theta[0], after.time);
@@ -56,7 +56,7 @@ pub fn of(after: &After, trial: &Trial, mean: &Replay, members: &[Replay]) -> Op
 
 /// Variance of the white noise of a row of a record under a law, and of one reading, rad²: its own where it was fitted,
 /// elsewhere the mean.
-fn size(after: &After, problem: &FittedRecords) -> (f64, f64) {
+fn size(after: &AveragedModel, problem: &FittedRecords) -> (f64, f64) {
     let all = &after.law.variance;
     let own = after.known.map_or_else(|| all.iter().sum::<f64>() / all.len() as f64, |number| all[number]);
     (own, own * problem.records[0].full_readings as f64)
@@ -95,7 +95,7 @@ enum ParameterErrors {
 
 impl ResidualSampler {
     fn new(
-        after: &After,
+        after: &AveragedModel,
         problem: &FittedRecords,
         fit: &StructureFit,
         initial: [f64; 2],

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use trial::Quantity;
 
-use crate::judge::ReplayResult;
+use crate::comparison::ReplayResult;
 use crate::replay_errors::HORIZONS;
 
 /// Name of the schema.
@@ -57,13 +57,13 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// The word used in files.
+    /// The words on a page.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Added => "added",
             Self::Alias => "alias",
             Self::Rejected => "rejected",
-            Self::NotObservable => "not_observable",
+            Self::NotObservable => "not observable",
         }
     }
 }

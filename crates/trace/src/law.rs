@@ -52,7 +52,7 @@ fn floors(problem: &FittedRecords, gain: f64) -> Vec<f64> {
 
 /// A fit as the law sees it.
 #[derive(Debug, Clone)]
-pub struct Ground<'a> {
+pub struct LinearisedFit<'a> {
     /// The records.
     pub problem: &'a FittedRecords,
     /// Residual and sensitivities.
@@ -62,7 +62,7 @@ pub struct Ground<'a> {
     floors: Vec<f64>,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> LinearisedFit<'a> {
     /// That of a fit. States at the beginning stand behind the fitted parameters.
     pub fn of(problem: &'a FittedRecords, fit: &StructureFit) -> Self {
         let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
@@ -188,9 +188,9 @@ pub fn of(
     with_waves: bool,
     kinds: &[CorrelatedNoise],
 ) -> ChosenLaw {
-    let ground = Ground::of(problem, fit);
+    let linearised = LinearisedFit::of(problem, fit);
     let start = NoiseLaw { variance: variance.to_vec(), ..NoiseLaw::white(variance.len(), 1.0) };
-    let mut best = ground.law(&start, kinds);
+    let mut best = linearised.law(&start, kinds);
     if with_waves && let Some(sea) = waves::find(problem, &fit.residual, &best.law) {
         let log_n = (problem.observations() as f64).ln();
         let colours = [
@@ -198,7 +198,7 @@ pub fn of(
             best.law.colour.wander.map(|_| NoiseColour { waves: Some(sea), ..best.law.colour }),
         ];
         for colour in colours.into_iter().flatten() {
-            let ChosenLaw { law, height, .. } = ground.judge(colour, &best.law.variance);
+            let ChosenLaw { law, height, .. } = linearised.judge(colour, &best.law.variance);
             let height = height + colour.freedom() as f64 * log_n;
             if height < best.height {
                 best = ChosenLaw { law, height, waves_gain: best.waves_gain + best.height - height };

@@ -133,11 +133,6 @@ impl NoiseColour {
     pub fn freedom(&self) -> usize {
         self.wander.map_or(0, |(kind, _)| kind.freedom()) + if self.waves.is_some() { 3 } else { 0 }
     }
-
-    /// Whether it is white.
-    pub fn is_white(&self) -> bool {
-        *self == Self::WHITE
-    }
 }
 
 /// Transitions of what wanders over every step of a record, for level 1.

@@ -3,9 +3,9 @@
 use estimation::residuals::{GappedSeries, evenness, whiteness};
 use trial::Trial;
 
+use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::FittedRecords;
 use crate::full::Full;
-use crate::judge::{RecordComparison, ReplayResult};
 use crate::replay_errors::ReplayErrors;
 use crate::shapes::{self, Empirical};
 use crate::signature::{Signature, signature};

@@ -13,10 +13,10 @@ use trial::{Quantity, Trial};
 
 use crate::base::Base;
 use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME};
+use crate::comparison::RecordComparison;
 use crate::document::*;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::Full;
-use crate::judge::RecordComparison;
 use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::{EffectNaming, named};
 use crate::noise::CorrelatedNoise;

@@ -17,7 +17,7 @@ use estimation::column::dot;
 use crate::empirical::{PRIOR_SD, plain};
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::Full;
-use crate::law::{ChosenLaw, Ground};
+use crate::law::{ChosenLaw, LinearisedFit};
 use crate::linear::HeadingSensitivities;
 use crate::model::step;
 use crate::noise::{CorrelatedNoise, NoiseColour};
@@ -217,40 +217,40 @@ fn of_time(motion: &ReplayedMotion) -> Vec<MomentShape> {
 
 /// A linearised structure with shapes behind its unknowns, and the noise that this leaves.
 #[derive(Clone)]
-struct Stand<'a> {
-    ground: Ground<'a>,
+struct ShapedFit<'a> {
+    linearised: LinearisedFit<'a>,
     shapes: Vec<MomentShape>,
     law: NoiseLaw,
     /// −2 log of the evidence, odds counted.
     height: f64,
 }
 
-impl<'a> Stand<'a> {
-    fn new(ground: Ground<'a>, shapes: Vec<MomentShape>, start: &NoiseLaw) -> Self {
-        let ChosenLaw { law, height, .. } = ground.law(start, &CorrelatedNoise::all().collect::<Vec<_>>());
+impl<'a> ShapedFit<'a> {
+    fn new(linearised: LinearisedFit<'a>, shapes: Vec<MomentShape>, start: &NoiseLaw) -> Self {
+        let ChosenLaw { law, height, .. } = linearised.law(start, &CorrelatedNoise::all().collect::<Vec<_>>());
         let of = |shape: &MomentShape| 2.0 * (shape.columns.len() as f64 * shape.sd.ln() - shape.log_odds);
         let height = height + shapes.iter().map(of).sum::<f64>();
-        Self { ground, shapes, law, height }
+        Self { linearised, shapes, law, height }
     }
 
     /// The same with one more shape.
     fn with(&self, shape: &MomentShape) -> Self {
-        let mut ground = self.ground.clone();
+        let mut linearised = self.linearised.clone();
         for column in &shape.columns {
             for (record, values) in column {
-                ground.linear.blocks[*record].columns.push((ground.linear.unknowns, values.clone()));
+                linearised.linear.blocks[*record].columns.push((linearised.linear.unknowns, values.clone()));
             }
-            ground.linear.unknowns += 1;
-            ground.prior.push((shape.sd.powi(-2), 0.0));
+            linearised.linear.unknowns += 1;
+            linearised.prior.push((shape.sd.powi(-2), 0.0));
         }
-        Self::new(ground, [self.shapes.as_slice(), std::slice::from_ref(shape)].concat(), &self.law)
+        Self::new(linearised, [self.shapes.as_slice(), std::slice::from_ref(shape)].concat(), &self.law)
     }
 
     /// Places of the shapes that explain most under a law.
     fn scan(&self, law: &NoiseLaw, library: &[MomentShape]) -> Vec<usize> {
-        let weights = self.ground.problem.weights(law);
-        let Some((factor, step)) = self.ground.solved(&weights) else { return Vec::new() };
-        let blocks = self.ground.linear.blocks.iter().enumerate();
+        let weights = self.linearised.problem.weights(law);
+        let Some((factor, step)) = self.linearised.solved(&weights) else { return Vec::new() };
+        let blocks = self.linearised.linear.blocks.iter().enumerate();
         let white: Vec<HeadingSensitivities> = blocks.map(|(record, block)| block.white(record, &weights)).collect();
         let gain = |shape: &MomentShape| {
             let mut own = shape.columns.clone();
@@ -298,9 +298,9 @@ pub fn explain(problem: &FittedRecords, full: &Full, member: &WeighedStructure) 
     let motions: Vec<ReplayedMotion> =
         (0..problem.records.len()).map(|number| ReplayedMotion::of(problem, fit, number)).collect();
     let library = library(&motions);
-    let first = Stand::new(Ground::of(problem, fit), Vec::new(), &full.law);
+    let first = ShapedFit::new(LinearisedFit::of(problem, fit), Vec::new(), &full.law);
     // A second shape may pay only beside the first, and the first only beside the second.
-    let mut rounds: Vec<Vec<Stand>> = Vec::new();
+    let mut rounds: Vec<Vec<ShapedFit>> = Vec::new();
     for _ in 0..MOST {
         let stand = rounds.last().map_or(&first, |all| &all[0]);
         let all = stand.next(&library);
@@ -315,14 +315,15 @@ pub fn explain(problem: &FittedRecords, full: &Full, member: &WeighedStructure) 
     if gain < BELIEVED {
         return None;
     }
-    let form = |stand: &Stand| stand.shapes.iter().map(|shape| shape.form.as_str()).collect::<Vec<_>>().join(" and ");
+    let form =
+        |stand: &ShapedFit| stand.shapes.iter().map(|shape| shape.form.as_str()).collect::<Vec<_>>().join(" and ");
     let group = all.iter().filter(|one| one.height < best.height + 2.0 * ALIKE).map(form).collect();
     let weights = problem.weights(&best.law);
-    let (factor, step) = best.ground.solved(&weights)?;
+    let (factor, step) = best.linearised.solved(&weights)?;
     let covariance = factor.inverse();
-    let of_shapes = first.ground.linear.unknowns..step.len();
+    let of_shapes = first.linearised.linear.unknowns..step.len();
     let (mut square, mut rows) = (0.0, 0.0);
-    for block in &best.ground.linear.blocks {
+    for block in &best.linearised.linear.blocks {
         for (row, residual) in block.residual.iter().enumerate() {
             let answer: f64 = block.columns.iter().map(|(unknown, column)| step[*unknown] * column[row]).sum();
             square += (residual - answer).powi(2);

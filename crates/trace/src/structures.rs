@@ -32,8 +32,8 @@ const SMALL_DELAY: f64 = 0.3;
 /// Rounds of weighing, round the best structure of the last.
 const ROUNDS: usize = 2;
 
-/// The stage with what it needs.
-struct Stage<'a> {
+/// The search with what it needs.
+struct StructureSearch<'a> {
     problem: &'a FittedRecords,
     weights: Weights,
     full: &'a Full,
@@ -101,7 +101,7 @@ fn weigh(
     selection: &Selection,
     rule: Rule,
 ) -> Structures {
-    let mut stage = Stage {
+    let mut search = StructureSearch {
         problem,
         weights: problem.weights(&full.law),
         full,
@@ -114,30 +114,30 @@ fn weigh(
     };
     let none = vec![false; full.fit.structure.terms.len()];
     if none.is_empty() {
-        stage.keep(vec![full.fit.clone()]);
-        return stage.result();
+        search.keep(vec![full.fit.clone()]);
+        return search.result();
     }
-    stage.look((full.fit.theta.clone(), full.fit.initial.clone()), &none);
+    search.look((full.fit.theta.clone(), full.fit.initial.clone()), &none);
     let mut seen: Vec<Vec<TermName>> = Vec::new();
     for _ in 0..ROUNDS {
-        let Some(top) = stage.top().map(|top| top.fit.clone()).filter(|top| !seen.contains(&names(&top.structure)))
+        let Some(top) = search.top().map(|top| top.fit.clone()).filter(|top| !seen.contains(&names(&top.structure)))
         else {
             break;
         };
         seen.push(names(&top.structure));
         // What may stand in the place of a term shows when it is taken away.
         for out in 0..top.structure.terms.len() {
-            let less = stage.without(&top, out);
-            stage.look(stage.unfold(&less), &stage.terms_of(&less));
+            let less = search.without(&top, out);
+            search.look(search.unfold(&less), &search.terms_of(&less));
         }
-        stage.look(stage.unfold(&top), &stage.terms_of(&top));
-        stage.swap(&top);
+        search.look(search.unfold(&top), &search.terms_of(&top));
+        search.swap(&top);
     }
-    stage.polish();
-    stage.result()
+    search.polish();
+    search.result()
 }
 
-impl Stage<'_> {
+impl StructureSearch<'_> {
     /// Weighs all subsets round a point of the full model, and refits the best.
     fn look(&mut self, at: (Vec<f64>, Vec<[f64; 2]>), about: &[bool]) {
         let structure = &self.full.fit.structure;

@@ -27,7 +27,7 @@ pub enum Fundamental {
     Global,
     /// One period of the series is the median period between zero crossings of the heading about its mean.
     ZeroCrossings,
-    /// One period of the series is the record and this many zig-zag periods more (periods by [`Self::ZeroCrossings`]):
+    /// One period of the series is the record and this many zig-zag periods more (periods by ZeroCrossings):
     /// room in which the series joins the end of the record to its beginning, so that it need not be periodic.
     RecordAndPeriods(f64),
 }

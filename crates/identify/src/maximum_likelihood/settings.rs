@@ -59,7 +59,7 @@ pub enum RudderChoice {
     Estimated,
 }
 
-/// Settings of [`MaximumLikelihood`](super::MaximumLikelihood).
+/// Settings of MaximumLikelihood.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {

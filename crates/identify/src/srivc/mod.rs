@@ -48,7 +48,7 @@ const FEWEST_ROWS: usize = 10;
 /// Smallest share of a step that is taken when the iteration sways.
 const SHORTEST_STEP: f64 = 0.05;
 
-/// Settings of [`Srivc`].
+/// Settings of Srivc.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {

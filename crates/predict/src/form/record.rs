@@ -5,9 +5,9 @@ use trial::zigzag::BaseCourseSource;
 use trial::{Loading, Quantity, Trial, ZigZag as Measured};
 
 use crate::correction::Correction;
+use crate::helm_replay;
 use crate::imo::{CIRCLE, FormManoeuvre, TEN, TWENTY};
 use crate::motion::Current;
-use crate::steered;
 use crate::turn::{self, HeldTurn};
 
 /// Yaw rate of a straight approach as a share of the largest of the record.
@@ -114,7 +114,7 @@ fn zig_zag(trial: &Trial, zigzag: &Measured) -> Found {
         TEN => &["first_overshoot_deg", "second_overshoot_deg", "initial_turning_lengths"],
         _ => &["first_overshoot_deg"],
     };
-    let show = |name: &&'static str| Some((*name, steered::shown(trial, zigzag, name, None, trial.particulars())?));
+    let show = |name: &&'static str| Some((*name, helm_replay::shown(trial, zigzag, name, None, trial.particulars())?));
     let stands_in = manoeuvre == TEN && zigzag.initial_turning_distance.is_none() && trial.particulars().is_some();
     let remarks = [
         (!is_seen).then_some("the record begins with the first execute, and its approach is not seen"),

@@ -51,9 +51,9 @@ pub struct HullRecord {
 /// A ship with surge, sway and yaw: coefficients, what is known of them, and what they leave open.
 ///
 /// States ψ (rad), r (rad/s), u and v (m/s). ψ' = r; u' and v' as in
-/// [`PlanarCoefficients`](super::coefficients::PlanarCoefficients), r' as in [`Yaw`]. The disturbance of an input is
+/// PlanarCoefficients, r' as in Yaw. The disturbance of an input is
 /// added to the rudder of the yaw equation alone; the force of that rudder in surge and sway is left out. Made by
-/// [`fit_hull`](super::hull_fit::fit_hull) or from known coefficients; immutable.
+/// fit_hull or from known coefficients; immutable.
 ///
 /// The equations hold for rudders, speeds and yaw rates like those of the records. A full ship may be unstable on a
 /// straight course; replays without a helmsman then drift apart however good the coefficients are.

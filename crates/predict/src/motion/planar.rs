@@ -8,7 +8,7 @@ use super::record::MotionOutput;
 
 /// Speed and drift of one ship: coefficients, length, approach speed, and what the fit tells about them.
 ///
-/// Made by [`fit()`](super::fit::fit()) or from known coefficients; immutable.
+/// Made by fit() or from known coefficients; immutable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Planar {
@@ -18,7 +18,7 @@ pub struct Planar {
     pub length: f64,
     /// Speed of the straight approach U₀, m/s.
     pub approach_speed: f64,
-    /// Covariance of the coefficients in the order of [`SYMBOLS`](super::coefficients::SYMBOLS); zero for one that is
+    /// Covariance of the coefficients in the order of SYMBOLS; zero for one that is
     /// known or that lies at the end of what its sign allows.
     pub covariance: [[f64; COEFFICIENTS]; COEFFICIENTS],
     /// The records of the fit, in their order; none where the coefficients were given.

@@ -26,7 +26,7 @@ pub(crate) const TYPICAL_YAW: Yaw = Yaw { N_r: 1.5, N_v: 1.0, N_vrr: -2.0, N_d: 
 /// with surge u and sway v (m/s, body axes, at the point the records report), yaw rate r (rad/s), rudder δ (rad,
 /// positive turns to starboard), length L (m) and the speed U₀ of the straight approach (m/s). Accelerations are those
 /// of the hull with its added inertia, so N_r is about damping over inertia. As in
-/// [`PlanarCoefficients`](super::coefficients::PlanarCoefficients) the same values hold for ships that are alike at the
+/// PlanarCoefficients the same values hold for ships that are alike at the
 /// same Froude number.
 ///
 /// In a turn v r < 0: drift turns the ship further into the turn (N_v > 0, the Munk moment), more slowly than in

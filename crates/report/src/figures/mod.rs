@@ -61,28 +61,21 @@ impl Plot {
     }
 }
 
-impl From<Panels> for Plot {
-    fn from(data: Panels) -> Self {
-        Self::Panels(data)
-    }
+macro_rules! plots_of {
+    ($($kind:ident $data:ty;)*) => {$(
+        impl From<$data> for Plot {
+            fn from(data: $data) -> Self {
+                Self::$kind(data)
+            }
+        }
+    )*};
 }
 
-impl From<NamedRows> for Plot {
-    fn from(data: NamedRows) -> Self {
-        Self::Rows(data)
-    }
-}
-
-impl From<CellMap> for Plot {
-    fn from(data: CellMap) -> Self {
-        Self::Cells(data)
-    }
-}
-
-impl From<ZigzagTrial> for Plot {
-    fn from(data: ZigzagTrial) -> Self {
-        Self::ZigZag(data)
-    }
+plots_of! {
+    Panels Panels;
+    Rows NamedRows;
+    Cells CellMap;
+    ZigZag ZigzagTrial;
 }
 
 #[cfg(test)]

@@ -27,7 +27,7 @@ fn labels_have_few_digits_whatever_the_size() {
         key_place: KeyPath::default(),
         value_place: KeyPath::default(),
     }
-    .blamed(KeyFault::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
+    .attributed(KeyFault::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
     assert_eq!(refused.found, "the sweep sets `a` to 1e308: `b` is wrong");
 }
 

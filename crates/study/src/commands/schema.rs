@@ -4,7 +4,6 @@ use campaign::manifest::Manifest;
 use clap::Args;
 use predict::PredictDocument;
 use scenario::failure::{Failure, OnPath};
-use scenario::schema::plain;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use std::path::Path;
@@ -42,5 +41,5 @@ pub fn schema(what: Described) -> Schema {
 
 /// The schema of what the program writes.
 fn of<T: JsonSchema>() -> Schema {
-    plain(SchemaSettings::draft07().for_serialize().into_generator().into_root_schema_for::<T>())
+    SchemaSettings::draft07().for_serialize().into_generator().into_root_schema_for::<T>()
 }

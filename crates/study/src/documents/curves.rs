@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use ::trace::judge::RecordComparison;
+use ::trace::comparison::RecordComparison;
 use campaign::curves::degrees;
 use identify::replay::Replay;
 use scenario::failure::{Failure, OnPath};

@@ -27,8 +27,8 @@ pub fn curves(document: &PredictDocument) -> Vec<(String, String)> {
     let mut stems = stems(document).into_iter();
     for (prediction, stem) in document.manoeuvres.iter().zip(stems.by_ref()) {
         let table = match prediction.kind {
-            Manoeuvre::Spiral { .. } => steady_turns(&prediction.curves),
-            _ => bands(&prediction.heading, None),
+            Manoeuvre::Spiral { .. } => steady_turns(&prediction.curves.steady),
+            _ => bands(&prediction.curves.heading, None),
         };
         tables.push((stem, table));
     }

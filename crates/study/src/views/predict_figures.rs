@@ -54,15 +54,16 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
     let kind = prediction.kind.to_string();
     if matches!(prediction.kind, Manoeuvre::Spiral { .. }) {
         let caption = format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
-        return vec![PageFigure::new(stem, caption, steady_turns(&prediction.curves, document.seen))];
+        return vec![PageFigure::new(stem, caption, steady_turns(&prediction.curves.steady, document.seen))];
     }
-    let passage = prediction.most_probable.as_ref();
+    let passage = prediction.curves.most_probable.as_ref();
     let steered = passage.map_or_else(PlotCurve::default, |passage| {
         let time: Vec<f64> = (0..passage.rudder.len()).map(|row| passage.time(row)).collect();
         PlotCurve::new(time, degrees(&passage.rudder))
     });
     let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", document.draws);
-    let mut figures = vec![PageFigure::new(stem, caption, bands(kind.clone(), &prediction.heading, None, steered))];
+    let mut figures =
+        vec![PageFigure::new(stem, caption, bands(kind.clone(), &prediction.curves.heading, None, steered))];
     if let (Manoeuvre::ZigZag { .. }, Some(passage)) = (&prediction.kind, passage) {
         let caption = format!("{kind}: yaw rate against heading of the most probable ship.");
         let way = phase_curve(&passage.heading, &passage.yaw_rate);
@@ -71,7 +72,7 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
     }
     if passage.is_some_and(|passage| passage.way.is_some()) {
         let caption =
-            format!("{kind}: track of the most probable ship; thin: {} drawn ships.", prediction.tracks.len());
+            format!("{kind}: track of the most probable ship; thin: {} drawn ships.", prediction.curves.tracks.len());
         figures.push(PageFigure::new(format!("{stem}-track"), caption, track(prediction)));
     }
     figures
@@ -106,7 +107,7 @@ fn track(prediction: &Prediction) -> Panels {
         let (east, north): (Vec<f64>, Vec<f64>) = track.iter().map(|place| (place[1], place[0])).unzip();
         PlotCurve::new(east, north)
     };
-    let passage = prediction.most_probable.as_ref();
+    let passage = prediction.curves.most_probable.as_ref();
     let own = passage.and_then(|passage| Some(passage.way.as_ref()?.track.as_slice())).unwrap_or_default();
     let step = (own.len() / HEADINGS).max(1);
     let (mut places, mut headings) = (PlotCurve::default(), Vec::new());
@@ -116,7 +117,7 @@ fn track(prediction: &Prediction) -> Panels {
         headings.extend(passage.map(|passage| to_deg(passage.heading[row])));
     }
     let drawn =
-        prediction.tracks.iter().map(|track| Layer::line("drawn ships", curve(track), Pen::pale()).within(0.35));
+        prediction.curves.tracks.iter().map(|track| Layer::line("drawn ships", curve(track), Pen::pale()).within(0.35));
     let layers = drawn.chain([
         Layer::line("most probable ship", curve(own), Pen::new(HEADING).width(1.2)),
         Layer::new("its heading (not to scale)", places, LayerKind::Ships(HEADING, headings)),
@@ -151,7 +152,7 @@ fn interval(of: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> {
 }
 
 fn limit(criterion: &PredictedCriterion) -> (String, Vec<RowItem>) {
-    let mut items = interval(&criterion.interval(), criterion.extrapolated);
+    let mut items = interval(&criterion.interval, criterion.extrapolated);
     items.insert(2, RowItem::new("IMO limit", RowKind::Limit(criterion.limit)));
     (criterion.criterion.clone(), items)
 }

@@ -68,7 +68,7 @@ pub fn figures(document: &PredictDocument) -> Table {
 pub fn criteria(document: &PredictDocument) -> Table {
     let mut table = Table::headed("criterion | manoeuvre | .limit | unit | .median | 90 % | .passes [%] | remark");
     for criterion in &document.imo {
-        let [median, _, most] = cells(&criterion.interval());
+        let [median, _, most] = cells(&criterion.interval);
         table.push([
             criterion.criterion.clone(),
             criterion.manoeuvre.clone(),

@@ -1,7 +1,7 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
 use ::trace::document::{Outcome, ParameterEntry};
-use predict::known::ValidityRange;
+use predict::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
 use report::number::{fixed, significant};
 use report::{Page, PageFigure, Table};

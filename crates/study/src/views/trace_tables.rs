@@ -1,6 +1,6 @@
 //! Tables of a trace, from its document alone.
 
-use ::trace::document::{ErrorsEntry, Outcome, ParameterEntry, RecordNoiseEntry, TermEntry};
+use ::trace::document::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
 use ::trace::replay_errors::HORIZONS;
 use report::Table;
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
@@ -131,7 +131,7 @@ pub fn candidates(document: &TraceDocument) -> Table {
     for one in &document.trace.candidates {
         if one.forms.is_empty() {
             let why = one.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
-            let outcome = format!("{}{why}", outcome(one.outcome));
+            let outcome = format!("{}{why}", one.outcome.as_str());
             let rest = [fixed(one.probability, 3), optional(one.delta_bic, 1), two(one.p_value), MISSING.into()];
             table.push([one.id.clone(), MISSING.into(), outcome].into_iter().chain(rest));
         }
@@ -140,7 +140,7 @@ pub fn candidates(document: &TraceDocument) -> Table {
             table.push([
                 if number == 0 { one.id.clone() } else { String::new() },
                 format!("{}{only}", own.form),
-                outcome(own.outcome).to_owned(),
+                own.outcome.as_str().to_owned(),
                 fixed(own.probability, 3),
                 optional(own.delta_bic, 1),
                 two(own.p_value),
@@ -149,13 +149,6 @@ pub fn candidates(document: &TraceDocument) -> Table {
         }
     }
     table
-}
-
-fn outcome(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::NotObservable => "not observable",
-        other => other.as_str(),
-    }
 }
 
 /// Structures of less probability are not told.

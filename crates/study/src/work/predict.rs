@@ -6,7 +6,7 @@ use std::path::Path;
 use predict::correction::{self, Correction};
 use predict::document::ModelWeight;
 use predict::form::{self, FormRecord};
-use predict::known::is_same_length;
+use predict::identified_ship::is_same_length;
 use predict::replay::RecordReplay;
 use predict::turn::{self, Current};
 use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};

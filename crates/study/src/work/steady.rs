@@ -1,6 +1,6 @@
 //! The steady turns of a traced model, as the diagram of a spiral test shows them.
 
-use predict::known::ValidityRange;
+use predict::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
 use predict::{IdentifiedShip, ShipMixture};
 use ship::angle::from_deg;
@@ -21,7 +21,7 @@ pub fn of_ship(known: &IdentifiedShip) -> Option<(Vec<SteadyCurve>, ValidityRang
     let seen = ship.seen;
     let [least, most] = RUDDER_DEG.map(from_deg);
     let kind = Manoeuvre::Spiral { rudder: (BEYOND * seen.rudder_rad).clamp(least, most) };
-    let curves = ShipMixture::new(vec![(ship, 1.0)]).ok()?.predict(&kind, DRAWS, false).ok()?.curves;
+    let curves = ShipMixture::new(vec![(ship, 1.0)]).ok()?.predict(&kind, DRAWS, false).ok()?.curves.steady;
     let has_turns = curves.first().is_some_and(|curve| curve.rudder.len() > 2);
     has_turns.then_some((curves, seen))
 }

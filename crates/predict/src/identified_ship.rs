@@ -281,13 +281,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_again() {
-        let known = testing::known();
-        let text = serde_json::to_string(&known).expect("plain data");
-        assert_eq!(serde_json::from_str::<IdentifiedShip>(&text).expect("the same"), known);
-    }
-
-    #[test]
     fn numbers_that_do_not_fit_are_refused() {
         let refused = |change: fn(&mut WeightedStructure)| {
             let mut member = testing::known().members.remove(0);

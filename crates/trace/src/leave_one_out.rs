@@ -4,11 +4,11 @@
 use rayon::prelude::*;
 use trial::Trial;
 
-use crate::average::After;
+use crate::average::AveragedModel;
 use crate::base::Base;
+use crate::comparison::RecordComparison;
 use crate::fit::{Effort, FittedRecords, StructureFit};
 use crate::full::Full;
-use crate::judge::RecordComparison;
 use crate::model::Structure;
 use crate::structures::{Structures, WeighedStructure};
 use crate::weights::NoiseLaw;
@@ -46,7 +46,7 @@ pub fn leave_one_out(
             .map(|(height, fit)| ((height - highest).exp() / total, fit))
             .filter(|(weight, _)| *weight > 0.02)
             .collect();
-        let unseen = After { members: &members, law: &law, known: None, time: problem.time };
+        let unseen = AveragedModel { members: &members, law: &law, known: None, time: problem.time };
         unseen.compared(&trials[left], &base.estimate.response).ok()
     };
     (0..trials.len()).into_par_iter().map(fold).collect()

@@ -8,8 +8,8 @@ use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::figures::{self, EXECUTE_TIMES, Figures, OVERSHOOTS};
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::passage::SimulatedManoeuvre;
 use crate::prediction::drawn;
+use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::standard;
 
 /// Share by which a mean angle of a zig-zag may be off the nominal one that was ordered.

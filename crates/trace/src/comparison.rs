@@ -5,7 +5,7 @@ use identify::replay::{Replay, replay};
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
-use crate::average::{After, Average, AverageReplay};
+use crate::average::{Average, AverageReplay, AveragedModel};
 use crate::band;
 use crate::record::PreparedRecord;
 use crate::replay_errors::{HORIZONS, ReplayErrors, overshoot_error, root_mean_square};
@@ -78,7 +78,7 @@ pub fn before(
     Ok(result(trial, replay, windows.unwrap_or_default(), thorough))
 }
 
-impl After<'_> {
+impl AveragedModel<'_> {
     /// Base and average on a record that neither was fitted to.
     pub fn compared(&self, trial: &Trial, base: &FirstOrder) -> Result<RecordComparison, TraceError> {
         let record = PreparedRecord::whole(trial);
