@@ -21,7 +21,7 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
-use crate::identifier::{Identifier, NoiseFreeAccuracy};
+use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, require};
 use found::Analysed;
@@ -175,11 +175,6 @@ impl Identifier for CharacteristicPoints {
             diagnostics,
             warnings: warnings(trials, &analysed),
         })
-    }
-
-    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
-        // Peaks are no parabolas: +0.7 % at the default half width in an independent computation.
-        NoiseFreeAccuracy { whole: [0.008, 0.008, 0.008], with_gaps: [0.01, 0.01, 0.02] }
     }
 }
 

@@ -96,7 +96,7 @@ impl Identifier for External {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        let first = trials.first().ok_or(IdentifyError::NoTrial)?;
+        let (first, others) = trials.split_first().ok_or(IdentifyError::NoTrial)?;
         let mut process = self.pool.take()?;
         loop {
             let before = process.answered();
@@ -105,7 +105,7 @@ impl Identifier for External {
                 Origin::Simulated { replicate, .. } => *replicate,
                 Origin::Measured { .. } => before,
             };
-            let asked = process.ask(self.timeout, |line| protocol::question(number, trials, line));
+            let asked = process.ask(self.timeout, protocol::question(number, first, others));
             match asked.and_then(|line| protocol::answer(&line, number)) {
                 Ok(answer) => {
                     self.pool.give_back(process);

@@ -29,7 +29,7 @@ use crate::fourier::fundamental::zero_crossing_period;
 use crate::fourier::regression::{Equations, RegressionForm, white_variance};
 use crate::fourier::{self, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUSTED_CONDITION};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Identifier, NoiseFreeAccuracy};
+use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, require};
 
@@ -294,11 +294,6 @@ impl Identifier for FourierProjected {
             diagnostics,
             warnings,
         })
-    }
-
-    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
-        // A residue of the truncation of r': within half a percent but for the long swings of 10/20.
-        NoiseFreeAccuracy { whole: [0.004, 0.018, 0.04], with_gaps: [0.012, 0.018, 0.1] }
     }
 }
 
