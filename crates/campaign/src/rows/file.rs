@@ -133,8 +133,8 @@ fn fits(page: PageHead) -> bool {
 impl<'a> RowReader<'a, disk::File> {
     /// Opens a file. Fails as wrong input when there is none, or when its columns are not those of the layout.
     pub fn open(path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
-        let file = disk::File::open(path)
-            .map_err(|error| Failure::input(format!("{}: cannot be opened: {error}", path.display())))?;
+        let file =
+            disk::File::open(path).map_err(|error| Failure::about(path, format!("cannot be opened: {error}")))?;
         Self::new(file, path, layout)
     }
 }
@@ -148,8 +148,7 @@ impl<'a> RowReader<'a, Bytes> {
 
 impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
     fn new(file: B, path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
-        let refuse =
-            |problem: String| Failure::input(format!("{}: {problem}; expected the rows of this study", path.display()));
+        let refuse = |problem: String| Failure::about(path, format!("{problem}; expected the rows of this study"));
         trial::decoder::guarded(|| {
             let file = SerializedFileReader::new(CheckedPages { bytes: file, fits })
                 .map_err(|error| refuse(error.to_string()))?;
@@ -178,9 +177,8 @@ impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
     /// The next rows, a few thousand at most; nothing when all have been read.
     pub(super) fn next_rows(&mut self) -> Result<Vec<StudyRow>, Failure> {
         let path = self.path.clone();
-        trial::decoder::guarded(|| self.decoded()).unwrap_or_else(|| {
-            Err(Failure::input(format!("{}: it is damaged; expected the rows of this study", path.display())))
-        })
+        trial::decoder::guarded(|| self.decoded())
+            .unwrap_or_else(|| Err(Failure::about(&path, "it is damaged; expected the rows of this study")))
     }
 
     fn decoded(&mut self) -> Result<Vec<StudyRow>, Failure> {
@@ -190,10 +188,9 @@ impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
             }
             let group = self.file.get_row_group(self.group).map_err(|error| self.damaged(&error.to_string()))?;
             self.left = group.metadata().num_rows().unsigned_abs() as usize;
-            self.columns = (0..group.metadata().num_columns())
-                .map(|column| group.get_column_reader(column))
-                .collect::<Result<_, _>>()
-                .map_err(|error| self.damaged(&error.to_string()))?;
+            let columns = (0..group.metadata().num_columns()).map(|column| group.get_column_reader(column));
+            let columns: Result<Vec<ColumnReader>, _> = columns.collect();
+            self.columns = columns.map_err(|error| self.damaged(&error.to_string()))?;
             self.group += 1;
         }
         let length = self.left.min(BATCH);
@@ -204,7 +201,7 @@ impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
     }
 
     fn damaged(&self, problem: &str) -> Failure {
-        Failure::input(format!("{}: {problem}; the file was changed or is of another study", self.path.display()))
+        Failure::about(&self.path, format!("{problem}; the file was changed or is of another study"))
     }
 
     /// Hands every row to `take`, in order.
@@ -251,8 +248,7 @@ fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<
     let (mut present, mut values) = (Vec::with_capacity(length), Vec::with_capacity(length));
     let mut read = 0;
     while read < length {
-        let (rows, ..) = reader
-            .read_records(length - read, Some(&mut present), None, &mut values)
+        let (rows, ..) = (reader.read_records(length - read, Some(&mut present), None, &mut values))
             .map_err(|error| error.to_string())?;
         if rows == 0 {
             return Err("it ends too early".to_owned());
