@@ -1,6 +1,6 @@
 //! One contract for every registered identification method. Truth is K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg unless a
-//! test says otherwise. What a method promises beyond it is in its own file, with the reason; everything else is
-//! common.
+//! test says otherwise. How near a method comes without noise is in a line of its own, with the reason; everything else
+//! is common.
 
 use identify::estimate::Covariance;
 use identify::{Estimate, Identifier, IdentifierSettings, StopReason, Uncertainty, registry};
@@ -37,11 +37,35 @@ fn identify(method: &dyn Identifier, trials: &[Trial]) -> Estimate {
     method.identify(trials).unwrap_or_else(|error| panic!("{}: {error}", method.id()))
 }
 
+/// Largest errors that a method itself makes in zig-zags read every second without noise, from every row and with every
+/// seventh row and fifteen in a piece lost: of K and T as shares, of δ_r in deg. A method that has no line here takes the
+/// corners of the rudder from where the record has them and makes none.
+fn allowed(id: &str) -> [[f64; 3]; 2] {
+    match id {
+        // Eight harmonics truncate r': an independent computation finds a few per cent in K and 11 to 17 % in T. Ten
+        // triples scatter about that, and δ_r is the worst of their ratios. The curve is the poorer the fewer headings
+        // hold it: with gaps it is off by twice as much.
+        "fourier-published" => [[0.1, 0.22, 0.7], [0.25, 0.45, 1.0]],
+        // A residue of the truncation of r': within half a percent but for the long swings of 10/20.
+        "fourier-projected" => [[0.004, 0.018, 0.04], [0.012, 0.018, 0.1]],
+        // Peaks are no parabolas: +0.7 % at the default half width in an independent computation.
+        "characteristic-points" => [[0.008, 0.008, 0.008], [0.01, 0.01, 0.02]],
+        // Central differences over 1 s of a response with T = 16.3 s; around a gap equations are lost.
+        "least-squares" => [[0.001, 0.0015, 0.004], [0.003, 0.003, 0.02]],
+        // Where whole rows are lost the rudder between them is a straight line as well. An error of it grows with time
+        // in an equation that is integrated twice, while it dies out in a simulation: 0.3 % of T against 0.1 %.
+        "integral-least-squares" => [[1e-6; 3], [0.001, 0.005, 0.012]],
+        // Without any noise the corners of the rudder between rows are all there is to see, and may pass for a moment.
+        "maximum-likelihood" => [[2e-3, 3e-3, 2e-3], [5e-3, 1e-2, 0.02]],
+        _ => [[1e-6; 3], [0.001, 0.002, 0.012]],
+    }
+}
+
 /// Whether K, T and δ_r of `found` are those of the truth within what the method promises.
 fn check_accuracy(id: &str, allowed: [f64; 3], found: &FirstOrder, when: &str) {
     let [k_error, t_error] = [found.K() / truth().K() - 1.0, found.T() / truth().T() - 1.0];
     let bias_error = to_deg(found.rudder_bias - truth().rudder_bias);
-    let why = format!("{id}, {when}: beyond what Identifier::noise_free_accuracy() in its file allows:");
+    let why = format!("{id}, {when}: beyond what its line above allows:");
     assert!(k_error.abs() <= allowed[0], "{why} K off by {:+.4} %", 100.0 * k_error);
     assert!(t_error.abs() <= allowed[1], "{why} T off by {:+.4} %", 100.0 * t_error);
     assert!(bias_error.abs() <= allowed[2], "{why} δ_r off by {bias_error:+.5} deg");
@@ -77,7 +101,7 @@ fn without_noise_the_ship_is_recovered() {
                 let found = identify(method.as_ref(), &[trial]).response;
                 check_accuracy(
                     method.id(),
-                    method.noise_free_accuracy().whole,
+                    allowed(method.id())[0],
                     &found,
                     &format!("{rudder_deg}/{heading_deg} {begin:?}"),
                 );
@@ -91,7 +115,7 @@ fn several_trials_of_one_ship_are_taken_together() {
     for method in methods() {
         let trials = [case(), Case { rudder_deg: 20.0, heading_deg: 20.0, begin: Begin::Mid, ..case() }];
         let found = identify(method.as_ref(), &trials.map(|case| case.trial(0))).response;
-        check_accuracy(method.id(), method.noise_free_accuracy().whole, &found, "two trials");
+        check_accuracy(method.id(), allowed(method.id())[0], &found, "two trials");
         let [one, other] = noisy();
         let alone = identify(method.as_ref(), std::slice::from_ref(&one));
         let both = identify(method.as_ref(), &[one, other]);
@@ -215,7 +239,7 @@ fn gaps_are_survived() {
             ("rows missing", records::without_rows(&trial, lost)),
         ] {
             let found = identify(method.as_ref(), &[record]).response;
-            check_accuracy(method.id(), method.noise_free_accuracy().with_gaps, &found, when);
+            check_accuracy(method.id(), allowed(method.id())[1], &found, when);
         }
     }
 }

@@ -160,7 +160,7 @@ fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[Signal]) 
         wind_speed: wind.as_ref(),
         wind_from: from.as_ref(),
         propeller: propeller.as_ref(),
-        ..helm.recorded_rudder()
+        ..ship::replay::Recorded::rudder(helm.rudder_signal())
     };
     let response = ship(vec![(effect, values)]);
     let mut state = vec![0.0; response.dimension()];

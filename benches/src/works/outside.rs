@@ -28,11 +28,7 @@ pub fn outside(echo: &str) -> WorkGroup {
         Some([estimate.response.K(), estimate.response.T()])
     });
     group.alone(work, Some(Reach::Time(100e-6)));
-    let work = Work::new("question alone", move || {
-        let mut line = Vec::new();
-        protocol::question(0, std::slice::from_ref(&*trial), &mut line);
-        line
-    });
+    let work = Work::new("question alone", move || protocol::question(0, &trial, &[]));
     group.alone(work, None);
     group
 }

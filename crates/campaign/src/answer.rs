@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use identify::replay::{Replay, replay};
 use identify::{Estimate, IdentifyError};
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
@@ -134,13 +135,16 @@ pub fn entry(
 
 /// Root mean square replay error over all rows of all trials, deg.
 pub(crate) fn pooled_rmse_deg(trials: &[trial::Trial], estimate: &Estimate) -> Option<f64> {
+    let replays = trials.iter().map(|trial| replay(trial, &estimate.response));
+    Some(to_deg(pooled_rms(&replays.collect::<Option<Vec<Replay>>>()?)))
+}
+
+/// Root mean square of what several replays leave of the headings, over all rows, rad.
+pub(crate) fn pooled_rms(replays: &[Replay]) -> f64 {
     let (mut square, mut rows) = (0.0, 0usize);
-    for trial in trials {
-        let replay = identify::replay::replay(trial, &estimate.response)?;
-        for (_, residual) in replay.observed() {
-            square += residual * residual;
-            rows += 1;
-        }
+    for (_, residual) in replays.iter().flat_map(|replay| replay.observed()) {
+        square += residual * residual;
+        rows += 1;
     }
-    Some(to_deg((square / rows as f64).sqrt()))
+    (square / rows.max(1) as f64).sqrt()
 }

@@ -82,7 +82,7 @@ const MOST_FAULTS: usize = 10;
 ///
 /// Fails when a column is missing, and with all lines that are not of one trial of the scenario, or hold no numbers.
 pub fn read(path: &Path, scenario: &Scenario, observer: &dyn Observer) -> Result<Answers, Failure> {
-    let refuse = |problem: String| Failure::input(format!("{}: {problem}", path.display()));
+    let refuse = |problem: String| Failure::about(path, problem);
     let text = file::read_text(path, TABLE).map_err(|error| refuse(error.to_string()))?;
     let text = text.trim_start_matches('\u{feff}');
     let head = text.lines().next().unwrap_or_default();
@@ -239,21 +239,14 @@ mod tests {
     use scenario::MethodName;
 
     use super::*;
-
-    fn scenario(cells: &str, replicates: u32) -> Scenario {
-        let text = format!(
-            "question = \"?\"\nseed = 1\nreplicates = {replicates}\n[ship.yukun]\n[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 10.0\n\
-             [recording]\nsampling-s = 1.0\nduration-s = 60.0\n[[identifier]]\nmethod.srivc = {{}}\n{cells}"
-        );
-        Scenario::parse(Path::new("it.toml"), "it", text, None).unwrap_or_else(|failure| panic!("{failure}"))
-    }
+    use crate::testing::zig_zag;
 
     const TWO_CELLS: &str = "[[sweep]]\nkey = \"sensor.heading-noise-deg\"\nvalues = [0.1, 0.2]\n";
 
     #[derive(Default)]
-    struct Told(Mutex<String>);
+    struct KeptWarnings(Mutex<String>);
 
-    impl Observer for Told {
+    impl Observer for KeptWarnings {
         fn warn(&self, line: &str) {
             *self.0.lock().expect("nobody panics") += line;
         }
@@ -263,7 +256,7 @@ mod tests {
         let desk = tempfile::tempdir().expect("a folder");
         let path = desk.path().join("answers.csv");
         std::fs::write(&path, text).expect("written");
-        let told = Told::default();
+        let told = KeptWarnings::default();
         let read = read(&path, scenario, &told).map_err(|failure| failure.message);
         (read, told.0.into_inner().expect("nobody panics"))
     }
@@ -271,10 +264,10 @@ mod tests {
     #[test]
     fn every_record_is_known_by_its_name() {
         for (cells, replicates) in [("", 1), ("", 12), (TWO_CELLS, 1), (TWO_CELLS, 1000)] {
-            let scenario = scenario(cells, replicates);
+            let scenario = zig_zag(replicates, cells);
             let records = Records::of(&scenario);
-            for task in (0..scenario.cells.len())
-                .flat_map(|cell| [0, u64::from(replicates) - 1].map(|replicate| Task { cell, replicate }))
+            for task in
+                (0..scenario.cells.len()).flat_map(|cell| [0, replicates - 1].map(|replicate| Task { cell, replicate }))
             {
                 let name = record_name(&scenario, task);
                 for written in [name.clone(), format!("{name}.csv"), format!("a/b/{name}.csv"), format!("c:\\{name}")] {
@@ -288,7 +281,7 @@ mod tests {
 
     #[test]
     fn a_table_is_read_as_it_comes() {
-        let scenario = scenario(TWO_CELLS, 3);
+        let scenario = zig_zag(3, TWO_CELLS);
         let by_record = "\u{feff}label;record ;K_per_s;T_s;delta_r_deg;K_sd_per_s;T_sd_s;failed;seconds\n\
                          0.1;it-0-0-1-2.csv;0.1;16;1.5;0.01;1;;3\n;it-1-0-2-0.csv;NaN;16;;;;;3\n;it-1-0-2-1;;;;;;no luck;3\n";
         let (read, told) = read_from(by_record, &scenario);
@@ -312,7 +305,7 @@ mod tests {
 
     #[test]
     fn what_is_no_answer_is_refused_with_its_line() {
-        let scenario = scenario(TWO_CELLS, 3);
+        let scenario = zig_zag(3, TWO_CELLS);
         let refused = |text: &str, parts: &[&str]| {
             let error = read_from(text, &scenario).0.expect_err("refused");
             parts.iter().for_each(|part| assert!(error.contains(part), "{part}: {error}"));

@@ -2,7 +2,7 @@
 
 mod coloured;
 
-use identify::{maximum_likelihood, output_error};
+use identify::maximum_likelihood;
 use nalgebra::{Matrix2x3, Matrix3};
 use ship::FirstOrder;
 use ship::first_order::State;
@@ -64,7 +64,6 @@ fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder)
             coloured::cramer_rao(trial, truth, initial, &CompassError { white, coloured })?
         }
         (Some(_), Some(_)) => return None,
-        (_, None) if noise == compass => output_error::cramer_rao(trial, truth, initial, noise.heading_sd)?.matrix,
         _ => maximum_likelihood::cramer_rao(trial, truth, initial, &noise)?.matrix,
     })
 }

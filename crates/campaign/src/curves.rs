@@ -6,7 +6,9 @@ use report::figures::{OvershootMark, ReplayCurves, TimeSpan, ZigZagMark, ZigzagT
 use report::{CurveOrigin, PlotCurve};
 use scenario::MethodName;
 use ship::angle::to_deg;
-use trial::{Trial, ZigZag};
+use trial::zigzag::PhasePlane;
+use trial::zigzag::{Execute, Overshoot};
+use trial::{Quantity, Trial, ZigZag};
 
 use crate::answer::MethodEntry;
 
@@ -22,16 +24,42 @@ pub fn origin(names: &[MethodName], label: &str) -> CurveOrigin {
     }
 }
 
+/// Angles as degrees.
+pub fn degrees(values: &[f64]) -> Vec<f64> {
+    values.iter().copied().map(to_deg).collect()
+}
+
 /// Radians over seconds as degrees over seconds.
 pub fn curve(time: &[f64], angle: &[f64]) -> PlotCurve {
-    PlotCurve::new(time, angle.iter().map(|&angle| to_deg(angle)).collect::<Vec<_>>())
+    PlotCurve::new(time, degrees(angle))
+}
+
+/// Yaw rate over heading of a record, and whether the rate is the slope of its smoothed heading.
+pub fn phase_of(trial: &Trial) -> (Option<PlotCurve>, bool) {
+    let phase = PhasePlane::of(trial);
+    let smoothed = phase.as_ref().is_some_and(|phase| phase.smoothed);
+    (phase.map(|phase| phase_curve(&phase.heading, &phase.yaw_rate)), smoothed)
+}
+
+/// Yaw rate over heading, degrees.
+pub fn phase_curve(heading: &[f64], yaw_rate: &[f64]) -> PlotCurve {
+    PlotCurve::new(degrees(heading), degrees(yaw_rate))
 }
 
 /// The trial with its characteristic points marked.
 pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
-    let mark = |time: f64, heading: f64| ZigZagMark { t_s: time, heading_deg: to_deg(heading) };
-    let span = |from: f64, length: f64| TimeSpan { from_s: from, to_s: from + length };
-    let first = zigzag.executes.first();
+    let mark = |time: Quantity, heading: Quantity| ZigZagMark { t_s: time.value, heading_deg: to_deg(heading.value) };
+    let execute = |own: &Execute| mark(own.time, own.heading);
+    let overshoot = |own: &Overshoot| OvershootMark {
+        execute: execute(&zigzag.executes[own.execute]),
+        extremum: mark(own.peak_time, own.peak_heading),
+        angle_deg: to_deg(own.angle.value),
+    };
+    let from = |execute: Option<&Execute>, length: Option<Quantity>| {
+        let (begin, length) = execute.map(|own| own.time.value).zip(length)?;
+        Some(TimeSpan { from_s: begin, to_s: begin + length.value })
+    };
+    let check_yaw = |own: &Overshoot| from(zigzag.executes.get(own.execute), Some(own.time_to_check_yaw));
     // The cycle that begins with the second execute of a trial holds the transient of the start: drawn only if alone.
     let settled = if zigzag.begins_within_trial() { 0 } else { 2 };
     let cycle_start = match zigzag.executes.len() > settled + 2 {
@@ -46,28 +74,11 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
             && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
         rudder: curve(trial.time(), trial.rudder()),
         truth: None,
-        executes: zigzag.executes.iter().map(|execute| mark(execute.time.value, execute.heading.value)).collect(),
-        overshoots: zigzag
-            .overshoots
-            .iter()
-            .map(|overshoot| {
-                let execute = &zigzag.executes[overshoot.execute];
-                OvershootMark {
-                    execute: mark(execute.time.value, execute.heading.value),
-                    extremum: mark(overshoot.peak_time.value, overshoot.peak_heading.value),
-                    angle_deg: to_deg(overshoot.angle.value),
-                }
-            })
-            .collect(),
-        initial_turning: first
-            .zip(zigzag.initial_turning_time)
-            .map(|(execute, time)| span(execute.time.value, time.value)),
-        check_yaw: zigzag
-            .overshoots
-            .iter()
-            .map(|overshoot| span(zigzag.executes[overshoot.execute].time.value, overshoot.time_to_check_yaw.value))
-            .collect(),
-        period: cycle_start.zip(zigzag.period).map(|(execute, period)| span(execute.time.value, period.value)),
+        executes: zigzag.executes.iter().map(execute).collect(),
+        overshoots: zigzag.overshoots.iter().map(overshoot).collect(),
+        initial_turning: from(zigzag.executes.first(), zigzag.initial_turning_time),
+        check_yaw: zigzag.overshoots.iter().filter_map(check_yaw).collect(),
+        period: from(cycle_start, zigzag.period),
     }
 }
 
@@ -77,17 +88,15 @@ pub fn replay_curves(
     answers: &[(MethodEntry, Option<Estimate>)],
     origin: impl Fn(&str) -> CurveOrigin,
 ) -> Vec<ReplayCurves> {
-    answers
-        .iter()
-        .filter_map(|(entry, estimate)| {
-            let replay = replay(trial, &estimate.as_ref()?.response)?;
-            let (time, residual): (Vec<f64>, Vec<f64>) = replay.observed().unzip();
-            Some(ReplayCurves {
-                origin: origin(&entry.method),
-                heading: curve(&replay.time, &replay.heading),
-                residual: curve(&time, &residual),
-                rms_deg: Some(to_deg(replay.rms())),
-            })
+    let curves = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
+        let replay = replay(trial, &estimate.as_ref()?.response)?;
+        let (time, residual): (Vec<f64>, Vec<f64>) = replay.observed().unzip();
+        Some(ReplayCurves {
+            origin: origin(&entry.method),
+            heading: curve(&replay.time, &replay.heading),
+            residual: curve(&time, &residual),
+            rms_deg: Some(to_deg(replay.rms())),
         })
-        .collect()
+    };
+    answers.iter().filter_map(curves).collect()
 }

@@ -22,15 +22,15 @@ use crate::reference::{TrialReference, nearest_first_order};
 use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::summary::effect_ids;
 use crate::task::Task;
-use crate::timings::Timing;
-use scenario::{Procedure, Scenario, Specification, TrialSpecification};
+use crate::timings::TrialTiming;
+use scenario::{Method, Procedure, Scenario, Specification, TrialSpecification};
 
 /// Rows of one trial, and what they took.
 pub struct TrialOutcome {
     /// One row per method, in the order of the scenario.
     pub rows: Vec<StudyRow>,
     /// Time to simulate, and of every method.
-    pub timing: Timing,
+    pub timing: TrialTiming,
 }
 
 /// Key of all that is random in one trial.
@@ -128,7 +128,7 @@ impl<'a> TrialRunner<'a> {
                 ((0..cell.methods.len()).map(|method| StudyRow { method, ..blank.clone() }).collect(), Vec::new())
             }
         };
-        TrialOutcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
+        TrialOutcome { rows, timing: TrialTiming { cell: task.cell as u64, simulation, methods } }
     }
 
     /// The answers of all methods to a trial, and the times they took.
@@ -161,10 +161,8 @@ impl<'a> TrialRunner<'a> {
         let check = self.scenario.predictions.as_ref();
         let check = check.map(|asked| PredictionCheck::new(asked, &specification.simulation, key, &trials));
         let question = TrialQuestion { trials: &trials, key, reference, missing: &specification.missing, check };
-        let methods = cell.methods.iter().enumerate();
-        methods
-            .map(|(index, method)| question.ask(&method.procedure, StudyRow { method: index, ..blank.clone() }))
-            .unzip()
+        let row = |(method, own): (usize, &Method)| question.ask(&own.procedure, StudyRow { method, ..blank.clone() });
+        cell.methods.iter().enumerate().map(row).unzip()
     }
 
     /// The reference of a cell whose trials all have one specification: made with its first trial, whichever trial
@@ -201,10 +199,8 @@ impl TrialQuestion<'_> {
             first_order => {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
                 let time = start.elapsed();
-                (
-                    answer.map(|estimate| self.estimated(&blank, &estimate)).map_err(|error| error.in_a_row().into()),
-                    time,
-                )
+                let row = answer.map(|estimate| self.estimated(&blank, &estimate));
+                (row.map_err(|error| error.in_a_row().into()), time)
             }
         };
         (row.unwrap_or_else(|reason| StudyRow { failure: Some(reason), ..blank }), time)
@@ -212,13 +208,10 @@ impl TrialQuestion<'_> {
 
     fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
         let error = |trials: &[Trial]| pooled_rmse_deg(trials, estimate);
+        let validation = self.reference.validation.as_ref();
         StudyRow {
             heading_rmse_deg: error(self.trials),
-            validation_rmse_deg: self
-                .reference
-                .validation
-                .as_ref()
-                .and_then(|trial| error(std::slice::from_ref(trial))),
+            validation_rmse_deg: validation.and_then(|trial| error(std::slice::from_ref(trial))),
             evaluations: Some(estimate.evaluations as f64),
             stop: Some(estimate.stop.as_str()),
             predicted: self.check.as_ref().map(|check| check.figures(|facts| known::of_estimate(estimate, facts))),
@@ -325,9 +318,8 @@ pub fn bound_percent2(scenario: &Scenario, cell: usize) -> Option<[[f64; 2]; 2]>
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
+    use crate::testing::scenario;
 
     const TEXT: &str = r#"
 question = "?"
@@ -352,8 +344,7 @@ method.output-error = {}
 "#;
 
     fn rows(more: &str) -> Vec<StudyRow> {
-        let scenario = Scenario::parse(Path::new("s.toml"), "s", format!("{TEXT}{more}"), None)
-            .unwrap_or_else(|failure| panic!("{failure}"));
+        let scenario = scenario(format!("{TEXT}{more}"));
         TrialRunner::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
     }
 
@@ -364,7 +355,7 @@ method.output-error = {}
         let further = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }\n";
         let linear = TEXT.replace("[[effect]]\nnonlinear_damping.n3-s2-per-deg2 = 1.0\n", "");
         let of = |text: &str, trials: u64| -> Vec<StudyRow> {
-            let scenario = Scenario::parse(Path::new("s.toml"), "s", text.to_owned(), None).expect("it is right");
+            let scenario = scenario(text);
             let runner = TrialRunner::new(&scenario, 0..=0);
             (0..trials).map(|replicate| runner.run(Task { cell: 0, replicate }).rows.remove(0)).collect()
         };
@@ -378,7 +369,7 @@ method.output-error = {}
         };
         assert!((0.8..1.25).contains(&(spread(&both) / bound(&both))), "{} {}", spread(&both), bound(&both));
         let first = |text: &str| {
-            let scenario = Scenario::parse(Path::new("s.toml"), "s", text.to_owned(), None).expect("it is right");
+            let scenario = scenario(text);
             simulate(&scenario, Task { cell: 0, replicate: 0 }).expect("records").into_iter().map(|one| one.trial)
         };
         let records: Vec<Trial> = first(&format!("{linear}{further}")).collect();

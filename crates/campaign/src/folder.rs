@@ -93,12 +93,7 @@ impl ResultFolder {
         // What a kill left there.
         disk::remove_if_there(&path).on("remove", &path)?;
         let file = disk::File::create_new(&path).on("create", &path)?;
-        Ok(TemporaryFile {
-            file: BufWriter::new(HashedFile { file, digest: Sha256::new() }),
-            place,
-            path,
-            is_put: false,
-        })
+        Ok(TemporaryFile { file: BufWriter::new(file), place, path, is_put: false })
     }
 
     /// Writes a file that can be made again from what is stored.
@@ -116,6 +111,12 @@ impl ResultFolder {
         file.put()?;
         self.sync()?;
         Ok(sha256)
+    }
+
+    /// Removes the files whose names are of some kind: what an earlier run left, and this one may not make.
+    pub fn remove_all(&self, is_old: impl Fn(&str) -> bool) -> Result<(), Failure> {
+        let names = disk::names(&self.path).on("list the folder", &self.path)?.into_iter().filter(|name| is_old(name));
+        names.map(|name| self.path.join(name)).try_for_each(|path| disk::remove(&path).on("remove", &path))
     }
 
     /// Waits until the names of its files are on the disk.
@@ -163,28 +164,10 @@ fn lock_of(folder: &Path) -> Result<PathBuf, Failure> {
 /// A file under way, beside its place. What is not put there goes away.
 #[derive(Debug)]
 pub struct TemporaryFile {
-    file: BufWriter<HashedFile>,
+    file: BufWriter<disk::File>,
     place: PathBuf,
     path: PathBuf,
     is_put: bool,
-}
-
-#[derive(Debug)]
-struct HashedFile {
-    file: disk::File,
-    digest: Sha256,
-}
-
-impl Write for HashedFile {
-    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
-        let written = self.file.write(buffer)?;
-        self.digest.update(&buffer[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
-    }
 }
 
 impl Write for TemporaryFile {
@@ -201,9 +184,8 @@ impl TemporaryFile {
     /// Waits until the content is on the disk; returns its SHA-256.
     pub fn seal(&mut self) -> Result<String, Failure> {
         self.file.flush().on("write", &self.path)?;
-        let HashedFile { file, digest } = self.file.get_ref();
-        file.sync().on("finish", &self.path)?;
-        Ok(hex(&digest.clone().finalize()))
+        self.file.get_ref().sync().on("finish", &self.path)?;
+        sha256_of(&self.path).on("read", &self.path)
     }
 
     /// Gives the file its name.

@@ -1,17 +1,19 @@
 //! What an estimate or an analysis knows of a ship, as a prediction takes it.
 
 use identify::estimate::{Estimate, Uncertainty};
-use identify::replay::replay;
+use identify::replay::{Replay, replay};
 use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
 use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
 use predict::motion::{self, IdentifiedHull, Planar};
+use ship::Particulars;
 use ship::angle::{from_deg, to_deg};
-use ship::{Particulars, Response};
 use trace::Analysis;
 use trace::analysis::Plausible;
 use trace::document::RecordNoiseEntry;
 use trial::{Channel, Trial, ZigZag};
+
+use crate::answer::pooled_rms;
 
 /// What records show of a ship, whatever model is fitted to them: read once for all of its answers.
 #[derive(Debug, Clone)]
@@ -110,14 +112,8 @@ impl<'a> RecordFacts<'a> {
 pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<IdentifiedShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
-    let replays: Vec<_> = facts.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
+    let replays: Vec<Replay> = facts.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
     let told = |name: &str| estimate.diagnostics.iter().find(|(own, _)| *own == name).map(|(_, value)| *value);
-    let (mut square, mut rows) = (0.0, 0usize);
-    for (_, residual) in replays.iter().flat_map(|replay| replay.observed()) {
-        square += residual * residual;
-        rows += 1;
-    }
-    let left = (square / rows.max(1) as f64).sqrt();
     let kinds = [
         (Moment::White, "white_moment_rudder_deg_root_s"),
         (Moment::Walk, "moment_walk_rudder_deg_per_root_s"),
@@ -134,8 +130,9 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
         covariance: (0..3).map(|i| (0..3).map(|j| covariance.matrix[(i, j)]).collect()).collect(),
         degrees_of_freedom: covariance.degrees_of_freedom,
     };
+    let read = told("heading_sd_deg").map(from_deg).or(facts.reading_noise);
     let noise = KnownNoise {
-        heading_sd_rad: told("heading_sd_deg").map(from_deg).or(facts.reading_noise).unwrap_or(left),
+        heading_sd_rad: read.unwrap_or_else(|| pooled_rms(&replays)),
         moment,
         moment_sd_rudder_rad,
         moment_correlation_s: told("gusts_correlation_s"),
@@ -227,24 +224,20 @@ fn member(plausible: &Plausible) -> WeightedStructure {
     let rows = |all: &nalgebra::DMatrix<f64>| -> Vec<Vec<f64>> {
         all.row_iter().map(|row| row.iter().copied().collect()).collect()
     };
+    let stored = |effect: &std::sync::Arc<dyn ship::effects::Effect>| StoredEffect {
+        id: effect.id().to_owned(),
+        form: effect.form().to_owned(),
+        constants: effect.constants(),
+    };
     let sound = covariance.as_ref().filter(|all| all.iter().all(|entry| entry.is_finite()));
     WeightedStructure {
         weight: *weight,
-        effects: written(response),
+        effects: response.model().effects().iter().map(stored).collect(),
         parameters: response.parameters().to_vec(),
         fitted: if sound.is_some() { fitted.clone() } else { Vec::new() },
         covariance: sound.map(rows).unwrap_or_default(),
         degrees_of_freedom: None,
     }
-}
-
-fn written(response: &Response) -> Vec<StoredEffect> {
-    let write = |effect: &std::sync::Arc<dyn ship::effects::Effect>| StoredEffect {
-        id: effect.id().to_owned(),
-        form: effect.form().to_owned(),
-        constants: effect.constants(),
-    };
-    response.model().effects().iter().map(write).collect()
 }
 
 /// Rates a steering gear can have, rad/s; outside, a recorded rudder is an order or says nothing about its gear.

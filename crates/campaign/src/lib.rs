@@ -42,6 +42,8 @@ pub mod store;
 pub mod summary;
 pub mod task;
 #[cfg(test)]
+mod testing;
+#[cfg(test)]
 mod tests;
 pub mod timings;
 pub mod unfinished;

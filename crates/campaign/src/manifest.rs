@@ -91,11 +91,7 @@ impl Manifest {
                 wall_time_s: 0.0,
             },
             assumptions: scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect(),
-            crates: env!("KEMPF_NUMERIC_CRATES")
-                .split(',')
-                .filter(|text| !text.is_empty())
-                .map(str::to_owned)
-                .collect(),
+            crates: env!("KEMPF_NUMERIC_CRATES").split_terminator(',').map(str::to_owned).collect(),
             sha256: BTreeMap::new(),
             scenario: scenario.text.clone(),
         }
@@ -187,8 +183,7 @@ impl Manifest {
 
     /// Reads a manifest; `None` when there is none.
     pub fn read(path: &Path) -> Result<Option<Self>, Failure> {
-        let refuse =
-            |problem: &str| Failure::input(format!("{}: {problem}; expected the manifest of a study", path.display()));
+        let refuse = |problem: &str| Failure::about(path, format!("{problem}; expected the manifest of a study"));
         let Some(bytes) = disk::read(path, LARGEST).on("read", path)? else { return Ok(None) };
         let text = String::from_utf8(bytes).map_err(|_| refuse("it is not UTF-8 text"))?;
         toml::from_str(&text).map(Some).map_err(|error| refuse(error.message()))

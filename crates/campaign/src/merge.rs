@@ -28,22 +28,19 @@ pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<StoredStudy, Fail
         is_same(&stored, &manifest, out.path())?;
     }
     if unfinished::is_in(out.path())? {
-        return Err(Failure::input(format!(
-            "{}: a study in it is not finished; give another folder with --out",
-            out.path().display()
-        )));
+        return Err(Failure::about(out.path(), "a study in it is not finished; give another folder with --out"));
     }
     let mut design = StoredStudy::read(folders[0])?.design;
     design.cells.iter_mut().for_each(|cell| cell.trials = 0..0);
     let layout = RowLayout::of(&design);
     let mut writer = RowWriter::create(out, ROWS, &layout)?;
-    let mut timings = Timings::new(design.methods.len());
+    let mut timings = Timings::default();
     let mut showcases = Vec::new();
     // One shard after the other: thousands of designs of thousands of cells do not fit into memory.
     for folder in folders {
         let stored = StoredStudy::read(folder)?;
         append(&mut design, &stored.design)
-            .map_err(|problem| Failure::input(format!("{}: {problem}; run this shard again", folder.display())))?;
+            .map_err(|problem| Failure::about(folder, format!("{problem}; run this shard again")))?;
         stored.rows(|row| writer.push([row]))?;
         timings.join(&stored.timings);
         showcases.extend(stored.showcases);
@@ -52,12 +49,13 @@ pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<StoredStudy, Fail
         && let Some(cell) = design.cells.iter().position(|cell| cell.trials != (0..replicates))
     {
         let found = &design.cells[cell].trials;
-        return Err(Failure::input(format!(
-            "{}: of cell {cell} the shards hold trials {} to {}, expected 0 to {replicates}; run the shards again",
-            out.path().display(),
-            found.start,
-            found.end
-        )));
+        return Err(Failure::about(
+            out.path(),
+            format!(
+                "of cell {cell} the shards hold trials {} to {}, expected 0 to {replicates}; run the shards again",
+                found.start, found.end
+            ),
+        ));
     }
     let (rows, sha256) = writer.finish()?;
     rows.put()?;
@@ -100,7 +98,7 @@ fn shards(folders: &[PathBuf]) -> Result<(Vec<&Path>, Manifest), Failure> {
                 true => "this shard is not finished; run it again with the same --shard and --out",
                 false => "there is no finished shard in it; give folders written with --shard",
             };
-            return Err(Failure::input(format!("{}: {problem}", folder.display())));
+            return Err(Failure::about(folder, problem));
         };
         let differences = lowest.as_ref().map_or(Vec::new(), |(_, known)| known.differences_of_study(&manifest));
         if let (Some((first, _)), [_, ..]) = (&lowest, differences.as_slice()) {

@@ -110,17 +110,12 @@ impl<'a> TrialPlan<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
+    use crate::testing::zig_zag;
 
     /// 10⁹ trials of `cells` cells, with more keys of the scenario.
     fn large(cells: u64, more: &str) -> Scenario {
-        let text = format!(
-            "question = \"?\"\nseed = 1\nreplicates = {}\n[ship.yukun]\n[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 10.0\n\
-             [recording]\nsampling-s = 1.0\nduration-s = 60.0\n[[identifier]]\nmethod.srivc = {{}}\n\
-             [[sweep]]\nkey = \"sensor.heading-noise-deg\"\nlinear = {{ from = 0.1, to = 0.2, points = {cells} }}\n{more}",
-            1_000_000_000 / cells
-        );
-        Scenario::parse(Path::new("large.toml"), "large", text, None).unwrap_or_else(|failure| panic!("{failure}"))
+        let sweep = format!("linear = {{ from = 0.1, to = 0.2, points = {cells} }}");
+        zig_zag(1_000_000_000 / cells, &format!("[[sweep]]\nkey = \"sensor.heading-noise-deg\"\n{sweep}\n{more}"))
     }
 
     const SHARDS: u64 = 10_000;

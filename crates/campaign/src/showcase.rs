@@ -47,15 +47,12 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let truth_of_ship = cell.specimen(&engine::key(scenario, first)).ok()?.specification.truth;
     let trials: Vec<Trial> = simulated.iter().map(|record| record.trial.clone()).collect();
     let (trial, truth) = (&trials[0], &simulated[0].truth);
-    let answers: Vec<(MethodEntry, Option<Estimate>)> = cell
-        .methods
-        .iter()
-        .filter_map(|method| {
-            // A trace is no first-order response; it has a report of its own.
-            let answer = method.procedure.identify(&trials, &engine::key(scenario, first))?;
-            Some(entry(&method.label, answer, &trials))
-        })
-        .collect();
+    let answer = |method: &Method| {
+        // A trace is no first-order response; it has a report of its own.
+        let answer = method.procedure.identify(&trials, &engine::key(scenario, first))?;
+        Some(entry(&method.label, answer, &trials))
+    };
+    let answers: Vec<(MethodEntry, Option<Estimate>)> = cell.methods.iter().filter_map(answer).collect();
     let title = |what: &str| match cell.labels.is_empty() {
         true => Some(what.to_owned()),
         false => Some(format!("{}: {what}", cell.title())),
@@ -92,19 +89,17 @@ fn intervals(
     truth: Option<&FirstOrder>,
     published: &Published,
 ) -> Intervals {
-    let point = |quantity: &Quantity| {
+    let point = |quantity: Quantity| {
         quantity.value.is_finite().then_some(PointEstimate { value: quantity.value, interval: quantity.ci95 })
+    };
+    let estimate = |(entry, _): &(MethodEntry, Option<Estimate>)| MethodEstimate {
+        origin: origin(names, &entry.method),
+        k_per_s: entry.parameters.and_then(|parameters| point(parameters.k_per_s)),
+        t_s: entry.parameters.and_then(|parameters| point(parameters.t_s)),
     };
     Intervals {
         title,
-        estimates: answers
-            .iter()
-            .map(|(entry, _)| MethodEstimate {
-                origin: origin(names, &entry.method),
-                k_per_s: entry.parameters.as_ref().and_then(|parameters| point(&parameters.k_per_s)),
-                t_s: entry.parameters.as_ref().and_then(|parameters| point(&parameters.t_s)),
-            })
-            .collect(),
+        estimates: answers.iter().map(estimate).collect(),
         truth: truth.map(|truth| Reference { k_per_s: truth.K(), t_s: truth.T() }),
         published: published.K_per_s.zip(published.T_s).map(|(k_per_s, t_s)| Reference { k_per_s, t_s }),
     }

@@ -92,21 +92,25 @@ impl StoredStudy {
 
 /// A file that is not what a study wrote, and what to do.
 fn refused(path: &Path, problem: &str) -> Failure {
-    Failure::input(format!(
-        "{}: {problem}; expected what a finished study wrote; put the file back, or run the study again with --restart",
-        path.display()
-    ))
+    Failure::about(
+        path,
+        format!(
+            "{problem}; expected what a finished study wrote; put the file back, or run the study again with --restart"
+        ),
+    )
 }
 
 /// Compares the SHA-256 of a file, none where the file is missing, with what the manifest says of it.
 fn is_unchanged(path: &Path, found: Option<String>, manifest: &Manifest) -> Result<(), Failure> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let Some(written) = manifest.sha256.get(&*name) else {
-        return Err(Failure::input(format!(
-            "{}: it has no SHA-256 of {name}, as an earlier version of this program wrote it; run the study again with \
-             --restart",
-            path.with_file_name(MANIFEST).display()
-        )));
+        return Err(Failure::about(
+            &path.with_file_name(MANIFEST),
+            format!(
+                "it has no SHA-256 of {name}, as an earlier version of this program wrote it; run the study again with \
+             --restart"
+            ),
+        ));
     };
     match found {
         None => Err(refused(path, "it is missing")),
@@ -134,7 +138,7 @@ fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
             Ok(true) => "the study in it is not finished; run it again to go on",
             _ => "there are no rows in it; expected the folder of a finished study",
         };
-        Failure::input(format!("{}: {problem}", folder.display()))
+        Failure::about(folder, problem)
     })
 }
 

@@ -13,7 +13,7 @@ use scenario::failure::Failure;
 const SIMULATION: &str = "(simulation)";
 
 /// Wall time of one trial.
-pub struct Timing {
+pub struct TrialTiming {
     /// Index of the cell.
     pub cell: u64,
     /// To simulate it.
@@ -37,72 +37,53 @@ pub struct TimingLine {
 /// Times of a study or a part of it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Timings {
-    /// Per cell seen: the simulation, then the methods.
-    cells: BTreeMap<u64, Vec<Moments>>,
-    methods: usize,
+    /// µs, by cell and by what is timed: 0 is the simulation, the methods follow.
+    times: BTreeMap<(u64, usize), Moments>,
 }
 
 impl Timings {
-    /// No times of so many methods.
-    pub fn new(methods: usize) -> Self {
-        Self { cells: BTreeMap::new(), methods }
-    }
-
     /// Takes note of one trial.
-    pub fn add(&mut self, timing: &Timing) {
-        let moments = self.of_cell(timing.cell);
-        let microseconds = |time: &Duration| time.as_secs_f64() * 1e6;
-        moments[0].add(microseconds(&timing.simulation));
-        moments[1..].iter_mut().zip(&timing.methods).for_each(|(moments, time)| moments.add(microseconds(time)));
+    pub fn add(&mut self, timing: &TrialTiming) {
+        for (place, time) in [&timing.simulation].into_iter().chain(&timing.methods).enumerate() {
+            self.times.entry((timing.cell, place)).or_default().add(time.as_secs_f64() * 1e6);
+        }
     }
 
     /// Joins the times of another part.
     pub fn join(&mut self, other: &Self) {
-        for (cell, theirs) in &other.cells {
-            self.of_cell(*cell).iter_mut().zip(theirs).for_each(|(own, their)| own.join(their));
-        }
-    }
-
-    fn of_cell(&mut self, cell: u64) -> &mut [Moments] {
-        self.cells.entry(cell).or_insert_with(|| vec![Moments::default(); 1 + self.methods])
+        other.times.iter().for_each(|(place, times)| self.times.entry(*place).or_default().join(times));
     }
 
     /// Mean time of a method over all its trials, µs, with its standard error; `None` when it was never asked.
     pub fn mean_us(&self, method: usize) -> Option<(f64, f64)> {
         let mut all = Moments::default();
-        self.cells.values().filter_map(|moments| moments.get(1 + method)).for_each(|moments| all.join(moments));
+        self.times.iter().filter(|((_, place), _)| *place == 1 + method).for_each(|(_, times)| all.join(times));
         (all.count > 0.0).then(|| (all.mean, all.sd() / all.count.sqrt()))
     }
 
     /// One line for every cell and method that was timed.
     pub fn lines<'a>(&'a self, design: &'a Design) -> impl Iterator<Item = TimingLine> + 'a {
-        self.cells.iter().flat_map(move |(cell, moments)| {
-            names(design).zip(moments).filter(|(_, moments)| moments.count > 0.0).map(|(method, moments)| TimingLine {
-                cell: *cell,
-                method: method.to_owned(),
-                trials: moments.count as u64,
-                mean_us: to_the_nanosecond(moments.mean),
-                sd_us: to_the_nanosecond(moments.sd()),
-                shortest_us: to_the_nanosecond(moments.smallest),
-            })
+        let names: Vec<&str> = names(design).collect();
+        self.times.iter().map(move |(&(cell, place), times)| TimingLine {
+            cell,
+            method: names[place].to_owned(),
+            trials: times.count as u64,
+            mean_us: to_the_nanosecond(times.mean),
+            sd_us: to_the_nanosecond(times.sd()),
+            shortest_us: to_the_nanosecond(times.smallest),
         })
     }
 
     /// Times from their lines; methods the design does not have are left out.
     pub fn of_lines(lines: impl IntoIterator<Item = TimingLine>, design: &Design) -> Self {
-        let mut timings = Self::new(design.methods.len());
-        for line in lines {
-            if let Some(place) = names(design).position(|name| name == line.method) {
-                timings.of_cell(line.cell)[place] = Moments {
-                    count: line.trials as f64,
-                    mean: line.mean_us,
-                    second: line.sd_us.powi(2) * (line.trials.saturating_sub(1)) as f64,
-                    smallest: line.shortest_us,
-                    ..Moments::default()
-                };
-            }
-        }
-        timings
+        let times = lines.into_iter().filter_map(|line| {
+            let place = names(design).position(|name| name == line.method)?;
+            let count = line.trials as f64;
+            let second = line.sd_us.powi(2) * (line.trials.saturating_sub(1)) as f64;
+            let (mean, smallest) = (line.mean_us, line.shortest_us);
+            Some(((line.cell, place), Moments { count, mean, second, smallest, ..Moments::default() }))
+        });
+        Self { times: times.collect() }
     }
 
     /// The text of `timings.csv`.

@@ -170,7 +170,7 @@ impl<'a> Unfinished<'a> {
             layout,
             manifest: Manifest { machine, ..manifest },
             parts: 0,
-            timings: Timings::new(design.methods.len()),
+            timings: Timings::default(),
         };
         this.manifest.write(&this.folder)?;
         Ok(this)
@@ -287,7 +287,7 @@ impl<'a> Unfinished<'a> {
         let before = self.manifest.machine.wall_time_s;
         let start = Instant::now();
         let mut waiting: Vec<StudyRow> = Vec::new();
-        let mut timings = Timings::new(self.design.methods.len());
+        let mut timings = Timings::default();
         let mut oldest = Instant::now();
         for outcomes in outcomes {
             if waiting.is_empty() {
@@ -318,8 +318,7 @@ impl<'a> Unfinished<'a> {
         file.put()?;
         self.folder.sync()?;
         self.parts += 1;
-        self.timings.join(timings);
-        *timings = Timings::new(self.design.methods.len());
+        self.timings.join(&std::mem::take(timings));
         self.manifest.write(&self.folder)
     }
 

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | sums over columns of numbers, with the same bits on every machine | [`mod@column`], [`lanes`] |
 //! | the Fourier transform | [`transform`] |
-//! | the Kalman filter with its smoother and its derivatives | [`kalman`] |
+//! | the Kalman filter with its smoother | [`kalman`] |
 //! | exact steps of such systems in time, and sample paths | [`stochastic`] |
 //! | numbers that carry their derivatives | [`number`] |
 //! | linear least squares with covariance and condition number | [`least_squares`] |

@@ -16,12 +16,12 @@ mod points;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::angle::from_deg;
-use ship::{FirstOrder, Shown};
+use ship::{FirstOrder, ShortNumber};
 use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
-use crate::identifier::{Identifier, NoiseFreeAccuracy};
+use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, require};
 use found::Analysed;
@@ -83,10 +83,10 @@ impl Settings {
     /// Fails when the half width is not positive, an angle is not finite or the condition limit is not above 1.
     pub fn build(self) -> Result<CharacteristicPoints, SettingsError> {
         if let Some(width) = self.half_width_s {
-            require(width > 0.0 && width.is_finite(), "half-width-s", Shown(width), "a positive time")?;
+            require(width > 0.0 && width.is_finite(), "half-width-s", ShortNumber(width), "a positive time")?;
         }
         for (key, angle) in [("base-course-deg", self.base_course_deg), ("rudder-bias-deg", self.rudder_bias_deg)] {
-            angle.map_or(Ok(()), |angle| require(angle.is_finite(), key, Shown(angle), "an angle"))?;
+            angle.map_or(Ok(()), |angle| require(angle.is_finite(), key, ShortNumber(angle), "an angle"))?;
         }
         check_condition_limit(self.condition_limit)?;
         Ok(CharacteristicPoints { settings: self })
@@ -175,11 +175,6 @@ impl Identifier for CharacteristicPoints {
             diagnostics,
             warnings: warnings(trials, &analysed),
         })
-    }
-
-    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
-        // Peaks are no parabolas: +0.7 % at the default half width in an independent computation.
-        NoiseFreeAccuracy { whole: [0.008, 0.008, 0.008], with_gaps: [0.01, 0.01, 0.02] }
     }
 }
 

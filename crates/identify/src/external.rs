@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use ship::Shown;
+use ship::ShortNumber;
 use trial::{Origin, Trial};
 
 use crate::error::IdentifyError;
@@ -75,7 +75,7 @@ impl Settings {
             return Err(SettingsError::new("command", found, "words that are not blank, of at most 4096 bytes each"));
         }
         let holds = TIMEOUTS_S.contains(&timeout_s);
-        require(holds, "timeout-s", Shown(timeout_s), "a time from 0.01 to 86400 s")?;
+        require(holds, "timeout-s", ShortNumber(timeout_s), "a time from 0.01 to 86400 s")?;
         Ok(External { timeout: Duration::from_secs_f64(timeout_s), pool: ProcessPool::of(command, folder) })
     }
 }
@@ -96,7 +96,7 @@ impl Identifier for External {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        let first = trials.first().ok_or(IdentifyError::NoTrial)?;
+        let (first, others) = trials.split_first().ok_or(IdentifyError::NoTrial)?;
         let mut process = self.pool.take()?;
         loop {
             let before = process.answered();
@@ -105,7 +105,7 @@ impl Identifier for External {
                 Origin::Simulated { replicate, .. } => *replicate,
                 Origin::Measured { .. } => before,
             };
-            let asked = process.ask(self.timeout, |line| protocol::question(number, trials, line));
+            let asked = process.ask(self.timeout, protocol::question(number, first, others));
             match asked.and_then(|line| protocol::answer(&line, number)) {
                 Ok(answer) => {
                     self.pool.give_back(process);

@@ -16,7 +16,7 @@
 //! by generalised cross-validation (Golub, Heath and Wahba 1979).
 
 use serde::{Deserialize, Serialize};
-use ship::Shown;
+use ship::ShortNumber;
 use ship::angle::to_deg;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -29,7 +29,7 @@ use crate::fourier::fundamental::zero_crossing_period;
 use crate::fourier::regression::{Equations, RegressionForm, white_variance};
 use crate::fourier::{self, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUSTED_CONDITION};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Identifier, NoiseFreeAccuracy};
+use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, require};
 
@@ -107,7 +107,7 @@ impl Settings {
         match self.harmonics {
             Order::Fixed(fixed) => require((1..=MOST_HARMONICS).contains(&fixed), "harmonics.fixed", fixed, "1 to 64"),
             Order::Gcv { reach } => {
-                require((1.5..=50.0).contains(&reach), "harmonics.reach", Shown(reach), "1.5 to 50")
+                require((1.5..=50.0).contains(&reach), "harmonics.reach", ShortNumber(reach), "1.5 to 50")
             }
         }?;
         self.fundamental.check()?;
@@ -294,11 +294,6 @@ impl Identifier for FourierProjected {
             diagnostics,
             warnings,
         })
-    }
-
-    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
-        // A residue of the truncation of r': within half a percent but for the long swings of 10/20.
-        NoiseFreeAccuracy { whole: [0.004, 0.018, 0.04], with_gaps: [0.012, 0.018, 0.1] }
     }
 }
 

@@ -22,7 +22,7 @@ use crate::error::IdentifyError;
 use crate::estimate::{Estimate, StopReason, Uncertainty};
 use crate::fourier::triples::{self, Answer, Drawn, EquationInstant, MOST_TRIPLES, Selection};
 use crate::fourier::{self, Fitted, Fundamental, MOST_HARMONICS};
-use crate::identifier::{Identifier, NoiseFreeAccuracy};
+use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, require};
 
@@ -198,13 +198,6 @@ impl Identifier for FourierPublished {
             diagnostics: diagnostics(&fits, instants.len(), &drawn),
             warnings: warnings(&fits, &drawn),
         })
-    }
-
-    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
-        // Eight harmonics truncate r': an independent computation finds a few per cent in K and 11 to 17 % in T. Ten
-        // triples scatter about that, and δ_r is the worst of their ratios. The curve is the poorer the fewer headings
-        // hold it: with gaps it is off by twice as much.
-        NoiseFreeAccuracy { whole: [0.1, 0.22, 0.7], with_gaps: [0.25, 0.45, 1.0] }
     }
 }
 

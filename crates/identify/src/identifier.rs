@@ -1,4 +1,4 @@
-//! What all methods have in common: the trait, and how near a method comes without noise.
+//! What all methods have in common.
 
 use std::fs::File;
 use std::io;
@@ -60,11 +60,6 @@ pub trait Identifier: Send + Sync {
     fn outside(&self) -> Option<&dyn Outside> {
         None
     }
-
-    /// How near the method comes without noise; the contract of all methods holds it to that.
-    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
-        NoiseFreeAccuracy::default()
-    }
 }
 
 /// Opens a file to write at its end.
@@ -86,23 +81,4 @@ pub trait Outside {
 
     /// Ends the processes that wait for a trial, and the log with them.
     fn end(&self);
-}
-
-/// Largest errors that the method itself makes in zig-zags of a ship with K = 0.1 1/s and T = 16.3 s, read every
-/// second without noise: of K and of T as shares, of δ_r in deg.
-///
-/// The default is that of a method without any error of its own, which takes the corners of the rudder from where the
-/// record has them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NoiseFreeAccuracy {
-    /// From every row.
-    pub whole: [f64; 3],
-    /// With every seventh row and fifteen rows in a piece lost.
-    pub with_gaps: [f64; 3],
-}
-
-impl Default for NoiseFreeAccuracy {
-    fn default() -> Self {
-        Self { whole: [1e-6; 3], with_gaps: [0.001, 0.002, 0.012] }
-    }
 }

@@ -19,7 +19,7 @@ use trial::Trial;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Identifier, NoiseFreeAccuracy};
+use crate::identifier::Identifier;
 use crate::robust::{judge, newey_west_of_three};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
@@ -124,12 +124,6 @@ impl Identifier for IntegralLeastSquares {
             diagnostics,
             warnings: warnings(trials, pieces.len()).into_iter().chain(warning).collect(),
         })
-    }
-
-    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
-        // Where whole rows are lost the rudder between them is a straight line as well. An error of it grows with time
-        // in an equation that is integrated twice, while it dies out in a simulation: 0.3 % of T against 0.1 %.
-        NoiseFreeAccuracy { with_gaps: [0.001, 0.005, 0.012], ..NoiseFreeAccuracy::default() }
     }
 }
 

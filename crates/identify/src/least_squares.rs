@@ -12,7 +12,7 @@ use trial::Trial;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Identifier, NoiseFreeAccuracy};
+use crate::identifier::Identifier;
 use crate::robust::newey_west_of_three;
 use crate::samples::Samples;
 use crate::savitzky_golay::{SavitzkyGolay, WindowWeights};
@@ -95,15 +95,15 @@ pub struct MotionRegression {
     settings: Settings,
 }
 
-/// A stretch of a record without a gap.
+/// A part of a record without a gap.
 #[derive(Debug)]
-struct Stretch {
+struct GapFreePart {
     time: Vec<f64>,
     /// Rows with an equation, at least one.
     rows: Vec<usize>,
 }
 
-/// The equations of all stretches, column by column.
+/// The equations of all parts without a gap, column by column.
 #[derive(Debug, Default)]
 struct Equations {
     /// −r, rad/s.
@@ -112,7 +112,7 @@ struct Equations {
     rudder: Vec<f64>,
     /// r', rad/s².
     acceleration: Vec<f64>,
-    stretches: Vec<Stretch>,
+    parts: Vec<GapFreePart>,
 }
 
 /// The way of white noise of unit variance in the signal into the equations.
@@ -192,11 +192,6 @@ impl Identifier for MotionRegression {
             warnings,
         })
     }
-
-    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
-        // Central differences over 1 s of a response with T = 16.3 s; around a gap equations are lost.
-        NoiseFreeAccuracy { whole: [0.001, 0.0015, 0.004], with_gaps: [0.003, 0.003, 0.02] }
-    }
 }
 
 impl MotionRegression {
@@ -252,7 +247,7 @@ impl MotionRegression {
                 rows.push(k);
             }
             if !rows.is_empty() {
-                equations.stretches.push(Stretch { time: time.to_vec(), rows });
+                equations.parts.push(GapFreePart { time: time.to_vec(), rows });
             }
         }
     }
@@ -263,13 +258,13 @@ impl MotionRegression {
         let mut path = NoisePath { influence: Matrix3::zeros(), of_error: 0.0, of_rate_and_error: 0.0 };
         let mut equation = 0;
         let mut influence = Vec::new();
-        for stretch in &equations.stretches {
+        for part in &equations.parts {
             influence.clear();
-            influence.resize(stretch.time.len(), Vector3::zeros());
-            for &k in &stretch.rows {
+            influence.resize(part.time.len(), Vector3::zeros());
+            for &k in &part.rows {
                 let row = equations.row(equation);
                 equation += 1;
-                let Some((window, weights)) = weights.at(&stretch.time, k) else { continue };
+                let Some((window, weights)) = weights.at(&part.time, k) else { continue };
                 for (j, &weights) in window.zip(weights) {
                     let (of_rate, of_acceleration) = self.rate_and_acceleration(weights);
                     let of_error = of_acceleration + a * of_rate;
@@ -289,10 +284,10 @@ impl Equations {
         Vector3::new(self.minus_rate[equation], self.rudder[equation], 1.0)
     }
 
-    /// Regressors times residual, stretch by stretch.
+    /// Regressors times residual, part by part.
     fn scores(&self, [a, b, c]: [f64; 3]) -> Vec<[Vec<f64>; 3]> {
         let mut equation = 0;
-        let mut of_stretch = |rows: usize| {
+        let mut of_part = |rows: usize| {
             let mut columns = [(); 3].map(|()| Vec::with_capacity(rows));
             for equation in equation..equation + rows {
                 let row = self.row(equation);
@@ -302,7 +297,7 @@ impl Equations {
             equation += rows;
             columns
         };
-        self.stretches.iter().map(|stretch| of_stretch(stretch.rows.len())).collect()
+        self.parts.iter().map(|part| of_part(part.rows.len())).collect()
     }
 }
 

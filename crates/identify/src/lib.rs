@@ -47,5 +47,5 @@ mod testing;
 
 pub use error::IdentifyError;
 pub use estimate::{Estimate, StopReason, Uncertainty};
-pub use identifier::{Identifier, NoiseFreeAccuracy, Outside};
+pub use identifier::{Identifier, Outside};
 pub use registry::IdentifierSettings;

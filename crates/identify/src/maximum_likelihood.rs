@@ -31,7 +31,7 @@ pub use settings::{CompassChoice, MomentChoice, RudderChoice, Settings};
 
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
-use crate::identifier::{Identifier, NoiseFreeAccuracy};
+use crate::identifier::Identifier;
 use crate::settings::{SettingsError, check_iterations};
 
 /// Times, s, of the readings of every record that belong to no ship: single spikes and sentinels such as −999, which
@@ -62,11 +62,6 @@ impl Identifier for MaximumLikelihood {
 
     fn summary(&self) -> &'static str {
         "maximum likelihood with a random yaw moment, rudder error and compass error, chosen by BIC"
-    }
-
-    /// Without any noise the corners of the rudder between rows are all there is to see, and may pass for a moment.
-    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
-        NoiseFreeAccuracy { whole: [2e-3, 3e-3, 2e-3], with_gaps: [5e-3, 1e-2, 0.02] }
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {

@@ -10,14 +10,13 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
-use ship::first_order::State;
-use ship::{FirstOrder, Shown};
+use ship::{FirstOrder, ShortNumber};
 use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::identifier::Identifier;
-use crate::likelihood::track::{Coefficients, Track};
+use crate::likelihood::track::Track;
 use crate::profile::{NewtonStep, Profile, invert};
 use crate::robust;
 use crate::samples::track;
@@ -50,7 +49,7 @@ impl Settings {
         check_iterations("iterations", self.iterations)?;
         if let Some(smallest) = self.smallest_time_constant_s {
             let holds = TIME_CONSTANTS.contains(&smallest);
-            require(holds, "smallest-time-constant-s", Shown(smallest), "a time of 1e-6 to 1e6 s")?;
+            require(holds, "smallest-time-constant-s", ShortNumber(smallest), "a time of 1e-6 to 1e6 s")?;
         }
         Ok(OutputError { settings: self })
     }
@@ -309,7 +308,7 @@ impl RangeScan {
         let mut warnings = Vec::from_iter(warning);
         warnings.extend(response.is_course_unstable().then(|| COURSE_UNSTABLE.into()));
         if at_bound {
-            let (time, end) = (Shown(response.T()), Shown(1.0 / fastest));
+            let (time, end) = (ShortNumber(response.T()), ShortNumber(1.0 / fastest));
             warnings.push(format!("T = {time} s is at its bound or beyond: the search ends at ±{end} s"));
         }
         Ok(Estimate {
@@ -343,24 +342,6 @@ pub(crate) fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freed
         Vector3::new(0.0, -response.rudder_bias / b, 1.0 / b).transpose(),
     ]);
     Covariance { matrix: jacobian * of_linear * jacobian.transpose(), degrees_of_freedom: Some(freedom) }
-}
-
-/// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial of known truth and white heading noise of sd `heading_sd` (rad):
-/// the smallest covariance an unbiased method can have when the initial state is unknown as well.
-///
-/// `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` when the record does not
-/// determine the parameters. Source: Cramér (1946), Rao (1945).
-pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, heading_sd: f64) -> Option<Covariance> {
-    let track = Track::new(trial);
-    let mut coefficients = Coefficients { anchor: initial, ..Coefficients::of(truth) };
-    if crate::likelihood::track::is_backward(truth.inverse_T) {
-        coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);
-    }
-    let mut profile = Profile::new(vec![track]);
-    let information = profile.information_at(truth.inverse_T, &[coefficients])?;
-    let (inverse, _) = invert(&information, CONDITION_LIMIT).ok()?;
-    let covariance = inverse * heading_sd.powi(2);
-    Some(Covariance { degrees_of_freedom: None, ..to_response(&covariance, truth, 1.0) })
 }
 
 #[cfg(test)]

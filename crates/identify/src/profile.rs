@@ -125,17 +125,6 @@ impl Profile {
         information
     }
 
-    /// The same at given coefficients, one set a trial, whatever the headings are; `None` when it is not finite.
-    pub fn information_at(&mut self, inverse_time: f64, coefficients: &[Coefficients]) -> Option<Matrix3<f64>> {
-        self.last = None;
-        let mut information = Matrix3::zeros();
-        for (part, coefficients) in self.parts.iter_mut().zip(coefficients) {
-            part.project_columns(inverse_time);
-            information += part.information(inverse_time, coefficients);
-        }
-        information.iter().all(|value| value.is_finite()).then_some(information)
-    }
-
     /// Residual times projected Jacobian, column by column and trial by trial; after
     /// [`information`](Self::information).
     pub fn into_scores(self) -> Vec<[Vec<f64>; 3]> {

@@ -1,6 +1,6 @@
 //! Why the settings of a method are refused; shared by every method, found before any record is read.
 
-use ship::Shown;
+use ship::ShortNumber;
 use thiserror::Error;
 
 /// A setting out of its range.
@@ -42,10 +42,10 @@ pub(crate) fn check_iterations(key: &'static str, iterations: usize) -> Result<(
 
 /// Refuses a `condition-limit` that no equations can keep, and one that is no number.
 pub(crate) fn check_condition_limit(limit: f64) -> Result<(), SettingsError> {
-    require(limit > 1.0, "condition-limit", Shown(limit), "a number above 1")
+    require(limit > 1.0, "condition-limit", ShortNumber(limit), "a number above 1")
 }
 
 /// Refuses a `longest-gap-s` that is no time.
 pub(crate) fn check_longest_gap(gap_s: Option<f64>) -> Result<(), SettingsError> {
-    gap_s.map_or(Ok(()), |gap| require(gap > 0.0, "longest-gap-s", Shown(gap), "a positive time"))
+    gap_s.map_or(Ok(()), |gap| require(gap > 0.0, "longest-gap-s", ShortNumber(gap), "a positive time"))
 }

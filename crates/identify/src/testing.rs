@@ -2,6 +2,8 @@
 //! test measures is the method. The rudder is recorded at the rows and linear between them, as in a real record.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
+use std::collections::BTreeMap;
+
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use ship::angle::from_deg;
 use ship::first_order::{FirstOrder, State, Transition};
@@ -201,7 +203,16 @@ impl Case {
 
 /// A record of these columns, s and rad.
 pub fn record(name: &str, time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
-    let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into_iter().collect();
+    of_channels(name, time, [(Channel::Heading, heading), (Channel::Rudder, rudder)].into())
+}
+
+/// The same with a gyro, rad/s.
+pub fn record_with_gyro(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>, yaw_rate: Vec<f64>) -> Trial {
+    let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder), (Channel::YawRate, yaw_rate)];
+    of_channels("gyro", time, channels.into())
+}
+
+fn of_channels(name: &str, time: Vec<f64>, channels: BTreeMap<Channel, Vec<f64>>) -> Trial {
     let origin = Origin::Simulated { scenario: name.into(), cell: 0, replicate: 0 };
     Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a test builds valid records")
 }

@@ -284,7 +284,7 @@ fn fixed(value: f64, decimals: usize) -> String {
 
 /// A standard deviation with one digit that is not zero.
 fn one_digit(value: f64) -> String {
-    if value < 1.0 { ship::Shown::rounded(value, 1).to_string() } else { format!("{value:.0}") }
+    if value < 1.0 { ship::ShortNumber::rounded(value, 1).to_string() } else { format!("{value:.0}") }
 }
 
 /// The interval of nine tenths of the draws.

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use ship::Particulars;
 use simulate::Manoeuvre;
-use trial::manoeuvre::in_words;
+use trial::manoeuvre::{from_words, to_words};
 
 use crate::error::PredictError;
 use crate::figures::{self, Figures};
@@ -74,7 +74,7 @@ fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.
-    #[serde(with = "in_words")]
+    #[serde(serialize_with = "to_words", deserialize_with = "from_words")]
     #[schemars(with = "String")]
     pub kind: Manoeuvre,
     /// Its figures by name, with the unit.

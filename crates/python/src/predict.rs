@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use scenario::failure::Failure;
+use study::documents as document;
 use study::options::PredictRequest;
-use study::views::document;
-use study::work::predict::{self as work, Model, PredictInput};
+use study::work::predict::{self as work, PredictInput, StoredModel};
 
 use crate::asked::request;
 use crate::record::{PyRecord, trials};
@@ -28,10 +28,10 @@ pub fn predict(
         asked.replays = records.iter().map(|record| PathBuf::from(record.name())).collect();
         let mut warnings = Vec::new();
         let read = |(name, text): &(String, Option<String>)| match text {
-            Some(text) => Model::of_document(name, text, asked.method.as_deref(), asked.calm, &mut warnings),
-            None => Model::of_file(Path::new(name), &asked, &mut warnings),
+            Some(text) => StoredModel::of_document(name, text, asked.method.as_deref(), asked.calm, &mut warnings),
+            None => StoredModel::of_file(Path::new(name), &asked, &mut warnings),
         };
-        let models: Vec<Model> = models.iter().map(read).collect::<Result<_, _>>()?;
+        let models: Vec<StoredModel> = models.iter().map(read).collect::<Result<_, _>>()?;
         let input = PredictInput { models: &models, ballast: &[], records, current: None, declared: None };
         let predicted = work::predict(&asked, input, true, &mut warnings)?;
         Ok((document::text(&predicted).map_err(Failure::work)?, warnings))

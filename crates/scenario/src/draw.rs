@@ -5,7 +5,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal, Uniform};
 use serde::{Deserialize, Serialize};
-use ship::Shown;
+use ship::ShortNumber;
 use simulate::{Purpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
 
@@ -126,7 +126,7 @@ impl DrawWire {
         if !(low < high && draw.probability() >= LEAST_PROBABILITY) {
             return Err(KeyFault::value(
                 place.child("between"),
-                format!("the draw of `{}` is held between {} and {}", draw.key, Shown(low), Shown(high)),
+                format!("the draw of `{}` is held between {} and {}", draw.key, ShortNumber(low), ShortNumber(high)),
                 format!("expected a range that holds at least {} % of the draws", 100.0 * LEAST_PROBABILITY),
                 "widen the range, or change the distribution",
             ));
@@ -156,10 +156,11 @@ impl DrawWire {
         for ((number, value), least) in numbers.into_iter().zip(least) {
             let is_within_reach = least == f64::NEG_INFINITY || (value - least).is_finite();
             if !(value.is_finite() && value > least && is_within_reach) {
-                let found = format!("`{number}` of the `{name}` distribution of `{}` is {}", self.key, Shown(value));
+                let found =
+                    format!("`{number}` of the `{name}` distribution of `{}` is {}", self.key, ShortNumber(value));
                 let expected = match least {
                     f64::NEG_INFINITY => "expected a finite number".to_owned(),
-                    _ => format!("expected a finite number above {}", Shown(least)),
+                    _ => format!("expected a finite number above {}", ShortNumber(least)),
                 };
                 return Err(KeyFault::value(place.child(name).child(number), found, expected, "change the number"));
             }

@@ -12,7 +12,7 @@ use ship::effects::{
     SpeedLoss, SteeringLag, TransientDisturbance, WaveYaw, WindMoment,
 };
 use ship::ships::Model;
-use ship::{ResponseModel, Ship, Shown};
+use ship::{ResponseModel, Ship, ShortNumber};
 
 use crate::number_table::{self, NamedNumbers, NumberKey, closed};
 use crate::problem::{KeyFault, KeyPath, suggestion};
@@ -185,12 +185,12 @@ pub fn added(ship: Ship, entries: &[NamedNumbers]) -> Result<Ship, KeyFault> {
             if !description.holds(setting.value) {
                 let key = key.child(setting.key);
                 let mut ends =
-                    [description.lowest, description.highest].map(|end| Shown::rounded(end / setting.unit, 4));
+                    [description.lowest, description.highest].map(|end| ShortNumber::rounded(end / setting.unit, 4));
                 // Divided by the T of a course-unstable ship, the lower end becomes the upper.
                 ends.sort_by(|one, other| one.0.total_cmp(&other.0));
                 let expected = format!("expected a number from {} to {}", ends[0], ends[1]);
                 let advice = format!("change the value; the effect is {}", effect.equation());
-                return Err(KeyFault::of(key, Shown(setting.written), expected, advice));
+                return Err(KeyFault::of(key, ShortNumber(setting.written), expected, advice));
             }
         }
         effects.push(effect);

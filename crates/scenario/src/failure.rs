@@ -35,6 +35,11 @@ impl Failure {
         Self { blame: Blame::Input, message: message.to_string() }
     }
 
+    /// The input is wrong, and a file of this name holds it.
+    pub fn about(file: &(impl AsRef<Path> + ?Sized), problem: impl fmt::Display) -> Self {
+        Self::input(format!("{}: {problem}", file.as_ref().display()))
+    }
+
     /// The work could not be done.
     pub fn work(message: impl fmt::Display) -> Self {
         Self { blame: Blame::Work, message: message.to_string() }

@@ -9,7 +9,7 @@ use ::ship::angle::{KNOT, from_deg};
 use ::ship::effects::Parameter;
 use ::ship::linear::SecondOrderIndices;
 use ::ship::ships::{self, user, user::ShipError};
-use ::ship::{Particulars, Ship, Shown};
+use ::ship::{Particulars, Ship, ShortNumber};
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
 
@@ -151,8 +151,8 @@ impl OwnShip<'_> {
             ShipError::Value { symbol, reason, .. } => (symbol, reason.to_owned()),
             ShipError::Range { symbol, parameter, value } => {
                 let Parameter { symbol: of, unit, lowest, highest, .. } = parameter;
-                let range = format!("from {} to {} {unit}", Shown(*lowest), Shown(*highest));
-                (symbol, format!("expected {of} {range}, and this makes it {}", Shown(value)))
+                let range = format!("from {} to {} {unit}", ShortNumber(*lowest), ShortNumber(*highest));
+                (symbol, format!("expected {of} {range}, and this makes it {}", ShortNumber(value)))
             }
         };
         let own = self.numbers.iter().find(|(key, _)| key.split('-').next() == Some(symbol));
@@ -171,7 +171,7 @@ impl OwnShip<'_> {
             true => Ok(value),
             false => {
                 let expected = "expected a finite number above 0";
-                Err(KeyFault::of(key.child(name), Shown(value), expected, "change the number"))
+                Err(KeyFault::of(key.child(name), ShortNumber(value), expected, "change the number"))
             }
         };
         match (self.number(LENGTH.key), self.number(SPEED.key)) {

@@ -1,7 +1,7 @@
 //! The stopping rule of a scenario: `[stop]`. What it sees, and when it is met, is for those who run the study.
 
 use serde::{Deserialize, Serialize};
-use ship::Shown;
+use ship::ShortNumber;
 
 use crate::method::Method;
 use crate::problem::{KeyFault, KeyPath, place_among};
@@ -83,7 +83,7 @@ impl StopRule {
         if !(self.standard_error > 0.0 && self.standard_error.is_finite()) {
             let advice = "give the standard error, in per cent, at which a cell has enough trials";
             let expected = "expected a finite number above 0";
-            return Err(KeyFault::of(key.child("standard-error"), Shown(self.standard_error), expected, advice));
+            return Err(KeyFault::of(key.child("standard-error"), ShortNumber(self.standard_error), expected, advice));
         }
         if self.every < FEWEST {
             let expected = format!("expected at least {FEWEST}");

@@ -6,7 +6,7 @@
 use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
-use ship::Shown;
+use ship::ShortNumber;
 use toml::{Table, Value};
 
 use crate::limits;
@@ -270,7 +270,8 @@ impl RangeWire {
     }
 
     fn problem(&self, place: &KeyPath, expected: &str) -> KeyFault {
-        let found = format!("a range of {} points from {} to {}", self.points, Shown(self.from), Shown(self.to));
+        let found =
+            format!("a range of {} points from {} to {}", self.points, ShortNumber(self.from), ShortNumber(self.to));
         KeyFault::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
     }
 }
@@ -297,7 +298,7 @@ fn distinguish(points: &mut [SweepPoint]) {
     if labels.len() < before {
         for point in points {
             if let Some(value) = point.value {
-                point.label = Shown(value).to_string();
+                point.label = ShortNumber(value).to_string();
             }
         }
     }
@@ -306,14 +307,14 @@ fn distinguish(points: &mut [SweepPoint]) {
 /// A value as a person would write it.
 pub fn written(value: &Value) -> String {
     match value {
-        Value::Float(number) if !Shown(*number).is_plain() => Shown(*number).to_string(),
+        Value::Float(number) if !ShortNumber(*number).is_plain() => ShortNumber(*number).to_string(),
         other => other.to_string(),
     }
 }
 
 /// A number with four significant digits, more where they stand before the point, and no trailing zeros.
 fn trim(number: f64) -> String {
-    let rounded = Shown::rounded(number, 4);
+    let rounded = ShortNumber::rounded(number, 4);
     if !rounded.is_plain() {
         return rounded.to_string();
     }

@@ -15,7 +15,7 @@
 //! | hulls with three degrees of freedom | [`vessel`] |
 //! | linear sway-yaw equations and their indices | [`linear`] |
 //! | parameter sets with their sources | [`ships`] |
-//! | numbers in messages | [`shown`] |
+//! | numbers in messages | [`short_number`] |
 //!
 //! Inside, everything is in SI units and radians. Positive rudder gives positive (starboard) yaw rate, heading
 //! grows clockwise seen from above, `v` is positive to starboard.
@@ -32,7 +32,7 @@ pub mod particulars;
 pub mod replay;
 pub mod response;
 pub mod ships;
-pub mod shown;
+pub mod short_number;
 pub mod signal;
 pub mod vessel;
 
@@ -44,5 +44,5 @@ pub use number::{DIRECTIONS, Tangent};
 pub use particulars::Particulars;
 pub use response::{Response, ResponseModel};
 pub use ships::Ship;
-pub use shown::Shown;
+pub use short_number::ShortNumber;
 pub use signal::Polyline;

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use ship::Shown;
+use ship::ShortNumber;
 use thiserror::Error;
 use trial::TrialError;
 
@@ -94,7 +94,9 @@ impl SpecificationError {
             Expected::Execute(last) => {
                 format!("`{key}` is {}, and the manoeuvre ends after execute {last}", shown(value))
             }
-            _ if key == "vessel.dead_time" => format!("the dead times of all effects add up to {} s", Shown(value)),
+            _ if key == "vessel.dead_time" => {
+                format!("the dead times of all effects add up to {} s", ShortNumber(value))
+            }
             _ => format!("`{key}` is {}", shown(value)),
         };
         let wanted = match expected {
@@ -156,7 +158,7 @@ pub enum SimulateError {
     #[error(transparent)]
     Specification(#[from] SpecificationError),
     /// The state is not finite, or the ship has turned more than a hundred times.
-    #[error("the motion diverged at {time:.1} s: heading {} rad, yaw rate {} rad/s", Shown(*.heading), Shown(*.yaw_rate))]
+    #[error("the motion diverged at {time:.1} s: heading {} rad, yaw rate {} rad/s", ShortNumber(*.heading), ShortNumber(*.yaw_rate))]
     Diverged {
         /// Time, s.
         time: f64,
@@ -166,7 +168,7 @@ pub enum SimulateError {
         yaw_rate: f64,
     },
     /// The ship never reached the heading at which something was to happen.
-    #[error("after execute {execute} the heading never deviated by {} rad within {} s", Shown(*.angle), Shown(*.waited))]
+    #[error("after execute {execute} the heading never deviated by {} rad within {} s", ShortNumber(*.angle), ShortNumber(*.waited))]
     NeverReached {
         /// Executes made so far.
         execute: usize,
@@ -202,8 +204,8 @@ pub enum SimulateError {
 pub(crate) type Check = Result<(), SpecificationError>;
 
 /// A number as it was written: conversion to radians and back must not show.
-pub(crate) fn shown(value: f64) -> Shown {
-    Shown::rounded(value, 14)
+pub(crate) fn shown(value: f64) -> ShortNumber {
+    ShortNumber::rounded(value, 14)
 }
 
 /// Refuses what no single value is to blame for.

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::LazyLock;
 
-use crate::bench_options::BenchRequest;
 use crate::commands::{
     bench, check, doctor, find, fit, list, merge, overview, predict, report, run, schema, score, shell, sidecar,
     simulate, trace,
@@ -61,7 +60,7 @@ enum Command {
     /// Score answers to simulated trials that another program found, beside the methods of the scenario
     Score(With<score::ScoreRequest>),
     /// Run the benchmark on measured and simulated trials: leaderboards, bench.json, report, plots
-    Bench(With<BenchRequest>),
+    Bench(With<bench::BenchRequest>),
     /// Resolve scenario files and run nothing
     Check(With<check::CheckRequest>),
     /// List what scenario files can name

@@ -40,24 +40,13 @@ pub fn install() {
     });
 }
 
-/// While this lives, an interruption is a request.
-pub struct StopListener(());
+/// Takes an interruption as a request from now on, or no more: then it ends the program again.
+pub fn listen(is_request: bool) {
+    install();
+    LISTENING.store(is_request, Ordering::SeqCst);
+}
 
-impl StopListener {
-    /// Listens from now on.
-    pub fn new() -> Self {
-        install();
-        LISTENING.store(true, Ordering::SeqCst);
-        Self(())
-    }
-
-    /// Listens no more: an interruption ends the program again.
-    pub fn end(&self) {
-        LISTENING.store(false, Ordering::SeqCst);
-    }
-
-    /// Whether to stop.
-    pub fn is_asked(&self) -> bool {
-        ASKED.load(Ordering::Relaxed)
-    }
+/// Whether to stop.
+pub fn is_asked() -> bool {
+    ASKED.load(Ordering::Relaxed)
 }

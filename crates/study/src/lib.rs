@@ -10,7 +10,6 @@
 //! | tables, figures and pages | [`views`] |
 //! | the terminal | [`screen`], `terminal`, `progress`, `interrupt`, `threads` |
 
-pub mod bench_options;
 pub mod cli;
 pub mod commands;
 pub mod documents;

@@ -4,11 +4,6 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
-/// A bar over `length` trials, of which the first `done` were done before.
-pub fn bar(length: u64, done: u64, quiet: bool) -> ProgressBar {
-    of("trials", length, quiet).with_position(done).with_elapsed(Duration::ZERO)
-}
-
 /// A bar over `length` of something; it goes away when the work is done.
 pub fn of(what: &str, length: u64, quiet: bool) -> ProgressBar {
     if quiet {

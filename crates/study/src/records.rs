@@ -49,10 +49,10 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         own.sort();
         if own.is_empty() {
             let endings = ENDINGS.join(", .");
-            return Err(Failure::input(format!(
-                "{}: this folder holds no record; expected files that end in .{endings}",
-                path.display()
-            )));
+            return Err(Failure::about(
+                path,
+                format!("this folder holds no record; expected files that end in .{endings}"),
+            ));
         }
         files.extend(own);
     }
@@ -149,10 +149,10 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
         Some(TimePoint::Clock(stamp, text)) => {
             let time = log.clock().and_then(|clock| clock.time_of(stamp));
             time.map(Some).ok_or_else(|| {
-                Failure::input(format!(
-                    "{}: `{text}` is a time of day, and this record has no clock that shows it; give seconds",
-                    path.display()
-                ))
+                Failure::about(
+                    path,
+                    format!("`{text}` is a time of day, and this record has no clock that shows it; give seconds"),
+                )
             })
         }
     }
@@ -181,13 +181,7 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
     let found = manoeuvres(&log);
     let manoeuvre = match asked {
         Some(number) => number.checked_sub(1).and_then(|place| found.get(place)).ok_or_else(|| {
-            Failure::input(format!(
-                "{file}: there is no manoeuvre {number}; `study find {file}` lists {}",
-                match found.len() {
-                    0 => String::from("none"),
-                    count => format!("{count}"),
-                }
-            ))
+            Failure::about(path, format!("there is no manoeuvre {number}; `study find {file}` lists {}", found.len()))
         })?,
         None => {
             let zigzags: Vec<(usize, &FoundManoeuvre)> =
@@ -224,17 +218,11 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
 
 /// The question which of several zig-zags is meant.
 fn ask(log: &Log, path: &Path, several: &[(usize, &FoundManoeuvre)]) -> Failure {
-    let lines: String = several
-        .iter()
-        .map(|(number, one)| {
-            format!("\n  --trial {number}: {}, {} to {}", one.name(), at(log, one.from), at(log, one.until))
-        })
-        .collect();
-    Failure::input(format!(
-        "{}: there are {} zig-zags in this log; say which one{lines}",
-        path.display(),
-        several.len()
-    ))
+    let line = |(number, one): &(usize, &FoundManoeuvre)| {
+        format!("\n  --trial {number}: {}, {} to {}", one.name(), at(log, one.from), at(log, one.until))
+    };
+    let lines: String = several.iter().map(line).collect();
+    Failure::about(path, format!("there are {} zig-zags in this log; say which one{lines}", several.len()))
 }
 
 /// A time of a log for people: seconds, and what the clock shows.
@@ -258,9 +246,8 @@ fn ship(
     let first = log.channel(Channel::Speed).map(|speed| &speed[..speed.len().div_ceil(10)]);
     let mut speeds: Vec<f64> = first.into_iter().flatten().copied().filter(|speed| *speed > 0.0).collect();
     let Some(speed) = upper_median(&mut speeds) else {
-        return Err(Failure::input(format!(
-            "{file}: the record has no speed; give the approach speed beside --length-m, --speed-kn or --speed-m-s"
-        )));
+        let advice = "give the approach speed beside --length-m, --speed-kn or --speed-m-s";
+        return Err(Failure::about(path, format!("the record has no speed; {advice}")));
     };
     warnings.push(format!(
         "{file}: the approach speed is taken from the record, {} kn in its first tenth",
@@ -333,7 +320,7 @@ mod tests {
     #[test]
     fn no_two_records_have_the_same_name() {
         assert_eq!(names(["a", "b", "a", "a"].into_iter()), ["a", "b", "a-2", "a-3"]);
-        assert_eq!(names(["a", "a-2", "a"].into_iter()), ["a", "a-2", "a-3"]);
+        assert_eq!(names(["a", "a-2", "a", "a"].into_iter()), ["a", "a-2", "a-3", "a-4"]);
         assert_eq!(names(["a", "a", "a-2"].into_iter()), ["a", "a-2", "a-2-2"]);
     }
 }

@@ -60,7 +60,7 @@ impl FigureOptions {
         let file = self.style.as_deref();
         let own = file.map(style_of).transpose()?.unwrap_or_default();
         let named = |error: String| match file {
-            Some(file) => Failure::input(format!("{}: {error}", file.display())),
+            Some(file) => Failure::about(file, error),
             None => Failure::input(error),
         };
         let printed = self.paper.map(|width_mm| (width_mm, self.dpi));
@@ -77,8 +77,7 @@ impl FigureOptions {
 /// A style from its file.
 fn style_of(path: &Path) -> Result<report::Style, Failure> {
     let text = fs::read_to_string(path).on("read", path)?;
-    toml::from_str(&text)
-        .map_err(|error| Failure::input(format!("{}: {}", path.display(), error.to_string().trim_end())))
+    toml::from_str(&text).map_err(|error| Failure::about(path, format!("{}", error.to_string().trim_end())))
 }
 
 #[cfg(test)]

@@ -1,18 +1,18 @@
 //! Who watches a study at the command line: a bar, warnings on standard error, and Ctrl-C as a request to stop.
 
 use std::sync::OnceLock;
+use std::time::Duration;
 
 use campaign::Observer;
 use indicatif::ProgressBar;
 use scenario::failure::Failure;
 
-use crate::interrupt::{self, StopListener};
-use crate::{progress, screen};
+use crate::{interrupt, progress, screen};
 
 /// The terminal of a person who waits.
 pub struct Terminal {
     quiet: bool,
-    bar: OnceLock<(ProgressBar, StopListener)>,
+    bar: OnceLock<ProgressBar>,
 }
 
 impl Terminal {
@@ -24,18 +24,18 @@ impl Terminal {
 
 impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
-        self.bar.get_or_init(|| (progress::bar(most, done, self.quiet), StopListener::new()));
+        interrupt::listen(true);
+        let bar = || progress::of("trials", most, self.quiet).with_position(done).with_elapsed(Duration::ZERO);
+        self.bar.get_or_init(bar);
     }
 
     fn advance(&self) {
-        self.bar.get().iter().for_each(|(bar, _)| bar.inc(1));
+        self.bar.get().iter().for_each(|bar| bar.inc(1));
     }
 
     fn end(&self) {
-        self.bar.get().iter().for_each(|(bar, listener)| {
-            bar.finish();
-            listener.end();
-        });
+        self.bar.get().iter().for_each(|bar| bar.finish());
+        interrupt::listen(false);
     }
 
     fn note(&self, line: &str) {
@@ -49,7 +49,7 @@ impl Observer for Terminal {
     }
 
     fn is_asked_to_stop(&self) -> bool {
-        self.bar.get().is_some_and(|(_, listener)| listener.is_asked())
+        interrupt::is_asked()
     }
 
     fn give_up(&self, failure: &Failure) {

@@ -223,41 +223,27 @@ pub fn time_column(name: &str) -> Option<Unit> {
 mod tests {
     use super::*;
 
+    /// The names are those that files have: a new one may be added, none may change.
     #[test]
     fn every_name_of_the_contract_is_known() {
-        let expected = [
-            ("heading_deg", Channel::Heading, Unit::Degree),
-            ("heading_rad", Channel::Heading, Unit::Radian),
-            ("rudder_deg", Channel::Rudder, Unit::Degree),
-            ("rudder_rad", Channel::Rudder, Unit::Radian),
-            ("rudder_order_deg", Channel::RudderOrder, Unit::Degree),
-            ("yaw_rate_deg_s", Channel::YawRate, Unit::DegreePerSecond),
-            ("yaw_rate_rad_s", Channel::YawRate, Unit::RadianPerSecond),
-            ("speed_m_s", Channel::Speed, Unit::MetrePerSecond),
-            ("speed_kn", Channel::Speed, Unit::Knot),
-            ("surge_m_s", Channel::Surge, Unit::MetrePerSecond),
-            ("sway_m_s", Channel::Sway, Unit::MetrePerSecond),
-            ("north_m", Channel::North, Unit::Metre),
-            ("east_m", Channel::East, Unit::Metre),
-            ("roll_deg", Channel::Roll, Unit::Degree),
-            ("propeller_rps", Channel::PropellerRate, Unit::PerSecond),
-            ("propeller_rpm", Channel::PropellerRate, Unit::PerMinute),
-            ("wind_relative_speed_m_s", Channel::WindRelativeSpeed, Unit::MetrePerSecond),
-            ("wind_relative_from_deg", Channel::WindRelativeFrom, Unit::Degree),
-            ("wind_true_speed_m_s", Channel::WindTrueSpeed, Unit::MetrePerSecond),
-            ("wind_true_from_deg", Channel::WindTrueFrom, Unit::Degree),
-        ];
-        for (name, channel, unit) in expected {
-            assert_eq!(column(name), Some((channel, unit)), "{name}");
-        }
-        assert_eq!(time_column("t_s"), Some(Unit::Second));
-        assert_eq!(column("t_s"), None);
+        let names = Channel::ALL.map(Channel::accepted_names).join(", ");
+        assert_eq!(
+            names,
+            "heading_deg or heading_rad, rudder_deg or rudder_rad, rudder_order_deg or rudder_order_rad, \
+             yaw_rate_deg_s or yaw_rate_rad_s or yaw_rate_deg_min, speed_m_s or speed_kn, surge_m_s or surge_kn, \
+             sway_m_s or sway_kn, north_m, east_m, roll_deg or roll_rad, propeller_rps or propeller_rpm, \
+             wind_relative_speed_m_s or wind_relative_speed_kn, wind_relative_from_deg or wind_relative_from_rad, \
+             wind_true_speed_m_s or wind_true_speed_kn, wind_true_from_deg or wind_true_from_rad"
+        );
+        assert_eq!((time_column("t_s"), column("t_s")), (Some(Unit::Second), None));
     }
 
     #[test]
     fn written_names_are_read_back_and_all_channels_are_listed_once() {
         for (place, channel) in Channel::ALL.into_iter().enumerate() {
-            assert_eq!(column(&channel.column_name()), Some((channel, channel.written_unit())));
+            for &unit in channel.units() {
+                assert_eq!(column(&channel.name_in(unit)), Some((channel, unit)));
+            }
             assert_eq!(channel as usize, place);
         }
     }

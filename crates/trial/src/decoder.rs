@@ -2,8 +2,19 @@
 //! file may state is for each reader to decide.
 
 use std::cell::Cell;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
+
+use bytes::Bytes;
+use parquet::errors::Result;
+use parquet::file::reader::{ChunkReader, Length};
+
+/// Bytes at the beginning of a page that are looked at.
+const PAGE_HEAD: usize = 40;
+
+/// Length of the tail of a Parquet file, bytes.
+const TAIL: u64 = 8;
 
 thread_local! {
     static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
@@ -28,8 +39,43 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Option<T> {
     done.ok()
 }
 
+/// What the head of a page of a Parquet file states, which the decoder reserves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PageHead {
+    /// Whether it is a dictionary.
+    pub is_dictionary: bool,
+    /// Size unpacked, bytes.
+    pub unpacked: u64,
+    /// Size packed, bytes.
+    pub packed: u64,
+    /// Number of values.
+    pub values: u64,
+}
+
+impl PageHead {
+    /// Reads a head; `None` for what is none.
+    ///
+    /// A head is a Thrift struct in compact form (Apache Parquet format, `PageHeader`): kind, size unpacked, size
+    /// packed, perhaps a checksum, and then the head of a page of its kind, which begins with the number of values.
+    fn read(head: &[u8]) -> Option<Self> {
+        const NEXT_FIELD_STRUCT: u8 = 0x0c;
+        const DICTIONARY: u64 = 2;
+        let mut rest = head;
+        let [kind, unpacked, packed] = [(); 3].map(|()| number(&mut rest));
+        let (kind, unpacked, packed) = (whole(kind?)?, whole(unpacked?)?, whole(packed?)?);
+        if rest.first()? & 0x0f != NEXT_FIELD_STRUCT {
+            number(&mut rest)?;
+        }
+        let (field, inner) = rest.split_first()?;
+        rest = inner;
+        let values = whole(number(&mut rest)?)?;
+        let is_dictionary = kind == DICTIONARY;
+        (field & 0x0f == NEXT_FIELD_STRUCT).then_some(Self { is_dictionary, unpacked, packed, values })
+    }
+}
+
 /// The next field of a Thrift struct, if it is a whole number, still zigzag.
-pub fn number(bytes: &mut &[u8]) -> Option<u64> {
+fn number(bytes: &mut &[u8]) -> Option<u64> {
     const NEXT_FIELD_INTEGER: u8 = 0x15;
     let (&field, mut rest) = bytes.split_first()?;
     let mut zigzag = 0_u64;
@@ -46,8 +92,46 @@ pub fn number(bytes: &mut &[u8]) -> Option<u64> {
 }
 
 /// A zigzag number, if it is 0 or above.
-pub fn whole(zigzag: u64) -> Option<u64> {
+fn whole(zigzag: u64) -> Option<u64> {
     zigzag.is_multiple_of(2).then_some(zigzag / 2)
+}
+
+/// The bytes of a Parquet file, the heads of whose pages are looked at before they are given out.
+pub struct CheckedPages<B> {
+    /// The bytes.
+    pub bytes: B,
+    /// Whether a page may state so much.
+    pub fits: fn(PageHead) -> bool,
+}
+
+impl<B: ChunkReader> Length for CheckedPages<B> {
+    fn len(&self) -> u64 {
+        self.bytes.len()
+    }
+}
+
+impl<B: ChunkReader> ChunkReader for CheckedPages<B> {
+    type T = B::T;
+
+    /// The decoder asks in this way for the tail of a file and for the head of every page.
+    fn get_read(&self, start: u64) -> Result<Self::T> {
+        if start.checked_add(TAIL) != Some(self.len()) {
+            let left = self.len().saturating_sub(start);
+            let head = self.get_bytes(start, PAGE_HEAD.min(usize::try_from(left)?))?;
+            if !PageHead::read(&head).is_some_and(self.fits) {
+                return Err(io::Error::other("the head of a page is damaged").into());
+            }
+        }
+        self.bytes.get_read(start)
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
+        let end = start.checked_add(length as u64);
+        if end.is_none_or(|end| end > self.len()) {
+            return Err(io::Error::other("a part of it lies beyond its end").into());
+        }
+        self.bytes.get_bytes(start, length)
+    }
 }
 
 #[cfg(test)]
@@ -59,5 +143,21 @@ mod tests {
         assert_eq!(guarded(|| 3), Some(3));
         assert_eq!(guarded(|| -> u8 { panic!("a decoder gave up") }), None);
         assert!(!IS_GUARDED.get());
+    }
+
+    #[test]
+    fn pages_of_any_size_are_not_believed() {
+        let is_page =
+            |head: &[u8]| PageHead::read(head).is_some_and(|page| page.unpacked < 1 << 24 && page.values < 1 << 20);
+        // A data page (kind 0) of 300 bytes, 200 packed, with 100 values; the same with a checksum of -1.
+        let page = [0x15, 0x00, 0x15, 0xd8, 0x04, 0x15, 0x90, 0x03, 0x2c, 0x15, 0xc8, 0x01, 0x15, 0x00];
+        let summed = [0x15, 0x00, 0x15, 0xd8, 0x04, 0x15, 0x90, 0x03, 0x15, 0x01, 0x1c, 0x15, 0xc8, 0x01, 0x15, 0x00];
+        assert!(is_page(&page) && is_page(&summed));
+        let huge = [0x15, 0x00, 0x15, 0xfe, 0xff, 0xff, 0xff, 0x0f, 0x15, 0x90, 0x03, 0x2c, 0x15, 0xc8, 0x01];
+        let many = [0x15, 0x04, 0x15, 0xd8, 0x04, 0x15, 0x90, 0x03, 0x4c, 0x15, 0xfe, 0xff, 0xff, 0xff, 0x0f];
+        let negative = [0x15, 0x00, 0x15, 0xd7, 0x04, 0x15, 0x90, 0x03, 0x2c, 0x15, 0xc8, 0x01];
+        for head in [&huge[..], &many, &negative, &page[..5], &[], &[0xff; 40]] {
+            assert!(!is_page(head), "{head:x?}");
+        }
     }
 }

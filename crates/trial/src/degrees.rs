@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use ship::Shown;
+use ship::ShortNumber;
 use ship::angle::{from_deg, to_deg};
 
 /// An angle or angular rate, rad, or none of it, which a file gives in degrees: for `#[serde(with = "Degrees::<…>")]`.
@@ -31,7 +31,7 @@ impl Angle for Option<f64> {
 
 /// Degrees as they were written: their way to radians and back must not show.
 pub fn written_deg(angle: f64) -> f64 {
-    Shown::rounded(to_deg(angle), 14).0
+    ShortNumber::rounded(to_deg(angle), 14).0
 }
 
 impl<T: Angle + Copy + Serialize> Degrees<T> {

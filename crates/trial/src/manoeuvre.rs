@@ -390,19 +390,14 @@ impl FromStr for Manoeuvre {
     }
 }
 
-/// A manoeuvre as the words of its [`Display`](fmt::Display): for `#[serde(with = "in_words")]`.
-pub mod in_words {
-    use super::{Deserialize, Deserializer, Manoeuvre, Serializer};
+/// Writes a manoeuvre in the words of its [`Display`](fmt::Display): for `serialize_with`.
+pub fn to_words<S: Serializer>(manoeuvre: &Manoeuvre, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(manoeuvre)
+}
 
-    /// Writes the words.
-    pub fn serialize<S: Serializer>(manoeuvre: &Manoeuvre, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(manoeuvre)
-    }
-
-    /// Reads the words.
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Manoeuvre, D::Error> {
-        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-    }
+/// Reads these words: for `deserialize_with`.
+pub fn from_words<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Manoeuvre, D::Error> {
+    String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ mod corners;
 
 use std::collections::BTreeMap;
 
-use ship::replay::Recorded;
 use ship::signal::SignalError;
 use ship::{Particulars, Polyline};
 use thiserror::Error;
@@ -321,11 +320,6 @@ impl Trial {
         let seconds = self.sampling_period();
         found.extend((seconds > LONGEST_INTERVAL).then_some(Shortcoming::Interval { seconds }));
         found
-    }
-
-    /// The recorded rudder alone, ready to be replayed through a model.
-    pub fn recorded_rudder(&self) -> Recorded<'_> {
-        Recorded::rudder(self.rudder.path())
     }
 
     /// Rows in which the heading was recorded.

@@ -1,12 +1,13 @@
 //! What a record can tell at best (Cramér and Rao), and how near the efficient methods come to it.
 
 use identify::estimate::Covariance;
-use identify::{Identifier, IdentifierSettings, integral_least_squares, output_error};
+use identify::{Identifier, IdentifierSettings, integral_least_squares, maximum_likelihood, output_error};
 use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use ship::first_order::State;
 use simulate::{Manoeuvre, Simulated, StreamKey};
+use trial::noise_model::NoiseModel;
 
 use super::{BOUND, Check, DEFINITION, Section, Tolerance};
 use crate::records::{Begin, Case};
@@ -32,8 +33,8 @@ struct Bound {
 fn bound_of(simulated: &Simulated, ship: &FirstOrder, noise_deg: f64) -> Bound {
     let truth = &simulated.truth;
     let initial = State { heading: truth.heading[0], yaw_rate: truth.yaw_rate[0] };
-    let bound =
-        output_error::cramer_rao(&simulated.trial, ship, initial, from_deg(noise_deg)).expect("an excited record");
+    let noise = NoiseModel::compass(from_deg(noise_deg));
+    let bound = maximum_likelihood::cramer_rao(&simulated.trial, ship, initial, &noise).expect("an excited record");
     let (k, t) = bound.indices(ship);
     let percent = |sd: Option<f64>, value: f64| 100.0 * sd.expect("a covariance gives a sd") / value;
     Bound {

@@ -1,11 +1,11 @@
 //! Leaderboards: the scores of one task on measured or on simulated records, method by method. An answer that failed is
 //! worse than any other, whatever is made of it.
 
-use crate::statistics::{Statistic, share};
+use crate::statistics::{Statistic, grouped, share};
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::cases::{BenchCase, BenchTask};
-use crate::benchmark::statistics::{grouped, mean, middle_and_high, ranks, ratio, resampled};
+use crate::benchmark::statistics::{mean, middle_and_high, ranks, ratio, resampled};
 
 pub use crate::benchmark::statistics::{FEWEST, ScoreFigure};
 

@@ -113,7 +113,7 @@ impl Definition {
     /// Fails with a message that names file, line and key, what was found and what was expected.
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let read = |path: &Path| file::read_text(path, DEFINITION).map_err(|error| error.to_string());
-        let text = read(path).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        let text = read(path).map_err(|error| Failure::about(path, error))?;
         Self::parse(path, &text, seed, &|place, _| read(place))
     }
 
@@ -127,26 +127,19 @@ impl Definition {
         reader.file_name(&wire.name)?;
         let mut digest = Sha256::new_with_prefix(text);
         let mut sets = Vec::new();
-        let groups: Vec<Name> = wire
-            .measured
-            .iter()
-            .map(|set| &set.name)
-            .chain(wire.simulated.iter().map(|set| &set.name))
-            .cloned()
-            .collect();
+        let simulated = wire.simulated.iter().map(|set| &set.name);
+        reader.distinct(wire.measured.iter().map(|set| &set.name).chain(simulated), "set")?;
         for measured in wire.measured {
             sets.push(reader.measured(measured, &mut digest)?);
         }
         for simulated in &wire.simulated {
             sets.extend(reader.simulated(simulated, &mut digest)?);
         }
-        reader.distinct(groups.iter(), "set")?;
         if sets.is_empty() {
-            return Err(Failure::input(format!(
-                "{}: no set is defined; add [[measured]] or [[simulated]], as in {}",
-                path.display(),
-                embedded::PLACE
-            )));
+            return Err(Failure::about(
+                path,
+                format!("no set is defined; add [[measured]] or [[simulated]], as in {}", embedded::PLACE),
+            ));
         }
         let sha256 = hex(&digest.finalize());
         let DefinitionWire { name, about, reference, .. } = wire;
@@ -290,11 +283,9 @@ impl DefinitionReader<'_> {
         cell: usize,
     ) -> Result<RecordSet, Failure> {
         let own = &scenario.cells[cell];
-        let refuse =
-            |at: &Name, found: String, expected: &str, advice: &str| Err(self.at(at, &found, expected, advice));
         if own.records() != wire.records.len() {
             let found = format!("a trial of {} has {} records", place.display(), own.records());
-            return refuse(&wire.scenario, found, "expected as many names as records", "mend `records`");
+            return Err(self.at(&wire.scenario, &found, "expected as many names as records", "mend `records`"));
         }
         let key = crate::engine::key(scenario, Task { cell, replicate: 0 });
         let first = own.specimen(&key).map_err(Failure::input)?;
@@ -303,18 +294,19 @@ impl DefinitionReader<'_> {
             let manoeuvre = simulation.manoeuvre.clone();
             if !matches!(manoeuvre, Manoeuvre::ZigZag { .. } | Manoeuvre::TurningCircle { .. }) {
                 let found = format!("{} is no zig-zag and no turning circle", name.get_ref());
-                return refuse(name, found, "expected one of the two", "change the manoeuvre in the scenario");
+                let advice = "change the manoeuvre in the scenario";
+                return Err(self.at(name, &found, "expected one of the two", advice));
             }
             records.push(SetRecord { name: name.get_ref().clone(), manoeuvre });
         }
         if let Some(at) = wire.tasks.indices.first().filter(|_| !own.is_first_order()) {
             let found = format!("{} is asked for K and T", own.title());
-            return refuse(at, found, "expected a ship that is first order", "leave it out");
+            return Err(self.at(at, &found, "expected a ship that is first order", "leave it out"));
         }
         let missing = own.missing();
         if let Some(at) = wire.tasks.name.first().filter(|_| missing.len() > 1 || missing.iter().any(|m| m == HULL)) {
             let found = format!("{} lacks {}", own.title(), missing.join(", "));
-            return refuse(at, found, "expected one effect of the list, or none", "leave it out");
+            return Err(self.at(at, &found, "expected one effect of the list, or none", "leave it out"));
         }
         let group = wire.name.get_ref().clone();
         let several = scenario.cells.len() > 1;

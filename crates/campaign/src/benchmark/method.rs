@@ -14,9 +14,8 @@ use scenario::{TRACE, name};
 use simulate::StreamKey;
 use trial::{Channel, Quantity, Trial};
 
-use crate::benchmark::statistics::grouped;
 use crate::engine::failure;
-use crate::statistics::Moments;
+use crate::statistics::{Moments, distinct};
 
 /// Label of the method that takes every ship to go straight on.
 pub const STRAIGHT_ON: &str = "straight-on";
@@ -122,9 +121,11 @@ impl BenchMethod {
     pub fn fit(&self, trials: &[Trial], key: &StreamKey) -> Result<BenchModel, Failed> {
         match &self.procedure {
             BenchProcedure::StraightOn => Ok(BenchModel::StraightOn),
-            BenchProcedure::Identify(identifier) => scenario::identify(identifier.as_ref(), trials, key)
-                .map(|estimate| BenchModel::Response(Box::new(estimate)))
-                .map_err(|error| Failed::of(error.kind(), &error)),
+            BenchProcedure::Identify(identifier) => {
+                let estimate = scenario::identify(identifier.as_ref(), trials, key);
+                let estimate = estimate.map_err(|error| Failed::of(error.kind(), &error))?;
+                Ok(BenchModel::Response(Box::new(estimate)))
+            }
             BenchProcedure::Trace { of_heading } => {
                 let shown: Cow<[Trial]> = match of_heading {
                     true => trials.iter().map(of_common).collect(),
@@ -146,7 +147,7 @@ fn of_common(trial: &Trial) -> Trial {
 }
 
 /// Checks that methods can be told apart.
-pub fn distinct(methods: &[BenchMethod]) -> Result<(), Failure> {
+pub fn check_labels(methods: &[BenchMethod]) -> Result<(), Failure> {
     for (place, method) in methods.iter().enumerate() {
         let label = &method.label;
         name::file(label)
@@ -196,10 +197,7 @@ impl BenchModel {
     /// The effects it names, the most probable first, each followed by those that the records cannot tell from it.
     pub fn named(&self) -> Option<Vec<Vec<String>>> {
         let Self::Traced(analysis) = self else { return None };
-        let group = |effect: &EffectEntry| {
-            let ids = std::iter::once(&effect.id).chain(&effect.aliases).cloned();
-            grouped(ids, String::clone).into_iter().map(|(id, _)| id).collect()
-        };
+        let group = |effect: &EffectEntry| distinct(std::iter::once(&effect.id).chain(&effect.aliases).cloned());
         Some(analysis.document.effects.iter().map(group).collect())
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::WilsonShare;
 use crate::benchmark::cases::{BenchCase, BenchTask, Naming};
-use crate::benchmark::statistics::grouped;
+use crate::statistics::grouped;
 
 /// What a method said of the ships of one set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

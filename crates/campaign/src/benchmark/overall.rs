@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::{ScoreFigure, Scores, by_field};
 use crate::benchmark::cases::{BenchCase, BenchTask};
-use crate::benchmark::statistics::{grouped, mean, resampled_by_set};
+use crate::benchmark::statistics::{mean, resampled_by_set};
+use crate::statistics::grouped;
 
 /// The ranking.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

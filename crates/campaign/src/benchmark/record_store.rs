@@ -49,7 +49,7 @@ impl RecordStore {
         for folder in folders {
             let names = disk::names(folder).map_err(|error| {
                 let advice = "give the folder of the measured records with --data, or in KEMPF_DATA";
-                Failure::input(format!("{}: {error}; {advice}", folder.display()))
+                Failure::about(folder, format!("{error}; {advice}"))
             })?;
             store.look_through(folder, names, &wanted, 0);
         }

@@ -9,8 +9,8 @@ use crate::benchmark::method::BenchMethod;
 use crate::benchmark::naming::{self, NamingLine};
 use crate::benchmark::overall::{OverallRanking, overall};
 use crate::benchmark::record_store::UsedFile;
-use crate::benchmark::statistics::grouped;
 use crate::benchmark::wire::words;
+use crate::statistics::distinct;
 
 /// Version of the file.
 pub const SCHEMA: &str = "bench/1";
@@ -146,7 +146,7 @@ impl BenchDocument {
 
     /// The fields of records, in order.
     pub fn fields(&self) -> Vec<&str> {
-        grouped(&self.boards, |board| board.field.as_str()).into_iter().map(|(field, _)| field).collect()
+        distinct(self.boards.iter().map(|board| board.field.as_str()))
     }
 
     /// The same as JSON: everything indented, and a line for every case.

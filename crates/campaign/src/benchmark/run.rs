@@ -14,8 +14,8 @@ use crate::benchmark::definition::{Definition, Question, RecordFile, RecordSet, 
 use crate::benchmark::method::{self, BenchMethod, BenchModel, Failed};
 use crate::benchmark::record_store::{RecordStore, UsedFile};
 use crate::benchmark::results::{BenchDocument, Present, Skipped};
-use crate::benchmark::statistics::grouped;
 use crate::engine::{self, simulate, truths};
+use crate::statistics::grouped;
 use crate::task::Task;
 
 /// The records of one set or of one trial of it.
@@ -45,7 +45,7 @@ pub fn run(
     methods: &[BenchMethod],
     observer: &dyn Observer,
 ) -> Result<BenchDocument, Failure> {
-    method::distinct(methods)?;
+    method::check_labels(methods)?;
     let (mut trials, mut present, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
     for (number, set) in definition.sets.iter().enumerate() {
         let (own, found) = match &set.source {
@@ -59,14 +59,12 @@ pub fn run(
     let work: Vec<(&SharedFit, &BenchMethod)> =
         fits.iter().flat_map(|fit| methods.iter().map(move |method| (fit, method))).collect();
     observer.begin(work.len() as u64, 0);
-    let answers: Option<Vec<Vec<Option<CaseAnswer>>>> = work
-        .par_iter()
-        .map(|(fit, method)| {
-            let answers = (!observer.is_asked_to_stop()).then(|| answers(fit, method));
-            observer.advance();
-            answers
-        })
-        .collect();
+    let answer = |(fit, method): &(&SharedFit, &BenchMethod)| {
+        let answers = (!observer.is_asked_to_stop()).then(|| answers(fit, method));
+        observer.advance();
+        answers
+    };
+    let answers: Option<Vec<Vec<Option<CaseAnswer>>>> = work.par_iter().map(answer).collect();
     observer.end();
     let answers = answers.ok_or_else(|| Failure::work("stopped; nothing was written"))?;
     let mut cases = Vec::new();
@@ -172,11 +170,8 @@ fn answered(trial: &BenchTrial, question: &Question, model: &BenchModel) -> Resu
     match question.task {
         BenchTask::Name => {
             let named = model.named().unwrap_or_default();
-            Ok(CaseAnswer {
-                naming: Some(Naming::of(missing(trial).as_deref(), &named)),
-                named,
-                ..CaseAnswer::default()
-            })
+            let naming = Some(Naming::of(missing(trial).as_deref(), &named));
+            Ok(CaseAnswer { naming, named, ..CaseAnswer::default() })
         }
         BenchTask::Indices => indices(trial, model).ok_or_else(|| Failed::of("not-finite", &"K or T is not finite")),
         _ => {

@@ -46,19 +46,6 @@ impl ScoreFigure {
     }
 }
 
-/// Groups in the order of their first members.
-pub(super) fn grouped<K: PartialEq, T>(all: impl IntoIterator<Item = T>, key: impl Fn(&T) -> K) -> Vec<(K, Vec<T>)> {
-    let mut found: Vec<(K, Vec<T>)> = Vec::new();
-    for one in all {
-        let own = key(&one);
-        match found.iter_mut().find(|(known, _)| *known == own) {
-            Some((_, group)) => group.push(one),
-            None => found.push((own, vec![one])),
-        }
-    }
-    found
-}
-
 /// Mean of some numbers; NaN of none.
 pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let mut moments = Moments::default();

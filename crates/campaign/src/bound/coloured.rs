@@ -71,7 +71,7 @@ fn whiten(times: &[f64], error: &CompassError, columns: &mut [Vec<f64>; 5]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use identify::{maximum_likelihood, output_error};
+    use identify::maximum_likelihood;
     use nalgebra::DMatrix;
     use ship::angle::from_deg;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
@@ -98,7 +98,8 @@ mod tests {
                 cramer_rao(&trial, &truth, State::default(), &error).expect("a zig-zag determines the ship")
             };
             let white = |sd_deg: f64| {
-                output_error::cramer_rao(&trial, &truth, State::default(), from_deg(sd_deg)).expect("known").matrix
+                let noise = NoiseModel::compass(from_deg(sd_deg));
+                maximum_likelihood::cramer_rao(&trial, &truth, State::default(), &noise).expect("known").matrix
             };
             let noise = NoiseModel { heading_correlation: Some(10.0), ..NoiseModel::compass(from_deg(0.3)) };
             let coloured = maximum_likelihood::cramer_rao(&trial, &truth, State::default(), &noise).expect("known");

@@ -10,16 +10,16 @@ use parquet::basic::Compression;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::file::properties::WriterProperties;
-use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReader};
+use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::ColumnPath;
 
-use super::decoding;
 use super::layout::{RowLayout, Values};
 use super::row::StudyRow;
 use crate::disk;
 use crate::folder::{ResultFolder, TemporaryFile};
 use scenario::failure::{Failure, OnPath};
+use trial::decoder::{CheckedPages, PageHead};
 
 /// Rows of a row group. Part of the identity of a file: groups are cut here however the rows arrive.
 const GROUP: usize = 65_536;
@@ -32,9 +32,6 @@ const LONGEST_TEXT: usize = 4096;
 
 /// Largest size of one column of a row group before it is packed, bytes.
 const LARGEST_COLUMN: i64 = 1 << 28;
-
-/// Length of the tail of a Parquet file, bytes.
-const TAIL: u64 = 8;
 
 /// Writes rows in their order to a new file, which appears under its name whole or not at all.
 pub struct RowWriter<'a> {
@@ -122,38 +119,22 @@ pub struct RowReader<'a, B: ChunkReader + 'static> {
     left: usize,
 }
 
-/// The bytes of a file, in which the heads of pages are looked at.
-struct CheckedPages<B>(B);
+/// Bytes of a page before it is packed, at most; the writer begins a new page at about one megabyte.
+const LARGEST_PAGE: u64 = 1 << 24;
 
-impl<B: ChunkReader> Length for CheckedPages<B> {
-    fn len(&self) -> u64 {
-        self.0.len()
-    }
-}
+/// Values of a page, at most.
+const MOST_VALUES: u64 = 1 << 20;
 
-impl<B: ChunkReader> ChunkReader for CheckedPages<B> {
-    type T = B::T;
-
-    /// The decoder asks in this way for the tail of a file and for the head of every page.
-    fn get_read(&self, start: u64) -> parquet::errors::Result<Self::T> {
-        if start.checked_add(TAIL) != Some(self.len()) {
-            let left = self.len().saturating_sub(start);
-            let head = self.get_bytes(start, decoding::PAGE_HEAD.min(usize::try_from(left)?))?;
-            decoding::check_page(&head)?;
-        }
-        self.0.get_read(start)
-    }
-
-    fn get_bytes(&self, start: u64, length: usize) -> parquet::errors::Result<Bytes> {
-        self.0.get_bytes(start, length)
-    }
+/// Whether a page of a study may state so much: the decoder would reserve it.
+fn fits(page: PageHead) -> bool {
+    page.unpacked <= LARGEST_PAGE && page.values <= MOST_VALUES
 }
 
 impl<'a> RowReader<'a, disk::File> {
     /// Opens a file. Fails as wrong input when there is none, or when its columns are not those of the layout.
     pub fn open(path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
-        let file = disk::File::open(path)
-            .map_err(|error| Failure::input(format!("{}: cannot be opened: {error}", path.display())))?;
+        let file =
+            disk::File::open(path).map_err(|error| Failure::about(path, format!("cannot be opened: {error}")))?;
         Self::new(file, path, layout)
     }
 }
@@ -167,10 +148,10 @@ impl<'a> RowReader<'a, Bytes> {
 
 impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
     fn new(file: B, path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
-        let refuse =
-            |problem: String| Failure::input(format!("{}: {problem}; expected the rows of this study", path.display()));
+        let refuse = |problem: String| Failure::about(path, format!("{problem}; expected the rows of this study"));
         trial::decoder::guarded(|| {
-            let file = SerializedFileReader::new(CheckedPages(file)).map_err(|error| refuse(error.to_string()))?;
+            let file = SerializedFileReader::new(CheckedPages { bytes: file, fits })
+                .map_err(|error| refuse(error.to_string()))?;
             let schema = file.metadata().file_metadata().schema_descr_ptr();
             let found: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
             if let Some(name) = layout.names().find(|name| !found.contains(&name.as_str())) {
@@ -196,9 +177,8 @@ impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
     /// The next rows, a few thousand at most; nothing when all have been read.
     pub(super) fn next_rows(&mut self) -> Result<Vec<StudyRow>, Failure> {
         let path = self.path.clone();
-        trial::decoder::guarded(|| self.decoded()).unwrap_or_else(|| {
-            Err(Failure::input(format!("{}: it is damaged; expected the rows of this study", path.display())))
-        })
+        trial::decoder::guarded(|| self.decoded())
+            .unwrap_or_else(|| Err(Failure::about(&path, "it is damaged; expected the rows of this study")))
     }
 
     fn decoded(&mut self) -> Result<Vec<StudyRow>, Failure> {
@@ -208,10 +188,9 @@ impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
             }
             let group = self.file.get_row_group(self.group).map_err(|error| self.damaged(&error.to_string()))?;
             self.left = group.metadata().num_rows().unsigned_abs() as usize;
-            self.columns = (0..group.metadata().num_columns())
-                .map(|column| group.get_column_reader(column))
-                .collect::<Result<_, _>>()
-                .map_err(|error| self.damaged(&error.to_string()))?;
+            let columns = (0..group.metadata().num_columns()).map(|column| group.get_column_reader(column));
+            let columns: Result<Vec<ColumnReader>, _> = columns.collect();
+            self.columns = columns.map_err(|error| self.damaged(&error.to_string()))?;
             self.group += 1;
         }
         let length = self.left.min(BATCH);
@@ -222,7 +201,7 @@ impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
     }
 
     fn damaged(&self, problem: &str) -> Failure {
-        Failure::input(format!("{}: {problem}; the file was changed or is of another study", self.path.display()))
+        Failure::about(&self.path, format!("{problem}; the file was changed or is of another study"))
     }
 
     /// Hands every row to `take`, in order.
@@ -269,8 +248,7 @@ fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<
     let (mut present, mut values) = (Vec::with_capacity(length), Vec::with_capacity(length));
     let mut read = 0;
     while read < length {
-        let (rows, ..) = reader
-            .read_records(length - read, Some(&mut present), None, &mut values)
+        let (rows, ..) = (reader.read_records(length - read, Some(&mut present), None, &mut values))
             .map_err(|error| error.to_string())?;
         if rows == 0 {
             return Err("it ends too early".to_owned());

@@ -5,7 +5,6 @@
 //! seed whatever the number of threads, interruptions and shards.
 
 mod columns;
-mod decoding;
 mod file;
 mod layout;
 mod row;

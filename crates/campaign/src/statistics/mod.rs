@@ -3,12 +3,14 @@
 //! moments, [`Moments`] for the running moments of one quantity.
 
 mod bootstrap;
+mod groups;
 mod moments;
 mod sample;
 mod statistic;
 mod sums;
 
 pub use bootstrap::Resamples;
+pub use groups::{distinct, grouped};
 pub use moments::Moments;
 pub use sample::{ErrorSample, Ordered};
 pub use statistic::{Statistic, Z95, share};

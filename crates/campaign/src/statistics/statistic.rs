@@ -12,6 +12,12 @@ pub struct Statistic {
 }
 
 impl Statistic {
+    /// The figure and the ends of its interval, as far as there are any.
+    pub fn flat(figure: Option<Self>) -> [Option<f64>; 3] {
+        let ends = figure.and_then(|figure| figure.ci95);
+        [figure.map(|figure| figure.value), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])]
+    }
+
     /// The figure in another unit; `factor` is above zero.
     pub fn times(self, factor: f64) -> Self {
         Self { value: self.value * factor, ci95: self.ci95.map(|ends| ends.map(|end| end * factor)) }

@@ -40,13 +40,6 @@ pub fn end_all() {
     }
 }
 
-/// A question and back again with its answer: the memory of both is used for the next ones.
-struct Exchange {
-    question: Vec<u8>,
-    answer: Vec<u8>,
-    read: io::Result<()>,
-}
-
 /// Takes what a process says beside its answers, line by line.
 pub type Listener = Box<dyn FnMut(&[u8]) + Send>;
 
@@ -54,9 +47,8 @@ pub type Listener = Box<dyn FnMut(&[u8]) + Send>;
 pub struct Process {
     child: Arc<Mutex<Child>>,
     /// Without it the input of the process ends.
-    questions: Option<SyncSender<Exchange>>,
-    answers: Receiver<Exchange>,
-    idle: Option<Exchange>,
+    questions: Option<SyncSender<Vec<u8>>>,
+    answers: Receiver<Vec<u8>>,
     answered: u64,
     log: Option<JoinHandle<()>>,
 }
@@ -80,8 +72,7 @@ impl Process {
         drop(started);
         let (questions, asked) = sync_channel(1);
         let (answer, answers) = sync_channel(1);
-        let idle = Some(Exchange { question: Vec::new(), answer: Vec::new(), read: Ok(()) });
-        let mut this = Self { child, questions: Some(questions), answers, idle, answered: 0, log: None };
+        let mut this = Self { child, questions: Some(questions), answers, answered: 0, log: None };
         thread::Builder::new().name("outside".to_owned()).spawn(move || converse(input, output, &asked, &answer))?;
         if let Some((errors, log)) = errors.zip(log) {
             this.log = Some(thread::Builder::new().name("outside-log".to_owned()).spawn(move || keep(errors, log))?);
@@ -94,31 +85,23 @@ impl Process {
         self.answered
     }
 
-    /// Asks what `write` writes and waits for the line of the answer, without its end.
-    pub fn ask(&mut self, timeout: Duration, write: impl FnOnce(&mut Vec<u8>)) -> Result<Vec<u8>, ProcessError> {
-        let (Some(mut exchange), Some(questions)) = (self.idle.take(), &self.questions) else {
-            return Err(ProcessError::Ended(None));
-        };
-        exchange.question.clear();
-        write(&mut exchange.question);
-        exchange.answer.clear();
-        if questions.send(exchange).is_err() {
+    /// Asks a question and waits for the line of the answer, without its end.
+    pub fn ask(&mut self, timeout: Duration, question: Vec<u8>) -> Result<Vec<u8>, ProcessError> {
+        if self.questions.as_ref().is_none_or(|questions| questions.send(question).is_err()) {
             return Err(ProcessError::Ended(self.status()));
         }
-        let mut exchange = match self.answers.recv_timeout(timeout) {
-            Ok(exchange) => exchange,
+        let mut answer = match self.answers.recv_timeout(timeout) {
+            Ok(answer) => answer,
             Err(RecvTimeoutError::Timeout) => return Err(ProcessError::Silent(timeout)),
             Err(RecvTimeoutError::Disconnected) => return Err(ProcessError::Ended(self.status())),
         };
-        if exchange.answer.len() > MOST_BYTES {
+        if answer.len() > MOST_BYTES {
             return Err(ProcessError::TooLong { most: MOST_BYTES });
         }
-        if exchange.read.is_err() || exchange.answer.pop_if(|last| *last == b'\n').is_none() {
+        if answer.pop_if(|last| *last == b'\n').is_none() {
             return Err(ProcessError::Ended(self.status()));
         }
         self.answered += 1;
-        let answer = std::mem::take(&mut exchange.answer);
-        self.idle = Some(exchange);
         Ok(answer)
     }
 
@@ -187,15 +170,16 @@ fn apart(command: &mut Command) {
 #[cfg(not(any(unix, windows)))]
 fn apart(_: &mut Command) {}
 
-/// Writes questions and reads answers until nobody asks any more, or listens.
-fn converse(mut input: ChildStdin, output: ChildStdout, asked: &Receiver<Exchange>, answers: &SyncSender<Exchange>) {
+/// Writes questions and reads answers until nobody asks any more, or listens; an answer without the end of its line is
+/// the last one.
+fn converse(mut input: ChildStdin, output: ChildStdout, asked: &Receiver<Vec<u8>>, answers: &SyncSender<Vec<u8>>) {
     let mut output = BufReader::new(output);
-    for mut exchange in asked {
+    for question in asked {
         // A process that does not read may have said why before: its output tells.
-        let _ = input.write_all(&exchange.question);
-        let mut line = output.by_ref().take(MOST_BYTES as u64 + 1);
-        exchange.read = line.read_until(b'\n', &mut exchange.answer).map(drop);
-        if answers.send(exchange).is_err() {
+        let _ = input.write_all(&question);
+        let mut answer = Vec::new();
+        let read = output.by_ref().take(MOST_BYTES as u64 + 1).read_until(b'\n', &mut answer);
+        if read.is_err() || answers.send(answer).is_err() {
             return;
         }
     }

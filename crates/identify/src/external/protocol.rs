@@ -59,14 +59,14 @@ impl<'a> Record<'a> {
     }
 }
 
-/// Writes the question about a trial, of which further records are those behind the first, with the end of its line.
-pub fn question(number: u64, trials: &[Trial], line: &mut Vec<u8>) {
-    let Some((first, others)) = trials.split_first() else { return };
+/// The question about a trial, of which further records are those behind the first, with the end of its line.
+pub fn question(number: u64, trial: &Trial, others: &[Trial]) -> Vec<u8> {
     let also = others.iter().map(|other| Record::of(None, other)).collect();
-    let record = Record { also, ..Record::of(Some(number), first) };
+    let record = Record { also, ..Record::of(Some(number), trial) };
     // Numbers that are not finite become `null`, which is what a missing reading is.
-    serde_json::to_writer(&mut *line, &record).expect("numbers and lists can be written to memory");
+    let mut line = serde_json::to_vec(&record).expect("numbers and lists can be written to memory");
     line.push(b'\n');
+    line
 }
 
 #[derive(Deserialize)]
@@ -176,8 +176,7 @@ mod tests {
         heading[3] = f64::NAN;
         let trial = record("gap", truth.time().to_vec(), heading.clone(), truth.rudder().to_vec());
         let trial = trial.with_noise(trial::Noise { heading: Some(0.0017), ..Default::default() });
-        let mut line = Vec::new();
-        question(17, &[trial.clone(), trial], &mut line);
+        let line = question(17, &trial, std::slice::from_ref(&trial));
         assert_eq!(line.iter().filter(|byte| **byte == b'\n').count(), 1);
         let read: serde_json::Value = serde_json::from_slice(&line).expect("JSON");
         assert_eq!((&read["trial"], &read["yaw_rate_rad_s"]), (&17.into(), &serde_json::Value::Null));

@@ -5,7 +5,7 @@
 
 use estimation::statistics::median;
 use serde::{Deserialize, Serialize};
-use ship::Shown;
+use ship::ShortNumber;
 use std::f64::consts::{PI, TAU};
 
 use super::profile::Profile;
@@ -61,7 +61,7 @@ impl Fundamental {
     pub fn check(&self) -> Result<(), SettingsError> {
         let Self::RecordAndPeriods(periods) = self else { return Ok(()) };
         let holds = (0.0..=2.0).contains(periods);
-        require(holds, "fundamental.record-and-periods", Shown(*periods), "0 to 2 periods")
+        require(holds, "fundamental.record-and-periods", ShortNumber(*periods), "0 to 2 periods")
     }
 
     /// Chooses w for `heading` (rad) at `time` (s, increasing), to be used with `harmonics` harmonics.

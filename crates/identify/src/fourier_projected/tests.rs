@@ -1,7 +1,6 @@
 //! Anchors, bias, calibration of the covariance and refusals of the mended Fourier method.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use ship::angle::from_deg;
 
 use super::*;
 use crate::testing::{Case, Start, record};
@@ -123,45 +122,6 @@ fn noise_lowers_the_order() {
             .harmonics()
     };
     assert!(harmonics(3.0) < harmonics(0.0));
-}
-
-#[test]
-fn the_rudder_bias_is_found_and_shared() {
-    let biased = Case { bias_deg: 1.0, ..Case::default() };
-    let other = Case { bias_deg: 1.0, samples: 300, ..zigzag(20.0, 20.0) };
-    let method = build(Settings::default());
-    let alone = method.identify(&[biased.trial()]).expect("identified");
-    assert_abs_diff_eq!(alone.response.rudder_bias, from_deg(1.0), epsilon = from_deg(0.05));
-    let both = method.identify(&[biased.trial(), other.trial()]).expect("identified");
-    assert_abs_diff_eq!(both.response.rudder_bias, from_deg(1.0), epsilon = from_deg(0.05));
-    assert!(both.K().sd < alone.K().sd);
-}
-
-#[test]
-fn a_mirrored_trial_gives_the_mirrored_answer() {
-    let starboard = estimate(Settings::default(), &Case { bias_deg: 0.5, ..Case::default() }).response;
-    let port = Case { rudder_deg: -10.0, bias_deg: -0.5, ..Case::default() };
-    let port = estimate(Settings::default(), &port).response;
-    assert_relative_eq!(port.K(), starboard.K(), max_relative = 1e-9);
-    assert_relative_eq!(port.T(), starboard.T(), max_relative = 1e-9);
-    assert_relative_eq!(port.rudder_bias, -starboard.rudder_bias, max_relative = 1e-7);
-}
-
-#[test]
-fn gaps_and_uneven_rows_are_taken() {
-    let truth = Case::default().truth();
-    let mut gappy = truth.heading.clone();
-    for row in (0..271).filter(|row| row % 5 == 3 || (100..108).contains(row)) {
-        gappy[row] = f64::NAN;
-    }
-    let kept: Vec<usize> = (0..271).filter(|row| row % 7 != 2 && row % 11 != 5).collect();
-    let of = |values: &[f64]| kept.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-    let uneven = record("uneven", of(&truth.time), of(&truth.heading), of(&truth.rudder));
-    for trial in [record("gaps", truth.time.clone(), gappy, truth.rudder.clone()), uneven] {
-        let response = build(Settings::default()).identify(&[trial]).expect("identified").response;
-        assert_relative_eq!(response.K(), 0.1, max_relative = 0.01);
-        assert_relative_eq!(response.T(), 16.3, max_relative = 0.02);
-    }
 }
 
 #[test]

@@ -109,19 +109,6 @@ fn the_seed_decides_and_repeats() {
 }
 
 #[test]
-fn several_trials_and_gaps_are_taken() {
-    let first = Case::default().truth();
-    let mut gappy = first.heading.clone();
-    for row in (5..270).step_by(7) {
-        gappy[row] = f64::NAN;
-    }
-    let trials = [record("gaps", first.time, gappy, first.rudder), ten_twenty().trial()];
-    let found = robust().build().expect("valid settings").identify(&trials).expect("identified").response;
-    assert_relative_eq!(found.K(), 0.1, max_relative = 0.06);
-    assert_relative_eq!(found.T(), 16.3, max_relative = 0.2);
-}
-
-#[test]
 fn short_and_straight_records_are_refused() {
     let method = Settings::default().build().expect("valid settings");
     let short = Case { samples: 17, ..Case::default() }.trial();

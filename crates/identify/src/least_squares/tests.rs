@@ -1,11 +1,10 @@
 //! Truth everywhere: K = 0.1 1/s, T = 16.3 s, unless a test says otherwise.
 
 use approx::assert_abs_diff_eq;
-use ship::angle::{from_deg, to_deg};
-use trial::{Channel, Columns, Origin};
+use ship::angle::from_deg;
 
 use super::*;
-use crate::testing::{Case, Start, record};
+use crate::testing::{Case, record, record_with_gyro};
 
 fn smoothed() -> Settings {
     Settings { smoothing: Some(SavitzkyGolay::default()), ..Settings::default() }
@@ -37,10 +36,7 @@ fn with_gyro(case: &Case) -> Trial {
     let (truth, noisy) = (case.truth(), case.trial());
     let noise = noisy.heading().iter().zip(&truth.heading).map(|(seen, psi)| seen - psi);
     let rate = truth.yaw_rate.iter().zip(noise).map(|(r, n)| r + n).collect();
-    let channels =
-        [(Channel::Heading, truth.heading), (Channel::Rudder, truth.rudder), (Channel::YawRate, rate)].into();
-    let origin = Origin::Simulated { scenario: "gyro".into(), cell: 0, replicate: 0 };
-    Trial::new("gyro", origin, Columns { time: truth.time, channels, unknown: Vec::new() }).expect("valid")
+    record_with_gyro(truth.time, truth.heading, truth.rudder, rate)
 }
 
 /// Sorted errors of K and T over repeats.
@@ -125,16 +121,6 @@ fn the_gyro_gives_the_ship_and_its_scatter() {
     assert!((reported / sd - 1.0).abs() < 0.2, "reported {reported:.3} %, scatter {sd:.3} %");
     let error = method(gyro()).identify(&[Case::default().trial()]).expect_err("no gyro");
     assert_eq!(error, IdentifyError::NoChannel { trial: "zigzag".into(), channel: "yaw rate" });
-}
-
-#[test]
-fn trials_share_the_ship_and_its_bias() {
-    let small = Case { bias_deg: 1.5, ..Case::default() };
-    let large = Case { rudder_deg: -20.0, heading_deg: 20.0, start: Start::Rest, ..small };
-    let both = identify(Settings::default(), &[small.trial(), large.trial()]);
-    assert_abs_diff_eq!(to_deg(both.response.rudder_bias), 1.5, epsilon = 0.01);
-    let [k, t] = errors(&both);
-    assert!(k.abs() < 0.2 && t.abs() < 0.2, "K {k:+.3} %, T {t:+.3} %");
 }
 
 #[test]

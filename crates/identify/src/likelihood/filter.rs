@@ -1,11 +1,11 @@
 //! The Kalman filter of a noise on a schedule.
 
-use estimation::kalman::{Filter, Reading, Sensor, System, Whitener};
+use estimation::kalman::{Filter, Sensor, System, Whitener};
 use estimation::with_states;
 use trial::noise_model::Moment;
 
 use super::parameters::NoiseParameters;
-use super::schedule::{ReadingKind, Schedule, ScheduledReading};
+use super::schedule::Schedule;
 use super::transition::step;
 
 /// The filter that makes columns of one record white, in units of the compass error, with variances of the initial
@@ -28,17 +28,11 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
     }
     // A compass error that lasts is a state of its own.
     let white = if compass.is_some() { 0.0 } else { 1.0 };
+    // In the order of the places of `schedule`.
     let sensors = vec![
         Sensor { state: 0, beside: compass, variance: white },
         Sensor { state: 1, beside: None, variance: parameters.gyro * parameters.gyro },
     ];
     let steps = schedule.spans.iter().map(|span| step(parameters, span)).collect();
-    let reading = |reading: &ScheduledReading| Reading {
-        step: reading.step,
-        sensor: match reading.of {
-            ReadingKind::Heading => 0,
-            ReadingKind::YawRate => 1,
-        },
-    };
-    System { steps, sensors, readings: schedule.readings.iter().map(reading).collect(), initial: covariance }
+    System { steps, sensors, readings: schedule.readings.clone(), initial: covariance }
 }

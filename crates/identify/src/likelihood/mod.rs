@@ -44,7 +44,7 @@ pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, init
     let filter = whitener(&schedule, &parameters, initial_sd.map(|sd| (sd / unit).powi(2)));
     // The columns are from rest at the first row, where the prior stands.
     let mut columns = MotionColumns::default();
-    track.fill_from_first(ship.inverse_T, &mut columns);
+    track.fill_from(false, ship.inverse_T, &mut columns);
     let offset = ship.K_over_T * ship.rudder_bias;
     let motion = |forced: &[f64], turned: &[f64]| -> Vec<f64> {
         forced.iter().zip(turned).map(|(g, h)| ship.K_over_T * g + offset * h).collect()

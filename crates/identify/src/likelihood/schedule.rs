@@ -1,24 +1,14 @@
 //! When a record was read, and what: the steps in time between readings, each kind once.
 
+use estimation::kalman::Reading;
+
 use super::track::{Track, differs};
 
-/// What is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ReadingKind {
-    /// The compass.
-    Heading,
-    /// The gyro.
-    YawRate,
-}
+/// Place of the compass among the sensors.
+pub const HEADING: usize = 0;
 
-/// A reading.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ScheduledReading {
-    /// The kind of step that leads to it; `None` when no time passes.
-    pub step: Option<usize>,
-    /// The instrument.
-    pub of: ReadingKind,
-}
+/// Place of the gyro among the sensors.
+pub const YAW_RATE: usize = 1;
 
 /// Time from one reading to the next, in pieces between rows of the rudder.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,9 +34,7 @@ pub struct Schedule {
     /// The kinds of steps.
     pub spans: Vec<Span>,
     /// The readings.
-    pub readings: Vec<ScheduledReading>,
-    /// For every reading, its number among those of its instrument.
-    numbers: Vec<usize>,
+    pub readings: Vec<Reading>,
 }
 
 /// Kinds of steps that are remembered when the next one is looked for: clocks repeat themselves soon or not at all.
@@ -56,11 +44,10 @@ impl Schedule {
     /// Readings of a track; `by_row` keeps the rows of the rudder between them apart.
     pub fn new(track: &Track, by_row: bool) -> Self {
         let time = track.time();
-        let mut schedule = Self { spans: Vec::new(), readings: Vec::new(), numbers: Vec::new() };
+        let mut schedule = Self { spans: Vec::new(), readings: Vec::new() };
         let mut last = None;
         let (mut headings, mut rates) = (track.observed().iter().peekable(), track.observed_rates().iter().peekable());
         let mut pieces = Vec::new();
-        let (mut heading, mut rate) = (0, 0);
         while let Some(row) = [headings.peek(), rates.peek()].into_iter().flatten().min().map(|&&row| row) {
             let step = last.map(|last: usize| {
                 pieces.clear();
@@ -74,14 +61,10 @@ impl Schedule {
             last = Some(row);
             let both = headings.peek() == rates.peek();
             if headings.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(ScheduledReading { step, of: ReadingKind::Heading });
-                schedule.numbers.push(heading);
-                heading += 1;
+                schedule.readings.push(Reading { step, sensor: HEADING });
             }
             if rates.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(ScheduledReading { step: step.filter(|_| !both), of: ReadingKind::YawRate });
-                schedule.numbers.push(rate);
-                rate += 1;
+                schedule.readings.push(Reading { step: step.filter(|_| !both), sensor: YAW_RATE });
             }
         }
         schedule
@@ -102,10 +85,8 @@ impl Schedule {
         if self.readings.len() == heading.len() {
             return heading.to_vec();
         }
-        let of = |(reading, &number): (&ScheduledReading, &usize)| match reading.of {
-            ReadingKind::Heading => heading[number],
-            ReadingKind::YawRate => yaw_rate[number],
-        };
-        self.readings.iter().zip(&self.numbers).map(of).collect()
+        let (mut heading, mut yaw_rate) = (heading.iter(), yaw_rate.iter());
+        let next = |reading: &Reading| if reading.sensor == HEADING { heading.next() } else { yaw_rate.next() };
+        self.readings.iter().filter_map(next).copied().collect()
     }
 }

@@ -3,17 +3,12 @@ use nalgebra::{DMatrix, DVector};
 use ship::FirstOrder;
 use ship::angle::from_deg;
 use ship::first_order::{State, Transition};
+use trial::Trial;
 use trial::noise_model::Moment;
-use trial::{Channel, Columns, Origin, Trial};
 
 use super::parameters::NoiseVector;
 use super::*;
-
-fn record(name: &str, time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
-    let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
-    let origin = Origin::Simulated { scenario: name.into(), cell: 0, replicate: 0 };
-    Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("valid")
-}
+use crate::testing::{record, record_with_gyro};
 
 /// The record of the published values: uneven rows, a clipped sine of the rudder, a sine of the heading.
 fn published() -> Trial {
@@ -55,14 +50,8 @@ fn with_gyro() -> Trial {
     let missing = |values: &[f64], every: usize| -> Vec<f64> {
         values.iter().enumerate().map(|(row, &x)| if row % every == every - 2 { f64::NAN } else { x }).collect()
     };
-    let channels = [
-        (Channel::Heading, missing(trial.heading(), 5)),
-        (Channel::YawRate, missing(&rate, 4)),
-        (Channel::Rudder, trial.rudder().to_vec()),
-    ];
-    let origin = Origin::Simulated { scenario: String::from("gyro"), cell: 0, replicate: 0 };
-    let columns = Columns { time: trial.time().to_vec(), channels: channels.into(), unknown: Vec::new() };
-    Trial::new("gyro", origin, columns).expect("valid")
+    let heading = missing(trial.heading(), 5);
+    record_with_gyro(trial.time().to_vec(), heading, trial.rudder().to_vec(), missing(&rate, 4))
 }
 
 /// The same log-likelihood without a filter: the covariance of all readings from responses to every source of chance,

@@ -254,12 +254,8 @@ impl Track {
         self.fill_from(is_backward(inverse_time), inverse_time, columns);
     }
 
-    /// The same with the anchor at the first row, whatever the sign of a.
-    pub fn fill_from_first(&self, inverse_time: f64, columns: &mut MotionColumns) {
-        self.fill_from(false, inverse_time, columns);
-    }
-
-    fn fill_from(&self, backward: bool, inverse_time: f64, columns: &mut MotionColumns) {
+    /// The same with the anchor at the last row, or at the first, whatever the sign of a.
+    pub fn fill_from(&self, backward: bool, inverse_time: f64, columns: &mut MotionColumns) {
         let (rows, anchor) = (self.time.len(), self.anchor_row(backward));
         let MotionColumns { homogeneous, rudder, constant, rates } = columns;
         for column in [&mut *homogeneous, rudder, constant] {
@@ -318,20 +314,23 @@ impl Track {
 
     /// ∂ψ/∂a at the observed rows for fixed coefficients, rad s.
     pub fn sensitivity(&self, inverse_time: f64, coefficients: &Coefficients, out: &mut Vec<f64>) {
-        let column = self.prepared(inverse_time, out);
-        self.tangents(inverse_time, coefficients, |row, by_heading, _| column[row] = by_heading);
-        keep(&self.observed, out);
+        self.sensitivities(inverse_time, coefficients, [out, &mut Vec::new()]);
     }
 
     /// The same, and ∂r/∂a at the rows with a yaw rate, rad.
     pub fn sensitivities(&self, inverse_time: f64, coefficients: &Coefficients, out: [&mut Vec<f64>; 2]) {
         let [heading, rate] = out;
-        let (of_heading, of_rate) = (self.prepared(inverse_time, heading), self.prepared(inverse_time, rate));
-        self.tangents(inverse_time, coefficients, |row, by_heading, by_rate| {
-            (of_heading[row], of_rate[row]) = (by_heading, by_rate);
-        });
+        let of_heading = self.prepared(inverse_time, heading);
+        if self.observed_rates.is_empty() {
+            self.tangents(inverse_time, coefficients, |row, by_heading, _| of_heading[row] = by_heading);
+        } else {
+            let of_rate = self.prepared(inverse_time, rate);
+            self.tangents(inverse_time, coefficients, |row, by_heading, by_rate| {
+                (of_heading[row], of_rate[row]) = (by_heading, by_rate);
+            });
+            keep(&self.observed_rates, rate);
+        }
         keep(&self.observed, heading);
-        keep(&self.observed_rates, rate);
     }
 
     /// A column of all rows, zero at the anchor.
@@ -379,10 +378,27 @@ impl Track {
 
     /// Heading and yaw rate of every row (observed or not) for given coefficients.
     pub fn simulate(&self, inverse_time: f64, coefficients: &Coefficients) -> Vec<State> {
-        let backward = is_backward(inverse_time);
         let mut states = vec![State::default(); self.time.len()];
+        self.simulate_from(is_backward(inverse_time), inverse_time, coefficients, |row, state| states[row] = state);
+        states
+    }
+
+    /// State at the last row for coefficients anchored at the first, stepping forward whatever the sign of a.
+    pub fn last_state_from(&self, inverse_time: f64, coefficients: &Coefficients) -> State {
+        let mut last = coefficients.anchor;
+        self.simulate_from(false, inverse_time, coefficients, |_, state| last = state);
+        last
+    }
+
+    fn simulate_from(
+        &self,
+        backward: bool,
+        inverse_time: f64,
+        coefficients: &Coefficients,
+        mut visit: impl FnMut(usize, State),
+    ) {
         let mut state = coefficients.anchor;
-        states[self.anchor_row(backward)] = state;
+        visit(self.anchor_row(backward), state);
         let mut step = Transition::new(inverse_time, 0.0);
         for TrackStep { from, to, length, rudder_rate, bend } in self.steps(backward) {
             if differs(step.h, length) {
@@ -390,21 +406,13 @@ impl Track {
             }
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
             state = step.advance(state, u0, coefficients.gain * rudder_rate);
-            bent(&mut state, bend, inverse_time, coefficients.gain);
-            states[to] = state;
+            if let Some(bend) = bend {
+                let [heading, yaw_rate] = bend.response(inverse_time);
+                state.heading += coefficients.gain * heading;
+                state.yaw_rate += coefficients.gain * yaw_rate;
+            }
+            visit(to, state);
         }
-        states
-    }
-
-    /// State at the last row for coefficients anchored at the first, stepping forward whatever the sign of a.
-    pub fn last_state_from(&self, inverse_time: f64, coefficients: &Coefficients) -> State {
-        let mut state = coefficients.anchor;
-        for TrackStep { from, length, rudder_rate, bend, .. } in self.steps(false) {
-            let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
-            state = Transition::new(inverse_time, length).advance(state, u0, coefficients.gain * rudder_rate);
-            bent(&mut state, bend, inverse_time, coefficients.gain);
-        }
-        state
     }
 
     /// Row of the track for every observed heading.
@@ -415,15 +423,6 @@ impl Track {
     /// Row of the track for every yaw rate that is used.
     pub fn observed_rates(&self) -> &[usize] {
         &self.observed_rates
-    }
-}
-
-/// The state with what a corner of the rudder adds to it.
-fn bent(state: &mut State, bend: Option<Bend>, inverse_time: f64, gain: f64) {
-    if let Some(bend) = bend {
-        let [heading, yaw_rate] = bend.response(inverse_time);
-        state.heading += gain * heading;
-        state.yaw_rate += gain * yaw_rate;
     }
 }
 

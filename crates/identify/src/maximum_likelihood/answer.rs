@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use ship::angle::to_deg;
 use ship::first_order::State;
-use ship::{FirstOrder, Shown};
+use ship::{FirstOrder, ShortNumber};
 use trial::Trial;
 
 use super::choice::Chosen;
@@ -145,7 +145,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
     let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, readings);
     let mut warnings = Vec::from_iter(warning);
     warnings.extend(response.is_course_unstable().then(|| COURSE_UNSTABLE.into()));
-    warnings.extend(at_bound.then(|| format!("T = {} s is at its bound or beyond", Shown(response.T()))));
+    warnings.extend(at_bound.then(|| format!("T = {} s is at its bound or beyond", ShortNumber(response.T()))));
     let noises: Vec<NoiseModel> = (records.iter().zip(places.iter().zip(parts)))
         .map(|(record, (place, part))| place.noise(gain, part.variance.sqrt(), record.has_gyro()))
         .collect();
@@ -179,7 +179,7 @@ fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
     for ((trial, record), found) in trials.iter().zip(&chosen.records).zip(&chosen.outliers) {
         let (name, time) = (trial.name(), record.track.time());
         let times = |rows: &[usize]| {
-            let shown: Vec<String> = rows.iter().take(LISTED).map(|&row| Shown(time[row]).to_string()).collect();
+            let shown: Vec<String> = rows.iter().take(LISTED).map(|&row| ShortNumber(time[row]).to_string()).collect();
             format!("{}{}", shown.join(", "), if rows.len() > LISTED { ", …" } else { "" })
         };
         if !found.spikes.is_empty() {

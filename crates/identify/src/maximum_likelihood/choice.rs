@@ -4,8 +4,8 @@ use ship::FirstOrder;
 use trial::Trial;
 
 use super::outliers::{self, LARGEST_SHARE, Suspects};
-use super::point::{Point, Record, evaluate};
-use super::search::{Maximum, Ranges, Search, gyro_start};
+use super::point::{Point, Record, evaluate, readings};
+use super::search::{Maximum, Ranges, Search, Start, gyro_start};
 use super::settings::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
@@ -29,6 +29,9 @@ const ASKED_PER_DECADE: usize = 2;
 
 /// Weight below which a kind of noise is not a doubt.
 const NEGLIGIBLE: f64 = 0.01;
+
+/// Gain in −2 log of the restricted likelihood below which a moment is not seen at all.
+const UNSEEN: f64 = 0.1;
 
 /// Gain in −2 log of the restricted likelihood from which on a moment is looked at more closely.
 const SEEN: f64 = 2.0;
@@ -140,21 +143,20 @@ impl PreparedRecords {
         let none: Vec<NoiseVector> = records.iter().zip(&ranges).map(blank).collect();
 
         let mut spent = evaluations;
-        let mut all = contest(&records, &ranges, settings, a, &none, &mut spent);
+        let (mut all, mut tried) = contest(&records, &ranges, settings, a, &none, &mut spent);
         // Jumps are believed where they pay under the noise that was found.
         let suspected: usize = outliers.iter().map(|found| found.jumps.len()).sum();
         let mut kept = outliers;
         if let Some((_, found)) = all.first().filter(|_| suspected > 0) {
             believe_jumps(&mut records, &mut kept, &found.point);
             if records.iter().any(|record| !record.jumps.is_empty()) {
-                all = contest(&records, &ranges, settings, a, &none, &mut spent);
+                (all, tried) = contest(&records, &ranges, settings, a, &none, &mut spent);
             }
         }
         kept.iter_mut().zip(&records).for_each(|(found, record)| found.jumps.clone_from(&record.jumps));
         let Some(&(lowest, _)) = all.first() else {
             return Err(IdentifyError::Singular { condition: f64::INFINITY, limit: CONDITION_LIMIT });
         };
-        let tried = all.iter().map(|(bic, found)| (found.point.places[0].moment, *bic)).collect();
         let sum: f64 = all.iter().map(|(bic, _)| (-0.5 * (bic - lowest)).exp()).sum();
         let weigh = |(bic, found): (f64, Maximum)| ((-0.5 * (bic - lowest)).exp() / sum, found);
         let found: Vec<(f64, Maximum)> =
@@ -200,7 +202,6 @@ fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
 
 /// BIC of a point.
 fn bic(records: &[Record], point: &Point) -> f64 {
-    let readings: usize = records.iter().map(Record::len).sum();
     let noise: usize = records
         .iter()
         .zip(&point.places)
@@ -209,13 +210,13 @@ fn bic(records: &[Record], point: &Point) -> f64 {
             place.entries(record.has_gyro()).filter(|&entry| entry != RUDDER || record.declared.is_none()).count()
         })
         .sum();
-    point.restricted + noise as f64 * (readings as f64).ln()
+    point.restricted + noise as f64 * (readings(records) as f64).ln()
 }
 
 /// Fits of all kinds of noise, each behind its BIC.
 type Ranked = Vec<(f64, Maximum)>;
 
-/// Fits every kind of noise that the settings allow, the lowest BIC first.
+/// Fits every kind of noise that the settings allow, the lowest BIC first; also tells the BIC of every moment.
 fn contest(
     records: &[Record],
     ranges: &[Ranges],
@@ -223,8 +224,8 @@ fn contest(
     a: f64,
     none: &[NoiseVector],
     evaluations: &mut usize,
-) -> Ranked {
-    let mut search = Search { records, ranges, iterations: settings.iterations, evaluations: 0 };
+) -> (Ranked, Vec<(Moment, f64)>) {
+    let mut search = Search { records, ranges, iterations: settings.iterations, evaluations: 0, unseen: Vec::new() };
     let mut all = of_moments(&mut search, settings.moment.kinds(), a, none);
     let froms = with_memory(&all, settings.compass);
     if settings.compass == CompassChoice::Coloured {
@@ -232,26 +233,30 @@ fn contest(
     }
     for (a, places) in froms {
         let starts = search.spread(a, &places, COMPASS);
-        all.extend(highest(&mut search, starts));
+        let start = search.best(starts, |point| point.restricted);
+        all.extend(start.and_then(|start| search.highest(start)));
     }
-    // Under the noise that was found another 1/T may be better.
-    if let Some((_, found)) = lowest(&all) {
+    // Under the noise that was found another 1/T may be better; under white errors of the instruments alone the start
+    // is the best one already.
+    let is_more = |place: &NoiseVector| place.moment != Moment::None || place.coloured || place.rudder;
+    if let Some((_, found)) = lowest(&all).filter(|(_, found)| found.point.places.iter().any(is_more)) {
         let elsewhere = asked_again(&mut search, found.point.inverse_time, &found.point.places);
         if elsewhere.as_ref().is_some_and(|point| point.deviance < found.point.deviance) {
-            let found = elsewhere.and_then(|better| search.maximise(better));
-            all.extend(found.map(|found| (bic(records, &found.point), found)));
+            all.extend(elsewhere.and_then(|better| search.highest(better)));
         }
     }
     all.sort_by(|one, other| one.0.total_cmp(&other.0));
     *evaluations += search.evaluations;
-    all
+    let tried = all.iter().map(|(bic, found)| (found.point.places[0].moment, *bic)).chain(search.unseen).collect();
+    (all, tried)
 }
 
-/// The largest likelihood from the best of some starts, behind its BIC.
-fn highest(search: &mut Search, starts: Vec<(f64, Vec<NoiseVector>)>) -> Option<(f64, Maximum)> {
-    let start = search.best(starts, |point| point.restricted)?;
-    let found = search.maximise(start)?;
-    Some((bic(search.records, &found.point), found))
+impl Search<'_> {
+    /// The largest likelihood from a start, behind its BIC.
+    fn highest(&mut self, start: Point) -> Option<(f64, Maximum)> {
+        let found = self.maximise(start)?;
+        Some((bic(self.records, &found.point), found))
+    }
 }
 
 /// Fits with every kind of moment.
@@ -277,7 +282,18 @@ fn of_moments(search: &mut Search, kinds: &[Moment], a: f64, none: &[NoiseVector
             Moment::White | Moment::Walk => search.levels(a, &none, kind),
             Moment::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
         };
-        let found = highest(search, starts);
+        let start = search.best(starts, |point| point.restricted);
+        // A moment that helps at no size is none: it costs what an entry costs and gains nothing.
+        let is_unseen = |start: &Point| {
+            matches!(kind, Moment::White | Moment::Walk)
+                && plain.is_some_and(|(_, plain)| start.restricted > plain.point.restricted - UNSEEN)
+        };
+        if let Some((bic, _)) = plain.filter(|_| start.as_ref().is_some_and(is_unseen)) {
+            let entries = search.records.len() as f64;
+            search.unseen.push((kind, bic + entries * (readings(search.records) as f64).ln()));
+            continue;
+        }
+        let found = start.and_then(|start| search.highest(start));
         let point = found.as_ref().map(|(_, found)| &found.point);
         match kind {
             Moment::White => white = point.cloned(),
@@ -293,7 +309,7 @@ fn of_moments(search: &mut Search, kinds: &[Moment], a: f64, none: &[NoiseVector
 
 /// 1/T and noises with which a compass error with a memory is looked for: where innovations have one, beside the best
 /// noise, and alone, since a white moment may be large enough to make anything white.
-fn with_memory(all: &Ranked, compass: CompassChoice) -> Vec<(f64, Vec<NoiseVector>)> {
+fn with_memory(all: &Ranked, compass: CompassChoice) -> Vec<Start> {
     let has_memory = |found: &&Maximum| {
         let readings: usize = found.point.parts.iter().map(|part| part.readings).sum();
         let whites = found.point.parts.iter().map(|part| part.innovations.as_slice());

@@ -67,12 +67,17 @@ impl Ranges {
     }
 }
 
+/// Where a search begins: 1/T, and the noise of every record.
+pub(super) type Start = (f64, Vec<NoiseVector>);
+
 /// A search over all records.
 pub(super) struct Search<'a> {
     pub records: &'a [Record],
     pub ranges: &'a [Ranges],
     pub iterations: usize,
     pub evaluations: usize,
+    /// Moments that no start showed, with what their BIC would be.
+    pub unseen: Vec<(Moment, f64)>,
 }
 
 /// The end of a search.
@@ -88,56 +93,66 @@ impl Search<'_> {
         evaluate(self.records, inverse_time, places)
     }
 
+    fn linearise(&mut self, point: &Point) -> Option<Linearised> {
+        let found = linearise(self.records, point)?;
+        // One filter for 1/T and one for every entry.
+        self.evaluations += 1 + found.score.len() - SHARED;
+        Some(found)
+    }
+
     /// The start with the lowest −2 log L, or restricted one where only the noise differs.
-    pub fn best(&mut self, starts: Vec<(f64, Vec<NoiseVector>)>, height: fn(&Point) -> f64) -> Option<Point> {
+    pub fn best(&mut self, starts: Vec<Start>, height: fn(&Point) -> f64) -> Option<Point> {
         let points = starts.iter().filter_map(|(a, places)| self.evaluate(*a, places));
         points.min_by(|one, other| height(one).total_cmp(&height(other)))
     }
 
+    /// A start at the places that `moved` makes of some places.
+    fn start(
+        &self,
+        inverse_time: f64,
+        places: &[NoiseVector],
+        moved: impl Fn(&NoiseVector, &Ranges) -> NoiseVector,
+    ) -> Start {
+        (inverse_time, places.iter().zip(self.ranges).map(|(place, ranges)| moved(place, ranges)).collect())
+    }
+
     /// Starts of several sizes for the moment of a kind.
-    pub fn levels(&self, inverse_time: f64, places: &[NoiseVector], moment: Moment) -> Vec<(f64, Vec<NoiseVector>)> {
-        LEVELS
-            .iter()
-            .map(|by| {
-                let place = |(place, ranges): (&NoiseVector, &Ranges)| {
-                    let wanted = NoiseVector { moment, ..*place };
-                    // A record shows what a moment does in a quarter of it.
-                    let log = Ranges::level(moment, by * ranges.residual, 0.25 * ranges.duration).ln();
-                    ranges.with(&wanted, LEVEL, log)
-                };
-                (inverse_time, places.iter().zip(self.ranges).map(place).collect())
+    pub fn levels(&self, inverse_time: f64, places: &[NoiseVector], moment: Moment) -> Vec<Start> {
+        let level = |by: f64| {
+            self.start(inverse_time, places, |place, ranges| {
+                // A record shows what a moment does in a quarter of it.
+                let log = Ranges::level(moment, by * ranges.residual, 0.25 * ranges.duration).ln();
+                ranges.with(&NoiseVector { moment, ..*place }, LEVEL, log)
             })
-            .collect()
+        };
+        LEVELS.map(level).into()
     }
 
     /// Starts for gusts: short ones that act like a white moment, and long ones like a walk.
-    pub fn gusts(&self, white: Option<&Point>, walk: Option<&Point>) -> Vec<(f64, Vec<NoiseVector>)> {
+    pub fn gusts(&self, white: Option<&Point>, walk: Option<&Point>) -> Vec<Start> {
         let mut starts = Vec::new();
         for (point, shares) in [(white, [0.01, 0.05]), (walk, [0.1, 0.5])] {
             let Some(point) = point else { continue };
-            for share in shares {
-                let place = |(place, ranges): (&NoiseVector, &Ranges)| {
+            starts.extend(shares.map(|share| {
+                self.start(point.inverse_time, &point.places, |place, ranges| {
                     let time = share * ranges.duration;
                     let factor = if place.moment == Moment::White { 0.5 / time } else { 0.5 * time };
-                    let wanted = NoiseVector { moment: Moment::OrnsteinUhlenbeck, ..*place };
-                    let wanted = ranges.with(&wanted, CORRELATION, time.ln());
-                    ranges.with(&wanted, LEVEL, place.log[LEVEL] + 0.5 * factor.ln())
-                };
-                let places = point.places.iter().zip(self.ranges).map(place).collect();
-                starts.push((point.inverse_time, places));
-            }
+                    let gusts = NoiseVector { moment: Moment::OrnsteinUhlenbeck, ..*place };
+                    let gusts = ranges.with(&gusts, CORRELATION, time.ln());
+                    ranges.with(&gusts, LEVEL, place.log[LEVEL] + 0.5 * factor.ln())
+                })
+            }));
         }
         starts
     }
 
     /// Starts for an entry of all places: a few sizes over its range.
-    pub fn spread(&self, inverse_time: f64, places: &[NoiseVector], entry: usize) -> Vec<(f64, Vec<NoiseVector>)> {
+    pub fn spread(&self, inverse_time: f64, places: &[NoiseVector], entry: usize) -> Vec<Start> {
         let start = |share: f64| {
-            let place = |(place, ranges): (&NoiseVector, &Ranges)| {
+            self.start(inverse_time, places, |place, ranges| {
                 let [low, high] = ranges.of(place, entry);
                 ranges.with(place, entry, low + share * (high - low))
-            };
-            (inverse_time, places.iter().zip(self.ranges).map(place).collect())
+            })
         };
         [0.2, 0.35, 0.5, 0.65].map(start).into()
     }
@@ -148,7 +163,7 @@ impl Search<'_> {
     /// digit.
     pub fn maximise(&mut self, start: Point) -> Option<Maximum> {
         let mut point = start;
-        let mut linearised = linearise(self.records, &point)?;
+        let mut linearised = self.linearise(&point)?;
         let mut free = self.free(&point, &linearised.score);
         let mut inverse = inverse_information(&linearised, &free);
         for _ in 0..self.iterations {
@@ -177,7 +192,7 @@ impl Search<'_> {
                 return Some(Maximum { point, linearised, converged: promise < SLACK });
             };
             point = lower;
-            linearised = linearise(self.records, &point)?;
+            linearised = self.linearise(&point)?;
             let now = self.free(&point, &linearised.score);
             if now == free && share == 1.0 {
                 learn(&mut inverse, &step, &(picked(&linearised.score, &free) - score));
@@ -208,7 +223,7 @@ impl Search<'_> {
     }
 
     /// The place a step away.
-    fn moved(&self, point: &Point, free: &[usize], step: &DVector<f64>) -> (f64, Vec<NoiseVector>) {
+    fn moved(&self, point: &Point, free: &[usize], step: &DVector<f64>) -> Start {
         let by = |at: usize| free.iter().position(|&place| place == at).map_or(0.0, |k| step[k]);
         let mut at = SHARED;
         let mut places = point.places.clone();

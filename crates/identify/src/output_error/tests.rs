@@ -5,7 +5,7 @@ use crate::estimate::Uncertainty;
 use crate::testing::{Case, Start, record, steered};
 use approx::assert_relative_eq;
 use ship::angle::from_deg;
-use trial::{Channel, Columns, Origin};
+use ship::first_order::State;
 
 fn method() -> OutputError {
     Settings::default().build().expect("default settings are valid")
@@ -86,58 +86,13 @@ fn no_start_beats_the_scan() {
     }
 }
 
-/// Table 6.2 of the technical reference (Fisher information by an independent program), 0.1 deg at 271 samples of
-/// 1 s from rest: sd of K and T in per cent, sd of δ_r in deg. Printed to two digits, so 3 %.
-#[test]
-fn the_bound_is_the_published_one() {
-    for (rudder_deg, heading_deg, k_percent, t_percent, bias_deg) in [
-        (5.0, 5.0, 0.156, 0.241, 0.0010),
-        (10.0, 5.0, 0.113, 0.156, 0.0010),
-        (10.0, 10.0, 0.073, 0.113, 0.0010),
-        (10.0, 20.0, 0.042, 0.077, 0.0009),
-        (20.0, 10.0, 0.040, 0.063, 0.0010),
-        (20.0, 20.0, 0.029, 0.048, 0.0010),
-    ] {
-        let case = Case { rudder_deg, heading_deg, start: Start::Rest, ..Case::default() };
-        let bound = cramer_rao(&case.trial(), &case.ship(), State::default(), from_deg(0.1)).expect("excited");
-        let estimate = Estimate {
-            response: case.ship(),
-            uncertainty: Uncertainty::Covariance(bound),
-            robust: None,
-            stop: StopReason::Direct,
-            evaluations: 0,
-            diagnostics: vec![],
-            warnings: vec![],
-        };
-        let relative = |quantity: trial::Quantity| 100.0 * quantity.sd.expect("a covariance") / quantity.value;
-        let found =
-            (relative(estimate.K()), relative(estimate.T()), to_deg(estimate.rudder_bias().sd.expect("a covariance")));
-        println!("{rudder_deg}/{heading_deg}: {found:?}");
-        assert!((found.0 / k_percent - 1.0).abs() < 0.03, "{rudder_deg}/{heading_deg}: K {} for {k_percent}", found.0);
-        assert!((found.1 / t_percent - 1.0).abs() < 0.03, "{rudder_deg}/{heading_deg}: T {} for {t_percent}", found.1);
-        assert!((found.2 - bias_deg).abs() < 1e-4, "{rudder_deg}/{heading_deg}: δ_r {} for {bias_deg}", found.2);
-    }
-}
-
-#[test]
-fn two_records_share_the_ship_and_not_the_start() {
-    let truth = FirstOrder::from_indices(0.1, 16.3, 0.01);
-    let one = exact_record(&truth, State { heading: 0.5, yaw_rate: 0.01 }, 200, 1.0);
-    let two = exact_record(&truth, State { heading: -3.0, yaw_rate: -0.01 }, 300, 0.5);
-    let estimate = method().identify(&[one, two]).expect("noise-free");
-    assert_relative_eq!(estimate.response.T(), 16.3, max_relative = 1e-8);
-    assert_relative_eq!(estimate.response.rudder_bias, 0.01, max_relative = 1e-6);
-}
-
 #[test]
 fn missing_headings_cost_information_and_nothing_else() {
     let truth = FirstOrder::from_indices(0.1, 16.3, 0.0);
     let full = exact_record(&truth, State::default(), 271, 1.0);
     let mut heading = full.heading().to_vec();
     (0..271).filter(|k| k % 3 == 1 || (100..130).contains(k)).for_each(|k| heading[k] = f64::NAN);
-    let channels = [(Channel::Heading, heading), (Channel::Rudder, full.rudder().to_vec())].into();
-    let columns = Columns { time: full.time().to_vec(), channels, unknown: vec![] };
-    let gappy = Trial::new("gappy", full.origin().clone(), columns).expect("a valid record");
+    let gappy = record("gappy", full.time().to_vec(), heading, full.rudder().to_vec());
     let estimate = method().identify(&[gappy]).expect("noise-free");
     assert_relative_eq!(estimate.response.T(), 16.3, max_relative = 1e-8);
 }
@@ -147,9 +102,7 @@ fn missing_headings_cost_information_and_nothing_else() {
 fn a_heading_that_does_not_answer_the_rudder_is_refused() {
     let steered = Case { start: Start::Rest, ..Case::default() }.trial();
     let heading = steered.time().iter().map(|t| 0.2 * (0.71 * t).sin()).collect();
-    let channels = [(Channel::Heading, heading), (Channel::Rudder, steered.rudder().to_vec())].into();
-    let columns = Columns { time: steered.time().to_vec(), channels, unknown: vec![] };
-    let adrift = Trial::new("adrift", steered.origin().clone(), columns).expect("a valid record");
+    let adrift = record("adrift", steered.time().to_vec(), heading, steered.rudder().to_vec());
     let error = method().identify(&[adrift]).expect_err("the rudder does nothing");
     assert_eq!(error.kind(), "no-rudder-effect", "{error}");
 }
@@ -202,18 +155,6 @@ fn the_robust_covariance_is_that_of_the_instrumental_variables() {
     for i in 0..3 {
         assert_relative_eq!(one[(i, i)], other[(i, i)], max_relative = 1e-5);
     }
-}
-
-#[test]
-fn a_straight_run_is_refused() {
-    let columns = Columns {
-        time: (0..100).map(f64::from).collect(),
-        channels: [(Channel::Heading, vec![0.3; 100]), (Channel::Rudder, vec![0.0; 100])].into(),
-        unknown: vec![],
-    };
-    let origin = Origin::Simulated { scenario: "straight".into(), cell: 0, replicate: 0 };
-    let trial = Trial::new("straight", origin, columns).expect("a valid record");
-    assert_eq!(method().identify(&[trial]).expect_err("nothing to learn").kind(), "not-excited");
 }
 
 /// A ship that answers faster than the search goes: the end of the search is no answer, and must not look like one.

@@ -30,7 +30,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use ship::first_order::State;
-use ship::{FirstOrder, Shown};
+use ship::{FirstOrder, ShortNumber};
 use trial::Trial;
 
 use crate::error::IdentifyError;
@@ -75,8 +75,8 @@ impl Settings {
     pub fn build(self) -> Result<Srivc, SettingsError> {
         check_iterations("max-iterations", self.max_iterations)?;
         let (step, limit) = (self.relative_step, self.condition_limit);
-        require((1e-12..=0.1).contains(&step), "relative-step", Shown(step), "a number within 1e-12 and 0.1")?;
-        require(limit.is_finite() && limit > 1.0, "condition-limit", Shown(limit), "a number above 1")?;
+        require((1e-12..=0.1).contains(&step), "relative-step", ShortNumber(step), "a number within 1e-12 and 0.1")?;
+        require(limit.is_finite() && limit > 1.0, "condition-limit", ShortNumber(limit), "a number above 1")?;
         Ok(Srivc { settings: self })
     }
 }

@@ -16,7 +16,6 @@ use crate::response::Response;
 pub mod frigate;
 pub mod kvlcc2;
 pub mod mariner;
-pub mod oil_tanker;
 pub mod seiun_like;
 pub mod user;
 pub mod yukun;

@@ -11,13 +11,13 @@ use crate::first_order::FirstOrder;
 use crate::linear::SecondOrderIndices;
 use crate::particulars::Particulars;
 use crate::response::{Response, ResponseModel};
-use crate::shown::Shown;
+use crate::short_number::ShortNumber;
 
 /// Why numbers do not make a ship.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ShipError {
     /// A number has no physical meaning in its place.
-    #[error("{symbol} = {} does not make a ship: {reason}", Shown(*.value))]
+    #[error("{symbol} = {} does not make a ship: {reason}", ShortNumber(*.value))]
     Value {
         /// Symbol of the number.
         symbol: &'static str,
@@ -29,7 +29,7 @@ pub enum ShipError {
     /// A number that puts a parameter of the response beyond any ship.
     #[error(
         "{symbol} makes {} = {}, and ships have {} to {} {}",
-        .parameter.symbol, Shown(*.value), Shown(.parameter.lowest), Shown(.parameter.highest), .parameter.unit
+        .parameter.symbol, ShortNumber(*.value), ShortNumber(.parameter.lowest), ShortNumber(.parameter.highest), .parameter.unit
     )]
     Range {
         /// Symbol of the number.

@@ -81,15 +81,6 @@ impl Mmg {
         Self::new(parameters, speed, speed / speed_per_revolution)
     }
 
-    /// The hull at these propeller `revolutions` (1/s); the approach speed is the steady one.
-    ///
-    /// Fails as [`at_speed`](Self::at_speed) does.
-    pub fn at_revolutions(parameters: Parameters, revolutions: f64) -> Result<Self, MmgError> {
-        positive("propeller revolutions", revolutions)?;
-        let speed_per_revolution = speed_per_revolution(&parameters)?;
-        Self::new(parameters, speed_per_revolution * revolutions, revolutions)
-    }
-
     fn new(parameters: Parameters, approach_speed: f64, revolutions: f64) -> Result<Self, MmgError> {
         let p = &parameters;
         let (L, d) = (p.Lpp, p.d);
@@ -318,7 +309,7 @@ mod tests {
         assert_eq!(Mmg::at_speed(FULL_SCALE, 0.0), Err(MmgError::NotPositive { symbol: "approach speed", value: 0.0 }));
         let mut draughtless = FULL_SCALE;
         draughtless.d = -1.0;
-        assert_eq!(Mmg::at_revolutions(draughtless, 1.7), Err(MmgError::NotPositive { symbol: "d", value: -1.0 }));
+        assert_eq!(Mmg::at_speed(draughtless, 8.0), Err(MmgError::NotPositive { symbol: "d", value: -1.0 }));
         let mut thrustless = FULL_SCALE;
         thrustless.propeller.k = [-0.1, -0.2, -0.1];
         assert_eq!(Mmg::at_speed(thrustless, 8.0), Err(MmgError::NoBalance { k0: -0.1, R0: 0.022 }));

@@ -5,19 +5,20 @@ use std::env;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use campaign::benchmark::{BenchDocument, BenchMethod, Definition, RecordStore};
+use campaign::benchmark::{BenchDocument, BenchMethod, BenchTask, Definition, RecordStore};
 use campaign::folder::ResultFolder;
+use clap::Args;
 use report::Theme;
 use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
 
-use crate::bench_options::BenchRequest;
-use crate::options::Common;
+use crate::interrupt;
+use crate::options::{Common, FigureOptions};
+use crate::outside::{self, NamedCommand};
 use crate::screen::{self, CommandOutput};
 use crate::terminal::Terminal;
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{bench_figures, bench_page, bench_tables};
-use crate::{interrupt, outside};
 
 /// What other programs read.
 const BENCH: &str = "bench.json";
@@ -33,6 +34,39 @@ const METHODS: &str = "methods";
 
 /// Names the folder of measured records where the command line does not.
 const DATA: &str = "KEMPF_DATA";
+
+/// What `study bench` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct BenchRequest {
+    /// Definition of a benchmark of your own [default: zigzag-bench, which is part of the program]
+    #[arg(value_name = "BENCH.toml")]
+    pub definition: Option<PathBuf>,
+    /// Folder with measured records, at any depth [default: $KEMPF_DATA, or ./data]
+    #[arg(long, value_name = "DIR")]
+    pub data: Vec<PathBuf>,
+    /// Methods that take part [default: all]
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// An outside estimator that takes part as well: what it is called, and the command that starts it
+    #[arg(long, value_name = "LABEL=COMMAND")]
+    pub external: Vec<NamedCommand>,
+    /// Tasks that are set [default: all]
+    #[arg(long = "task", value_name = "ID", value_parser = task)]
+    pub tasks: Vec<BenchTask>,
+    /// Sets of records that are used [default: all]
+    #[arg(long = "set", value_name = "NAME")]
+    pub sets: Vec<String>,
+    /// How figures are drawn
+    #[command(flatten)]
+    pub style: FigureOptions,
+}
+
+fn task(name: &str) -> Result<BenchTask, String> {
+    BenchTask::ALL.into_iter().find(|task| task.id() == name).ok_or_else(|| {
+        let known = BenchTask::ALL.map(BenchTask::id);
+        format!("there is no such task; {}", suggestion(name, &known))
+    })
+}
 
 /// Runs a benchmark, prints the leaderboards, writes `bench.json`, tables, pages and figures.
 ///
@@ -111,12 +145,7 @@ fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Res
     folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
     bench_figures::remove(folder)?;
     let pages = folder.inside(METHODS)?;
-    for name in campaign::disk::names(pages.path()).on("list the folder", pages.path())? {
-        let old = pages.path().join(&name);
-        if name.ends_with(".md") {
-            campaign::disk::remove(&old).on("remove", &old)?;
-        }
-    }
+    pages.remove_all(|name| name.ends_with(".md"))?;
     for method in &results.methods {
         pages.write(&format!("{method}.md"), bench_page::of_method(results, method).to_markdown())?;
     }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use crate::documents;
 use crate::options::{Common, Format};
 use crate::screen;
-use crate::views::document;
 use campaign::outside;
 use scenario::Scenario;
 use scenario::failure::{Blame, Failure};
@@ -42,7 +42,7 @@ pub fn run(request: &CheckRequest, common: &Common) -> Result<(), Failure> {
         }
     }
     if common.format == Format::Json && !common.quiet {
-        document::say("check/1", json!({ "scenarios": right, "wrong": wrong.len() }))?;
+        documents::say("check/1", json!({ "scenarios": right, "wrong": wrong.len() }))?;
     }
     let Some(first) = wrong.first() else { return Ok(()) };
     let others: String = wrong[1..].iter().map(|failure| format!("\n\n{failure}")).collect();

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use campaign::folder::ResultFolder;
 use campaign::manifest;
-use report::{Table, TableColumn};
+use report::Table;
 use scenario::failure::Failure;
 use serde_json::json;
 
-use crate::options::{Common, Format};
-use crate::views::document;
+use super::reply;
+use crate::options::Common;
 use crate::{screen, threads};
 
 /// A file that is written and removed again.
@@ -42,18 +42,11 @@ pub fn run(common: &Common) -> Result<(), Failure> {
             written.as_ref().map_or_else(|error| error.message.clone(), |()| format!("works in {}", folder.display())),
         ),
     ];
-    match common.format {
-        _ if common.quiet => {}
-        Format::Json => {
-            let table = found.iter().map(|(name, value)| (name.replace(' ', "_"), json!(value)));
-            document::say("doctor/1", table.collect::<serde_json::Map<_, _>>().into())?;
-        }
-        format => {
-            let mut table = Table::new([TableColumn::left("what"), TableColumn::left("found")]);
-            found.iter().for_each(|(name, value)| table.push([name, value.as_str()]));
-            screen::say(format.render(&table).trim_end())?;
-        }
-    }
+    let mut table = Table::headed("what | found");
+    found.iter().for_each(|(name, value)| table.push([name, value.as_str()]));
+    let document = found.iter().map(|(name, value)| (name.replace(' ', "_"), json!(value)));
+    let document = document.collect::<serde_json::Map<_, _>>().into();
+    reply(common, "doctor/1", document, common.format.render(&table).trim_end())?;
     written
 }
 

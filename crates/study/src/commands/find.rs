@@ -2,18 +2,18 @@
 
 use std::path::Path;
 
+use report::Table;
 use report::number::{MISSING, fixed, optional};
-use report::{Table, TableColumn};
 use serde_json::{Value, json};
 use ship::angle::to_deg;
 use trial::Log;
 use trial::file::called;
 use trial::find::FoundManoeuvre;
 
+use crate::documents;
 use crate::options::{Common, FindRequest, Format};
 use crate::records::{expand, manoeuvres, open};
 use crate::screen;
-use crate::views::document;
 use scenario::failure::Failure;
 
 /// Prints the manoeuvres of every log.
@@ -48,15 +48,13 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
             screen::say(&format!("{head}\nno manoeuvre found\n"))?;
             continue;
         }
-        let remarks: String = (1..)
-            .zip(&found)
-            .filter(|(_, one)| !one.quality.remarks().is_empty())
-            .map(|(number, one)| format!("{number}: {}\n", one.quality.remarks().join(" ")))
-            .collect();
+        let remarked = (1..).zip(&found).filter(|(_, one)| !one.quality.remarks().is_empty());
+        let remarks = remarked.map(|(number, one)| format!("{number}: {}\n", one.quality.remarks().join(" ")));
+        let remarks: String = remarks.collect();
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
     if common.format == Format::Json {
-        document::say("find/1", json!({ "logs": logs }))?;
+        documents::say("find/1", json!({ "logs": logs }))?;
     }
     screen::warn_of(&warnings);
     Ok(())
@@ -65,17 +63,15 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
 /// A log with its manoeuvres for a program.
 fn entry(file: &Path, log: &Log, found: &[FoundManoeuvre]) -> Value {
     let clock = |time: f64| log.clock().map(|clock| clock.at(time).to_string());
-    let manoeuvres: Vec<Value> = (1..)
-        .zip(found)
-        .map(|(number, one)| {
-            let [rudder, heading] = one.angles().map(|angle| angle.map(to_deg));
-            json!({
-                "trial": number, "kind": one.name(), "from_s": one.from, "until_s": one.until,
-                "clock": clock(one.from).zip(clock(one.until)), "executes": one.executes,
-                "rudder_deg": rudder, "heading_deg": heading, "remarks": one.quality.remarks(),
-            })
+    let manoeuvre = |(number, one): (usize, &FoundManoeuvre)| {
+        let [rudder, heading] = one.angles().map(|angle| angle.map(to_deg));
+        json!({
+            "trial": number, "kind": one.name(), "from_s": one.from, "until_s": one.until,
+            "clock": clock(one.from).zip(clock(one.until)), "executes": one.executes,
+            "rudder_deg": rudder, "heading_deg": heading, "remarks": one.quality.remarks(),
         })
-        .collect();
+    };
+    let manoeuvres: Vec<Value> = (1..).zip(found).map(manoeuvre).collect();
     let (first, last) = (log.time()[0], log.time()[log.time().len() - 1]);
     let date = log.clock().and_then(|clock| clock.date_at(first)).map(|day| day.to_string());
     json!({
@@ -85,16 +81,9 @@ fn entry(file: &Path, log: &Log, found: &[FoundManoeuvre]) -> Value {
 }
 
 fn table(log: &Log, found: &[FoundManoeuvre]) -> Table {
-    let mut table = Table::new([
-        TableColumn::decimal("--trial"),
-        TableColumn::left("manoeuvre"),
-        TableColumn::decimal("from").unit("s"),
-        TableColumn::decimal("until").unit("s"),
-        TableColumn::left("clock"),
-        TableColumn::decimal("executes"),
-        TableColumn::decimal("rudder").unit("deg"),
-        TableColumn::decimal("heading").unit("deg"),
-    ]);
+    let mut table = Table::headed(
+        ".--trial | manoeuvre | .from [s] | .until [s] | clock | .executes | .rudder [deg] | .heading [deg]",
+    );
     for (number, one) in (1..).zip(found) {
         let clock = log.clock().map(|clock| format!("{} to {}", clock.at(one.from), clock.at(one.until)));
         let missing = || MISSING.to_owned();

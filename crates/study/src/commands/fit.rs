@@ -5,10 +5,10 @@ use std::path::Path;
 
 use campaign::folder::ResultFolder;
 use report::Theme;
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
 
-use crate::documents::fit::{CURVES, FIT, FitCurves, FitDocument};
-use crate::documents::{self, read_json};
+use crate::documents::fit::{FIT, FitCurves, FitDocument};
+use crate::documents::{self, CURVES, read_json};
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, CommandOutput};
@@ -28,10 +28,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     let fit = fit(&trials, &others, &methods, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
-    let path = folder.path().join(FIT);
-    folder.keep(FIT, documents::text(&fit.document).on("describe", &path)?)?;
-    let curves = serde_json::to_string(&fit.curves()).on("describe", &folder.path().join(CURVES))?;
-    folder.write(CURVES, curves)?;
+    documents::keep_with_curves(&folder, FIT, &fit.document, &fit.curves())?;
     show(&folder, folder.path(), &theme, common)
 }
 

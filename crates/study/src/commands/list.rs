@@ -2,15 +2,15 @@
 
 use clap::{Args, ValueEnum};
 use identify::{IdentifierSettings, external, registry};
+use report::Table;
 use report::number::MISSING;
-use report::{Table, TableColumn};
 use serde_json::json;
 use ship::angle::KNOT;
 use ship::{effects, ships};
 
+use crate::documents;
 use crate::options::{Common, Format, Listed};
 use crate::screen;
-use crate::views::document;
 use trial::Channel;
 use trial::names::{self, ColumnMeaning};
 use trial::sidecar::{self, Key};
@@ -40,7 +40,7 @@ pub fn run(&ListRequest { what }: &ListRequest, common: &Common) -> Result<(), F
     };
     if common.format == Format::Json {
         let name = what.to_possible_value().map(|value| value.get_name().to_owned());
-        return document::say("list/1", json!({ "what": name, "entries": table.to_records() }));
+        return documents::say("list/1", json!({ "what": name, "entries": table.to_records() }));
     }
     // What stands before a list in Markdown, which is a page of the documentation.
     let head = match what {
@@ -57,7 +57,7 @@ pub fn run(&ListRequest { what }: &ListRequest, common: &Common) -> Result<(), F
 }
 
 fn identifiers() -> Result<Table, Failure> {
-    let mut table = Table::new([TableColumn::left("id"), TableColumn::left("method"), TableColumn::left("settings")]);
+    let mut table = Table::headed("id | method | settings");
     // No program is started by default; the command stands for any.
     let outside = IdentifierSettings::External(external::Settings::new(["python3", "mine.py"]));
     for settings in registry::defaults().into_iter().chain([outside]) {
@@ -74,13 +74,7 @@ fn keys(settings: &IdentifierSettings) -> String {
 }
 
 fn effects() -> Table {
-    let mut table = Table::new([
-        TableColumn::left("id"),
-        TableColumn::left("form"),
-        TableColumn::left("keys in a scenario"),
-        TableColumn::left("equation"),
-        TableColumn::left("parameters"),
-    ]);
+    let mut table = Table::headed("id | form | keys in a scenario | equation | parameters");
     for effect in effects::all() {
         let parameters: Vec<String> =
             effect.parameters().iter().map(|parameter| format!("{} [{}]", parameter.symbol, parameter.unit)).collect();
@@ -91,13 +85,7 @@ fn effects() -> Table {
 }
 
 fn ships() -> Table {
-    let mut table = Table::new([
-        TableColumn::left("id"),
-        TableColumn::left("ship"),
-        TableColumn::decimal("L").unit("m"),
-        TableColumn::decimal("V").unit("kn"),
-        TableColumn::left("source"),
-    ]);
+    let mut table = Table::headed("id | ship | .L [m] | .V [kn] | source");
     for ship in ships::all() {
         let number = |value: Option<f64>| report::number::optional(value, 1);
         table.push([
@@ -119,12 +107,7 @@ fn ships() -> Table {
 
 /// Keys of a trial whose name begins with `part`, without it.
 fn keys_below(part: &str) -> Table {
-    let mut table = Table::new([
-        TableColumn::left("key"),
-        TableColumn::left("unit"),
-        TableColumn::left("default"),
-        TableColumn::left("meaning"),
-    ]);
+    let mut table = Table::headed("key | unit | default | meaning");
     for ScenarioKey { key, unit, default, meaning } in keys_of_scenario() {
         if let Some(key) = key.strip_prefix(part) {
             // A table shows the marks of code as they are.
@@ -136,8 +119,7 @@ fn keys_below(part: &str) -> Table {
 
 /// What columns may be called.
 fn columns() -> Table {
-    let mut table =
-        Table::new([TableColumn::left("holds"), TableColumn::left("names"), TableColumn::left("understood as well")]);
+    let mut table = Table::headed("holds | names | understood as well");
     let usual = |wanted: &dyn Fn(ColumnMeaning) -> bool| {
         let names: Vec<&str> = names::names().filter(|(_, said)| wanted(*said)).map(|(name, _)| name).collect();
         names.join(", ")
@@ -162,7 +144,7 @@ fn columns() -> Table {
 }
 
 fn sidecar() -> Table {
-    let mut table = Table::new([TableColumn::left("key"), TableColumn::left("value"), TableColumn::left("meaning")]);
+    let mut table = Table::headed("key | value | meaning");
     for Key { key, value, meaning } in sidecar::keys() {
         table.push([&key, &value, &meaning.replace('`', "")]);
     }

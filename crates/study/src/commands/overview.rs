@@ -51,10 +51,10 @@ pub fn run(OverviewRequest { folder }: &OverviewRequest, common: &Common) -> Res
     let target = ResultFolder::hold(common.out.as_deref().unwrap_or(folder))?;
     let path = target.path().join(PAGE);
     if disk::read(&path, LARGEST).on("read", &path)?.is_some_and(|text| !text.starts_with(MARK.as_bytes())) {
-        return Err(Failure::input(format!(
-            "{}: this page was not made by `study overview`; move it away, or give another folder with --out",
-            path.display()
-        )));
+        return Err(Failure::about(
+            &path,
+            "this page was not made by `study overview`; move it away, or give another folder with --out",
+        ));
     }
     target.write(PAGE, MARK.to_owned() + &markdown::prose(&page(&studies)))?;
     let document = json!({ "page": path.display().to_string(), "studies": studies });
@@ -64,29 +64,23 @@ pub fn run(OverviewRequest { folder }: &OverviewRequest, common: &Common) -> Res
 /// The studies of a folder in the order of their names.
 fn studies(folder: &Path) -> Result<Vec<Study>, Failure> {
     let names = disk::names(folder).map_err(|error| {
-        Failure::input(format!("{}: {error}; give the folder that holds the folders of studies", folder.display()))
+        Failure::about(folder, format!("{error}; give the folder that holds the folders of studies"))
     })?;
-    let folders: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
-    let studies: Vec<Study> = folders
-        .iter()
-        .filter(|folder| folder.join(files::MANIFEST).is_file())
-        .map(|folder| study(folder))
-        .collect::<Result<_, _>>()?;
+    let folders = names.iter().map(|name| folder.join(name)).filter(|own| own.join(files::MANIFEST).is_file());
+    let studies: Vec<Study> = folders.map(|folder| study(&folder)).collect::<Result<_, _>>()?;
     if studies.is_empty() {
         let problem = format!("no folder in it holds a {}", files::MANIFEST);
-        return Err(Failure::input(format!("{}: {problem}; run a scenario first", folder.display())));
+        return Err(Failure::about(folder, format!("{problem}; run a scenario first")));
     }
     Ok(studies)
 }
 
 fn study(folder: &Path) -> Result<Study, Failure> {
     let path = folder.join(files::MANIFEST);
-    let missing = || Failure::input(format!("{}: there is no such file any more", path.display()));
+    let missing = || Failure::about(&path, "there is no such file any more");
     let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
     let words = manifest.words();
-    let unfit = |stem: &str, unfit| {
-        Failure::input(format!("{}: `output.figure` is {}; {unfit}", path.display(), name::shown(stem)))
-    };
+    let unfit = |stem: &str, unfit| Failure::about(&path, format!("`output.figure` is {}; {unfit}", name::shown(stem)));
     let figure = match &words.output.figure {
         Some(stem) => Some(name::file(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?),
         None => None,
@@ -105,11 +99,13 @@ fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
     let file = format!("{stem}.png");
     let names = disk::names(folder).on("list", folder)?;
     let known: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(".png")).collect();
-    Err(Failure::input(format!(
-        "{}: the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {}",
-        folder.display(),
-        known.join(", ")
-    )))
+    Err(Failure::about(
+        folder,
+        format!(
+            "the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {}",
+            known.join(", ")
+        ),
+    ))
 }
 
 fn page(studies: &[Study]) -> String {

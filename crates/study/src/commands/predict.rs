@@ -8,16 +8,15 @@ use predict::turn::{self, Current};
 use report::Theme;
 use trial::{Sidecar, Trial};
 
-use crate::documents::fit::CURVES;
-use crate::documents::{self, read_json};
+use crate::documents::{self, CURVES, read_json};
 use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
-use crate::work::predict::{Model, PredictInput, predict};
+use crate::work::predict::{PredictInput, StoredModel, predict};
 use campaign::folder::ResultFolder;
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
 
 /// What other programs read.
 pub const PREDICT: &str = "predict.json";
@@ -37,8 +36,8 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         ));
     }
     let mut warnings = Vec::new();
-    let mut read = |paths: &[PathBuf]| -> Result<Vec<Model>, Failure> {
-        paths.iter().map(|path| Model::of_file(path, request, &mut warnings)).collect()
+    let mut read = |paths: &[PathBuf]| -> Result<Vec<StoredModel>, Failure> {
+        paths.iter().map(|path| StoredModel::of_file(path, request, &mut warnings)).collect()
     };
     let (models, ballast) = (read(&request.models)?, read(&request.ballast)?);
     let current = match &request.current_from {
@@ -56,10 +55,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let input = PredictInput { models: &models, ballast: &ballast, records, current, declared };
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
-    let path = folder.path().join(PREDICT);
-    folder.keep(PREDICT, documents::text(&predicted).on("describe", &path)?)?;
-    let curves = serde_json::to_string(&predicted.curves()).on("describe", &folder.path().join(CURVES))?;
-    folder.write(CURVES, curves)?;
+    documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
     show(&folder, folder.path(), &theme, common, &warnings)
 }
 

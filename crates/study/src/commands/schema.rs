@@ -8,11 +8,11 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use std::path::Path;
 
+use crate::documents;
 use crate::documents::fit::FitDocument;
 use crate::documents::trace::TraceDocument;
 use crate::options::{Common, Described};
 use crate::screen;
-use crate::views::document;
 
 /// What `study schema` is asked to do.
 #[derive(Debug, Clone, Args)]
@@ -23,7 +23,7 @@ pub struct SchemaRequest {
 
 /// Prints the schema.
 pub fn run(&SchemaRequest { what }: &SchemaRequest, common: &Common) -> Result<(), Failure> {
-    let text = document::text(&schema(what)).on("describe", Path::new("a schema"))?;
+    let text = documents::text(&schema(what)).on("describe", Path::new("a schema"))?;
     if common.quiet { Ok(()) } else { screen::say_document(&text) }
 }
 

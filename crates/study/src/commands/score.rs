@@ -72,10 +72,9 @@ fn scenario_of(request: &ScoreRequest, common: &Common) -> Result<Scenario, Fail
     if !beside.is_file() {
         return Scenario::read(scenario, common.seed);
     }
-    let text =
-        file::read_text(&beside, LIST).map_err(|error| Failure::input(format!("{}: {error}", beside.display())))?;
+    let text = file::read_text(&beside, LIST).map_err(|error| Failure::about(&beside, error))?;
     let trials: Trials = toml::from_str(&text).map_err(|error| {
-        Failure::input(format!("{}: {}; expected what `study simulate` wrote", beside.display(), error.message()))
+        Failure::about(&beside, format!("{}; expected what `study simulate` wrote", error.message()))
     })?;
     let scenario = Scenario::read(scenario, Some(common.seed.unwrap_or(trials.seed)))?;
     if (&scenario.design_sha256, scenario.seed) == (&trials.design_sha256, trials.seed) {

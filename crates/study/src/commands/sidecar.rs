@@ -32,10 +32,10 @@ pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(
         None => Sidecar::beside(log),
     };
     if path.exists() {
-        return Err(Failure::input(format!(
-            "{}: this description is there already; remove it, or write another one elsewhere with `--out DIR`",
-            path.display()
-        )));
+        return Err(Failure::about(
+            &path,
+            "this description is there already; remove it, or write another one elsewhere with `--out DIR`",
+        ));
     }
     let text = reader::describe(log).map_err(Failure::input)?;
     if let Some(folder) = &common.out {

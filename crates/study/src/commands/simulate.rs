@@ -8,7 +8,7 @@ use campaign::folder::ResultFolder;
 use campaign::task::Task;
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
-use report::{Table, TableColumn};
+use report::Table;
 use scenario::Scenario;
 use scenario::failure::{Failure, OnPath};
 use serde_json::json;
@@ -45,13 +45,9 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
         }
         (false, _) => (ResultFolder::hold(out)?, tasks.iter().map(|task| record_name(&scenario, *task)).collect()),
     };
-    first_failure(
-        tasks
-            .par_iter()
-            .zip(&names)
-            .progress_with(progress::of("records", tasks.len() as u64, common.quiet))
-            .map(|(task, name)| write(&scenario, *task, name, &folder)),
-    )?;
+    let bar = progress::of("records", tasks.len() as u64, common.quiet);
+    let work = tasks.par_iter().zip(&names).progress_with(bar);
+    first_failure(work.map(|(task, name)| write(&scenario, *task, name, &folder)))?;
     if !is_file {
         list(&scenario, &tasks, &names, &folder)?;
     }
@@ -66,8 +62,7 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
 
 /// Writes which record is of which trial, and what it takes to make the trials again.
 fn list(scenario: &Scenario, tasks: &[Task], names: &[String], folder: &ResultFolder) -> Result<(), Failure> {
-    let columns = ["record", "cell", "label", "replicate", "also"];
-    let mut table = Table::new(columns.map(TableColumn::left));
+    let mut table = Table::headed("record | cell | label | replicate | also");
     for (task, name) in tasks.iter().zip(names) {
         let file = |number: usize| format!("{}.csv", part_name(name, number));
         let cell = &scenario.cells[task.cell];

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 pub struct CurveTable(Vec<(String, Vec<f64>)>);
 
 /// Seven significant digits, as few as are needed; empty for what is no number.
-pub fn digits(value: f64) -> String {
+fn digits(value: f64) -> String {
     let shown = format!("{value:.6e}").parse::<f64>().ok().filter(|value| value.is_finite());
     shown.map_or_else(String::new, |value| value.to_string())
 }

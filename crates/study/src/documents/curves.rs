@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use ::trace::comparison::RecordComparison;
+use campaign::curves::degrees;
 use identify::replay::Replay;
 use scenario::failure::{Failure, OnPath};
-use ship::angle::{from_deg, to_deg};
+use ship::angle::from_deg;
 use trial::{Channel, Columns as Channels, Origin, Trial};
 
 use super::columns::CurveTable;
@@ -37,7 +38,6 @@ const MODELS: [&str; 2] = ["before", "after"];
 /// The table of a record.
 pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
     let mut columns = CurveTable::default();
-    let degrees = |values: &[f64]| values.iter().copied().map(to_deg).collect::<Vec<f64>>();
     columns.push("t_s", trial.time().to_vec());
     columns.push("heading_deg", degrees(trial.heading()));
     columns.push("rudder_deg", degrees(trial.rudder()));

@@ -17,9 +17,6 @@ use crate::records::file_of;
 /// Name of the file.
 pub const FIT: &str = "fit.json";
 
-/// Name of the file with the curves of its figures.
-pub const CURVES: &str = "curves.json";
-
 /// The method whose fit is drawn on its own where it has one.
 const SHOWN: &str = "output-error";
 
@@ -203,25 +200,23 @@ pub fn trial_entry(trial: &Trial, zigzag: &Result<ZigZag, ZigZagError>) -> Trial
 /// The entry of a zig-zag; criteria where length and speed are declared.
 fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
+    let verdict = |own: &imo::Criterion| match own.verdict {
+        imo::Verdict::Pass => "pass",
+        imo::Verdict::Fail => "fail",
+        imo::Verdict::NotMeasured => "not measured",
+    };
+    let criterion = |own: &imo::Criterion| CriterionEntry {
+        criterion: own.name.into(),
+        measured: own.measured.map(|measured| measured.value),
+        limit: own.limit,
+        unit: own.unit.symbol().into(),
+        verdict: verdict(own).into(),
+    };
     ZigZagEntry {
         initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),
         overshoots_deg: zigzag.swings().map(|swing| Some(to_deg(swing?.angle.value))).collect(),
         overshoots_sd_deg: zigzag.swings().map(|swing| swing?.angle.sd.map(to_deg)).collect(),
         period_s: zigzag.period.map(|period| period.value),
-        imo: criteria
-            .iter()
-            .map(|criterion| CriterionEntry {
-                criterion: criterion.name.into(),
-                measured: criterion.measured.map(|measured| measured.value),
-                limit: criterion.limit,
-                unit: criterion.unit.symbol().into(),
-                verdict: match criterion.verdict {
-                    imo::Verdict::Pass => "pass",
-                    imo::Verdict::Fail => "fail",
-                    imo::Verdict::NotMeasured => "not measured",
-                }
-                .into(),
-            })
-            .collect(),
+        imo: criteria.iter().map(criterion).collect(),
     }
 }

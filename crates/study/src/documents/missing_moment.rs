@@ -2,6 +2,8 @@
 
 use ::trace::Verdict;
 use ::trace::missing_moment::{MissingMoment, Over, Panel};
+use campaign::curves::degrees;
+use campaign::statistics::distinct;
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
@@ -58,24 +60,20 @@ fn column(over: Over) -> (&'static str, bool) {
 }
 
 fn shown(over: Over, values: &[f64]) -> Vec<f64> {
-    values.iter().map(|&value| if column(over).1 { to_deg(value) } else { value }).collect()
-}
-
-fn degrees(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
-    values.into_iter().map(to_deg).collect()
+    if column(over).1 { degrees(values) } else { values.to_vec() }
 }
 
 /// The rows: moment with its band, what the explanation makes of it, and every channel that was recorded.
 pub fn over_time(missing: &MissingMoment) -> String {
-    let end = |k: usize| degrees((0..missing.time.len()).map(|row| missing.interval(row)[k]));
+    let end = |k: usize| (0..missing.time.len()).map(|row| to_deg(missing.interval(row)[k])).collect();
     let mut columns = CurveTable::default();
     columns.push("t_s", missing.time.clone());
-    columns.push("moment_rudder_deg", degrees(missing.moment.iter().copied()));
-    columns.push("sd_rudder_deg", degrees(missing.sd.iter().copied()));
+    columns.push("moment_rudder_deg", degrees(&missing.moment));
+    columns.push("sd_rudder_deg", degrees(&missing.sd));
     columns.push("lower95_rudder_deg", end(0));
     columns.push("upper95_rudder_deg", end(1));
     if let Some(explained) = missing.explained.first() {
-        columns.push("explained_rudder_deg", degrees(explained.iter().copied()));
+        columns.push("explained_rudder_deg", degrees(explained));
     }
     for (over, values) in &missing.channels {
         columns.push(column(*over).0, shown(*over, values));
@@ -92,10 +90,11 @@ pub fn over_channels(missing: &MissingMoment) -> String {
     for panel in &missing.panels {
         let (name, curve) = (column(panel.over).0, &panel.curve);
         columns.push(name, shown(panel.over, &curve.x));
-        columns.push(format!("{name}_moment_rudder_deg"), degrees(curve.moment.iter().map(|value| value + mean)));
-        columns.push(format!("{name}_half_width95_rudder_deg"), degrees(curve.half_width.iter().copied()));
+        let about = |values: &[f64]| values.iter().map(|value| to_deg(value + mean)).collect::<Vec<f64>>();
+        columns.push(format!("{name}_moment_rudder_deg"), about(&curve.moment));
+        columns.push(format!("{name}_half_width95_rudder_deg"), degrees(&curve.half_width));
         if let Some(other) = curve.others.first() {
-            columns.push(format!("{name}_explained_rudder_deg"), degrees(other.iter().map(|value| value + mean)));
+            columns.push(format!("{name}_explained_rudder_deg"), about(other));
         }
     }
     columns.text()
@@ -103,13 +102,8 @@ pub fn over_channels(missing: &MissingMoment) -> String {
 
 /// Effects of some explanations, every one once.
 fn effects(missing: &MissingMoment, places: &[usize]) -> Vec<String> {
-    let mut ids: Vec<String> = Vec::new();
-    for (id, _) in places.iter().filter_map(|place| missing.explanations.get(*place)).flat_map(|one| &one.effects) {
-        if !ids.iter().any(|known| known == id) {
-            ids.push((*id).to_owned());
-        }
-    }
-    ids
+    let explanations = places.iter().filter_map(|place| missing.explanations.get(*place));
+    distinct(explanations.flat_map(|one| &one.effects).map(|(id, _)| (*id).to_owned()))
 }
 
 /// The entry of a record of this file and name, whose tables have this stem.

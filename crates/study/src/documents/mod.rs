@@ -11,6 +11,8 @@ pub mod truth;
 
 use std::path::Path;
 
+use campaign::folder::ResultFolder;
+
 use scenario::failure::{Failure, OnPath};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -18,9 +20,28 @@ use serde_json::Value;
 
 use crate::screen;
 
+/// Name of the file with the curves of the figures of a fit or a prediction.
+pub const CURVES: &str = "curves.json";
+
 /// The text of a document. Fails where a type cannot be written as JSON.
 pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(document).map(|text| text + "\n")
+}
+
+/// Keeps the document of a command in a folder. Fails when the file cannot be written.
+pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<(), Failure> {
+    folder.keep(name, text(document).on("describe", &folder.path().join(name))?).map(drop)
+}
+
+/// The same with the curves of its figures beside it.
+pub fn keep_with_curves(
+    folder: &ResultFolder,
+    name: &str,
+    document: &impl Serialize,
+    curves: &impl Serialize,
+) -> Result<(), Failure> {
+    keep(folder, name, document)?;
+    folder.write(CURVES, serde_json::to_string(curves).on("describe", &folder.path().join(CURVES))?)
 }
 
 /// A document that a command wrote, and its text.
@@ -28,9 +49,8 @@ pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
 /// Fails when the file cannot be read or is none of this program.
 pub fn read_json<T: DeserializeOwned>(path: &Path, command: &str) -> Result<(T, String), Failure> {
     let text = std::fs::read_to_string(path).on("read", path)?;
-    let document = serde_json::from_str(&text).map_err(|error| {
-        Failure::input(format!("{}: {error}; make it again with `study {command}`", path.display()))
-    })?;
+    let document = serde_json::from_str(&text)
+        .map_err(|error| Failure::about(path, format!("{error}; make it again with `study {command}`")))?;
     Ok((document, text))
 }
 

@@ -4,9 +4,6 @@ use serde::{Deserialize, Serialize};
 use ship::Particulars;
 use trial::{Quantity, Scaling};
 
-use crate::records::file_of;
-use crate::scales::RescaledRecords;
-
 /// One number without dimension at every scale.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ComparedTerm {
@@ -66,19 +63,6 @@ impl ComparedTerm {
 }
 
 impl ScalesEntry {
-    /// What is made of the records of every scale, given by their numbers, and of the first scale, at which all are
-    /// told; `None` where the fitted records have one scale.
-    pub fn compared(
-        together: &RescaledRecords,
-        compare: impl FnOnce(&[(Particulars, Vec<usize>)], Particulars) -> Vec<ComparedModel>,
-    ) -> Option<Self> {
-        let scales = together.scales.as_ref()?;
-        let first = scales.particulars[0];
-        let groups = scales.groups(together.trials.len());
-        let files: Vec<&str> = together.trials.iter().map(|trial| file_of(trial).0).collect();
-        (groups.len() > 1).then(|| Self::new(&groups, &files, first, compare(&groups, first)))
-    }
-
     /// The scales of these groups of records of these names.
     pub(crate) fn new(
         groups: &[(Particulars, Vec<usize>)],

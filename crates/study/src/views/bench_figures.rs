@@ -2,11 +2,10 @@
 
 use campaign::benchmark::BenchDocument;
 use campaign::benchmark::board::Board;
-use campaign::disk;
 use campaign::folder::ResultFolder;
 use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
 use report::{CurveOrigin, PageFigure};
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
 use scenario::name::slug;
 
 /// A score over that of the reference beyond which an arrow stands for it.
@@ -18,14 +17,8 @@ const FORMER: &str = "scores";
 
 /// Removes what an earlier run may have drawn.
 pub fn remove(folder: &ResultFolder) -> Result<(), Failure> {
-    for name in disk::names(folder.path()).on("list the folder", folder.path())? {
-        let is_figure = [FORMER, RATIOS].iter().any(|stem| name.starts_with(&format!("{stem}-")));
-        if is_figure && [".svg", ".png"].iter().any(|kind| name.ends_with(kind)) {
-            let path = folder.path().join(name);
-            disk::remove(&path).on("remove", &path)?;
-        }
-    }
-    Ok(())
+    let is_figure = |name: &str| [FORMER, RATIOS].iter().any(|stem| name.starts_with(&format!("{stem}-")));
+    folder.remove_all(|name| is_figure(name) && [".svg", ".png"].iter().any(|kind| name.ends_with(kind)))
 }
 
 /// A sentence that begins with a capital.

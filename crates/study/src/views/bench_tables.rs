@@ -114,17 +114,12 @@ pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
             [value, low, high].map(text).to_vec()
         }
     };
-    for board in &results.boards {
-        for standing in &board.standings {
-            let held =
-                |place: usize| standing.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].of as f64);
-            let head = [board.task.id(), board.field.as_str()].map(str::to_owned);
-            let counts = [board.cases.to_string(), board.clusters.to_string(), standing.method.clone()];
-            let figures = [Some(standing.median), Some(standing.high), standing.ratio, standing.better.map(percent)];
-            let line = head.into_iter().chain(counts).chain([standing.failed.to_string()]);
-            let line = line.chain(figures.into_iter().flat_map(all));
-            table.push(line.chain([Some(standing.rank), held(0), held(1)].map(text)));
-        }
+    for (board, own) in results.boards.iter().flat_map(|board| board.standings.iter().map(move |own| (board, own))) {
+        let held = |place: usize| own.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].of as f64);
+        let head = [board.task.id(), &board.field, &board.cases.to_string(), &board.clusters.to_string(), &own.method];
+        let figures = [Some(own.median), Some(own.high), own.ratio, own.better.map(percent)];
+        let line = head.map(str::to_owned).into_iter().chain([own.failed.to_string()]);
+        table.push(line.chain(figures.into_iter().flat_map(all)).chain([Some(own.rank), held(0), held(1)].map(text)));
     }
     table
 }
@@ -176,36 +171,29 @@ pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
     table
 }
 
-fn naming_table(first: &str) -> Table {
+fn naming_table<'a>(first: &str, lines: impl Iterator<Item = (&'a str, NamingLine)>) -> Table {
     let said = Naming::ALL.map(Naming::words).join(" | >");
-    Table::headed(&format!("method | {first} | >n | >{said} | >failed | .named [%]"))
-}
-
-fn push_naming(table: &mut Table, line: &NamingLine, set: &str) {
-    let head = [line.method.clone(), set.to_owned(), line.named.of.to_string()];
-    let rest = [count(line.failed), share(line.named)];
-    table.push(head.into_iter().chain(line.counts.map(count)).chain(rest));
-}
-
-/// What methods said of missing effects, all ships together.
-pub fn naming_totals(results: &BenchDocument) -> Table {
-    let mut table = naming_table("ships");
-    for method in &results.methods {
-        for (is_missing, ships) in [(true, "that lack one effect"), (false, "that lack nothing")] {
-            if let Some(line) = total(&results.naming, method, is_missing) {
-                push_naming(&mut table, &line, ships);
-            }
-        }
+    let mut table = Table::headed(&format!("method | {first} | >n | >{said} | >failed | .named [%]"));
+    for (ships, line) in lines {
+        let head = [line.method.clone(), ships.to_owned(), line.named.of.to_string()];
+        table.push(head.into_iter().chain(line.counts.map(count)).chain([count(line.failed), share(line.named)]));
     }
     table
 }
 
+/// What methods said of missing effects, all ships together.
+pub fn naming_totals(results: &BenchDocument) -> Table {
+    let kinds = [(true, "that lack one effect"), (false, "that lack nothing")];
+    let all = results.methods.iter().flat_map(|method| kinds.map(|(is_missing, ships)| (method, is_missing, ships)));
+    let line =
+        |(method, is_missing, ships): (&String, bool, _)| Some((ships, total(&results.naming, method, is_missing)?));
+    naming_table("ships", all.filter_map(line))
+}
+
 /// The same set by set, of one method or of all.
 pub fn naming(results: &BenchDocument, method: Option<&str>) -> Table {
-    let mut table = naming_table("set");
     let own = results.naming.iter().filter(|line| method.is_none_or(|method| line.method == method));
-    own.for_each(|line| push_naming(&mut table, line, &line.set));
-    table
+    naming_table("set", own.map(|line| (line.set.as_str(), line.clone())))
 }
 
 /// The ranking over all predictions.

@@ -9,7 +9,7 @@ use scenario::TRACE;
 
 use campaign::curves;
 use campaign::design::Design;
-use campaign::statistics::{Statistic, Z95};
+use campaign::statistics::{Statistic, Z95, grouped};
 use campaign::summary::{Performance, Summary};
 
 /// What a chart over the axes of a design shows.
@@ -172,9 +172,8 @@ impl<'a> ComparedMethods<'a> {
         let cells = || groups.iter().flat_map(|group| &group.cells);
         let places = cells().flat_map(|&cell| self.methods.iter().map(move |&method| (cell, method)));
         let panels = 0..self.measure.panels();
-        let figures: Vec<(Statistic, bool)> = places
-            .flat_map(|(cell, method)| panels.clone().filter_map(move |panel| self.of(cell, method, panel)))
-            .collect();
+        let of = |(cell, method)| panels.clone().filter_map(move |panel| self.of(cell, method, panel));
+        let figures: Vec<(Statistic, bool)> = places.flat_map(of).collect();
         let is_cut = figures.iter().any(|(_, is_worthless)| *is_worthless);
         let is_exact = self.measure == ErrorMeasure::Rms && figures.iter().any(|(figure, _)| figure.value == EXACT);
         let remarks =
@@ -238,16 +237,12 @@ struct ChartGroup {
 }
 
 fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
-    let mut groups: Vec<ChartGroup> = Vec::new();
-    for (index, cell) in design.cells.iter().enumerate() {
-        let others = cell.labels.iter().enumerate().filter(|(axis, _)| *axis != x).map(|(_, label)| label.as_str());
-        let name = others.collect::<Vec<_>>().join(", ");
-        match groups.iter_mut().find(|group| group.name == name) {
-            Some(group) => group.cells.push(index),
-            None => groups.push(ChartGroup { name, cells: vec![index] }),
-        }
-    }
-    groups
+    let others = |cell: &usize| {
+        let labels = design.cells[*cell].labels.iter().enumerate().filter(|(axis, _)| *axis != x);
+        labels.map(|(_, label)| label.as_str()).collect::<Vec<_>>().join(", ")
+    };
+    let groups = grouped(0..design.cells.len(), others).into_iter();
+    groups.map(|(name, cells)| ChartGroup { name, cells }).collect()
 }
 
 /// How a method is drawn.
@@ -292,10 +287,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
     let stack = Stack {
         x: vec![across; groups.len()],
         rows: titles.iter().map(row).collect(),
-        panels: (0..titles.len())
-            .flat_map(|row| groups.iter().map(move |group| (row, group)))
-            .map(|(r, g)| panel(r, g))
-            .collect(),
+        panels: (0..titles.len()).flat_map(|row| groups.iter().map(move |group| panel(row, group))).collect(),
         marks: marks.map(|mark| AxisLine { at: mark.at, label: mark.label.clone() }).collect(),
         ..Stack::default()
     };

@@ -4,21 +4,23 @@ use report::number::{fixed, optional, significant};
 use report::{Table, TableColumn};
 
 use super::predict_tables::words;
-use super::tables::head_of_cells;
+use super::tables::{head, place};
 use campaign::design::Design;
+use campaign::statistics::Statistic;
 use campaign::summary::PredictionSummary;
 
 /// Every figure of every cell and method.
 pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
-    let mut columns = head_of_cells(design);
-    columns.extend(TableColumn::all("method | figure | unit | >trials"));
-    let heads = ".inside 90 % [%] | .lower 95 [%] | .upper 95 [%] | .of the ship | .bias | .rms error | .width";
-    columns.extend(TableColumn::all(heads));
+    let mut columns = head(design);
+    columns.extend(TableColumn::all(
+        "figure | unit | >trials | .inside 90 % [%] | .lower 95 [%] | .upper 95 [%] | .of the ship | .bias | .rms error | \
+         .width",
+    ));
     let mut table = Table::new(columns);
     for line in lines {
-        let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
+        let mut cells = place(design, line.cell, line.method);
         let (name, unit) = words(&line.name);
-        cells.extend([design.methods[line.method].label.clone(), name, unit.to_owned(), line.trials.to_string()]);
+        cells.extend([name, unit.to_owned(), line.trials.to_string()]);
         cells.extend(percent(line));
         cells.extend([line.truth(), line.bias(), line.rms(), line.width()].map(|value| significant(value, 3)));
         table.push(cells);
@@ -28,14 +30,13 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
 
 /// All figures of a cell and a method together: the mean of their shares, and the lowest and the highest of them.
 pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
-    let mut columns = head_of_cells(design);
-    columns.extend(TableColumn::all("method | >figures | >trials"));
-    columns.extend(TableColumn::all(".inside 90 % [%] | .lowest [%] | .highest [%] | lowest of | highest of"));
+    let mut columns = head(design);
+    let heads = ">figures | >trials | .inside 90 % [%] | .lowest [%] | .highest [%] | lowest of | highest of";
+    columns.extend(TableColumn::all(heads));
     let mut table = Table::new(columns);
     for group in lines.chunk_by(|one, other| (one.cell, one.method) == (other.cell, other.method)) {
         let [first, ..] = group else { continue };
-        let mut cells: Vec<String> = design.cells[first.cell].labels.clone();
-        cells.push(design.methods[first.method].label.clone());
+        let mut cells = place(design, first.cell, first.method);
         cells.push(group.len().to_string());
         cells.push(group.iter().map(|line| line.trials).max().unwrap_or(0).to_string());
         let of = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
@@ -52,8 +53,5 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
 
 /// The share of trials whose interval holds, with its own 95 % interval.
 fn percent(line: &PredictionSummary) -> [String; 3] {
-    let share = line.coverage();
-    let ends = share.and_then(|share| share.ci95);
-    [share.map(|share| share.value), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])]
-        .map(|value| optional(value.map(|value| 100.0 * value), 1))
+    Statistic::flat(line.coverage()).map(|value| optional(value.map(|value| 100.0 * value), 1))
 }

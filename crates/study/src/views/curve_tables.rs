@@ -1,8 +1,6 @@
 //! The curves of replays as CSV, so that anyone can draw them again. They hold the data a figure was handed, of records
 //! with more than 4000 rows those that show.
 
-use std::fmt::Write as _;
-
 use campaign::folder::ResultFolder;
 use campaign::store::StoredStudy;
 use report::figures::Replays;
@@ -11,7 +9,7 @@ use scenario::failure::Failure;
 use scenario::name::slug;
 
 use super::study_figures::{FigurePlace, StudyFigure};
-use crate::documents::columns::digits;
+use crate::documents::columns::CurveTable;
 use crate::documents::fit::FitCurves;
 
 /// A column: its name with its unit, and its values over what the first column holds.
@@ -26,23 +24,19 @@ fn finite(curve: &PlotCurve) -> impl Iterator<Item = (f64, f64)> {
     curve.pairs().filter(|(x, y)| x.is_finite() && y.is_finite())
 }
 
-/// All columns over the abscissae that any of them has, which ascend in each; empty where a column has no value.
-fn table(abscissa: &str, columns: &[NamedCurve]) -> String {
+/// All columns over the times that any of them has, which ascend in each; empty where a column has no value.
+fn table(columns: Vec<NamedCurve>) -> String {
     let mut places: Vec<f64> = columns.iter().flat_map(|(_, curve)| finite(curve)).map(|(x, _)| x).collect();
     places.sort_by(f64::total_cmp);
     places.dedup();
-    let mut rests: Vec<_> = columns.iter().map(|(_, curve)| finite(curve).peekable()).collect();
-    let names: String = columns.iter().map(|(name, _)| format!(",{name}")).collect();
-    let mut text = format!("{abscissa}{names}\n");
-    for place in places {
-        text += &place.to_string();
-        for rest in &mut rests {
-            let value = rest.next_if(|&(x, _)| x == place).map_or_else(String::new, |(_, y)| digits(y));
-            let _ = write!(text, ",{value}");
-        }
-        text.push('\n');
+    let mut table = CurveTable::default();
+    table.push("t_s", places.clone());
+    for (name, curve) in columns {
+        let mut rest = finite(curve).peekable();
+        let value = |place: &f64| rest.next_if(|(x, _)| x == place).map_or(f64::NAN, |(_, y)| y);
+        table.push(name, places.iter().map(value).collect());
     }
-    text
+    table.text()
 }
 
 /// Record and replays: `t_s`, `heading_deg`, the rudder where it is at hand, the noise-free heading where there is one,
@@ -56,7 +50,7 @@ pub fn of_replays(replays: &Replays, rudder: Option<&PlotCurve>) -> String {
         columns.push((format!("{name}_heading_deg"), &replay.heading));
         columns.push((format!("{name}_residual_deg"), &replay.residual));
     }
-    table("t_s", &columns)
+    table(columns)
 }
 
 /// Writes the replays of every record of a fit.
@@ -87,7 +81,7 @@ mod tests {
     fn columns_stand_beside_each_other_by_their_abscissae() {
         let one = PlotCurve::new(vec![0.0, 1.0, 2.0], vec![1.0, f64::NAN, -1.0 / 3.0]);
         let other = PlotCurve::new(vec![0.5, 1.0], vec![1e-9, 4.0]);
-        let text = table("t_s", &[("one_deg".into(), &one), ("other_deg".into(), &other)]);
+        let text = table(vec![("one_deg".into(), &one), ("other_deg".into(), &other)]);
         assert_eq!(text, "t_s,one_deg,other_deg\n0,1,\n0.5,,0.000000001\n1,,4\n2,-0.3333333,\n");
     }
 }

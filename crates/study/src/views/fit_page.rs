@@ -126,13 +126,11 @@ const MOST_LISTED: usize = 12;
 
 /// Characteristics in words, and the IMO criteria this record measures; of very many overshoots the first.
 fn characteristics(entry: &ZigZagEntry) -> String {
-    let overshoots: Vec<String> = entry
-        .overshoots_deg
-        .iter()
-        .zip(&entry.overshoots_sd_deg)
-        .take(MOST_LISTED)
-        .map(|(&angle, &sd)| angle.map_or_else(|| MISSING.to_owned(), |angle| with_uncertainty(angle, sd)))
-        .collect();
+    let overshoots = entry.overshoots_deg.iter().zip(&entry.overshoots_sd_deg).take(MOST_LISTED);
+    let words = |(&angle, &sd): (&Option<f64>, &Option<f64>)| {
+        angle.map_or_else(|| MISSING.to_owned(), |angle| with_uncertainty(angle, sd))
+    };
+    let overshoots: Vec<String> = overshoots.map(words).collect();
     let overshoots = match entry.overshoots_deg.len().saturating_sub(MOST_LISTED) {
         0 if overshoots.is_empty() => "none".to_owned(),
         0 => format!("{} deg", overshoots.join(", ")),

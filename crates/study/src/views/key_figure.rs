@@ -1,6 +1,7 @@
 //! The figure that stands for a study: its finding above it, the last of its rows of panels (T before K), the methods
 //! it is about in colour and the others grey, methods with one line as one.
 
+use campaign::statistics::distinct;
 use report::figures::{Layer, LayerKind, LayeredPanel, NamedRows, Panels, Plot, RowItem, RowKind};
 use report::palette::QUIET;
 use report::{CurveOrigin, PlotCurve};
@@ -71,13 +72,9 @@ fn is_same(one: &PlotCurve, other: &PlotCurve) -> bool {
 /// Joins methods whose lines lie on each other in all panels, under the names of all; one that the figure is about
 /// gives the line its look.
 fn merge(panels: &mut [LayeredPanel], about: &[String]) {
-    let mut names: Vec<String> = Vec::new();
     let is_method = |layer: &&Layer| matches!(layer.kind, LayerKind::Marks(_));
-    for name in panels.iter().flat_map(|panel| &panel.layers).filter(is_method).filter_map(|layer| layer.name.clone()) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
+    let layers = panels.iter().flat_map(|panel| &panel.layers).filter(is_method);
+    let mut names = distinct(layers.filter_map(|layer| layer.name.clone()));
     names.sort_by_key(|name| about.iter().position(|one| one == name).unwrap_or(about.len()));
     let own = |panel: &LayeredPanel, name: &String| -> PlotCurve {
         let layer = panel.layers.iter().find(|layer| layer.name.as_ref() == Some(name));

@@ -29,5 +29,3 @@ pub mod trace_figures;
 pub mod trace_page;
 pub mod trace_tables;
 pub mod tracing_table;
-
-pub use crate::documents as document;

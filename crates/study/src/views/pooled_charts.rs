@@ -2,6 +2,7 @@
 //! was asked for.
 
 use campaign::design::Design;
+use campaign::statistics::{distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use report::figures::{
     CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, Reference95, RowItem,
@@ -17,15 +18,7 @@ const MAP: usize = 3;
 
 /// Maps of the errors of K, of T and of the validation for a design of two axes: stems, what they show, and the maps.
 pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, CellMap)> {
-    let labels = |axis: usize| {
-        let mut labels: Vec<String> = Vec::new();
-        for cell in &design.cells {
-            if !labels.contains(&cell.labels[axis]) {
-                labels.push(cell.labels[axis].clone());
-            }
-        }
-        labels
-    };
+    let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].clone()));
     if design.axes.len() != 2 {
         return Vec::new();
     }
@@ -141,18 +134,8 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
     if !is_named || design.cells.iter().all(|cell| !cell.is_nearest) || !summary.tracing.is_empty() {
         return None;
     }
-    let mut names: Vec<&str> = Vec::new();
-    let mut series: Vec<(String, Vec<usize>)> = Vec::new();
-    for (index, cell) in design.cells.iter().enumerate() {
-        let (own, rest) = (cell.labels[last].as_str(), cell.labels[..last].join(", "));
-        if !names.contains(&own) {
-            names.push(own);
-        }
-        match series.iter_mut().find(|(name, _)| *name == rest) {
-            Some((_, cells)) => cells.push(index),
-            None => series.push((rest, vec![index])),
-        }
-    }
+    let names = distinct(design.cells.iter().map(|cell| cell.labels[last].as_str()));
+    let series = grouped(0..design.cells.len(), |&cell| design.cells[cell].labels[..last].join(", "));
     if names.len() < 2 || series.iter().any(|(_, cells)| cells.len() != names.len()) {
         return None;
     }

@@ -1,12 +1,13 @@
 //! The curves behind the figures of a prediction, as tables.
 
-use std::fmt::Write;
-
+use campaign::curves::degrees;
 use predict::PredictDocument;
 use predict::prediction::Bands;
+use predict::steady::SteadyCurve;
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 
+use crate::documents::columns::CurveTable;
 use crate::records::names;
 use scenario::name::slug;
 
@@ -26,15 +27,7 @@ pub fn curves(document: &PredictDocument) -> Vec<(String, String)> {
     let mut stems = stems(document).into_iter();
     for (prediction, stem) in document.manoeuvres.iter().zip(stems.by_ref()) {
         let table = match prediction.kind {
-            Manoeuvre::Spiral { .. } => {
-                let mut table = String::from("ship,rudder_deg,yaw_rate_deg_s\n");
-                for (ship, curve) in prediction.curves.steady.iter().enumerate() {
-                    for (rudder, rate) in curve.rudder.iter().zip(&curve.yaw_rate) {
-                        let _ = writeln!(table, "{ship},{:.5},{:.6}", to_deg(*rudder), to_deg(*rate));
-                    }
-                }
-                table
-            }
+            Manoeuvre::Spiral { .. } => steady_turns(&prediction.curves.steady),
             _ => bands(&prediction.curves.heading, None),
         };
         tables.push((stem, table));
@@ -45,21 +38,22 @@ pub fn curves(document: &PredictDocument) -> Vec<(String, String)> {
     tables
 }
 
+fn steady_turns(ships: &[SteadyCurve]) -> String {
+    let number = |(ship, curve): (usize, &SteadyCurve)| vec![ship as f64; curve.rudder.len()];
+    let mut table = CurveTable::default();
+    table.push("ship", ships.iter().enumerate().flat_map(number).collect());
+    table.push("rudder_deg", ships.iter().flat_map(|ship| degrees(&ship.rudder)).collect());
+    table.push("yaw_rate_deg_s", ships.iter().flat_map(|ship| degrees(&ship.yaw_rate)).collect());
+    table.text()
+}
+
 fn bands(bands: &Bands, measured: Option<&[f64]>) -> String {
-    let mut table = String::from("t_s,heading_deg,q05_deg,q25_deg,q50_deg,q75_deg,q95_deg");
-    table += if measured.is_some() { ",measured_deg\n" } else { "\n" };
-    for (row, time) in bands.time.iter().enumerate() {
-        let cell = |value: f64| if value.is_finite() { format!("{:.5}", to_deg(value)) } else { String::new() };
-        let _ = write!(table, "{time:.4},{}", cell(bands.most_probable[row]));
-        for quantile in bands.quantiles[row] {
-            table += ",";
-            table += &cell(quantile);
-        }
-        if let Some(measured) = measured {
-            table += ",";
-            table += &cell(measured[row]);
-        }
-        table.push('\n');
+    let mut table = CurveTable::default();
+    table.push("t_s", bands.time.clone());
+    table.push("heading_deg", degrees(&bands.most_probable));
+    for (place, percent) in ["05", "25", "50", "75", "95"].into_iter().enumerate() {
+        table.push(format!("q{percent}_deg"), bands.quantiles.iter().map(|row| to_deg(row[place])).collect());
     }
-    table
+    measured.into_iter().for_each(|own| table.push("measured_deg", degrees(own)));
+    table.text()
 }

@@ -1,6 +1,7 @@
 //! Figures of a prediction: headings with bands, tracks, the diagram of steady turns, and figures of merit against the
 //! limits of IMO.
 
+use campaign::curves::{degrees, phase_curve};
 use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
 use predict::prediction::Bands;
@@ -15,7 +16,7 @@ use trial::imo::Unit;
 
 use super::predict_curves::stems;
 use super::predict_tables::words;
-use super::record_figures::{degrees, phase_curve, phase_plane, rudder, steady_turns};
+use super::record_figures::{phase_plane, rudder, steady_turns};
 
 /// Headings drawn along a track.
 const HEADINGS: usize = 12;

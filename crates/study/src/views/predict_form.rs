@@ -1,10 +1,11 @@
 //! The form for reporting manoeuvring data to IMO (MSC/Circ.1053, appendix 6) as a page.
 
+use campaign::statistics::grouped;
 use predict::form::{DECIMALS, ImoFormEntry, STOPPING, TRACK_REACH_LENGTHS};
 use predict::interval::PredictionInterval;
 use report::markdown::text;
 use report::number::{fixed, significant};
-use report::{Page, Table, TableColumn};
+use report::{Page, Table};
 
 use super::bench_figures::capital;
 
@@ -36,30 +37,24 @@ pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
         "MSC/Circ.1053 (2002), appendix 6; criteria of resolution MSC.137(76). Every entry names its source; what is predicted \
          is no trial.",
     );
-    let mut sections: Vec<&str> = Vec::new();
-    for entry in entries {
-        if !sections.contains(&entry.section.as_str()) {
-            sections.push(&entry.section);
-        }
-    }
-    let (declared, tested): (Vec<&str>, Vec<&str>) = sections.into_iter().partition(|section| {
-        entries.iter().filter(|entry| entry.section == *section).all(|entry| entry.side.is_none())
-            && *section != STOPPING
-    });
-    for section in declared {
+    let sections = grouped(entries, |entry| entry.section.as_str()).into_iter();
+    let is_declared = |(section, own): &(&str, Vec<&ImoFormEntry>)| {
+        own.iter().all(|entry| entry.side.is_none()) && *section != STOPPING
+    };
+    let (declared, tested): (Vec<_>, Vec<_>) = sections.partition(is_declared);
+    for (section, own) in declared {
         if !section.is_empty() {
             page.part(text(&capital(section)));
         }
         let mut table = Table::headed("entry | value | unit | source");
-        for entry in entries.iter().filter(|entry| entry.section == section) {
+        for entry in own {
             table.push([entry.field.clone(), filled(entry), unit(entry).to_owned(), entry.source.clone()]);
         }
         page.table(table);
     }
     page.part("Test results");
-    let heads = ["test", "result", "side", "value", "unit", "IMO criterion", "source"];
-    let mut table = Table::new(heads.map(TableColumn::left));
-    for entry in entries.iter().filter(|entry| tested.contains(&entry.section.as_str())) {
+    let mut table = Table::headed("test | result | side | value | unit | IMO criterion | source");
+    for entry in tested.into_iter().flat_map(|(_, own)| own) {
         table.push([
             entry.section.clone(),
             entry.field.clone(),

@@ -15,7 +15,8 @@ use serde_json::json;
 use super::page_files::{REPORT, write_page};
 use super::study_figures::{self, FigurePlace, KEY_FIGURE};
 use super::study_page::{on_screen, page};
-use super::{coverage_table, curve_tables, document, tables, tracing_table};
+use super::{coverage_table, curve_tables, tables, tracing_table};
+use crate::documents;
 use crate::options::{Common, FigureChoice, Format};
 use crate::screen;
 
@@ -49,7 +50,7 @@ pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) 
         "summary": tables::summary(&summary.methods, &stored.design).to_records(),
         "failures": tables::failures(summary, &stored.design),
     });
-    document::of("study/1", body)
+    documents::of("study/1", body)
 }
 
 /// Makes the tables, the figures and `report.md` and `report.html` in a folder; returns what they are made from.

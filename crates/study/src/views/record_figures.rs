@@ -8,13 +8,6 @@ use report::number::significant;
 use report::palette::{HEADING, PAPER, RECORD, RUDDER, SHORT_DASH};
 use report::{CurveOrigin, PlotCurve};
 use ship::angle::to_deg;
-use trial::Trial;
-use trial::zigzag::PhasePlane;
-
-/// Angles as degrees over what they stand at.
-pub fn degrees(values: &[f64]) -> Vec<f64> {
-    values.iter().copied().map(to_deg).collect()
-}
 
 /// A model of a record over time: the heading and its residual in degrees, the root mean square of this, and half the
 /// width of its 95 % band.
@@ -73,18 +66,6 @@ fn plane(title: String, x: Ruler, height: f64, layers: Vec<Layer>) -> Panels {
     let stack = Stack::over(x, vec![(PanelRow::zeroed(Ruler::yaw_rate(), height), layers)]);
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
     Panels { title: Some(title), cut, ..Panels::of(Stack { zero: true, ..stack }) }
-}
-
-/// Yaw rate over heading of a record, and whether the rate is the slope of its smoothed heading.
-pub fn phase_of(trial: &Trial) -> (Option<PlotCurve>, bool) {
-    let phase = PhasePlane::of(trial);
-    let smoothed = phase.as_ref().is_some_and(|phase| phase.smoothed);
-    (phase.map(|phase| phase_curve(&phase.heading, &phase.yaw_rate)), smoothed)
-}
-
-/// Yaw rate over heading, degrees.
-pub fn phase_curve(heading: &[f64], yaw_rate: &[f64]) -> PlotCurve {
-    PlotCurve::new(degrees(heading), degrees(yaw_rate))
 }
 
 /// Yaw rate against heading: a record, and the ways of models by their names.

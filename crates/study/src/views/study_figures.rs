@@ -1,7 +1,5 @@
 //! The figures of a finished study: which there are, what they say, and where they stand.
 
-use std::collections::HashSet;
-
 use report::PageFigure;
 use report::figures::Plot;
 use scenario::name::slug;
@@ -16,6 +14,7 @@ use campaign::store::StoredStudy;
 use campaign::summary::{Summary, TraceSummary};
 
 use crate::options::FigureChoice;
+use crate::records::names;
 use crate::screen;
 
 /// Where a figure stands in the page.
@@ -44,8 +43,9 @@ pub const KEY_FIGURE: &str = "hero";
 pub fn of(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
     let words = &stored.design.words.output;
     let mut figures = all(stored, summary);
-    tell_apart(figures.iter_mut().map(|(_, figure)| &mut figure.stem));
-    let known: Vec<String> = figures.iter().map(|(_, figure)| figure.stem.clone()).collect();
+    // Two titles may make one slug.
+    let known = names(figures.iter().map(|(_, figure)| &figure.stem));
+    figures.iter_mut().zip(&known).for_each(|((_, figure), stem)| figure.stem.clone_from(stem));
     let warn = |key: &str, name: &str| {
         screen::warn(&format!("warning: `output.{key}`: there is no figure {name:?}; there are: {}", known.join(", ")));
     };
@@ -87,19 +87,6 @@ fn all(stored: &StoredStudy, summary: &Summary) -> Vec<StudyFigure> {
     figures.extend(of_errors(stored, summary).into_iter().map(|own| (FigurePlace::Chart, own)));
     figures.extend(of_all_trials(stored, summary).into_iter().map(|own| (FigurePlace::AllTrials, own)));
     figures
-}
-
-/// Numbers stems that are the same: two titles may make one slug.
-fn tell_apart<'a>(stems: impl Iterator<Item = &'a mut String>) {
-    let mut taken = HashSet::new();
-    for stem in stems {
-        let own = stem.clone();
-        let mut number = 2;
-        while !taken.insert(stem.clone()) {
-            *stem = format!("{own}-{number}");
-            number += 1;
-        }
-    }
 }
 
 /// What a person should see in the charts of one measure.
@@ -257,16 +244,4 @@ fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Ite
     ];
     let stem = move |name: &str| if prefix.is_empty() { name.to_owned() } else { format!("{prefix}-{name}") };
     figures.into_iter().filter_map(move |(name, caption, plot)| Some(PageFigure::new(stem(name), caption, plot?)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_figure_overwrites_another() {
-        let mut stems = ["errors", "errors-2", "errors", "errors"].map(String::from);
-        tell_apart(stems.iter_mut());
-        assert_eq!(stems, ["errors", "errors-2", "errors-3", "errors-4"]);
-    }
 }

@@ -76,7 +76,8 @@ const ERRORS: [ErrorFigure; 14] = [
     ("sd/bound", "", |errors| errors.sd_over_bound),
 ];
 
-fn head(design: &Design) -> Vec<TableColumn> {
+/// One column for every axis, and the method.
+pub fn head(design: &Design) -> Vec<TableColumn> {
     head_of_cells(design).into_iter().chain([TableColumn::left("method")]).collect()
 }
 
@@ -85,7 +86,8 @@ pub fn head_of_cells(design: &Design) -> Vec<TableColumn> {
     design.axes.iter().map(|axis| TableColumn::left(axis.clone())).collect()
 }
 
-fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
+/// A cell and a method, in the columns of [`head`].
+pub fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
     let labels = design.cells[cell].labels.iter().cloned();
     labels.chain([design.methods[method].label.clone()]).collect()
 }
@@ -99,9 +101,7 @@ fn with_ends(name: &str, unit: &'static str) -> [TableColumn; 3] {
 
 /// A figure and the ends of its interval with the digits of a machine.
 fn all_digits(figure: Option<Statistic>) -> [String; 3] {
-    let text = |value: Option<f64>| value.map_or_else(|| MISSING.to_owned(), |value| number::significant(value, 6));
-    let ends = figure.and_then(|figure| figure.ci95);
-    [text(figure.map(|figure| figure.value)), text(ends.map(|ends| ends[0])), text(ends.map(|ends| ends[1]))]
+    Statistic::flat(figure).map(|value| number::significant(value.unwrap_or(f64::NAN), 6))
 }
 
 /// The same in the width of a screen or a page: failures, median and rms errors with interval, coverage, spread over

@@ -9,7 +9,7 @@ use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
-use campaign::statistics::share;
+use campaign::statistics::{distinct, grouped, share};
 use campaign::summary::{CALIBRATION, CalibrationBin, TraceSummary};
 
 /// Name of the row of ships that lack nothing, and of the column of trials in which nothing was named.
@@ -20,13 +20,7 @@ const NOTHING: &str = "nothing";
 pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, CellMap)> {
     let rest = |line: &TraceSummary| design.cells[line.cell].labels.get(1..).unwrap_or_default().join(", ");
     let kinds = |lines: &[&TraceSummary]| lines.iter().map(|line| &line.missing).collect::<BTreeSet<_>>().len();
-    let mut groups: Vec<(String, Vec<&TraceSummary>)> = Vec::new();
-    for line in lines {
-        match groups.iter_mut().find(|(name, _)| *name == rest(line)) {
-            Some((_, group)) => group.push(line),
-            None => groups.push((rest(line), vec![line])),
-        }
-    }
+    let mut groups = grouped(lines, |line| rest(line));
     if groups.iter().any(|(_, group)| kinds(group) < 2) {
         groups = vec![(String::new(), lines.iter().collect())];
     }
@@ -44,38 +38,28 @@ pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, CellM
 }
 
 fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
-    let mut rows: Vec<(String, Vec<&TraceSummary>)> = Vec::new();
-    for &line in lines {
-        let name = match &line.missing[..] {
-            [] => NOTHING.to_owned(),
-            _ if line.is_hull() => design.cells[line.cell].labels.first().cloned().unwrap_or_default(),
-            missing => missing.join(" + ").replace('_', " "),
-        };
-        match rows.iter_mut().find(|(row, _)| *row == name) {
-            Some((_, lines)) => lines.push(line),
-            None => rows.push((name, vec![line])),
-        }
-    }
+    let name = |line: &&TraceSummary| match &line.missing[..] {
+        [] => NOTHING.to_owned(),
+        _ if line.is_hull() => design.cells[line.cell].labels.first().cloned().unwrap_or_default(),
+        missing => missing.join(" + ").replace('_', " "),
+    };
+    let rows = grouped(lines.iter().copied(), name);
     // Columns stand in the order of the rows, so that what is right runs down a diagonal.
-    let mut columns: Vec<&str> = vec![NOTHING];
     let missing = rows.iter().flat_map(|(_, lines)| lines).flat_map(|line| &line.missing).filter(|id| *id != HULL);
-    for id in missing.chain(lines.iter().flat_map(|line| line.named.keys())) {
-        if !columns.contains(&id.as_str()) {
-            columns.push(id);
-        }
-    }
+    let named = missing.chain(lines.iter().flat_map(|line| line.named.keys())).map(String::as_str);
+    let columns = distinct([NOTHING].into_iter().chain(named));
     let cell = |lines: &[&TraceSummary], id: &str| {
         let count = |line: &&TraceSummary| match id {
             NOTHING => line.silent,
             id => line.named.get(id).copied().unwrap_or(0),
         };
         let trials: u64 = lines.iter().map(|line| line.trials).sum();
-        let named = share(lines.iter().map(count).sum(), trials);
+        let named = share(lines.iter().map(count).sum(), trials).map(|share| share.times(100.0));
         let is_right = lines[0].missing.iter().any(|own| own == id) || (id == NOTHING && lines[0].missing.is_empty());
         let is_alias = lines.iter().any(|line| line.aliases.contains(id));
         MapCell {
-            value: Some(named.map_or(0.0, |share| 100.0 * share.value)),
-            interval: named.and_then(|share| share.ci95).map(|ends| ends.map(|end| 100.0 * end)),
+            value: Some(named.map_or(0.0, |share| share.value)),
+            interval: named.and_then(|share| share.ci95),
             outline: if is_right { Some(Outline::Right) } else { is_alias.then_some(Outline::Alias) },
         }
     };
@@ -138,15 +122,15 @@ fn shares(
 /// Power over the expected likelihood ratio, for cells with one missing effect.
 pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
     let points = |needs_search: bool| -> Vec<MeasuredShare> {
-        let single = lines.iter().filter(|line| line.missing.len() == 1);
-        single
-            .filter(|line| is_of_time(&line.missing[0]) == needs_search)
-            .filter_map(|line| {
-                let share = line.complete_share()?;
-                let percent = share.ci95.map(|ends| ends.map(|end| 100.0 * end));
-                Some((line.expected.filter(|expected| *expected > SMALLEST)?, 100.0 * share.value, percent))
-            })
-            .collect()
+        let is_wanted = |line: &&TraceSummary| match &line.missing[..] {
+            [only] => is_of_time(only) == needs_search,
+            _ => false,
+        };
+        let point = |line: &TraceSummary| {
+            let share = line.complete_share()?.times(100.0);
+            Some((line.expected.filter(|expected| *expected > SMALLEST)?, share.value, share.ci95))
+        };
+        lines.iter().filter(is_wanted).filter_map(point).collect()
     };
     let series = [(false, "an effect of the ship or its gear"), (true, "a moment that depends on time")];
     let series = series.map(|(of_time, name)| (name, points(of_time)));
@@ -166,14 +150,11 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
 
 /// Probabilities and how often they came true, for traces of ships whose effects are known; `None` without any.
 pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
-    let points: Vec<MeasuredShare> = promised(lines)
-        .iter()
-        .filter_map(|range| {
-            let share = share(range.present, range.effects)?;
-            let percent = share.ci95.map(|ends| ends.map(|end| 100.0 * end));
-            Some((100.0 * range.sum / range.effects as f64, 100.0 * share.value, percent))
-        })
-        .collect();
+    let point = |range: &CalibrationBin| {
+        let share = share(range.present, range.effects)?.times(100.0);
+        Some((100.0 * range.sum / range.effects as f64, share.value, share.ci95))
+    };
+    let points: Vec<MeasuredShare> = calibration(lines).iter().filter_map(point).collect();
     let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
     let x = Ruler::new("mean probability given [%]", Division::Percent);
     let theory = vec![(String::from("as promised"), diagonal)];
@@ -181,7 +162,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
 }
 
 /// Effects by their probability, over all cells.
-pub fn promised(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
+pub fn calibration(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
     let mut all = vec![CalibrationBin::default(); CALIBRATION.len() - 1];
     for line in lines {
         all.iter_mut().zip(line.calibration).for_each(|(all, own)| *all += own);
@@ -197,13 +178,8 @@ fn is_of_time(id: &str) -> bool {
 fn exceeds(freedom: u32, noncentrality: f64, limit: f64) -> f64 {
     let Ok(mixture) = Poisson::new((0.5 * noncentrality).max(f64::MIN_POSITIVE)) else { return 0.0 };
     let reach = 0.5 * noncentrality + 10.0 * (0.5 * noncentrality).sqrt() + 20.0;
-    (0..reach as u64)
-        .map(|k| {
-            let central = ChiSquared::new(f64::from(freedom) + 2.0 * k as f64).map_or(0.0, |chi| chi.sf(limit));
-            mixture.pmf(k) * central
-        })
-        .sum::<f64>()
-        .min(1.0)
+    let central = |k: u64| ChiSquared::new(f64::from(freedom) + 2.0 * k as f64).map_or(0.0, |chi| chi.sf(limit));
+    (0..reach as u64).map(|k| mixture.pmf(k) * central(k)).sum::<f64>().min(1.0)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use ::trace::document::{BeforeAfter, ErrorsEntry, Outcome};
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
-use campaign::curves::curve;
+use campaign::curves::{curve, degrees, phase_curve, phase_of};
 use estimation::residuals::{GappedSeries, SpectralLine, autocorrelation, spectrum};
 use identify::replay::Replay;
 use report::figures::{
@@ -17,7 +17,7 @@ use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
 use super::missing_moment;
-use super::record_figures::{ModelOverTime, degrees, over_time, phase_curve, phase_of, phase_plane};
+use super::record_figures::{ModelOverTime, over_time, phase_plane};
 use super::trace_tables::{horizon, term};
 use crate::documents::curves::{TraceCurves, TracedRecord};
 use crate::documents::trace::{RecordEntry, TraceDocument, slugs, suffix};
@@ -172,19 +172,12 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
         let item = |value| RowItem { text: Some(text(value)), ..RowItem::new(name, RowKind::Bar(look, value)) };
         value.map(item).into_iter().collect::<Vec<RowItem>>()
     };
-    let column = |title: &str, room: f64, rows: Vec<Vec<RowItem>>| RowsColumn {
-        x: Ruler::decimal(title).within(MOST_SUPPORT, Some(0.0)),
-        rows,
-        zero: true,
-        room,
-        ..RowsColumn::default()
-    };
+    let column = |x: Ruler, room: f64, rows| RowsColumn { x, rows, zero: true, room, ..RowsColumn::default() };
     let probability = rows.iter().map(|(_, own, _, outcome)| bar(Some(*own), *outcome, |value| fixed(value, 3)));
     let support = rows.iter().map(|(_, _, own, outcome)| bar(*own, *outcome, |value| significant(value, 3)));
-    let columns = vec![
-        RowsColumn { x: Ruler::decimal("probability"), ..column("", 0.25, probability.collect()) },
-        column("support −ΔBIC", 0.3, support.collect()),
-    ];
+    let cut = Ruler::decimal("support −ΔBIC").within(MOST_SUPPORT, Some(0.0));
+    let columns =
+        vec![column(Ruler::decimal("probability"), 0.25, probability.collect()), column(cut, 0.3, support.collect())];
     let names = rows.iter().map(|row| row.0.clone()).collect();
     let data = NamedRows { title: Some(document.title()), names, columns, note: None };
     let caption =

@@ -5,7 +5,7 @@ use predict::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
 use report::number::{fixed, significant};
 use report::{Page, PageFigure, Table};
-use ship::Shown;
+use ship::ShortNumber;
 
 use super::record_figures::steady_turns;
 use super::trace_figures as figures;
@@ -62,7 +62,7 @@ fn noise(document: &TraceDocument) -> String {
 fn outliers(document: &TraceDocument) -> Vec<String> {
     let spoilt = document.trace.noise.iter().filter(|own| !own.outliers_s.is_empty());
     let of = |(file, times): (&String, &Vec<f64>)| {
-        let mut shown: Vec<String> = times.iter().take(LISTED).map(|t| Shown(*t).to_string()).collect();
+        let mut shown: Vec<String> = times.iter().take(LISTED).map(|t| ShortNumber(*t).to_string()).collect();
         shown.extend((times.len() > LISTED).then(|| String::from("…")));
         format!("{file}: {} headings stand alone and are left out, at t = {} s", times.len(), shown.join(", "))
     };

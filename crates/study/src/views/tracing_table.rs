@@ -6,10 +6,10 @@ use report::number::{self, MISSING};
 use report::{Table, TableColumn};
 
 use super::tables::head_of_cells;
-use super::trace_charts::promised;
+use super::trace_charts::calibration;
 use campaign::design::Design;
 use campaign::statistics::{Statistic, share};
-use campaign::summary::{CALIBRATION, CLEAR, Summary, TraceSummary};
+use campaign::summary::{CALIBRATION, CLEAR, Performance, Summary, TraceSummary};
 use scenario::TRACE;
 
 /// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
@@ -44,9 +44,9 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
         cells.extend(line.verdicts.map(|count| count.to_string()));
         let records = [summary.reference, line.method].map(|method| summary.record(line.cell, method));
         let three = |value: Option<f64>| number::significant(value.unwrap_or(f64::NAN), 3);
-        let value = |figure: Option<Statistic>| figure.map(|figure| figure.value);
-        cells.extend(records.map(|record| three(value(record.and_then(|record| record.heading_rmse_deg)))));
-        cells.extend(records.map(|record| three(value(record.and_then(|record| record.validation_rmse_deg)))));
+        for of in [|own: &Performance| own.heading_rmse_deg, |own: &Performance| own.validation_rmse_deg] {
+            cells.extend(records.map(|record| three(record.and_then(of).map(|figure| figure.value))));
+        }
         cells.push(three(line.expected));
         let digits = if all_digits { 3 } else { 1 };
         cells.extend(line.band.map(|share| number::optional(share.map(|share| 100.0 * share), digits)));
@@ -65,27 +65,21 @@ pub fn reliability(lines: &[TraceSummary]) -> Table {
         ">probability from [%] | >to [%] | >effects | .mean probability [%] | .present [%] | \
             .low [%] | .high [%]",
     );
-    for (range, ends) in promised(lines).iter().zip(CALIBRATION.windows(2)) {
+    for (range, ends) in calibration(lines).iter().zip(CALIBRATION.windows(2)) {
         let mean = (range.effects > 0).then(|| 100.0 * range.sum / range.effects as f64);
         let present = share(range.present, range.effects);
-        let ends_of = present.and_then(|share| share.ci95);
-        let three = [present.map(|share| share.value), ends_of.map(|ends| ends[0]), ends_of.map(|ends| ends[1])];
         let mut cells: Vec<String> = ends.iter().map(|end| number::fixed(100.0 * end, 0)).collect();
         cells.extend([range.effects.to_string(), number::optional(mean, 2)]);
-        cells.extend(three.map(|share| number::optional(share.map(|share| 100.0 * share), 2)));
+        cells.extend(Statistic::flat(present).map(|share| number::optional(share.map(|share| 100.0 * share), 2)));
         table.push(cells);
     }
     table
 }
 
 fn percent(figure: Option<Statistic>, all_digits: bool) -> Vec<String> {
-    let value = |x: f64| number::fixed(100.0 * x, if all_digits { 3 } else { 1 });
-    let mut cells = vec![figure.map_or_else(|| MISSING.into(), |figure| value(figure.value))];
-    if all_digits {
-        let ends = figure.and_then(|figure| figure.ci95);
-        cells.extend([0, 1].map(|k| ends.map_or_else(|| MISSING.into(), |ends| value(ends[k]))));
-    }
-    cells
+    let (count, digits) = if all_digits { (3, 3) } else { (1, 1) };
+    let value = |x: Option<f64>| number::optional(x.map(|x| 100.0 * x), digits);
+    Statistic::flat(figure).into_iter().take(count).map(value).collect()
 }
 
 /// Whether more than one method of a study is a trace.
@@ -122,11 +116,8 @@ pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
             sum.exact += line.exact;
             sum.clear = [sum.clear[0] + line.clear[0], sum.clear[1] + line.clear[1]];
         }
-        let cell = |figure: Option<Statistic>| match figure {
-            Some(figure) => {
-                let ends = figure.ci95.map(|ends| ends.map(|end| 100.0 * end));
-                format!("{} {}", number::fixed(100.0 * figure.value, 2), number::interval(ends))
-            }
+        let cell = |figure: Option<Statistic>| match figure.map(|figure| figure.times(100.0)) {
+            Some(figure) => format!("{} {}", number::fixed(figure.value, 2), number::interval(figure.ci95)),
             None => MISSING.into(),
         };
         let label = several.then(|| design.methods[number].label.clone());

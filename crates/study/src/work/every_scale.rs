@@ -8,6 +8,7 @@ use trial::{Quantity, Trial};
 
 use crate::documents::scales::{ComparedModel, ComparedTerm, ScalesEntry};
 use crate::outside::Named;
+use crate::records::file_of;
 use crate::scales::RescaledRecords;
 use campaign::answer::MethodEntry;
 
@@ -21,22 +22,20 @@ pub fn compared(
     answers: &[(MethodEntry, Option<Estimate>)],
     together: &RescaledRecords,
 ) -> Option<ScalesEntry> {
-    let of_group =
-        |records: &[usize]| -> Vec<Trial> { records.iter().map(|&record| together.trials[record].clone()).collect() };
-    ScalesEntry::compared(together, |groups, first| {
-        let groups: Vec<Vec<Trial>> = groups.iter().map(|(_, records)| of_group(records)).collect();
-        let own = |method: &dyn Identifier| -> Vec<Option<Estimate>> {
-            groups.par_iter().map(|trials| method.identify(trials).ok()).collect()
-        };
-        methods
-            .par_iter()
-            .zip(answers)
-            .filter_map(|((_, method), (entry, joint))| {
-                let terms = terms(joint.as_ref()?, &own(method.as_ref()), first);
-                Some(ComparedModel { model: entry.method.clone(), terms })
-            })
-            .collect()
-    })
+    let scales = together.scales.as_ref()?;
+    let (first, groups) = (scales.particulars[0], scales.groups(together.trials.len()));
+    let of_group = |records: &[usize]| records.iter().map(|&record| together.trials[record].clone()).collect();
+    let trials: Vec<Vec<Trial>> = groups.iter().map(|(_, records)| of_group(records)).collect();
+    let own = |method: &dyn Identifier| -> Vec<Option<Estimate>> {
+        trials.par_iter().map(|trials| method.identify(trials).ok()).collect()
+    };
+    let compared = |((_, method), (entry, joint)): (&Named, &(MethodEntry, Option<Estimate>))| {
+        let terms = terms(joint.as_ref()?, &own(method.as_ref()), first);
+        Some(ComparedModel { model: entry.method.clone(), terms })
+    };
+    let files: Vec<&str> = together.trials.iter().map(|trial| file_of(trial).0).collect();
+    let all = || methods.par_iter().zip(answers).filter_map(compared).collect();
+    (groups.len() > 1).then(|| ScalesEntry::new(&groups, &files, first, all()))
 }
 
 /// K', T', the regular 1/T' and K'/T', and δ_r.

@@ -10,10 +10,9 @@ use report::figures::{Replays, ZigzagTrial};
 use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
 use ship::angle::to_deg;
-use trial::zigzag::PhasePlane;
-use trial::{Channel, Trial, ZigZag, ZigZagError};
+use trial::{Channel, Trial, ZigZag};
 
-use super::every_scale;
+use super::every_scale::{self, PREFERRED_METHODS};
 use super::single_records;
 use crate::documents::fit::{FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
 use crate::outside::{self, Named, NamedCommand};
@@ -21,8 +20,9 @@ use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
 use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
-use campaign::curves::{curve, replay_curves, zigzag_figure};
+use campaign::curves::{curve, phase_curve, phase_of, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
+use campaign::statistics::grouped;
 
 /// What came out.
 pub struct FitResult {
@@ -52,11 +52,7 @@ impl FitResult {
     }
 
     fn record(&self, trial: &Trial, name: String, validation: bool) -> FitRecord {
-        let phase = |heading: &[f64], rate: &[f64]| {
-            let degrees = |values: &[f64]| values.iter().copied().map(to_deg).collect::<Vec<f64>>();
-            PlotCurve::new(degrees(heading), degrees(rate))
-        };
-        let own = PhasePlane::of(trial);
+        let (phase, smoothed) = phase_of(trial);
         let title = if validation { format!("{name} (validation)") } else { name.clone() };
         let zigzag = ZigZag::of(trial).ok().filter(|_| !validation);
         let rejected = |channel: Channel| {
@@ -80,9 +76,9 @@ impl FitResult {
             },
             rudder: curve(trial.time(), trial.rudder()),
             rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
-            smoothed: own.as_ref().is_some_and(|own| own.smoothed),
-            phase: own.map(|own| phase(&own.heading, &own.yaw_rate)),
-            phase_replay: shown.map(|own| phase(&own.heading, &own.yaw_rate)),
+            smoothed,
+            phase,
+            phase_replay: shown.map(|own| phase_curve(&own.heading, &own.yaw_rate)),
             name,
         }
     }
@@ -117,26 +113,22 @@ pub fn fit(
     if entries.iter().all(|entry| entry.parameters.is_none()) {
         return Err(unusable(&records[0], &entries, warnings));
     }
-    let zigzags: Vec<Result<ZigZag, ZigZagError>> = records.iter().map(ZigZag::of).collect();
-    let entries_of_trials: Vec<TrialEntry> =
-        records.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag)).collect();
+    let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &ZigZag::of(trial))).collect();
     let shown = RecordFacts::of(trials).with_motion();
     warn_of_no_track(&shown, warnings);
+    let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
+        Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
+    };
     let document = FitDocument {
         schema: "fit/1".into(),
-        zigzag: entries_of_trials[0].zigzag.clone(),
-        trials: entries_of_trials,
-        ships: answers
-            .iter()
-            .filter_map(|(entry, estimate)| {
-                Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
-            })
-            .collect(),
+        zigzag: records[0].zigzag.clone(),
+        trials: records,
+        ships: answers.iter().filter_map(ship_of).collect(),
         scales: every_scale::compared(methods, &answers, &together),
         scaling: together.sentence(),
         length_m: ship.map(|ship| ship.length),
         speed_m_s: ship.map(|ship| ship.speed),
-        single_records: single_records::of_records(trials, &speakers(methods, &entries)),
+        single_records: single_records::of_records(trials, &preferred(methods, &entries)),
         warnings: warnings.clone(),
         methods: entries,
     };
@@ -148,11 +140,8 @@ pub fn fit(
 ///
 /// Fails for a name that no method has, and for a command that cannot be one.
 pub fn methods(names: &[String], external: &[NamedCommand], seed: Option<u64>) -> Result<Vec<Named>, Failure> {
-    let all: Vec<Box<dyn Identifier>> = registry::defaults()
-        .iter()
-        .map(IdentifierSettings::build)
-        .collect::<Result<_, _>>()
-        .map_err(|error| Failure::work(format!("default settings: {error}")))?;
+    let all = registry::defaults().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
+    let all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
     let known: Vec<&str> = all.iter().map(|method| method.id()).collect();
     if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
         return Err(Failure::input(format!("--method {unknown}: no such method; use one of {}", known.join(", "))));
@@ -161,64 +150,49 @@ pub fn methods(names: &[String], external: &[NamedCommand], seed: Option<u64>) -
     if !outside.is_empty() {
         interrupt::install();
     }
-    Ok(all
-        .into_iter()
-        .filter(|method| names.is_empty() || names.iter().any(|name| name == method.id()))
-        .map(|method| seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method))
-        .map(|method| (method.id().to_owned(), method))
-        .chain(outside)
-        .collect())
+    let is_named = |id: &str| names.is_empty() || names.iter().any(|name| name == id);
+    let own = all.into_iter().filter(|method| is_named(method.id())).map(|method| {
+        let method = seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method);
+        (method.id().to_owned(), method)
+    });
+    Ok(own.chain(outside).collect())
 }
 
 /// The methods that were used and gave an answer with an interval, those first whose intervals hold most.
-fn speakers<'a>(methods: &'a [Named], entries: &[MethodEntry]) -> Vec<&'a dyn Identifier> {
-    let has_interval = |entry: &&MethodEntry| entry.parameters.is_some_and(|own| own.k_per_s.ci95.is_some());
-    let answered: Vec<&str> = entries.iter().filter(has_interval).map(|entry| entry.method.as_str()).collect();
-    let answered = methods.iter().filter(|(label, _)| answered.contains(&label.as_str()));
+fn preferred<'a>(methods: &'a [Named], entries: &[MethodEntry]) -> Vec<&'a dyn Identifier> {
+    let has_interval = |label: &str| {
+        let own = entries.iter().find(|entry| entry.method == label).and_then(|entry| entry.parameters);
+        own.is_some_and(|own| own.k_per_s.ci95.is_some())
+    };
+    let answered = methods.iter().filter(|(label, _)| has_interval(label));
     let mut found: Vec<&dyn Identifier> = answered.map(|(_, method)| method.as_ref()).collect();
-    let rank = |id: &str| every_scale::PREFERRED_METHODS.iter().position(|speaker| *speaker == id);
-    found.sort_by_key(|method| rank(method.id()).unwrap_or(every_scale::PREFERRED_METHODS.len()));
-    found.truncate(every_scale::PREFERRED_METHODS.len());
+    found.sort_by_key(|method| PREFERRED_METHODS.iter().position(|id| *id == method.id()).unwrap_or(usize::MAX));
+    found.truncate(PREFERRED_METHODS.len());
     found
 }
 
 /// The message when no method gives an answer: every reason once.
 fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[String]) -> Failure {
-    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
-    for entry in entries {
-        let reason = entry.reason.as_deref().unwrap_or("no answer");
-        match reasons.iter_mut().find(|(known, _)| *known == reason) {
-            Some((_, methods)) => methods.push(&entry.method),
-            None => reasons.push((reason, vec![&entry.method])),
-        }
-    }
-    let file = file_of(record).0;
+    let reasons = grouped(entries, |entry| entry.reason.as_deref().unwrap_or("no answer"));
     let mut message = match (entries, reasons.as_slice()) {
-        ([only], _) => {
-            let reason = only.reason.as_deref().unwrap_or("no answer");
-            format!("{file}: {} cannot identify this record: {reason}", only.method)
-        }
-        (_, [(reason, _)]) => format!("{file}: no method can identify this record: {reason}"),
+        ([only], [(reason, _)]) => format!("{} cannot identify this record: {reason}", only.method),
+        (_, [(reason, _)]) => format!("no method can identify this record: {reason}"),
         _ => {
-            let lines: Vec<String> =
-                reasons.iter().map(|(reason, methods)| format!("\n  {}: {reason}", methods.join(", "))).collect();
-            format!("{file}: no method can identify this record{}", lines.concat())
+            let line = |(reason, own): &(&str, Vec<&MethodEntry>)| {
+                let methods: Vec<&str> = own.iter().map(|entry| entry.method.as_str()).collect();
+                format!("\n  {}: {reason}", methods.join(", "))
+            };
+            format!("no method can identify this record{}", reasons.iter().map(line).collect::<String>())
         }
     };
-    for warning in warnings {
-        message += &format!("\nnote: {warning}");
-    }
+    warnings.iter().for_each(|warning| message += &format!("\nnote: {warning}"));
     if entries.iter().any(|entry| entry.failure.as_deref() != Some("not-excited")) {
         message += "\nhelp: give a zig-zag, or a record in which the rudder is put to both sides for as long as the ship needs to answer";
     }
-    Failure::input(message)
+    Failure::about(file_of(record).0, message)
 }
 
 fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {
-    Validation {
-        file: file_of(other).0.to_owned(),
-        heading_rmse_deg: estimate
-            .and_then(|estimate| replay(other, &estimate.response))
-            .map(|replay| to_deg(replay.rms())),
-    }
+    let replay = estimate.and_then(|estimate| replay(other, &estimate.response));
+    Validation { file: file_of(other).0.to_owned(), heading_rmse_deg: replay.map(|own| to_deg(own.rms())) }
 }

@@ -1,5 +1,6 @@
 //! A prediction: the ships that models stand for, steered through manoeuvres and held against records.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use predict::correction::{self, Correction};
@@ -26,8 +27,11 @@ const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
 /// What is known of a ship; the covariances of the longest mixtures have a hundredth of this.
 const MODEL: file::Kind = file::Kind { name: "a model", largest: 1 << 26 };
 
+/// What a model is read from.
+const EXPECTED: &str = "expected the fit.json or trace.json of this program";
+
 /// What is known of a ship, and from where.
-pub struct Model {
+pub struct StoredModel {
     file: String,
     known: IdentifiedShip,
     /// How it was identified.
@@ -35,23 +39,22 @@ pub struct Model {
 }
 
 /// The ships of several models at a scale.
-fn mixture_of(models: &[Model], particulars: Option<Particulars>) -> Result<ShipMixture, PredictError> {
-    let of = |model: &Model| -> Result<(IdentifiedShip, f64), PredictError> {
+fn mixture_of(models: &[StoredModel], particulars: Option<Particulars>) -> Result<ShipMixture, PredictError> {
+    let of = |model: &StoredModel| -> Result<(IdentifiedShip, f64), PredictError> {
         Ok((at_scale(&model.known, particulars)?, 1.0))
     };
     ShipMixture::new(models.iter().map(of).collect::<Result<_, _>>()?)
 }
 
-impl Model {
+impl StoredModel {
     /// What is known of the ship in a file, as a request asks for it.
     ///
     /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Self, Failure> {
         let shown = path.display().to_string();
         name::of_file(path)?;
-        let text = file::read_text(path, MODEL).map_err(|error| {
-            Failure::input(format!("{shown}: {error}; expected the fit.json or trace.json of this program"))
-        })?;
+        let text =
+            file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))?;
         Self::of_document(&shown, &text, request.method.as_deref(), request.calm, warnings)
     }
 
@@ -66,38 +69,29 @@ impl Model {
         calm: bool,
         warnings: &mut Vec<String>,
     ) -> Result<Self, Failure> {
-        let value: Value = serde_json::from_str(text).map_err(|error| {
-            Failure::input(format!(
-                "{shown}: this is no JSON ({error}); expected the fit.json or trace.json of this program"
-            ))
+        let refuse = |problem: String| Failure::about(shown, problem);
+        let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
+        let value: Value =
+            serde_json::from_str(text).map_err(|error| refuse(format!("this is no JSON ({error}); {EXPECTED}")))?;
+        let schema = value["schema"].as_str().and_then(|schema| schema.split_once('/'));
+        let (command, key) = match schema {
+            Some(("fit", _)) => ("fit", "ships"),
+            Some(("trace", _)) => ("trace", "ship"),
+            _ => return Err(refuse(format!("schema = {}; {EXPECTED}", value["schema"]))),
+        };
+        let known = value.get(key).cloned().ok_or_else(|| {
+            refuse(format!("it has no `{key}`, as an older program wrote it; make it again with `study {command}`"))
         })?;
-        let old = |what: &str| {
-            Failure::input(format!(
-                "{shown}: {what}; it was written by an older program, make it again with `study {what}`"
-            ))
+        let (known, method) = if command == "fit" {
+            let mut ships: BTreeMap<String, IdentifiedShip> = serde_json::from_value(known).map_err(unread)?;
+            let id = method(shown, &ships, asked)?;
+            if asked.is_none() {
+                warnings.push(format!("{shown}: the answer of {id} is used; --method names another"));
+            }
+            (ships.remove(&id).expect("it was found there"), id)
+        } else {
+            (serde_json::from_value(known).map_err(unread)?, String::from("trace"))
         };
-        let (known, method) = match value["schema"].as_str() {
-            Some(schema) if schema.starts_with("fit/") => {
-                let ships = value.get("ships").and_then(Value::as_object).ok_or_else(|| old("fit"))?;
-                let id = method(shown, ships, asked)?;
-                if asked.is_none() {
-                    warnings.push(format!("{shown}: the answer of {id} is used; --method names another"));
-                }
-                (ships[&id].clone(), id)
-            }
-            Some(schema) if schema.starts_with("trace/") => {
-                (value.get("ship").cloned().ok_or_else(|| old("trace"))?, String::from("trace"))
-            }
-            found => {
-                let found =
-                    found.map_or_else(|| String::from("no `schema`"), |schema| format!("schema = \"{schema}\""));
-                return Err(Failure::input(format!(
-                    "{shown}: {found}; expected the fit.json or trace.json of this program"
-                )));
-            }
-        };
-        let known: IdentifiedShip = serde_json::from_value(known)
-            .map_err(|error| Failure::input(format!("{shown}: what is known of the ship cannot be read: {error}")))?;
         if known.leans_on_sway() {
             warnings.push(format!(
                 "{shown}: a term of the model takes the measured sway, and here that of an equation fitted to it; intervals \
@@ -105,20 +99,16 @@ impl Model {
             ));
         }
         let known = if calm { known.in_calm() } else { Ok(known) };
-        Ok(Self {
-            known: known.map_err(|error| Failure::input(format!("{shown}: {error}")))?,
-            file: shown.to_owned(),
-            method,
-        })
+        Ok(Self { known: known.map_err(|error| refuse(error.to_string()))?, file: shown.to_owned(), method })
     }
 }
 
 /// What a prediction is made from.
 pub struct PredictInput<'a> {
     /// The ship; several models are a mixture, all alike.
-    pub models: &'a [Model],
+    pub models: &'a [StoredModel],
     /// The same ship as she was loaded in the records; empty where they need no correction.
-    pub ballast: &'a [Model],
+    pub ballast: &'a [StoredModel],
     /// Records that are held against their prediction.
     pub records: Vec<Trial>,
     /// What is taken out of the tracks of their turns; `None` for what each shows itself.
@@ -164,7 +154,7 @@ fn predictions(
                 warnings.push(format!("{file}: {error}; it is left out"));
                 lost = Some(error);
             }
-            Err(error) => return Err(Failure::input(format!("{file}: {error}"))),
+            Err(error) => return Err(Failure::about(file, error)),
         }
     }
     Ok((predictions, lost))
@@ -182,13 +172,10 @@ pub fn predict(
 ) -> Result<PredictDocument, Failure> {
     let PredictInput { models, ballast, records, current, declared } = input;
     let (draws, scale) = (request.draws as usize, asked_scale(&request.reading));
-    let records: Vec<(Trial, Option<Current>)> = records
-        .into_iter()
-        .map(|record| at_own_scale(record, warnings))
-        .map(|record| turn::without_current(record, current))
-        .collect();
+    let mut in_still_water = |record| turn::without_current(at_own_scale(record, warnings), current);
+    let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
     let first = models[0].file.clone();
-    let refused = |error: PredictError| Failure::input(format!("{first}: {error}"));
+    let refused = |error: PredictError| Failure::about(&first, error);
     let mixture = mixture_of(models, scale).map_err(refused)?;
     let busy = progress::busy("predicting", quiet);
     let (predictions, lost) = predictions(request, &mixture, &first, warnings)?;
@@ -203,10 +190,13 @@ pub fn predict(
     }
     busy.finish_and_clear();
     let particulars = mixture.particulars();
-    let files = |models: &[Model]| -> Vec<String> { models.iter().map(|model| model.file.clone()).collect() };
-    let held: Vec<FormRecord> = (records.iter().zip(&corrections))
-        .map(|((trial, current), correction)| FormRecord { trial, correction: correction.as_ref(), current: *current })
-        .collect();
+    let files = |models: &[StoredModel]| -> Vec<String> { models.iter().map(|model| model.file.clone()).collect() };
+    let held = records.iter().zip(&corrections).map(|((trial, current), correction)| FormRecord {
+        trial,
+        correction: correction.as_ref(),
+        current: *current,
+    });
+    let held: Vec<FormRecord> = held.collect();
     let fill = || form::fill(&predictions, particulars, &files(models).join(", "), &held, declared);
     let form = request.form.then(fill);
     let (form, form_remarks) = form.map(|form| (form.entries, form.remarks)).unzip();
@@ -251,21 +241,20 @@ fn at_own_scale(record: Trial, warnings: &mut Vec<String>) -> Trial {
 /// at full load and those in the condition of the record.
 fn held_against(
     (record, current): (&Trial, Option<Current>),
-    [full, ballast]: [&[Model]; 2],
+    [full, ballast]: [&[StoredModel]; 2],
     (asked, draws): (Option<Particulars>, usize),
     warnings: &mut Vec<String>,
 ) -> Result<(RecordReplay, Option<Correction>), Failure> {
     // A speed that is not given is that of Froude, not that of a record which loses speed from its first rows on.
     let scale = asked.filter(|asked| is_of(record, asked.length)).or_else(|| record.particulars());
-    let scaled = |models: &[Model]| {
-        mixture_of(models, scale).map_err(|error| Failure::input(format!("{}: {error}", models[0].file)))
-    };
+    let scaled =
+        |models: &[StoredModel]| mixture_of(models, scale).map_err(|error| Failure::about(&models[0].file, error));
     let file = file_of(record).0;
     let own = scaled(if ballast.is_empty() { full } else { ballast })?;
-    let replayed = own.replay(record, draws, current).map_err(|error| Failure::input(format!("{file}: {error}")))?;
+    let replayed = own.replay(record, draws, current).map_err(|error| Failure::about(file, error))?;
     let Some(replayed) = replayed else {
         let what = "too few headings at its beginning to say how the ship began";
-        return Err(Failure::input(format!("{file}: {what}; choose a part with --from in `study find`")));
+        return Err(Failure::about(file, format!("{what}; choose a part with --from in `study find`")));
     };
     if ballast.is_empty() {
         return Ok((replayed, None));
@@ -276,7 +265,7 @@ fn held_against(
             warnings.push(format!("{file}: {error}; it is not corrected to full load"));
             return Ok((replayed, None));
         }
-        Err(error) => return Err(Failure::input(format!("{file}: {error}"))),
+        Err(error) => return Err(Failure::about(file, error)),
     };
     if correction.figures.is_empty() {
         warnings.push(format!(
@@ -308,18 +297,18 @@ fn at_scale(known: &IdentifiedShip, asked: Option<Particulars>) -> Result<Identi
 }
 
 /// The method whose answer is used.
-fn method(file: &str, ships: &serde_json::Map<String, Value>, asked: Option<&str>) -> Result<String, Failure> {
+fn method(file: &str, ships: &BTreeMap<String, IdentifiedShip>, asked: Option<&str>) -> Result<String, Failure> {
     let known: Vec<&str> = ships.keys().map(String::as_str).collect();
     if known.is_empty() {
         let what = "no method has a covariance for this record, so there are no intervals to predict";
-        return Err(Failure::input(format!("{file}: {what}; use a longer record or several")));
+        return Err(Failure::about(file, format!("{what}; use a longer record or several")));
     }
     match asked {
         Some(asked) if known.contains(&asked) => Ok(asked.to_owned()),
-        Some(asked) => Err(Failure::input(format!(
-            "{file}: --method {asked}: this file has no such answer with a covariance; use one of {}",
-            known.join(", ")
-        ))),
+        Some(asked) => Err(Failure::about(
+            file,
+            format!("--method {asked}: it has no such answer with a covariance; use one of {}", known.join(", ")),
+        )),
         None => Ok(METHODS.into_iter().find(|id| known.contains(id)).unwrap_or(known[0]).to_owned()),
     }
 }

@@ -1,7 +1,7 @@
 //! Simulated trials as records that other commands read, each with its truth.
 
 use campaign::answers::part_name;
-use campaign::engine::{self, Truths};
+use campaign::engine;
 use campaign::task::Task;
 use scenario::Scenario;
 use scenario::failure::Failure;
@@ -9,7 +9,7 @@ use scenario::problem::suggestion;
 use ship::Particulars;
 use simulate::Simulated;
 
-use crate::documents::truth::TruthFile;
+use crate::documents::truth::truth;
 use crate::options::{Replicates, SimulateRequest};
 
 /// Most records that one call writes: more are a study, which keeps them as rows.
@@ -79,27 +79,13 @@ pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<Record
     };
     let simulated = engine::simulate(scenario, task).map_err(refuse)?;
     let truths = engine::truths(scenario, task).map_err(refuse)?;
-    let made = simulated
-        .iter()
-        .enumerate()
-        .map(|(number, simulated)| made(scenario, task, simulated, truths, part_name(name, number)));
-    made.collect::<Result<_, String>>().map_err(refuse)
-}
-
-fn made(
-    scenario: &Scenario,
-    task: Task,
-    simulated: &Simulated,
-    truths: Truths,
-    name: String,
-) -> Result<RecordFiles, String> {
-    let mut table = Vec::new();
-    trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
-    let truth = serde_json::to_string(&TruthFile::of(scenario, task, simulated, truths)?);
-    let truth = truth.map_err(|error| error.to_string())? + "\n";
-    let sidecar = simulated
-        .trial
-        .particulars()
-        .map(|Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n"));
-    Ok(RecordFiles { name, table, sidecar, truth })
+    let files = |(number, simulated): (usize, &Simulated)| {
+        let mut table = Vec::new();
+        trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
+        let truth = format!("{}\n", truth(scenario, task, simulated, truths)?);
+        let sidecar = |Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n");
+        let sidecar = simulated.trial.particulars().map(sidecar);
+        Ok(RecordFiles { name: part_name(name, number), table, sidecar, truth })
+    };
+    simulated.iter().enumerate().map(files).collect::<Result<_, String>>().map_err(refuse)
 }

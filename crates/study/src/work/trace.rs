@@ -4,7 +4,7 @@
 use ::trace::{Analysis, Settings, TraceError};
 use campaign::folder::ResultFolder;
 use campaign::known::{self, RecordFacts};
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
 use trial::{Channel, Trial};
 
 use super::planned;
@@ -17,13 +17,13 @@ use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
 
 /// A trace before it is written: its document, and the tables of its curves under the names of their files.
-pub struct Traced {
+pub struct TraceResult {
     /// `trace.json`.
     pub document: TraceDocument,
     tables: Vec<(String, String)>,
 }
 
-impl Traced {
+impl TraceResult {
     /// The curves, as whoever reads the files has them.
     pub fn curves(&self) -> Result<TraceCurves, Failure> {
         TraceCurves::from_tables(&self.document, |name| {
@@ -34,8 +34,7 @@ impl Traced {
 
     /// Writes document and tables. Fails when a file cannot be written.
     pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
-        let text = documents::text(&self.document).on("describe", &folder.path().join(TRACE))?;
-        folder.keep(TRACE, text)?;
+        documents::keep(folder, TRACE, &self.document)?;
         self.tables.iter().try_for_each(|(name, table)| folder.write(name, table))
     }
 }
@@ -50,7 +49,7 @@ pub fn trace(
     settings: &Settings,
     quiet: bool,
     warnings: &mut Vec<String>,
-) -> Result<Traced, Failure> {
+) -> Result<TraceResult, Failure> {
     let together = scales::together(records, others)?;
     let busy = progress::busy("tracing", quiet);
     let analysis = ::trace::trace(&together.trials, &together.others, settings);
@@ -72,11 +71,9 @@ pub fn trace(
     };
     let entries: Vec<RecordEntry> = all.enumerate().zip(&names).map(entry).collect();
     let comparisons = analysis.identification.iter().chain(&analysis.validation);
-    let mut tables: Vec<(String, String)> = entries
-        .iter()
-        .zip(trials.iter().chain(&held_out).zip(comparisons))
-        .map(|(entry, (trial, comparison))| (entry.curves.clone(), curves::table(trial, comparison)))
-        .collect();
+    let compared = trials.iter().chain(&held_out).zip(comparisons);
+    let tables = compared.map(|(trial, comparison)| curves::table(trial, comparison));
+    let mut tables: Vec<(String, String)> = entries.iter().map(|entry| entry.curves.clone()).zip(tables).collect();
     let explains = analysis.structures.members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
     let mut moments = Vec::new();
     let slugs = slugs(&names);
@@ -96,7 +93,7 @@ pub fn trace(
         scales,
         trace: ::trace::Document { next_trial: next_trial(&analysis, &trials), ..analysis.document },
     };
-    Ok(Traced { document, tables })
+    Ok(TraceResult { document, tables })
 }
 
 /// Why there is no trace of some records.
@@ -108,7 +105,7 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
         TraceError::Asked { .. } => "; leave it out of the request",
         TraceError::Settings(_) => "",
     };
-    Failure::input(format!("{}: {error}{why}", file_of(first).0))
+    Failure::about(file_of(first).0, format!("{error}{why}"))
 }
 
 /// The trial that would tell most, in one sentence.

@@ -80,11 +80,11 @@ fn a_benchmark_of_ones_own_runs_and_skips_what_is_not_there() {
     for file in ["report.md", "rows.csv", "leaderboard.csv", "ratios-made.png", "methods/trace.md"] {
         assert!(desk.path("results/small-bench").join(file).is_file(), "{file}");
     }
-    let page = String::from_utf8(desk.bytes("results/small-bench/report.md")).expect("text");
+    let page = desk.text("results/small-bench/report.md");
     assert!(page.contains("- ship, lost: no file lost.csv"), "{page}");
     let here = desk.path("").to_string_lossy().trim_end_matches('/').to_owned();
     for file in ["bench.json", "rows.csv", "report.md", "leaderboard.csv"] {
-        let text = String::from_utf8(desk.bytes(&format!("results/small-bench/{file}"))).expect("text");
+        let text = desk.text(&format!("results/small-bench/{file}"));
         assert!(!text.contains(&here), "{file} says where the records lie");
     }
 }
@@ -120,7 +120,7 @@ fn what_cannot_be_run_is_refused_in_one_message() {
     desk.run(&["bench", "--task", "circel"]).is_refused(2, &["circel", "did you mean `circle`"]);
     desk.run(&["bench", "--method", "srivk"]).is_refused(2, &["--method srivk", "did you mean `srivc`"]);
     desk.run(&["bench", "--set", "hull"]).is_refused(2, &["--set hull", "did you mean `hulls`"]);
-    let wrong = String::from_utf8(desk.bytes("own.toml")).expect("text").replace("licence =", "license =");
+    let wrong = desk.text("own.toml").replace("licence =", "license =");
     desk.file("wrong.toml", wrong);
     desk.run(&["bench", "wrong.toml"]).is_refused(2, &["wrong.toml:8:1", "unknown field `license`", "`licence`"]);
     // Without any folder the measured set of the benchmark is not there, and nothing else was asked for.

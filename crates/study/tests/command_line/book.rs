@@ -13,10 +13,10 @@
 #![cfg(unix)]
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use crate::desk::of_repository;
+use crate::desk::{copy, of_repository};
 
 /// Languages of blocks; a command in a block of another one would never be run.
 const LANGUAGES: [&str; 10] = ["sh", "toml", "csv", "text", "json", "rust", "python", "octave", "latex", "bibtex"];
@@ -127,17 +127,6 @@ impl Scratch {
         match output.status.success() {
             true => Ok(out),
             false => Err(format!("{command}\n{}\n{out}{err}", output.status)),
-        }
-    }
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("a folder");
-    for entry in fs::read_dir(from).expect("it is there").flatten() {
-        let target = to.join(entry.file_name());
-        match entry.path().is_dir() {
-            true => copy(&entry.path(), &target),
-            false => drop(fs::copy(entry.path(), target).expect("a copy")),
         }
     }
 }

@@ -30,7 +30,9 @@ fn a_scenario_runs_and_its_report_is_made_again() {
 fn a_folder_that_is_no_study_cannot_be_reported() {
     let desk = Desk::new();
     desk.file("folder/x", "");
-    desk.run(&["report", "folder"]).is_refused(2, &["folder", "finished study"]);
+    desk.run(&["report", "folder", "--open"]).is_refused(2, &["folder", "finished study"]);
+    desk.file("old/fit.json", "{}");
+    desk.run(&["report", "old", "--open"]).is_refused(2, &["fit.json", "study fit"]);
     desk.run(&["report", "missing"]).is_refused(2, &["missing", "finished study"]);
 }
 
@@ -39,7 +41,10 @@ fn a_result_folder_that_cannot_be_made_is_a_failure_of_the_work() {
     let desk = Desk::new();
     desk.file("small.toml", GOOD);
     desk.file("in-the-way", "");
-    desk.run(&["small.toml", "--out", "in-the-way"]).is_refused(1, &["in-the-way"]);
+    desk.file("good.csv", zig_zag_csv());
+    for command in [&["small.toml"][..], &["fit", "good.csv"]] {
+        desk.run(&[command, &["--out", "in-the-way"]].concat()).is_refused(1, &["in-the-way", "--out"]);
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 use ship::Ship;
 use ship::angle::{from_deg, to_deg};
@@ -43,65 +44,77 @@ impl Desk {
     }
 
     pub fn run(&self, arguments: &[&str]) -> Run {
-        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_study"))
-            .args(arguments)
-            .current_dir(self.folder.path())
-            .output()
-            .expect("the program starts");
-        if status.success() {
+        let run = Run::of(self.command(arguments).output().expect("the program starts"));
+        if run.code == Some(0) {
             schemas::hold_below(self.folder.path());
         }
-        Run {
-            code: status.code(),
-            out: String::from_utf8(stdout).expect("UTF-8"),
-            err: String::from_utf8(stderr).expect("UTF-8"),
-        }
+        run
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_study"));
+        command.args(arguments).current_dir(self.folder.path());
+        command
     }
 
     /// The same with a text on standard input.
-    pub fn run_with_input(&self, arguments: &[&str], input: &str) -> Run {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_study"))
-            .args(arguments)
-            .current_dir(self.folder.path())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
-        let mut pipe = child.stdin.take().expect("it is piped");
-        // A program that refuses its arguments reads nothing.
-        let _ = pipe.write_all(input.as_bytes());
-        drop(pipe);
-        let Output { status, stdout, stderr } = child.wait_with_output().expect("it ends");
-        Run {
-            code: status.code(),
-            out: String::from_utf8(stdout).expect("UTF-8"),
-            err: String::from_utf8(stderr).expect("UTF-8"),
-        }
+    pub fn run_with_input(&self, arguments: &[&str], input: impl AsRef<[u8]>) -> Run {
+        let mut command = self.command(arguments);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("the program starts");
+        // A program that refuses its arguments reads nothing, and one that has read enough no more.
+        let _ = child.stdin.take().expect("it is piped").write_all(input.as_ref());
+        Run::of(child.wait_with_output().expect("it ends"))
     }
 
     /// Starts the program and does not wait for it.
     pub fn start(&self, arguments: &[&str]) -> Child {
-        Command::new(env!("CARGO_BIN_EXE_study"))
-            .args(arguments)
-            .current_dir(self.folder.path())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts")
+        self.command(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program starts")
+    }
+
+    /// The same, and waits until something holds, which has to be before it ends.
+    pub fn start_until(&self, arguments: &[&str], mut holds: impl FnMut() -> bool) -> Child {
+        let mut run = self.start(arguments);
+        while !holds() {
+            assert!(run.try_wait().expect("it can be asked").is_none(), "it ended too early: {arguments:?}");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        run
     }
 
     pub fn bytes(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
+    pub fn text(&self, name: &str) -> String {
+        String::from_utf8(self.bytes(name)).expect("UTF-8")
+    }
+
     pub fn json(&self, name: &str) -> serde_json::Value {
-        let text = std::fs::read_to_string(self.path(name)).expect("the file is there");
-        serde_json::from_str(&text).expect("JSON")
+        serde_json::from_slice(&self.bytes(name)).expect("JSON")
     }
 }
 
+/// Kills a run; what it had said.
+pub fn killed(mut run: Child) -> String {
+    run.kill().expect("it is ours to kill");
+    Run::of(run.wait_with_output().expect("it ends")).err
+}
+
+/// Asks a run to stop as Ctrl-C does; how it ended, and how long that took.
+pub fn interrupted(run: Child) -> (Run, Duration) {
+    let asked = Instant::now();
+    let sent = Command::new("kill").args(["-INT", &run.id().to_string()]).status().expect("a Unix system has kill");
+    assert!(sent.success());
+    (Run::of(run.wait_with_output().expect("it ends")), asked.elapsed())
+}
+
 impl Run {
+    fn of(Output { status, stdout, stderr }: Output) -> Self {
+        let [out, err] = [stdout, stderr].map(|text| String::from_utf8(text).expect("UTF-8"));
+        Self { code: status.code(), out, err }
+    }
+
     /// The run went well.
     pub fn is_done(&self) -> &Self {
         assert_eq!(self.code, Some(0), "{}\n{}", self.out, self.err);
@@ -170,6 +183,18 @@ pub fn measured() -> Option<PathBuf> {
     }
     println!("skipped: no measured records at {}", folder.display());
     None
+}
+
+/// Copies all that is in a folder.
+pub fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("it is there").flatten() {
+        let target = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &target),
+            false => drop(std::fs::copy(entry.path(), target).expect("a copy")),
+        }
+    }
 }
 
 /// A file or folder of the repository.

@@ -1,44 +1,28 @@
 //! Monte-Carlo studies as a user runs them: interrupted, continued, split and joined, always with the same rows.
 
-use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use campaign::rows::StudyRow;
-use campaign::store::StoredStudy;
 
-use crate::desk::Desk;
+use crate::desk::{Desk, interrupted, killed};
+use crate::outside::rows;
 
 /// A study of some seconds in two cells.
 fn scenario(replicates: u32) -> String {
     format!(
-        r#"
-question = "How precise is the output error?"
+        r#"question = "How precise is the output error?"
 seed = 3
 replicates = {replicates}
-
-[ship.yukun]
-
-[manoeuvre.zig-zag]
-rudder-deg = 10.0
-heading-deg = 10.0
-
-[steering-gear]
-rate-deg-s = 2.5
-
-[recording]
-sampling-s = 1.0
-duration-s = 200.0
-
-[sensor]
-heading-noise-deg = 0.1
-
+ship.yukun = {{}}
+manoeuvre.zig-zag = {{ rudder-deg = 10.0, heading-deg = 10.0 }}
+steering-gear = {{ rate-deg-s = 2.5 }}
+recording = {{ sampling-s = 1.0, duration-s = 200.0 }}
+sensor = {{ heading-noise-deg = 0.1 }}
 [[sweep]]
 key = "sensor.heading-noise-deg"
 values = [0.1, 0.5]
-
 [[identifier]]
 method.output-error = {{}}
-
 [[identifier]]
 method.integral-least-squares = {{}}
 "#
@@ -54,7 +38,7 @@ fn uninterrupted(desk: &Desk) -> Vec<u8> {
 }
 
 /// Number of parts stored so far.
-fn parts(desk: &Desk, folder: &str) -> usize {
+pub fn parts(desk: &Desk, folder: &str) -> usize {
     let parts = std::fs::read_dir(desk.path(folder).join("unfinished")).into_iter().flatten().flatten();
     parts.filter(|entry| entry.path().extension().is_some_and(|extension| extension == "parquet")).count()
 }
@@ -96,12 +80,8 @@ fn a_damaged_part_is_run_again() {
     let desk = Desk::new();
     desk.file("study.toml", scenario(9000));
     let whole = uninterrupted(&desk);
-    let mut run = desk.start(&["study.toml", "--out", "damaged", "--quiet", "--threads", "2"]);
-    while parts(&desk, "damaged") < 2 && run.try_wait().expect("it can be asked").is_none() {
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    run.kill().expect("it is ours to kill");
-    run.wait().expect("it ends");
+    let run = ["study.toml", "--out", "damaged", "--quiet", "--threads", "2"];
+    killed(desk.start_until(&run, || parts(&desk, "damaged") >= 2));
     let part = "damaged/unfinished/00000001.parquet";
     let bytes = desk.bytes(part);
     desk.file(part, &bytes[..bytes.len() / 2]);
@@ -116,18 +96,10 @@ fn a_damaged_part_is_run_again() {
 fn ctrl_c_stops_within_a_second_and_keeps_the_rows() {
     let desk = Desk::new();
     desk.file("study.toml", scenario(100_000));
-    let run = desk.start(&["study.toml", "--out", "stopped", "--quiet", "--threads", "2"]);
-    while parts(&desk, "stopped") < 1 {
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    let asked = Instant::now();
-    let sent = Command::new("kill").args(["-INT", &run.id().to_string()]).status().expect("a Unix system has kill");
-    assert!(sent.success());
-    let output = run.wait_with_output().expect("it ends");
-    assert!(asked.elapsed() < Duration::from_secs(1), "{:?}", asked.elapsed());
-    let message = String::from_utf8(output.stderr).expect("UTF-8");
-    assert_eq!(output.status.code(), Some(1), "{message}");
-    assert!(message.starts_with("error: stopped after ") && message.contains("the same command goes on"), "{message}");
+    let run = ["study.toml", "--out", "stopped", "--quiet", "--threads", "2"];
+    let (run, waited) = interrupted(desk.start_until(&run, || parts(&desk, "stopped") >= 1));
+    assert!(waited < Duration::from_secs(1), "{waited:?}");
+    run.is_refused(1, &["error: stopped after ", "the same command goes on"]);
     desk.run(&["report", "stopped"]).is_refused(2, &["stopped", "not finished", "run it again"]);
 }
 
@@ -184,12 +156,7 @@ fn a_folder_belongs_to_one_study() {
 fn what_is_left_of_an_ended_study_does_no_harm() {
     let desk = Desk::new();
     desk.file("long.toml", scenario(100_000));
-    let mut run = desk.start(&["long.toml", "--out", "cut", "--quiet"]);
-    while parts(&desk, "cut") < 1 {
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    run.kill().expect("it is ours to kill");
-    run.wait().expect("it ends");
+    killed(desk.start_until(&["long.toml", "--out", "cut", "--quiet"], || parts(&desk, "cut") >= 1));
     let leave = || {
         desk.file("whole/unfinished/README", desk.bytes("cut/unfinished/README"));
         desk.file("whole/unfinished/00000000.parquet", "half a part");
@@ -220,17 +187,14 @@ fn a_manifest_repeats_its_study() {
 fn two_runs_do_not_share_a_folder() {
     let desk = Desk::new();
     desk.file("study.toml", scenario(100_000));
-    let mut first = desk.start(&["study.toml", "--out", "shared", "--quiet", "--threads", "1"]);
-    while parts(&desk, "shared") < 1 {
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    let first = ["study.toml", "--out", "shared", "--quiet", "--threads", "1"];
+    let first = desk.start_until(&first, || parts(&desk, "shared") >= 1);
     for options in [&[][..], &["--restart"]] {
         let run = desk.run(&[&["study.toml", "--out", "shared", "--quiet"], options].concat());
         run.is_refused(1, &["another study is running", "shared"]);
     }
     assert!(parts(&desk, "shared") > 0, "nothing was discarded");
-    first.kill().expect("it is ours to kill");
-    first.wait().expect("it ends");
+    killed(first);
 }
 
 /// Trials of every cell and method of a summary, in its order.
@@ -274,10 +238,10 @@ fn a_stopping_rule_ends_a_cell_wherever_it_runs() {
 #[test]
 fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
     let desk = Desk::new();
-    let ship = "[ship.first-order]\nK-per-s = 0.1\nT-s = 16.3\n";
+    let ship = "ship.first-order = { K-per-s = 0.1, T-s = 16.3 }";
     let draws = "[[draw]]\nkey = \"ship.first-order.T-s\"\nlog-uniform = { from = 5.0, to = 50.0 }\n\
                  [[draw]]\nkey = \"steering-gear.rate-deg-s\"\nuniform = { from = 2.3, to = 7.0 }\n";
-    desk.file("study.toml", scenario(40).replace("[ship.yukun]\n", ship) + draws);
+    desk.file("study.toml", scenario(40).replace("ship.yukun = {}", ship) + draws);
     let whole = uninterrupted(&desk);
     for shard in ["1/3", "2/3", "3/3"] {
         desk.run(&["study.toml", "--quiet", "--shard", shard, "--threads", "2"]).is_done();
@@ -287,13 +251,7 @@ fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
     desk.run(&merge).is_done();
     assert!(whole == desk.bytes("joined/rows.parquet"));
 
-    let stored = StoredStudy::read(&desk.path("whole")).expect("it is finished");
-    let mut rows = Vec::new();
-    let read = stored.rows(|row| {
-        rows.push(row);
-        Ok(())
-    });
-    read.expect("they can be read");
+    let rows = rows(&desk, "whole");
     let ships: Vec<&[f64]> = rows.iter().map(|row| row.drawn.as_deref().expect("a ship of its own")).collect();
     assert_eq!(ships[..80], ships[80..], "paired over the cells");
     let is_truth = |row: &StudyRow, ship: &[f64]| row.true_t_s.is_some_and(|t| (t / ship[0] - 1.0).abs() < 1e-14);
@@ -314,7 +272,7 @@ fn studies_are_gathered_on_one_page() {
         desk.run(&[name, "--quiet"]).is_done();
     }
     assert!(desk.run(&["overview", "results"]).is_done().out.contains("2 studies"));
-    let page = String::from_utf8(desk.bytes("results/README.md")).expect("UTF-8");
+    let page = desk.text("results/README.md");
     for part in ["## [one](one/report.md)", "Precise to 0.1 %.", "](one/hero.png)", "So is this.", "](two/hero.png)"] {
         assert!(page.contains(part), "{part} is missing in\n{page}");
     }
@@ -338,7 +296,7 @@ fn figures_for_print_have_the_size_that_was_asked_for() {
     assert_eq!(pixels("whole/errors.png"), (85.0_f64 / 25.4 * 300.0).round() as u32);
     desk.run(&["report", "whole", "--quiet"]).is_done();
     assert_ne!(pixels("whole/errors.png"), (85.0_f64 / 25.4 * 300.0).round() as u32);
-    let table = String::from_utf8(desk.bytes("whole/summary.tex")).expect("UTF-8");
+    let table = desk.text("whole/summary.tex");
     assert!(table.contains("\\toprule") && table.contains("output-error"), "{table}");
     desk.run(&["report", "whole", "--paper", "3"]).is_refused(2, &["3"]);
     desk.run(&["report", "whole", "--paper", "85", "--dpi", "0"]).is_refused(2, &["dpi"]);

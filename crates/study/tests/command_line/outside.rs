@@ -43,7 +43,7 @@ fn ctrl_c_leaves_no_program_behind() {
         }
     };
     wait(&mut || desk.path("pid").exists());
-    let pid = String::from_utf8(desk.bytes("pid")).expect("digits").trim().to_owned();
+    let pid = desk.text("pid").trim().to_owned();
     let kill = |signal: &str, pid: &str| {
         let mut kill = std::process::Command::new("kill");
         kill.args([signal, pid]).stderr(std::process::Stdio::null()).status().expect("it is on every system").success()
@@ -101,7 +101,7 @@ fn simulated(desk: &Desk) -> Vec<String> {
     desk.file("two.toml", study());
     let all = ["simulate", "two.toml", "--replicate", "all", "--seed", "7", "--out", "records", "--quiet"];
     desk.run(&all).is_done();
-    let list = String::from_utf8(desk.bytes("records/trials.csv")).expect("UTF-8");
+    let list = desk.text("records/trials.csv");
     assert_eq!(list.lines().next(), Some("record,cell,label,replicate,also"));
     let line = |line: &str| {
         let record = line.split(',').next().expect("a record");
@@ -114,7 +114,8 @@ fn simulated(desk: &Desk) -> Vec<String> {
 
 const HEAD: &str = "record,K_per_s,T_s,delta_r_deg\n";
 
-fn rows(desk: &Desk, folder: &str) -> Vec<StudyRow> {
+/// The rows of a finished study.
+pub fn rows(desk: &Desk, folder: &str) -> Vec<StudyRow> {
     let mut rows = Vec::new();
     let keep = |row| {
         rows.push(row);

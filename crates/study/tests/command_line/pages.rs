@@ -5,7 +5,7 @@ use crate::scenarios::GOOD;
 
 /// The page of a folder, which has every figure of the Markdown beside it.
 fn page(desk: &Desk, folder: &str) -> String {
-    let read = |name: &str| String::from_utf8(desk.bytes(&format!("{folder}/{name}"))).expect("UTF-8");
+    let read = |name: &str| desk.text(&format!("{folder}/{name}"));
     let (markdown, page) = (read("report.md"), read("report.html"));
     assert!(page.len() < 2_000_000, "{folder}: {} bytes", page.len());
     assert_eq!(page.matches("<figure>").count(), markdown.matches("![").count(), "{folder}");
@@ -33,13 +33,4 @@ fn every_report_has_a_page_for_a_browser() {
     assert!(traced.contains("data-series=\"before") && traced.contains("data-series=\"after"));
     desk.run(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
     assert_eq!(page(&desk, "f"), fit, "the same bytes");
-}
-
-#[test]
-fn a_page_that_is_not_there_is_not_opened() {
-    let desk = Desk::new();
-    desk.file("old/fit.json", "{}");
-    desk.run(&["report", "old", "--open"]).is_refused(2, &["fit.json", "study fit"]);
-    desk.file("other/x", "");
-    desk.run(&["report", "other", "--open"]).is_refused(2, &["other", "finished study"]);
 }

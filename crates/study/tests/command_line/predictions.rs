@@ -22,7 +22,7 @@ fn figure<'a>(json: &'a Value, kind: &str, name: &str) -> &'a Value {
     &own.unwrap_or_else(|| panic!("{kind}: {json}"))["figures"][name]
 }
 
-/// Every key of the contract, down to its parts.
+/// What the contract says beyond the schema, to which every run of these tests is held.
 fn keeps_the_contract(json: &Value) {
     assert_eq!(json["schema"], "predict/1");
     let weights: f64 =
@@ -37,7 +37,6 @@ fn keeps_the_contract(json: &Value) {
     for manoeuvre in json["manoeuvres"].as_array().expect("a list") {
         for figure in manoeuvre["figures"].as_object().expect("figures").values() {
             holds(figure);
-            assert!(figure["extrapolated"].is_boolean());
             let shares: f64 = figure["shares"].as_object().expect("shares").values().filter_map(Value::as_f64).sum();
             assert!(shares == 0.0 || (shares - 1.0).abs() < 1e-9, "{figure}");
         }
@@ -48,8 +47,11 @@ fn keeps_the_contract(json: &Value) {
     }
     for criterion in json["imo"].as_array().expect("a list") {
         assert!((0.0..=1.0).contains(&criterion["probability_of_passing"].as_f64().expect("a share")));
-        assert!(criterion["criterion"].is_string() && criterion["limit"].is_f64());
     }
+}
+
+fn criteria(json: &Value) -> Vec<&str> {
+    json["imo"].as_array().into_iter().flatten().filter_map(|one| one["criterion"].as_str()).collect()
 }
 
 /// The first overshoot of the ship of that record is 6.82 deg in a 10/10, and the limit of 75 m at 6.2 m/s 11.0 deg.
@@ -64,8 +66,7 @@ fn a_fit_tells_the_trials_of_the_imo() {
     assert!((first["median"].as_f64().expect("a number") - 6.82).abs() < 0.1, "{first}");
     assert_eq!(first["extrapolated"], false);
     assert_eq!(figure(&json, "zig-zag 20/20", "first_overshoot_deg")["extrapolated"], true);
-    let names: Vec<&str> =
-        json["imo"].as_array().expect("a list").iter().filter_map(|one| one["criterion"].as_str()).collect();
+    let names = criteria(&json);
     assert_eq!(names, ["initial turning", "10/10 first overshoot", "10/10 second overshoot", "20/20 first overshoot"]);
     for file in ["report.md", "zig-zag-10-10.png", "zig-zag-10-10.csv", "imo-overshoots.svg", "turning-circle-35.png"] {
         assert!(!desk.bytes(&format!("p/{file}")).is_empty(), "{file}");
@@ -89,8 +90,7 @@ fn a_trace_predicts_and_its_own_record_is_inside() {
     let json = desk.json("p/predict.json");
     keeps_the_contract(&json);
     assert_eq!(json["manoeuvres"].as_array().map(Vec::len), Some(5));
-    let criteria: Vec<&str> =
-        json["imo"].as_array().expect("a list").iter().filter_map(|one| one["criterion"].as_str()).collect();
+    let criteria = criteria(&json);
     assert_eq!(criteria, ["initial turning", "20/20 first overshoot"]);
     assert_eq!(figure(&json, "spiral 15", "loop_width_deg")["median"], 0.0);
     let replay = &json["replays"][0];
@@ -152,7 +152,7 @@ fn what_cannot_be_predicted_is_refused_with_the_cure() {
     refused(&["other.json"], &["rows/1", "fit.json or trace.json"]);
     desk.file("old.json", r#"{"schema": "fit/1", "methods": []}"#);
     refused(&["old.json"], &["old.json", "older program", "study fit"]);
-    let text = String::from_utf8(desk.bytes("f/fit.json")).expect("text");
+    let text = desk.text("f/fit.json");
     desk.file("broken.json", text.replace("\"fitted\"", "\"fited\""));
     refused(&["broken.json"], &["broken.json", "fitted"]);
     // Without the sidecar beside it nobody knows how long the ship is.
@@ -218,7 +218,7 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     for part in ["3.0 mean draughts", "Beaufort 6", "tried to starboard only", "20/20 zig-zag: not tried"] {
         assert!(remarks.contains(part), "{part}: {remarks}");
     }
-    let page = String::from_utf8(desk.bytes("p/trial-form.md")).expect("text");
+    let page = desk.text("p/trial-form.md");
     for part in
         ["training \\| ship", "| track reach", "≤ 11.0", "measured, run.csv", "not in the records", "Beaufort 6"]
     {
@@ -280,7 +280,7 @@ fn a_trial_in_ballast_is_corrected_to_full_load() {
     assert_eq!(entry(&json, "loading condition", "")["value"], "tested at partial load and corrected");
     // The replay is that of the ship as she was tried.
     assert!(json["replays"][0]["band_coverage_90"].as_f64().is_some_and(|share| share > 0.6), "{}", json["replays"]);
-    let page = String::from_utf8(desk.bytes("p/report.md")).expect("text");
+    let page = desk.text("p/report.md");
     assert!(page.contains("## Corrected to full load") && page.contains("trial-form.md"), "{page}");
     // F = B corrects nothing.
     let same = ["predict", "f/fit.json", "--ballast", "f/fit.json", "--replay", "run.csv", "--out", "s"];

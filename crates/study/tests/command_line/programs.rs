@@ -140,7 +140,7 @@ fn shells_and_manuals_know_every_command() {
         commands.iter().for_each(|name| assert!(script.contains(name), "{shell}: {name}"));
     }
     for name in &commands {
-        let page = String::from_utf8(desk.bytes(&format!("pages/study-{name}.1"))).expect("UTF-8");
+        let page = desk.text(&format!("pages/study-{name}.1"));
         assert!(page.contains(".SH SYNOPSIS") && page.contains(".SH OPTIONS"), "{name}");
     }
 }

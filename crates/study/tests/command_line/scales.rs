@@ -104,7 +104,7 @@ fn a_trace_is_told_without_dimension() {
         "{}",
         trace["scales"]
     );
-    let page = std::fs::read_to_string(desk.path("traced/report.md")).expect("a page");
+    let page = desk.text("traced/report.md");
     for part in ["one analysis in prime time", "Prime values are without dimension", "steady.png", "phase.png"] {
         assert!(page.contains(part), "{part}");
     }

@@ -2,10 +2,10 @@
 //! in silence.
 
 use std::fs;
-use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use crate::desk::Desk;
+use crate::desk::{Desk, copy, interrupted, killed};
+use crate::monte_carlo::parts;
 
 const STUDY: &str = r#"
 question = "Is it still the same?"
@@ -31,24 +31,13 @@ fn desk() -> Desk {
     desk
 }
 
-fn copy(desk: &Desk, from: &str, to: &str) {
-    for entry in fs::read_dir(desk.path(from)).expect("a folder").flatten() {
-        if entry.path().is_file() {
-            desk.file(
-                &format!("{to}/{}", entry.file_name().to_string_lossy()),
-                fs::read(entry.path()).expect("a file"),
-            );
-        }
-    }
-}
-
 #[test]
 fn a_flipped_bit_is_noticed_by_every_reader() {
     let desk = desk();
     for name in ["rows.parquet", "cells.json", "showcase.json", "timings.csv"] {
         let bytes = desk.bytes(&format!("whole/{name}"));
         for place in [0, bytes.len() / 3, bytes.len() / 2, bytes.len() - 2] {
-            copy(&desk, "whole", "flipped");
+            copy(&desk.path("whole"), &desk.path("flipped"));
             let mut damaged = bytes.clone();
             damaged[place] ^= 0x10;
             desk.file(&format!("flipped/{name}"), &damaged);
@@ -76,12 +65,12 @@ fn rows_of_another_design_are_refused() {
         desk.file(&format!("{folder}/rows.parquet"), own);
     }
     // The same with a manifest that was made to fit.
-    let manifest = String::from_utf8(desk.bytes("more/manifest.toml")).expect("UTF-8");
+    let manifest = desk.text("more/manifest.toml");
     let sha256 = |text: &str| {
         let line = text.lines().find(|line| line.starts_with("\"rows.parquet\"")).expect("it is in the manifest");
         line.to_owned()
     };
-    let whole = String::from_utf8(desk.bytes("whole/manifest.toml")).expect("UTF-8");
+    let whole = desk.text("whole/manifest.toml");
     desk.file("more/manifest.toml", manifest.replace(&sha256(&manifest), &sha256(&whole)));
     desk.file("more/rows.parquet", desk.bytes("whole/rows.parquet"));
     desk.run(&["report", "more"]).is_refused(2, &["rows.parquet", "axis", "another point"]);
@@ -95,7 +84,7 @@ fn a_shard_that_lacks_trials_is_not_merged() {
         desk.run(&["study.toml", "--shard", shard, "--out", &out, "--quiet"]).is_done();
     }
     // A quarter that says it is a half.
-    let quarter = String::from_utf8(desk.bytes("1-4/manifest.toml")).expect("UTF-8");
+    let quarter = desk.text("1-4/manifest.toml");
     desk.file("1-4/manifest.toml", quarter.replace("shard = \"1/4\"", "shard = \"1/2\""));
     let merge = ["merge", "1-4", "2-2", "--out", "joined", "--quiet"];
     desk.run(&merge).is_refused(2, &["of cell 0 the shards hold trials 0 to 2, expected 0 to 4"]);
@@ -107,21 +96,15 @@ fn a_shard_that_lacks_trials_is_not_merged() {
 /// A study that was stopped after some parts.
 fn stopped(desk: &Desk) -> usize {
     desk.file("long.toml", STUDY.replace("replicates = 4", "replicates = 60000"));
-    let mut run = desk.start(&["long.toml", "--out", "cut", "--quiet", "--threads", "2"]);
-    while !desk.path("cut/unfinished/00000002.parquet").exists() {
-        assert!(run.try_wait().expect("it can be asked").is_none(), "the study ended before it was stopped");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    run.kill().expect("it is ours to kill");
-    run.wait().expect("it ends");
-    let names = fs::read_dir(desk.path("cut/unfinished")).expect("a folder").flatten();
-    names.filter(|entry| entry.file_name().to_string_lossy().ends_with(".parquet")).count()
+    let third = desk.path("cut/unfinished/00000002.parquet");
+    killed(desk.start_until(&["long.toml", "--out", "cut", "--quiet", "--threads", "2"], || third.exists()));
+    parts(desk, "cut")
 }
 
 #[test]
 fn a_part_that_cannot_be_read_costs_no_other() {
     let desk = Desk::new();
-    let parts = stopped(&desk);
+    let stored = stopped(&desk);
     let part = desk.path("cut/unfinished/00000000.parquet");
     let bytes = fs::read(&part).expect("a part");
     // A folder in its place cannot be read, whoever runs this.
@@ -131,20 +114,11 @@ fn a_part_that_cannot_be_read_costs_no_other() {
     run.is_refused(1, &["00000000.parquet", "failed to read", "nothing is removed"]);
     fs::remove_dir(&part).expect("it is empty");
     fs::write(&part, bytes).expect("it was read");
-    let left = fs::read_dir(desk.path("cut/unfinished")).expect("a folder").flatten();
-    let left = left.filter(|entry| entry.file_name().to_string_lossy().ends_with(".parquet")).count();
-    assert_eq!(left, parts);
+    assert_eq!(parts(&desk, "cut"), stored);
 
     // A part that is gone takes those after it along, and that is said.
     fs::remove_file(&part).expect("it was there");
-    let mut run = desk.start(&["long.toml", "--out", "cut", "--quiet"]);
-    while !part.exists() {
-        assert!(run.try_wait().expect("it can be asked").is_none());
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    run.kill().expect("it is ours to kill");
-    let output = run.wait_with_output().expect("it ends");
-    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    let message = killed(desk.start_until(&["long.toml", "--out", "cut", "--quiet"], || part.exists()));
     assert!(message.contains("00000000.parquet is missing") && message.contains("run again"), "{message}");
 }
 
@@ -197,19 +171,11 @@ fn ctrl_c_does_not_wait_for_a_trial() {
     let slow =
         STUDY.replace("sampling-s = 2.0", "sampling-s = 0.001").replace("0.5]", "0.5]\n[[identifier]]\ntrace = {}");
     desk.file("slow.toml", slow);
-    let run = desk.start(&["slow.toml", "--out", "slow", "--quiet", "--threads", "2"]);
-    while !desk.path("slow/unfinished/manifest.toml").exists() {
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    let begun = desk.path("slow/unfinished/manifest.toml");
+    let run = desk.start_until(&["slow.toml", "--out", "slow", "--quiet", "--threads", "2"], || begun.exists());
     std::thread::sleep(Duration::from_millis(100));
-    let asked = Instant::now();
-    let sent = Command::new("kill").args(["-INT", &run.id().to_string()]).status().expect("a Unix system has kill");
-    assert!(sent.success());
-    let output = run.wait_with_output().expect("it ends");
-    let waited = asked.elapsed();
-    let message = String::from_utf8(output.stderr).expect("UTF-8");
-    assert!(message.starts_with("error: stopped after 0 of 8 trials"), "{message}");
-    assert_eq!(output.status.code(), Some(1));
+    let (run, waited) = interrupted(run);
+    run.is_refused(1, &["error: stopped after 0 of 8 trials"]);
     // Half a second on a machine with nothing else to do.
     assert!(waited < Duration::from_secs(2), "{waited:?}");
     desk.run(&["report", "slow"]).is_refused(2, &["not finished"]);
@@ -247,12 +213,12 @@ fn figures_are_chosen() {
     let run = desk.run(&["study.toml", "--out", "named", "--quiet"]);
     assert!(run.is_done().err.contains("there is no figure \"eror\"; there are: errors"), "{}", run.err);
     assert_eq!(figures("named"), ["coverage.png", "hero.png"]);
-    let page = String::from_utf8(desk.bytes("named/report.md")).expect("UTF-8");
+    let page = desk.text("named/report.md");
     assert!(
         page.contains("](hero.png)") && page.contains("](coverage.png)") && !page.contains("](errors.png)"),
         "{page}"
     );
-    let hero = String::from_utf8(desk.bytes("named/hero.svg")).expect("UTF-8");
+    let hero = desk.text("named/hero.svg");
     assert!(hero.contains("It does") && hero.contains("rms error of T over the"), "{hero}");
     desk.run(&["report", "named", "--figures", "hero", "--out", "one", "--quiet"]).is_done();
     assert_eq!(figures("one"), ["hero.png"]);
@@ -283,7 +249,7 @@ points = [
     let noisy = head.replace("recording =", "sensor = { heading-noise-deg = 0.1 }\nrecording =");
     desk.file("study.toml", format!("{noisy}{sweeps}"));
     desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
-    let drawn = |stem: &str| String::from_utf8(desk.bytes(&format!("out/{stem}.svg"))).expect("UTF-8");
+    let drawn = |stem: &str| desk.text(&format!("out/{stem}.svg"));
     assert!(drawn("errors-cubic").contains("that of the nearest first-order"));
     assert!(drawn("errors-first-order").contains("over the Cramér–Rao bound"));
     assert!(desk.path("out/coverage-first-order.png").exists() && !desk.path("out/coverage-cubic.png").exists());
@@ -299,8 +265,8 @@ fn coverage_of_predictions_is_drawn() {
         STUDY.replace("method.least-squares", "method.output-error").replace("replicates = 4", "replicates = 2");
     desk.file("study.toml", format!("{study}{predict}"));
     desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
-    let drawn = String::from_utf8(desk.bytes("out/predictions.svg")).expect("UTF-8");
+    let drawn = desk.text("out/predictions.svg");
     assert!(drawn.contains("90 % interval holds") && drawn.contains("output-error"), "{drawn}");
-    let table = String::from_utf8(desk.bytes("out/predictions.csv")).expect("UTF-8");
+    let table = desk.text("out/predictions.csv");
     assert!(table.lines().count() > 4, "{table}");
 }

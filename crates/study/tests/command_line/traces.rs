@@ -23,57 +23,31 @@ fn with_effect(effect: Arc<dyn Effect>, values: &[f64]) -> Ship {
     ship
 }
 
-/// Every key of the contract, down to its parts.
+/// What the contract says beyond the schema, to which every run of these tests is held.
 fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
     assert_eq!(json["schema"], "trace/3");
     assert!(json["headline"].as_str().is_some_and(|text| text.ends_with('.')), "{}", json["headline"]);
-    assert!(["clean", "traced", "unexplained"].contains(&json["verdict"].as_str().expect("a word")));
     for key in ["K_per_s", "T_s", "delta_r_deg"] {
         assert!(json["base"][key]["value"].is_f64() && json["base"][key]["sd"].is_f64(), "{key}");
     }
     for effect in json["effects"].as_array().expect("a list") {
-        assert!(effect["aliases"].is_array() && effect["parameters"].is_object());
         assert!(["probability", "delta_bic", "p_value"].iter().all(|key| effect[*key].is_number()), "{effect}");
         assert!(effect["evidence"].as_str().is_some_and(|text| text.len() > 20));
     }
-    let ids: Vec<&str> = json["candidates"]
-        .as_array()
-        .expect("a list")
-        .iter()
-        .map(|candidate| {
-            let outcome = candidate["outcome"].as_str().expect("a word");
-            assert!(["added", "alias", "rejected", "not_observable"].contains(&outcome));
-            candidate["id"].as_str().expect("a word")
-        })
-        .collect();
-    assert_eq!(ids.len(), 12, "{ids:?}");
     let structures = json["structures"].as_array().expect("a list");
     let weights: Vec<f64> = structures.iter().filter_map(|one| one["weight"].as_f64()).collect();
     assert!(weights.len() == structures.len() && weights.is_sorted_by(|one, next| one >= next), "{weights:?}");
-    assert!(structures.iter().all(|one| one["effects"].is_array() && one["member"].is_boolean()));
-    assert!(json["prior"]["candidates"].as_u64().is_some_and(|count| count > 0) && json["prior"]["rule"].is_string());
-    assert_eq!(json["records"].as_array().map(Vec::len), Some(trials + others));
-    assert_eq!(json["noise"].as_array().map(Vec::len), Some(trials));
-    assert!(json["unexplained"]["present"].is_boolean());
-    for (kind, count) in [("identification", trials), ("validation", others)] {
-        let records = json["error"][kind].as_array().expect("a list");
-        assert_eq!(records.len(), count);
-        for record in records {
-            for when in ["before", "after"] {
-                let errors = &record[when];
-                assert!(errors["heading_rmse_deg"].is_f64() && errors["horizon_rmse_deg"]["20"].is_f64(), "{errors}");
-                assert!(errors.get("yaw_rate_rmse_deg_s").is_some() && errors.get("overshoot_error_deg").is_some());
-            }
-            let coverage = record["after"]["band_coverage_95"].as_f64();
-            assert!(coverage.is_some_and(|share| (0.0..=1.0).contains(&share)), "{record}");
-            assert!(record["after"]["band_width_95_deg"].as_f64().is_some_and(|width| width > 0.0), "{record}");
-        }
+    let [fitted, judged] = ["/error/identification", "/error/validation"];
+    let counts =
+        [("/candidates", 12), ("/records", trials + others), ("/noise", trials), (fitted, trials), (judged, others)];
+    for (key, count) in counts {
+        assert_eq!(json.pointer(key).and_then(Value::as_array).map(Vec::len), Some(count), "{key}");
     }
-    for when in ["before", "after"] {
-        assert!(
-            json["residual"][when]["lag1_autocorrelation"].is_f64()
-                && json["residual"][when]["whiteness_p"].is_number()
-        );
+    for record in [fitted, judged].iter().filter_map(|key| json.pointer(key)?.as_array()).flatten() {
+        assert!(["before", "after"].iter().all(|when| record[when]["horizon_rmse_deg"]["20"].is_f64()), "{record}");
+        let coverage = record["after"]["band_coverage_95"].as_f64();
+        assert!(coverage.is_some_and(|share| (0.0..=1.0).contains(&share)), "{record}");
+        assert!(record["after"]["band_width_95_deg"].as_f64().is_some_and(|width| width > 0.0), "{record}");
     }
     assert!(json["next_trial"].as_str().is_some_and(|text| !text.is_empty()));
     assert!(json["model"]["parameters"].as_array().is_some_and(|all| all.len() >= 3));
@@ -97,7 +71,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     assert!(json["effects"][0]["delta_bic"].as_f64().is_some_and(|change| change < -10.0));
     let errors = &json["error"]["identification"][0];
     assert!(errors["after"]["heading_rmse_deg"].as_f64() < errors["before"]["heading_rmse_deg"].as_f64());
-    let report = String::from_utf8(desk.bytes("run-trace/report.md")).expect("UTF-8");
+    let report = desk.text("run-trace/report.md");
     for part in ["Records that were not fitted", "Evidence", "Effects", "Candidates", "Noise", "Model", "Next trial"] {
         assert!(report.contains(&format!("## {part}")), "{part}");
     }
@@ -109,7 +83,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     let tables =
         [("replay", 100), ("replay-other", 100), ("missing-moment-run", 100), ("missing-moment-run-curves", 20)];
     for (file, rows) in tables {
-        let table = String::from_utf8(desk.bytes(&format!("run-trace/{file}.csv"))).expect("UTF-8");
+        let table = desk.text(&format!("run-trace/{file}.csv"));
         let head = table.lines().next().unwrap_or_default();
         for column in head.split(',') {
             let listed = column.replace("before_", "MODEL_").replace("after_", "MODEL_");
@@ -132,7 +106,7 @@ fn a_trace_is_drawn_again_from_its_files() {
     for file in ["report.md", "report.html", "record.svg", "residual.svg", "evidence.svg", "missing-moment-run.svg"] {
         assert!(desk.bytes(&format!("t/{file}")) == desk.bytes(&format!("again/{file}")), "{file}");
     }
-    let text = String::from_utf8(desk.bytes("t/trace.json")).expect("UTF-8");
+    let text = desk.text("t/trace.json");
     desk.file("t/trace.json", text.replacen("\"headline\": \"", "\"headline\": \"Told anew. ", 1));
     assert!(desk.run(&["report", "t"]).is_done().out.starts_with("Told anew. "));
     desk.file("t/replay.csv", "t_s,heading_deg\n0,0\n");
@@ -155,7 +129,7 @@ fn the_missing_moment_is_written() {
     let best = &records[0]["over"][0];
     assert_eq!((&best["channel"], &best["shows"]), (&Value::from("yaw rate"), &Value::from(true)), "{records:?}");
     assert!(best["inside"].as_array().is_some_and(|inside| inside.contains(&"nonlinear_damping".into())), "{best}");
-    let table = String::from_utf8(desk.bytes("here/missing-moment-run-1.csv")).expect("UTF-8");
+    let table = desk.text("here/missing-moment-run-1.csv");
     let mut lines = table.lines();
     assert_eq!(
         lines.next(),
@@ -167,7 +141,7 @@ fn the_missing_moment_is_written() {
     let rows: Vec<Vec<f64>> =
         lines.map(|line| line.split(',').map(|value| value.parse().expect("a number")).collect()).collect();
     assert!(rows.len() > 100 && rows.iter().all(|row| row.len() == 9 && row[3] <= row[1] && row[1] <= row[4]));
-    let report = String::from_utf8(desk.bytes("here/report.md")).expect("UTF-8");
+    let report = desk.text("here/report.md");
     for ending in ["png", "svg"] {
         assert!(desk.path(&format!("here/missing-moment-run-1.{ending}")).exists(), "{ending}");
     }

@@ -94,8 +94,8 @@ impl Quality {
 /// A manoeuvre inside a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundManoeuvre {
-    /// What it is, with its angles as executed: the rudder of a zig-zag is the mean of the medians over the holds to each
-    /// side, its heading the median over the executes; `None` where the ship keeps her course.
+    /// What it is, with its angles as executed: the rudder of a zig-zag is the mean of the medians over the holds to
+    /// each side, its heading the median over the executes; `None` where the ship keeps her course.
     pub manoeuvre: Option<Manoeuvre>,
     /// First row of the part to analyse, s: the first execute, or before it where the approach was steady.
     pub from: f64,

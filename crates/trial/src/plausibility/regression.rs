@@ -1,6 +1,8 @@
 //! The two small regressions behind the checks of signs and units. Both work on integrals of what was recorded, so that
 //! noise is smoothed and no derivative is taken.
 
+use nalgebra::DMatrix;
+
 use crate::record::{Trial, integrate};
 
 /// Most rows that enter a regression; longer records are thinned after they were integrated.
@@ -79,42 +81,21 @@ fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterator<Item = us
     rows.step_by(every)
 }
 
-/// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933).
-///
-/// Orthogonalisation by Gram and Schmidt, twice over: powers of time are nearly collinear, and one pass leaves errors
-/// of the size of the condition number.
+/// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933): the last corner of
+/// R in the QR decomposition of the columns.
 fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<Slope> {
-    let mut columns: Vec<Vec<f64>> = (0..N).map(|column| rows.iter().map(|row| row[column]).collect()).collect();
-    let before: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
+    let columns = DMatrix::from_row_iterator(rows.len(), N, rows.iter().flatten().copied());
+    let before: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     if rows.len() <= N || !before.iter().all(|norm| norm.is_finite()) {
         return None;
     }
-    for (column, &norm) in before.iter().enumerate().skip(1) {
-        let (done, rest) = columns.split_at_mut(column);
-        for _ in 0..2 {
-            for basis in done.iter().take(N - 2) {
-                let square = dot(basis, basis);
-                if square > 0.0 {
-                    let share = dot(basis, &rest[0]) / square;
-                    rest[0].iter_mut().zip(basis).for_each(|(value, basis)| *value -= share * basis);
-                }
-            }
-        }
-        // A column that the earlier ones span leaves rounding only, which must not pass for a direction.
-        if column < N - 2 && dot(&rest[0], &rest[0]).sqrt() <= 1e-12 * norm {
-            rest[0].fill(0.0);
-        }
-    }
-    let (x, y) = (&columns[N - 2], &columns[N - 1]);
-    let (xx, yy, xy) = (dot(x, x), dot(y, y), dot(x, y));
-    let noticeable = |square: f64, before: f64| square.sqrt() > 1e-9 * before;
-    (noticeable(xx, before[N - 2]) && noticeable(yy, before[N - 1]))
-        .then(|| Slope { value: xy / xx, share: xy * xy / (xx * yy) })
+    let corner = columns.qr().unpack_r();
+    let (x, along, across) = (corner[(N - 2, N - 2)], corner[(N - 2, N - 1)], corner[(N - 1, N - 1)]);
+    let y = along.hypot(across);
+    let noticeable = |left: f64, before: f64| left.abs() > 1e-9 * before;
+    (noticeable(x, before[N - 2]) && noticeable(y, before[N - 1]))
+        .then(|| Slope { value: along / x, share: (along / y).powi(2) })
         .filter(|slope| slope.value.is_finite() && slope.share.is_finite())
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

@@ -51,22 +51,12 @@ impl Head {
     }
 }
 
-/// Reads up to the first row; `declared` is the separator where it is known.
-pub(super) fn find<R: Read>(
-    lines: &mut Lines<R>,
-    declared: Option<Separator>,
-    sidecar: &Sidecar,
-) -> Result<Head, Problem> {
-    let at_end = |last| if last == 0 { Problem::Empty } else { no_rows(last) };
-    let skipped = sidecar.table.skip_lines;
-    while lines.number() < skipped {
-        if !lines.skip()? {
-            return Err(at_end(lines.number()));
-        }
-    }
-    // The lines, and the comment above the first.
-    let (mut begin, mut comment): (Vec<NumberedLine>, _) = (Vec::new(), NumberedLine::default());
+/// Reads the lines with something in them below the first `skipped`, and the comment above the first of them.
+fn begin<R: Read>(lines: &mut Lines<R>, skipped: usize) -> Result<(Vec<NumberedLine>, NumberedLine), Problem> {
+    while lines.number() < skipped && lines.skip()? {}
+    let (mut begin, mut comment) = (Vec::new(), NumberedLine::default());
     while begin.len() < LOOKED_AT
+        && lines.number() >= skipped
         && let Some(text) = lines.next_line()?.map(str::to_owned)
     {
         if is_comment(&text) && begin.is_empty() {
@@ -75,7 +65,22 @@ pub(super) fn find<R: Read>(
             begin.push((lines.number(), text));
         }
     }
-    let Some((line, text)) = begin.first() else { return Err(at_end(lines.number())) };
+    match lines.number() {
+        0 => Err(Problem::Empty),
+        last if begin.is_empty() => Err(no_rows(last)),
+        _ => Ok((begin, comment)),
+    }
+}
+
+/// Reads up to the first row; `declared` is the separator where it is known.
+pub(super) fn find<R: Read>(
+    lines: &mut Lines<R>,
+    declared: Option<Separator>,
+    sidecar: &Sidecar,
+) -> Result<Head, Problem> {
+    let skipped = sidecar.table.skip_lines;
+    let (mut begin, (of_comment, comment)) = begin(lines, skipped)?;
+    let (line, text) = &begin[0];
     let numbers = numbers_of(text);
     let known = |cells: &[&str]| cells.iter().filter(|name| is_known(name, sidecar)).count();
     let has_names = |line: &str, separator: Separator| known(&split(line, separator)) >= 2;
@@ -90,7 +95,6 @@ pub(super) fn find<R: Read>(
         (without_units(*line, names, separator), 0)
     } else if let Some(separator) = numbers {
         // Rows from the first line on. Some programs write the names into the comment above.
-        let (of_comment, comment) = comment;
         let of_names = separator_of(&comment);
         if !has_names(&comment, of_names) {
             return Err(Problem::NoHeader { line: *line, found: shortened(text) });

@@ -5,7 +5,6 @@ use std::io::Read;
 use std::path::Path;
 
 use approx::assert_abs_diff_eq;
-use proptest::prelude::*;
 use ship::angle::{from_deg, to_deg};
 
 use super::*;
@@ -369,23 +368,6 @@ fn a_table_without_header_is_described_by_index() {
     assert_eq!(trial.unknown(), [("column_4".to_owned(), vec![7.0; 240])]);
     assert_eq!(trial.particulars().map(|particulars| particulars.length), Some(105.0));
     assert_eq!(trial.noise().heading, Some(from_deg(0.1)));
-}
-
-proptest! {
-    #[test]
-    fn arbitrary_cells_never_panic(
-        cells in proptest::collection::vec("[-+0-9.eEdD,;\t \"#a-z]{0,12}", 0..120),
-        separator in "[,;\t ]",
-    ) {
-        let mut text = ["t_s", "heading_deg", "rudder_deg", "yaw_rate_deg_s"].join(&separator) + "\n";
-        for row in cells.chunks(4) {
-            text.push_str(&row.join(&separator));
-            text.push('\n');
-        }
-        let _ = parse(&text);
-        let _ = parse_with(&text, "[table]\ntime-step-s = 0.1\n[part]\nevery = 2\n[check]\nplausibility = false\n");
-    }
-
 }
 
 #[test]

@@ -18,9 +18,6 @@ pub struct Settings {
     /// Half-width h of the local fits, s: the parabola and the cubic use the samples within ±h. About 3 samples on a
     /// quiet record at 1 s, 4 to 6 on a noisy one.
     pub half_width: f64,
-    /// Zero-crossings nearer to each other than this are one, s. `None` takes a twelfth of the period of the record
-    /// (10 s for a ship with a period of 120 s, 6 s for a 7 m model with one of 70 s).
-    pub merge: Option<f64>,
     /// Standard deviation of the heading noise, rad; `None` estimates it from the record.
     pub noise: Option<f64>,
 }
@@ -28,7 +25,7 @@ pub struct Settings {
 impl Settings {
     /// Fits over ±`half_width` seconds, everything else from the record.
     pub fn new(half_width: f64) -> Self {
-        Self { half_width, merge: None, noise: None }
+        Self { half_width, noise: None }
     }
 }
 
@@ -63,7 +60,7 @@ pub fn extrema(time: &[f64], heading: &[f64], settings: &Settings) -> Vec<Extrem
     let largest = heading.iter().fold(0.0_f64, |most, psi| most.max(psi.abs()));
     let smooth = three_point_mean(&heading);
     let mut bounds = vec![start];
-    bounds.extend(passages(&time, &heading, settings).iter().map(|passage| passage.time));
+    bounds.extend(passages(&time, &heading).iter().map(|passage| passage.time));
     bounds.push(end);
     let mut extrema = Vec::new();
     for (part, bound) in bounds.windows(2).enumerate() {
@@ -95,7 +92,7 @@ pub fn extrema(time: &[f64], heading: &[f64], settings: &Settings) -> Vec<Extrem
 pub fn zero_crossings(time: &[f64], heading: &[f64], settings: &Settings) -> Vec<Crossing> {
     let (time, heading) = observed(time, heading);
     let noise = settings.noise.or_else(|| noise_sd(&time, &heading, settings.half_width));
-    passages(&time, &heading, settings)
+    passages(&time, &heading)
         .iter()
         .filter_map(|passage| {
             let fit = Cubic::fit(&time, &heading, passage.time, settings.half_width)?;
@@ -113,8 +110,9 @@ struct Passage {
     direction: f64,
 }
 
-fn passages(time: &[f64], heading: &[f64], settings: &Settings) -> Vec<Passage> {
-    let merge = settings.merge.or_else(|| Some(half_period(time, heading)? / 6.0)).unwrap_or(0.0);
+fn passages(time: &[f64], heading: &[f64]) -> Vec<Passage> {
+    // Crossings nearer to each other than a twelfth of the period are one: 10 s for a ship with a period of 120 s.
+    let merge = half_period(time, heading).map_or(0.0, |half| half / 6.0);
     let mut changes: Vec<(f64, f64)> = Vec::new();
     let mut last: Option<(f64, f64)> = None;
     // A heading of exactly zero has no side: it neither makes a change of sign nor hides one.

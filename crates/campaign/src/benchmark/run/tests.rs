@@ -62,9 +62,9 @@ fn definition() -> Definition {
 }
 
 /// Knows K (1/s) and T (s) beforehand; without them it fails.
-struct Known(Option<[f64; 2]>);
+struct KnownIndices(Option<[f64; 2]>);
 
-impl Identifier for Known {
+impl Identifier for KnownIndices {
     fn id(&self) -> &'static str {
         "known"
     }
@@ -92,7 +92,7 @@ fn results(definition: &Definition) -> BenchDocument {
     let mut methods = BenchMethod::ours();
     methods.retain(|method| ["output-error", "trace", method::STRAIGHT_ON].contains(&method.label()));
     for (label, known) in [("perfect", Some([0.1, 20.0])), ("slow", Some([0.1, 24.0])), ("silent", None)] {
-        methods.push(BenchMethod::new(label, Arc::new(Known(known))));
+        methods.push(BenchMethod::new(label, Arc::new(KnownIndices(known))));
     }
     run(definition, &RecordStore::default(), &methods, &NoObserver).unwrap_or_else(|failure| panic!("{failure}"))
 }
@@ -145,7 +145,7 @@ fn what_is_stored_is_read_back() {
 fn labels_are_names_of_files_and_different() {
     let definition = definition();
     for (labels, said) in [(["a", "A"], "two methods are called"), (["a", "b/c"], "the name of a file")] {
-        let methods = labels.map(|label| BenchMethod::new(label, Arc::new(Known(None))));
+        let methods = labels.map(|label| BenchMethod::new(label, Arc::new(KnownIndices(None))));
         let error = run(&definition, &RecordStore::default(), &methods, &NoObserver).expect_err("refused").to_string();
         assert!(error.contains(said), "{error}");
     }

@@ -4,7 +4,6 @@
 //! stamps and sidecars are no matter of this module, and nothing is chosen or left out here but what no table can
 //! hold (columns inside columns, variables of other lengths).
 
-mod decoding;
 mod matlab;
 mod parquet;
 #[cfg(feature = "spreadsheets")]

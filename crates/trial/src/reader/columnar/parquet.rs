@@ -12,13 +12,31 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use super::decoding::Checked;
 use super::text::{self, Written};
-use crate::decoder::guarded;
+use crate::decoder::{CheckedPages, PageHead, guarded};
 use crate::reader::error::Problem;
 
 /// Rows decoded at a time.
 const BATCH: usize = 4096;
+
+/// Largest size of a page before it is packed, bytes: some programs write a column of all rows as one page.
+const LARGEST_PAGE: u64 = 8 * crate::reader::MAX_ROWS as u64;
+
+/// A page up to this size, bytes, may be packed to nothing.
+const SMALL_PAGE: u64 = 1 << 24;
+
+/// How often the size of what is packed a larger page may have; deflate reaches 1032.
+const MOST_PACKED: u64 = 1100;
+
+/// Most values of a dictionary; the decoder reserves some forty bytes for each.
+const MOST_WORDS: u64 = 1 << 22;
+
+/// Whether a page may state so much.
+fn fits(PageHead { is_dictionary, unpacked, packed, values }: PageHead) -> bool {
+    unpacked <= SMALL_PAGE.max(packed.saturating_mul(MOST_PACKED))
+        && unpacked <= LARGEST_PAGE
+        && (!is_dictionary || values <= MOST_WORDS.min(unpacked))
+}
 
 /// What the values of a column mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,7 +122,7 @@ impl Cells {
 
 /// The rows of a file.
 struct Rows {
-    file: SerializedFileReader<Checked>,
+    file: SerializedFileReader<CheckedPages<Bytes>>,
     columns: Vec<Column>,
     headed: bool,
     /// Row groups begun.
@@ -143,7 +161,7 @@ fn unread(compression: Compression) -> Option<&'static str> {
 
 impl Rows {
     fn open(bytes: Vec<u8>) -> Result<Self, Problem> {
-        let file = SerializedFileReader::new(Checked(Bytes::from(bytes))).map_err(failed)?;
+        let file = SerializedFileReader::new(CheckedPages { bytes: Bytes::from(bytes), fits }).map_err(failed)?;
         let schema = file.metadata().file_metadata().schema_descr_ptr();
         let mut columns = Vec::new();
         for (place, column) in schema.columns().iter().enumerate() {

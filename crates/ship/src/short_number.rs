@@ -4,9 +4,9 @@ use std::fmt;
 
 /// A number for a message: with all its digits, and with a power of ten where zeros would hide them (1e-12, 1e300).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown(pub f64);
+pub struct ShortNumber(pub f64);
 
-impl Shown {
+impl ShortNumber {
     /// A number rounded to so many significant digits, at least one.
     pub fn rounded(value: f64, digits: usize) -> Self {
         let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse();
@@ -22,7 +22,7 @@ impl Shown {
 /// Sizes between which a number is written without a power of ten.
 const PLAIN: std::ops::Range<f64> = 1e-5..1e16;
 
-impl fmt::Display for Shown {
+impl fmt::Display for ShortNumber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(value) = *self;
         if self.is_plain() { write!(f, "{value}") } else { write!(f, "{value:e}") }
@@ -35,14 +35,15 @@ mod tests {
 
     #[test]
     fn no_size_hides_the_digits() {
-        let shown =
-            [0.0, 10.0, -0.25, 1e-12, 1e300, -2.5e-7, 1e15, f64::NAN, f64::INFINITY].map(|x| Shown(x).to_string());
+        let shown = [0.0, 10.0, -0.25, 1e-12, 1e300, -2.5e-7, 1e15, f64::NAN, f64::INFINITY]
+            .map(|x| ShortNumber(x).to_string());
         assert_eq!(shown, ["0", "10", "-0.25", "1e-12", "1e300", "-2.5e-7", "1000000000000000", "NaN", "inf"]);
     }
 
     #[test]
     fn rounding_keeps_digits_whatever_the_size() {
-        let third = [1.0, 1e-30, -1e30, f64::NAN, f64::INFINITY].map(|size| Shown::rounded(size / 3.0, 3).to_string());
+        let third =
+            [1.0, 1e-30, -1e30, f64::NAN, f64::INFINITY].map(|size| ShortNumber::rounded(size / 3.0, 3).to_string());
         assert_eq!(third, ["0.333", "3.33e-31", "-3.33e29", "NaN", "inf"]);
     }
 }
