@@ -1,0 +1,114 @@
+//! Does the rudder move as a steering gear does, to where it was ordered?
+
+use estimation::statistics::median;
+use ship::angle::to_deg;
+
+use crate::channel::Channel;
+use crate::record::Trial;
+
+/// Rudders of ships move at 2 to 7°/s; a movement that takes one row and would need more than this is a step, deg/s.
+const FASTEST_RUDDER_DEG_S: f64 = 10.0;
+
+/// Way of a rudder from which on it is a movement of the steering gear and no correction, deg.
+const STROKE_DEG: f64 = 8.0;
+
+/// Rates of rudders from a slow gear to that of a small model, deg/s; others are a fault of the clock.
+const RUDDER_RATES_DEG_S: std::ops::RangeInclusive<f64> = 0.3..=100.0;
+
+/// Share of the movements that are steps where the column is an order.
+const STEPS_OF_AN_ORDER: f64 = 0.8;
+
+/// How far the recorded angle may be from the order it holds, as a share of the order.
+const FEEDBACK_ERROR: f64 = 0.1;
+
+/// Ordered angles are no larger, deg: rudders stop at 35°, some at 45°.
+const LARGEST_HELD_DEG: f64 = 46.0;
+
+/// Warns of a rudder that is none, or one on a wrong scale.
+pub(super) fn rudder_movements(trial: &Trial, warnings: &mut Vec<String>) {
+    let strokes = strokes(trial.time(), trial.rudder());
+    match trial.channel(Channel::RudderOrder) {
+        Some(order) => warnings.extend(feedback(trial, order)),
+        None => warnings.extend(steps(&strokes)),
+    }
+    warnings.extend(clock_of_rudder(&strokes));
+    let held_deg = trial.rudder().windows(3).filter(|rows| rows[0] == rows[1] && rows[1] == rows[2]);
+    let held_deg = to_deg(held_deg.fold(0.0, |largest: f64, rows| largest.max(rows[0].abs())));
+    if held_deg > LARGEST_HELD_DEG {
+        warnings.push(format!(
+            "the rudder is held at {held_deg:.0}°, rudders stop at 35 to 45°: it may be in per cent; then K is wrong by the factor \
+             between the two, give the angle in degrees"
+        ));
+    }
+}
+
+/// A movement of the rudder to one side that a steering gear makes: way, deg, time it took, s, and in how many rows.
+struct Stroke {
+    way_deg: f64,
+    took_s: f64,
+    rows: usize,
+}
+
+/// The movements of the rudder over more than [`STROKE_DEG`].
+fn strokes(time: &[f64], rudder: &[f64]) -> Vec<Stroke> {
+    let changes: Vec<f64> = rudder.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut first = 0;
+    let runs = changes.chunk_by(|one, next| one * next > 0.0).map(|run| {
+        let from = first;
+        first += run.len();
+        let way_deg = to_deg((rudder[first] - rudder[from]).abs());
+        Stroke { way_deg, took_s: time[first] - time[from], rows: run.len() }
+    });
+    runs.filter(|stroke| stroke.way_deg >= STROKE_DEG).collect()
+}
+
+/// Steps in place of movements: an order under the name of the angle.
+fn steps(strokes: &[Stroke]) -> Option<String> {
+    let is_step = |stroke: &&Stroke| stroke.rows == 1 && stroke.way_deg > FASTEST_RUDDER_DEG_S * stroke.took_s;
+    let steps: Vec<&Stroke> = strokes.iter().filter(is_step).collect();
+    let slowest_deg_s = steps.iter().map(|step| step.way_deg / step.took_s).fold(f64::INFINITY, f64::min);
+    (steps.len() >= 2 && steps.len() as f64 >= STEPS_OF_AN_ORDER * strokes.len() as f64).then(|| {
+        format!(
+            "the rudder jumps from one row to the next in {} of {} movements, at {slowest_deg_s:.0}°/s or more, while steering gears \
+             move at 2 to 7°/s: it looks like the order in place of the angle, and then T is too long by about half the time of \
+             a movement; record the angle, or write `order-rate-deg-s = 2.5`, or what the gear does, under [rudder] in a \
+             sidecar NAME.trial.toml",
+            steps.len(),
+            strokes.len()
+        )
+    })
+}
+
+/// Movements that take several rows and are those of no steering gear: the unit of the time is wrong.
+fn clock_of_rudder(strokes: &[Stroke]) -> Option<String> {
+    let seen = strokes.iter().filter(|stroke| stroke.rows >= 3);
+    let mut rates: Vec<f64> = seen.map(|stroke| stroke.way_deg / stroke.took_s).collect();
+    let rate = median(&mut rates).filter(|_| rates.len() >= 2)?;
+    (!RUDDER_RATES_DEG_S.contains(&rate)).then(|| {
+        format!(
+            "the rudder moves at {rate:.2}°/s, steering gears move at 2 to 7°/s: check the unit of the time (t_s, t_ms, t_min; stamps \
+             of minutes and seconds are read as hours and minutes)"
+        )
+    })
+}
+
+/// Rudder over order where both rest: 1 for a feedback that is right.
+fn feedback(trial: &Trial, order: &[f64]) -> Option<String> {
+    let rudder = trial.rudder();
+    let rests = |values: &[f64], row: usize| (row.saturating_sub(4)..=row).all(|k| values[k] == values[row]);
+    let settled =
+        (4..trial.len()).filter(|&row| rests(order, row) && to_deg((rudder[row] - rudder[row - 4]).abs()) < 0.2);
+    let (mut cross, mut square, mut rows) = (0.0, 0.0, 0);
+    for row in settled.filter(|&row| to_deg(order[row].abs()) > 2.0) {
+        cross += rudder[row] * order[row];
+        square += order[row] * order[row];
+        rows += 1;
+    }
+    let ratio = cross / square;
+    (rows >= 10 && !(1.0 - FEEDBACK_ERROR..=1.0 + FEEDBACK_ERROR).contains(&ratio)).then(|| {
+        format!(
+            "the recorded rudder comes to {ratio:.2} of its order: if the feedback is not calibrated (or in per cent), K is wrong by \
+             that factor; check it against the rudder stops"
+        )
+    })
+}
