@@ -15,7 +15,7 @@ use thiserror::Error;
 use crate::channel::Channel;
 use crate::record::Trial;
 use alternation::alternation;
-use regression::{Slope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading};
+use regression::{PartialSlope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading};
 use rudder::rudder_movements;
 
 /// Why a record is not believed. Angles in degrees, for people.
@@ -251,7 +251,7 @@ fn two_inputs(trial: &Trial) -> Result<(), Implausible> {
 }
 
 /// Does the yaw rate belong to the heading?
-fn yaw_rate(trial: &Trial, response: Option<Slope>, warnings: &mut Vec<String>) -> Result<(), Implausible> {
+fn yaw_rate(trial: &Trial, response: Option<PartialSlope>, warnings: &mut Vec<String>) -> Result<(), Implausible> {
     let Some(slope) = yaw_rate_on_heading(trial).filter(|_| range_deg(trial.heading()) > STILL_DEG) else {
         return Ok(());
     };
@@ -281,7 +281,7 @@ fn yaw_rate(trial: &Trial, response: Option<Slope>, warnings: &mut Vec<String>) 
 }
 
 /// Does the ship turn to the side of its rudder?
-fn rudder_sign(trial: &Trial, response: Option<Slope>, warnings: &mut Vec<String>) -> Result<(), Implausible> {
+fn rudder_sign(trial: &Trial, response: Option<PartialSlope>, warnings: &mut Vec<String>) -> Result<(), Implausible> {
     let moved = range_deg(trial.rudder()) >= MOVED_DEG && range_deg(trial.heading()) >= ANSWERED_DEG;
     let Some(slope) = response.filter(|_| moved) else { return Ok(()) };
     if slope.value < 0.0 {

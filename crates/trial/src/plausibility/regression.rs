@@ -10,7 +10,7 @@ const ROWS: usize = 2000;
 
 /// One signal explained by another after the same nuisance signals were taken out of both.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Slope {
+pub(super) struct PartialSlope {
     /// Change of the one per change of the other.
     pub value: f64,
     /// Share of the remaining sum of squares it explains, 0 to 1.
@@ -21,7 +21,7 @@ pub(super) struct Slope {
 ///
 /// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ, over the rows with a heading; linear, so initial heading, initial yaw rate
 /// and rudder bias need not be known. `None` when nothing is left to explain, or numbers overflow.
-pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
+pub(super) fn rudder_on_heading(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let (mut once, mut twice) = (0.0, vec![0.0]);
     for i in 1..time.len() {
@@ -41,7 +41,7 @@ pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
 
 /// K (1/s) of a ship that turns steadily, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a
 /// rudder.
-pub(super) fn turn_with_rudder(trial: &Trial) -> Option<Slope> {
+pub(super) fn turn_with_rudder(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let mut seen = (0..time.len()).filter(|&i| psi[i].is_finite());
     let (mut with, mut against, mut square) = (0.0, 0.0, 0.0);
@@ -58,14 +58,14 @@ pub(super) fn turn_with_rudder(trial: &Trial) -> Option<Slope> {
         from = to;
     }
     let share = f64::max(with, against) / (with + against);
-    Some(Slope { value: (with - against) / square, share })
+    Some(PartialSlope { value: (with - against) / square, share })
         .filter(|slope| slope.value.is_finite() && slope.share.is_finite())
 }
 
 /// Slope of the heading on the integral of the yaw rate: 1 where both agree in unit and sign.
 ///
 /// ψ = c₀ + c₁ t + s ∫r, so that a bias of the rate does no harm. `None` as above, or without a yaw rate of its own.
-pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<Slope> {
+pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<PartialSlope> {
     if trial.heading_from_yaw_rate() {
         return None;
     }
@@ -81,9 +81,9 @@ fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterator<Item = us
     rows.step_by(every)
 }
 
-/// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933): the last corner of
-/// R in the QR decomposition of the columns.
-fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<Slope> {
+/// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933): the last corner
+/// of R in the QR decomposition of the columns.
+fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<PartialSlope> {
     let columns = DMatrix::from_row_iterator(rows.len(), N, rows.iter().flatten().copied());
     let before: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     if rows.len() <= N || !before.iter().all(|norm| norm.is_finite()) {
@@ -94,7 +94,7 @@ fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<Slope> {
     let y = along.hypot(across);
     let noticeable = |left: f64, before: f64| left.abs() > 1e-9 * before;
     (noticeable(x, before[N - 2]) && noticeable(y, before[N - 1]))
-        .then(|| Slope { value: along / x, share: (along / y).powi(2) })
+        .then(|| PartialSlope { value: along / x, share: (along / y).powi(2) })
         .filter(|slope| slope.value.is_finite() && slope.share.is_finite())
 }
 

@@ -55,7 +55,7 @@ enum Rank {
 
 /// One column of a table: what it holds, what was met in it, and its values in the rows kept.
 #[derive(Debug)]
-pub(super) struct TableColumn {
+pub(super) struct RawColumn {
     pub name: String,
     pub content: Content,
     /// Whether its unit has to be found from its values; until then they are in the unit files are written in.
@@ -75,7 +75,7 @@ pub(super) struct TableColumn {
     pub values: Vec<f64>,
 }
 
-impl TableColumn {
+impl RawColumn {
     fn claims(&self, wanted: impl Fn(ColumnMeaning) -> bool) -> bool {
         self.claim.is_some_and(|(said, _)| wanted(said))
     }
@@ -84,7 +84,7 @@ impl TableColumn {
 /// The columns of a table.
 #[derive(Debug)]
 pub(super) struct Layout {
-    pub columns: Vec<TableColumn>,
+    pub columns: Vec<RawColumn>,
     /// The ordered rudder angle stands for the rudder angle, because there is no other.
     order_is_rudder: bool,
     /// Where the names stand.
@@ -103,7 +103,7 @@ impl Layout {
     /// the table of a whole record rudder or both heading and yaw rate are absent.
     pub fn new(head: &Head, table: &Path, sidecar: &Sidecar, whole: bool) -> Result<Self, ReadError> {
         let rebuilt = sidecar.table.time_step_s.is_some();
-        let column = |(place, name): (usize, &String)| TableColumn {
+        let column = |(place, name): (usize, &String)| RawColumn {
             name: name.clone(),
             content: Content::Unknown,
             open: false,
@@ -212,7 +212,7 @@ impl Layout {
     /// Gives every channel the column that says best that it holds it.
     fn settle_channels(&mut self) -> Result<(), Problem> {
         for channel in Channel::ALL {
-            let claim = |(place, column): (usize, &TableColumn)| match column.claim? {
+            let claim = |(place, column): (usize, &RawColumn)| match column.claim? {
                 (ColumnMeaning::Channel(found, unit), rank) if found == channel => Some((rank, place, unit)),
                 (ColumnMeaning::OverGround(unit), _) if channel == Channel::Speed => {
                     Some((Rank::Substitute, place, unit))
@@ -271,7 +271,7 @@ impl Layout {
         let stamp = |place: usize| Stamp::parse(first(place));
         let is_whole = |stamp: Stamp| stamp.has_date() && stamp.has_time();
         // Described or of the contract, then a number with a unit, a stamp with its date, a time of day, a number.
-        let candidate = |(place, column): (usize, &TableColumn)| {
+        let candidate = |(place, column): (usize, &RawColumn)| {
             let (said, rank) = column.claim?;
             let unit = match said {
                 ColumnMeaning::Time(unit) => unit,
@@ -324,7 +324,7 @@ impl Layout {
             return missing([Channel::Rudder, Channel::RudderOrder], "rudder angle");
         }
         if self.place(Channel::Heading).is_none() && self.place(Channel::YawRate).is_none() {
-            let is_course = |column: &&TableColumn| column.claims(|said| said == ColumnMeaning::Course);
+            let is_course = |column: &&RawColumn| column.claims(|said| said == ColumnMeaning::Course);
             return match self.columns.iter().find(is_course) {
                 Some(column) => Err(Problem::CourseOnly { line, column: column.name.clone() }),
                 None => missing([Channel::Heading, Channel::YawRate], "heading or the yaw rate"),

@@ -8,7 +8,7 @@ use super::error::{Problem, ReadError};
 use super::head;
 use super::input::Text;
 use super::instants::spread;
-use super::layout::{Content, Layout, TableColumn};
+use super::layout::{Content, Layout, RawColumn};
 use super::limits::no_rows;
 use super::lines::Lines;
 use super::position::plane;
@@ -78,7 +78,7 @@ impl Rows<'_> {
         let (mut channels, mut unknown, mut open) = (BTreeMap::new(), Vec::new(), Vec::new());
         let [mut latitude, mut longitude] = [None, None];
         for column in columns.into_iter().filter(|column| column.kept) {
-            let TableColumn { name, content, values, largest, .. } = column;
+            let RawColumn { name, content, values, largest, .. } = column;
             let missing = values.iter().all(|value| value.is_nan());
             match content {
                 // A channel nobody needs and nobody recorded is as good as absent.
@@ -174,10 +174,10 @@ impl Rows<'_> {
             warnings.push(format!("{} numbers were read with a decimal comma", counts.decimal_commas));
         }
         let columns = || self.layout.columns.iter().map(|column| (shortened(&column.name), column));
-        for (name, TableColumn { text, .. }) in columns().filter(|(_, column)| column.text > 0) {
+        for (name, RawColumn { text, .. }) in columns().filter(|(_, column)| column.text > 0) {
             warnings.push(format!("the column `{name}` holds text in {text} rows, taken as missing"));
         }
-        for (name, TableColumn { sentinels: (count, value), .. }) in
+        for (name, RawColumn { sentinels: (count, value), .. }) in
             columns().filter(|(_, column)| column.sentinels.0 > 0)
         {
             let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
