@@ -38,8 +38,8 @@ fn identify(method: &dyn Identifier, trials: &[Trial]) -> Estimate {
 }
 
 /// Largest errors that a method itself makes in zig-zags read every second without noise, from every row and with every
-/// seventh row and fifteen in a piece lost: of K and T as shares, of δ_r in deg. A method that has no line here takes the
-/// corners of the rudder from where the record has them and makes none.
+/// seventh row and fifteen in a piece lost: of K and T as shares, of δ_r in deg. A method that has no line here takes
+/// the corners of the rudder from where the record has them and makes none.
 fn allowed(id: &str) -> [[f64; 3]; 2] {
     match id {
         // Eight harmonics truncate r': an independent computation finds a few per cent in K and 11 to 17 % in T. Ten

@@ -1,10 +1,11 @@
 //! What a first-order response leaves of a record: does the ship lack a term, or does chance move her?
 //!
-//! The residual ψ − ψ̂ of the replay is regressed on what terms of a larger model would add to it. To first order a term
-//! f in the yaw equation r' = −r/T + (K/T)(δ + δ_r) + c f adds c s to the heading, where s'' = −s'/T + f. The terms are
-//! those of ships: r³, r|r|, r², δ³, |δ|, r'' and δ' (second order, lag and dead time), and r and δ times a filtered r²
-//! (loss of speed). K, T, δ_r and the initial states of all records are free beside them. Terms of a ship return with
-//! every rudder movement, random moments do not: nine terms explain nearly all of the one and part of the other.
+//! The residual ψ − ψ̂ of the replay is regressed on what terms of a larger model would add to it. To first order a
+//! term f in the yaw equation r' = −r/T + (K/T)(δ + δ_r) + c f adds c s to the heading, where s'' = −s'/T + f. The
+//! terms are those of ships: r³, r|r|, r², δ³, |δ|, r'' and δ' (second order, lag and dead time), and r and δ times a
+//! filtered r² (loss of speed). K, T, δ_r and the initial states of all records are free beside them. Terms of a ship
+//! return with every rudder movement, random moments do not: nine terms explain nearly all of the one and part of the
+//! other.
 //!
 //! It is a test of first order in small terms. It names nothing; [`Share`](LackOfFit::unexplained) is compared with a
 //! limit that simulated trials gave.
@@ -37,15 +38,15 @@ pub struct LackOfFit {
 }
 
 impl LackOfFit {
-    /// Of a response on the records it was fitted to; `None` where a replay is not finite, and where so few headings were
-    /// read that their noise is not known.
+    /// Of a response on the records it was fitted to; `None` where a replay is not finite, and where so few headings
+    /// were read that their noise is not known.
     pub fn of(trials: &[Trial], response: &FirstOrder) -> Option<Self> {
         let mut residual = Vec::new();
         let mut terms: Vec<Vec<f64>> = Vec::new();
         let (mut noise, mut initial) = (0.0, 0);
         for trial in trials {
             let replayed = replay(trial, response)?;
-            let own = Rows::of(trial, &replayed, response);
+            let own = RecordTerms::of(trial, &replayed, response);
             terms.resize(own.terms.len(), Vec::new());
             let half_width = (HALF_WIDTH * response.T().abs()).max(3.0 * trial.sampling_period());
             let sd = zigzag::noise_sd(trial.time(), trial.heading(), half_width)?;
@@ -67,8 +68,8 @@ impl LackOfFit {
         (before.is_finite() && after.is_finite() && noise.is_finite()).then_some(found)
     }
 
-    /// Which share of the residual beyond the noise the terms of a ship leave, from 0 to 1: small where the ship lacks a
-    /// term, large where chance moves her. `None` where the residual is no larger than the noise.
+    /// Which share of the residual beyond the noise the terms of a ship leave, from 0 to 1: small where the ship lacks
+    /// a term, large where chance moves her. `None` where the residual is no larger than the noise.
     pub fn unexplained(&self) -> Option<f64> {
         let beyond = |rms: f64| (rms * rms - self.noise * self.noise).max(0.0);
         let all = beyond(self.residual);
@@ -77,13 +78,13 @@ impl LackOfFit {
 }
 
 /// Residual and terms of one record at the rows with a heading, its initial state taken out of both.
-struct Rows {
+struct RecordTerms {
     residual: Vec<f64>,
     terms: Vec<Vec<f64>>,
     initial: usize,
 }
 
-impl Rows {
+impl RecordTerms {
     fn of(trial: &Trial, replayed: &Replay, response: &FirstOrder) -> Self {
         let FirstOrder { inverse_T: a, K_over_T: b, rudder_bias } = *response;
         let (time, r) = (&replayed.time[..], &replayed.yaw_rate[..]);
@@ -123,8 +124,8 @@ impl Rows {
     }
 }
 
-/// Heading of s'' = −a s' + f, with f linear between rows and s' = `rate` where it begins. For a < 0 it begins at the end
-/// and runs backwards, in which it does not grow; the two differ by the motion of an initial yaw rate.
+/// Heading of s'' = −a s' + f, with f linear between rows and s' = `rate` where it begins. For a < 0 it begins at the
+/// end and runs backwards, in which it does not grow; the two differ by the motion of an initial yaw rate.
 fn headings(time: &[f64], a: f64, rate: f64, input: impl Fn(usize) -> f64) -> Vec<f64> {
     let rows = time.len();
     let place = |k: usize| if a < 0.0 { rows - 1 - k } else { k };

@@ -1,12 +1,13 @@
 //! Which answer to take: one rule, made from the record alone.
 //!
-//! Output error is the answer, because no other first-order response is nearer to the headings, with two exceptions. Where
-//! the recorded rudder has declared noise, maximum likelihood counts it. Where maximum likelihood finds a random yaw moment
-//! that the terms of a ship cannot explain ([`LackOfFit`]), it is the answer, too: output error takes the work of gusts for
-//! that of the rudder. Where terms of a ship explain the residual, the model lacks one of them. A random moment then stands
-//! for it, and K, T of maximum likelihood are those of small and fast motions.
+//! Output error is the answer, because no other first-order response is nearer to the headings, with two exceptions.
+//! Where the recorded rudder has declared noise, maximum likelihood counts it. Where maximum likelihood finds a random
+//! yaw moment that the terms of a ship cannot explain ([`LackOfFit`]), it is the answer, too: output error takes the
+//! work of gusts for that of the rudder. Where terms of a ship explain the residual, the model lacks one of them. A
+//! random moment then stands for it, and K, T of maximum likelihood are those of small and fast motions.
 //!
-//! As a method of its own it makes both fits and returns the one that the rule names, so that a study can hold the rule.
+//! As a method of its own it makes both fits and returns the one that the rule names, so that a study can hold the
+//! rule.
 
 use std::path::Path;
 
@@ -20,8 +21,8 @@ use crate::lack_of_fit::LackOfFit;
 use crate::settings::SettingsError;
 use crate::{maximum_likelihood, output_error};
 
-/// Share of the residual that the terms of a ship leave where a random moment is believed. On simulated hulls and measured
-/// zig-zags it is below 0.37, under gusts and walks of the moment mostly above 0.3 (scenario `recommended`).
+/// Share of the residual that the terms of a ship leave where a random moment is believed. On simulated hulls and
+/// measured zig-zags it is below 0.37, under gusts and walks of the moment mostly above 0.3 (scenario `recommended`).
 const RANDOM: f64 = 0.33;
 
 /// Diagnostics of maximum likelihood that stand for a random moment.
@@ -43,7 +44,7 @@ pub enum Reason {
 /// What the residual of the answer looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Residual {
+pub enum ResidualKind {
     /// No larger than the noise of the heading.
     Noise,
     /// Terms of a ship explain most of it: the model lacks an effect.
@@ -87,12 +88,11 @@ impl Recommendation {
     }
 
     /// What the residual of output error looks like.
-    pub fn residual(&self) -> Option<Residual> {
+    pub fn residual(&self) -> Option<ResidualKind> {
         let share = self.lack?.unexplained();
-        Some(
-            share
-                .map_or(Residual::Noise, |share| if share < RANDOM { Residual::LacksEffect } else { Residual::Random }),
-        )
+        Some(share.map_or(ResidualKind::Noise, |share| {
+            if share < RANDOM { ResidualKind::LacksEffect } else { ResidualKind::Random }
+        }))
     }
 }
 

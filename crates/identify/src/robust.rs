@@ -9,9 +9,9 @@ use crate::estimate::{Covariance, Uncertainty};
 /// A residual whose neighbours are correlated by more than this is called coloured, if chance does not explain it.
 const COLOURED: f64 = 0.2;
 
-/// The error a method quotes: that of a white residual where it is white, else the robust one, with a sentence on it. Where
-/// neighbours differ in sign the robust error would be smaller than the white one, which a record of two instruments read in
-/// turn does not deserve: the white one stays.
+/// The error a method quotes: that of a white residual where it is white, else the robust one, with a sentence on it.
+/// Where neighbours differ in sign the robust error would be smaller than the white one, which a record of two
+/// instruments read in turn does not deserve: the white one stays.
 pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<String>) {
     if lag1.abs() <= COLOURED.max(3.0 / (rows as f64).sqrt()) {
         return (Uncertainty::Covariance(white), None);

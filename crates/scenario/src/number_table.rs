@@ -1,5 +1,5 @@
-//! Tables that hold numbers alone, such as those of an effect or of a ship of one's own: their keys are data, from which
-//! they are checked, completed and described to an editor.
+//! Tables that hold numbers alone, such as those of an effect or of a ship of one's own: their keys are data, from
+//! which they are checked, completed and described to an editor.
 
 use std::collections::BTreeMap;
 

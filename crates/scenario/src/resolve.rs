@@ -82,8 +82,8 @@ pub fn of_validation(trial: &Recording) -> Recording {
     Recording { duration: trial.duration, ..Recording::every(trial.period) }
 }
 
-/// Another manoeuvre of the ship, recorded as `record` says. What both share has been checked with the first one, so what
-/// is wrong now is of this one.
+/// Another manoeuvre of the ship, recorded as `record` says. What both share has been checked with the first one, so
+/// what is wrong now is of this one.
 fn further(
     wire: &FurtherWire,
     record: Simulation,

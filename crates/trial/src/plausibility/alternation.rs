@@ -1,7 +1,7 @@
 //! A channel whose readings come from two sensors in turn.
 
-/// Correlation of deviations one reading apart below the first and two apart above the second shows two sensors: that of
-/// white noise is −0.67 and 0.17.
+/// Correlation of deviations one reading apart below the first and two apart above the second shows two sensors: that
+/// of white noise is −0.67 and 0.17.
 const CORRELATIONS: [f64; 2] = [-0.75, 0.6];
 
 /// Disagreements below this (rms) are digits and noise, rad.

@@ -42,7 +42,8 @@ fn earlier(time: &[f64], values: &[f64], late: f64) -> Vec<f64> {
     time.iter().map(|t| t + late).map(|t| at(t).or_else(|| first(t)).unwrap_or(f64::NAN)).collect()
 }
 
-/// The angle of a gear that follows an order at one rate (rad/s); an order that changes between two rows changes half-way.
+/// The angle of a gear that follows an order at one rate (rad/s); an order that changes between two rows changes
+/// half-way.
 fn following(time: &[f64], order: &[f64], rate: f64) -> Vec<f64> {
     let mut last = order.iter().copied().find(|order| order.is_finite()).unwrap_or(f64::NAN);
     let mut angle = last;
