@@ -1,8 +1,6 @@
 //! Fixtures of tests: an exact first-order zig-zag (straight pieces of rudder, closed-form response, and executes at
 //! the root of the heading condition, which shares nothing with the detection it tests), noise, and measured records.
 
-use std::path::PathBuf;
-
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -10,7 +8,6 @@ use ship::FirstOrder;
 use ship::angle::from_deg;
 use ship::first_order::{State, Transition};
 
-use crate::channel::column;
 use crate::{Channel, Columns, Origin, Trial};
 
 /// A ship and its zig-zag; angles in radians, starboard first.
@@ -126,39 +123,4 @@ impl Gaussian {
     pub fn draw(&mut self) -> f64 {
         StandardNormal.sample(&mut self.0)
     }
-}
-
-/// Folder of the measured trials; `None` (and one line) where it is not there.
-pub(crate) fn data() -> Option<PathBuf> {
-    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("TRIAL_DATA").map_or(beside, PathBuf::from);
-    if !folder.is_dir() {
-        println!("skipped: no measured trials in {}", folder.display());
-        return None;
-    }
-    Some(folder)
-}
-
-/// The columns of a measured record as they stand in its file; `None` (and one line) where it is not there.
-pub(crate) fn measured(file: &str) -> Option<Columns> {
-    let path = data()?.join(file);
-    if !path.exists() {
-        println!("skipped: no measured record {file}");
-        return None;
-    }
-    let mut table = csv::Reader::from_path(path).expect("a readable file");
-    let names = table.headers().expect("a header").clone();
-    let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
-    let values = |place: usize| rows.iter().map(move |row| row[place].parse::<f64>().unwrap_or(f64::NAN));
-    let mut columns = Columns::default();
-    for (place, name) in names.iter().enumerate() {
-        match column(name) {
-            _ if name == "t_s" => columns.time = values(place).collect(),
-            Some((channel, unit)) => {
-                columns.channels.insert(channel, values(place).map(|value| value * unit.to_si()).collect());
-            }
-            None => {}
-        }
-    }
-    Some(columns)
 }

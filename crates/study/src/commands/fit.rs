@@ -41,7 +41,8 @@ pub fn show(into: &ResultFolder, from: &Path, theme: &Theme, common: &Common) ->
     curve_tables::write_replays(&curves, into)?;
     write_page(into, &fit_page::page(&document, &curves), theme)?;
     let rest = format!("{}\nresults: {}", fit_page::rest(&document, &curves), into.path().join(FIT).display());
-    let head = format!("{}\n", fit_page::headline(&document, &curves));
+    let verdict = fit_page::verdict(&document).map_or_else(String::new, |words| format!("{words}\n\n"));
+    let head = format!("{verdict}{}\n", fit_page::headline(&document, &curves));
     let table = fit_page::answers(&document, &curves);
     let output = CommandOutput { words: [&head, ""], table: &table, notes: &rest, document: &text };
     screen::tell(common, &output, &document.all_warnings())

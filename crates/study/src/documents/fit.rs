@@ -12,6 +12,7 @@ use ship::angle::to_deg;
 use trial::{Quantity, Trial, ZigZag, ZigZagError, imo};
 
 use super::scales::ScalesEntry;
+use super::verdict::VerdictEntry;
 use crate::records::file_of;
 
 /// Name of the file.
@@ -76,6 +77,9 @@ pub struct FitDocument {
     pub schema: String,
     /// The records.
     pub trials: Vec<TrialEntry>,
+    /// Which answer is to be taken.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<VerdictEntry>,
     /// The answers.
     pub methods: Vec<MethodEntry>,
     /// Those of the first record, which stand in its entry too.

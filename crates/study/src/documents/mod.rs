@@ -8,6 +8,7 @@ pub mod missing_moment;
 pub mod scales;
 pub mod trace;
 pub mod truth;
+pub mod verdict;
 
 use std::path::Path;
 

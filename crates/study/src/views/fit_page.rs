@@ -1,6 +1,7 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
 use campaign::answer::MethodEntry;
+use identify::recommended::{Reason, ResidualKind};
 use report::markdown::text;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, Table};
@@ -23,6 +24,9 @@ const FILES: &str = "`fit.json` has all of it with all digits: the records with 
 /// `report.md` with its figures.
 pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     let mut page = Page::titled("Identification");
+    if let Some(words) = verdict(document) {
+        page.say(text(&words));
+    }
     page.words(&headline(document, curves));
     page.part("Methods");
     page.table(answers(document, curves));
@@ -69,6 +73,44 @@ pub fn rest(document: &FitDocument, curves: &FitCurves) -> String {
 pub fn answers(document: &FitDocument, curves: &FitCurves) -> Table {
     let validated = curves.records.iter().filter(|record| record.validation);
     method_table::table(&document.methods, &validated.map(|record| record.name.clone()).collect::<Vec<_>>())
+}
+
+/// Which answer to take, and whether to believe it.
+pub fn verdict(document: &FitDocument) -> Option<String> {
+    let verdict = document.verdict.as_ref()?;
+    let entry = document.methods.iter().find(|entry| entry.method == verdict.method)?;
+    let own = entry.parameters.as_ref()?;
+    let [k, t, bias] =
+        [own.k_per_s, own.t_s, own.delta_r_deg].map(|quantity| method_table::estimate(&quantity)[0].clone());
+    let because = match verdict.reason {
+        Reason::NearestReplay => "its replay is the nearest to the headings",
+        Reason::RandomMoment => "a random moment acts on the ship that no term of a ship explains",
+        Reason::RudderNoise => "the recorded rudder is noisy",
+    };
+    let mut words = format!("Take K = {k} 1/s, T = {t} s, δ_r = {bias}° from {}, because {because}.", verdict.method);
+    let [residual, rest] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
+    words += &match verdict.residual {
+        None => String::new(),
+        Some(ResidualKind::Noise) => String::from(" The residual of output error is the noise of the heading."),
+        Some(ResidualKind::LacksEffect) => format!(
+            " The residual of output error, {residual}°, falls to {rest}° with the terms of a larger ship: the model lacks an \
+             effect, which `study trace` looks for."
+        ),
+        Some(ResidualKind::Random) => {
+            format!(
+                " The residual of output error, {residual}°, is random: terms of a larger ship leave {rest}° of it."
+            )
+        }
+    };
+    if let Some(other) = &verdict.contradicted_by {
+        words += &format!(
+            " The intervals of {other} exclude this answer: a random moment explains a part of the manoeuvre in one of the two."
+        );
+    }
+    if !verdict.set_apart.is_empty() {
+        words += &format!(" More than ten times as far from the headings are: {}.", verdict.set_apart.join(", "));
+    }
+    Some(words)
 }
 
 /// What was read.

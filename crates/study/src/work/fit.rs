@@ -2,6 +2,7 @@
 //! the ship.
 
 use identify::estimate::Uncertainty;
+use identify::recommended::Recommendation;
 use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
@@ -15,6 +16,7 @@ use trial::{Channel, Trial, ZigZag};
 use super::every_scale::{self, PREFERRED_METHODS};
 use super::single_records;
 use crate::documents::fit::{FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
+use crate::documents::verdict::VerdictEntry;
 use crate::outside::{self, Named, NamedCommand};
 use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
@@ -121,6 +123,7 @@ pub fn fit(
     };
     let document = FitDocument {
         schema: "fit/1".into(),
+        verdict: verdict(trials, &answers, &entries),
         zigzag: records[0].zigzag.clone(),
         trials: records,
         ships: answers.iter().filter_map(ship_of).collect(),
@@ -133,6 +136,19 @@ pub fn fit(
         methods: entries,
     };
     Ok(FitResult { together, answers, document })
+}
+
+/// Which answer is to be taken.
+fn verdict(
+    trials: &[Trial],
+    answers: &[(MethodEntry, Option<Estimate>)],
+    entries: &[MethodEntry],
+) -> Option<VerdictEntry> {
+    let of = |id: &str| {
+        let own = answers.iter().find(|(entry, _)| entry.id.as_deref().unwrap_or(&entry.method) == id);
+        own.and_then(|(_, estimate)| estimate.as_ref())
+    };
+    VerdictEntry::of(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries)
 }
 
 /// The named methods of the project with their default settings, all for no name, and outside estimators behind them;

@@ -84,7 +84,8 @@ impl StoredModel {
         })?;
         let (known, method) = if command == "fit" {
             let mut ships: BTreeMap<String, IdentifiedShip> = serde_json::from_value(known).map_err(unread)?;
-            let id = method(shown, &ships, asked)?;
+            let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id));
+            let id = method(shown, &ships, asked.or(verdict))?;
             if asked.is_none() {
                 warnings.push(format!("{shown}: the answer of {id} is used; --method names another"));
             }

@@ -175,7 +175,7 @@ fn what_contradicts_itself_is_refused() {
     let late = changed("heading-deg = 20.0", "heading-deg = 20.0\nexecutes = 3")
         .replace("after-execute = 1", "after-execute = 4");
     refused(&late, 18, &["after-execute` is 4", "ends after execute 3", "expected at most 3"]);
-    refused(&changed("[ship.yukun]", "[ship.yukun]\n[ship.mariner]"), 5, &["2 ships", "exactly one"]);
+    refused(&changed("[ship.yukun]", "[ship.yukun]\n[ship.mariner]"), 5, &["names 2 things at once", "exactly one"]);
     refused(
         &changed("[ship.yukun]", "[ship.yukun]\nK-per-s = 0.1"),
         5,

@@ -1,7 +1,6 @@
 //! Logs of a simulated ship with one manoeuvre or several, and logs that hold none.
 
 mod confusers;
-mod measured;
 mod ship;
 
 use ::ship::angle::{from_deg, to_deg};

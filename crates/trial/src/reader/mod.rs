@@ -21,8 +21,6 @@ mod layout;
 mod limits;
 mod lines;
 mod log;
-#[cfg(test)]
-mod measured_tests;
 mod nmea;
 mod position;
 mod rows;

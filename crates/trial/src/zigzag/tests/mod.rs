@@ -2,7 +2,6 @@
 //! measured trials, and on records that are no zig-zag.
 
 mod anchors;
-mod measured;
 
 use approx::assert_relative_eq;
 use ship::angle::{from_deg, to_deg};

@@ -1,6 +1,10 @@
 //! Measured records, which are not part of the project: every test says in one line that it was skipped where they are
 //! not.
 
+mod characteristics;
+mod manoeuvres;
+mod reading;
+
 use identify::{Identifier, output_error, registry};
 use kempf_tests::measured;
 use nalgebra::{DMatrix, DVector};

@@ -3,16 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
+use kempf_tests::measured;
 use ship::angle::from_deg;
 
-use super::*;
-use crate::channel::Channel;
-use crate::plausibility;
-use crate::record::{Columns, Trial};
-use crate::testing::data;
+use trial::{Channel, Columns, ReadRecord, Trial, plausibility, read, read_with};
 
 fn measured_sidecar(stem: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/measured").join(format!("{stem}.trial.toml"))
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured").join(format!("{stem}.trial.toml"))
 }
 
 /// Largest difference of a channel of `raw` from `tidy` at the times of `tidy` that lie in `raw`, and how many were
@@ -44,7 +41,10 @@ fn are_expected(warnings: &[String], of_antennas: bool) -> bool {
 
 #[test]
 fn raw_files_agree_with_their_tidy_twins() {
-    let Some(data) = data() else { return };
+    let data = measured::folder();
+    if !data.is_dir() {
+        return eprintln!("skipped: no measured trials in {}", data.display());
+    }
     // Tidy values are rounded to five digits after the point, half a unit is 5e-6 (deg, deg/s, m, 1/s). The rebuilt
     // times of MARIN differ by at most 1 ms, from the digits of the step.
     let rounding = from_deg(5.1e-6);
@@ -81,7 +81,10 @@ fn raw_files_agree_with_their_tidy_twins() {
 
 #[test]
 fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
-    let Some(data) = data() else { return };
+    let data = measured::folder();
+    if !data.is_dir() {
+        return eprintln!("skipped: no measured trials in {}", data.display());
+    }
     let mut zig_zags = 0;
     for folder in ["kvlcc2_hsva", "kvlcc2_marin", "esso_osaka"] {
         for entry in std::fs::read_dir(data.join(folder)).expect("the folder of measured trials is complete") {

@@ -1,8 +1,8 @@
 //! Measured trials: the parts that the search finds against those bounded by hand.
 
-use crate::find::{Approach, FoundManoeuvre, Signals, manoeuvres};
-use crate::testing::measured;
-use crate::{Channel, Columns};
+use kempf_tests::measured;
+use trial::find::{Approach, FoundManoeuvre, Signals, manoeuvres};
+use trial::{Channel, Columns};
 
 /// The manoeuvres of a measured record.
 fn searched(columns: &Columns) -> Vec<FoundManoeuvre> {
@@ -29,7 +29,7 @@ const BY_HAND: [(&str, &str, f64, f64); 5] = [
 #[test]
 fn whole_logs_of_esso_osaka_give_the_parts_bounded_by_hand() {
     for (file, name, from, until) in BY_HAND {
-        let Some(table) = measured(&format!("esso_osaka/{file}.csv")) else { return };
+        let Some(table) = measured::columns(&format!("esso_osaka/{file}.csv")) else { return };
         let found = searched(&table);
         assert_eq!(found.len(), 1, "{file}: {found:?}");
         assert_eq!(found[0].name(), name, "{file}");
@@ -50,7 +50,7 @@ const CIRCLES: [(&str, &str, f64, f64); 4] = [
 #[test]
 fn turns_of_esso_osaka_are_found() {
     for (file, name, from, until) in CIRCLES {
-        let Some(table) = measured(&format!("esso_osaka/{file}.csv")) else { return };
+        let Some(table) = measured::columns(&format!("esso_osaka/{file}.csv")) else { return };
         let found = searched(&table);
         assert_eq!(found.len(), 1, "{file}: {found:?}");
         assert_eq!(found[0].name(), name, "{file}");
@@ -77,7 +77,7 @@ const FILLED: [(&str, &str, f64, usize); 11] = [
 #[test]
 fn records_filled_by_a_zig_zag_are_taken_whole() {
     for (file, name, start, executes) in FILLED {
-        let Some(table) = measured(file) else { return };
+        let Some(table) = measured::columns(file) else { return };
         let found = searched(&table);
         assert_eq!(found.len(), 1, "{file}: {found:?}");
         assert_eq!((found[0].name().as_str(), found[0].executes), (name, executes), "{file}");
@@ -92,7 +92,7 @@ fn records_filled_by_a_zig_zag_are_taken_whole() {
 /// The record of MARIN goes on with the rudder amidships.
 #[test]
 fn a_turning_circle_is_followed_by_its_pull_out() {
-    let Some(table) = measured("kvlcc2_marin/turning_35.csv") else { return };
+    let Some(table) = measured::columns("kvlcc2_marin/turning_35.csv") else { return };
     let found = searched(&table);
     let names: Vec<String> = found.iter().map(|found| found.name()).collect();
     assert_eq!(names, ["turning circle 35 to port", "pull-out"]);

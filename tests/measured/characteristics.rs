@@ -2,13 +2,13 @@
 
 use ship::angle::{from_deg, to_deg};
 
-use crate::zigzag::{BaseCourseSource, Side, ZigZag, ZigZagError};
-use crate::{Origin, Trial, testing};
+use trial::zigzag::{BaseCourseSource, Side, ZigZag, ZigZagError};
+use trial::{Origin, Trial};
 
 /// A measured record; `None` where the data are not there.
 fn measured(file: &str) -> Option<Trial> {
     let origin = Origin::Measured { file: file.into(), sha256: String::new() };
-    Some(Trial::new(file, origin, testing::measured(file)?).expect("consistent columns"))
+    Some(Trial::new(file, origin, kempf_tests::measured::columns(file)?).expect("consistent columns"))
 }
 
 /// What the rows of a record show to the eye: pair, first side, time of the first execute, number of executes and of

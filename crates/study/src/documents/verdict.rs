@@ -1,0 +1,67 @@
+//! Which answer of a fit is to be taken, and what its residual says.
+
+use campaign::answer::MethodEntry;
+use identify::recommended::{Reason, Recommendation, ResidualKind};
+use serde::{Deserialize, Serialize};
+use ship::angle::to_deg;
+
+/// A replay this many times worse than the best is set apart.
+const FAR_WORSE: f64 = 10.0;
+
+/// The answer to take.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct VerdictEntry {
+    /// The method whose answer is to be taken.
+    pub method: String,
+    /// Why.
+    pub reason: Reason,
+    /// What the residual of output error looks like, where that has an answer.
+    pub residual: Option<ResidualKind>,
+    /// Root mean square of that residual, deg.
+    pub residual_deg: Option<f64>,
+    /// The same with nine terms of a larger ship fitted to it, deg.
+    pub with_ship_terms_deg: Option<f64>,
+    /// Standard deviation of the noise of the heading, deg.
+    pub noise_deg: Option<f64>,
+    /// Methods whose replays are more than ten times worse than the best.
+    pub set_apart: Vec<String>,
+    /// A method whose 95 % interval of K or T lies wholly outside that of the answer to take.
+    pub contradicted_by: Option<String>,
+}
+
+impl VerdictEntry {
+    /// From the answers of the methods; where the recommended one is not among them the nearest replay stands for it.
+    pub fn of(recommendation: &Recommendation, entries: &[MethodEntry]) -> Option<Self> {
+        let answered = || entries.iter().filter(|entry| entry.parameters.is_some());
+        let rms = |entry: &&MethodEntry| entry.heading_rmse_deg.unwrap_or(f64::INFINITY);
+        let is_own = |entry: &&MethodEntry| entry.id.as_deref().unwrap_or(&entry.method) == recommendation.method();
+        let nearest = answered().min_by(|one, other| rms(one).total_cmp(&rms(other)))?;
+        let taken = answered().find(is_own);
+        let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);
+        let taken = taken.unwrap_or(nearest);
+        let far = answered().filter(|entry| rms(entry) > FAR_WORSE * rms(&nearest) && entry.method != taken.method);
+        let degrees = |of: fn(&identify::lack_of_fit::LackOfFit) -> f64| {
+            recommendation.lack.as_ref().map(|lack| to_deg(of(lack)))
+        };
+        let usual = ["output-error", "maximum-likelihood"];
+        let contradicts = |entry: &&MethodEntry| usual.contains(&entry.method.as_str()) && are_apart(taken, entry);
+        Some(Self {
+            method: taken.method.clone(),
+            reason,
+            residual: recommendation.residual(),
+            residual_deg: degrees(|lack| lack.residual),
+            with_ship_terms_deg: degrees(|lack| lack.with_ship_terms),
+            noise_deg: degrees(|lack| lack.noise),
+            set_apart: far.map(|entry| entry.method.clone()).collect(),
+            contradicted_by: answered().find(contradicts).map(|entry| entry.method.clone()),
+        })
+    }
+}
+
+/// Whether the intervals of K or of T have nothing in common.
+fn are_apart(one: &MethodEntry, other: &MethodEntry) -> bool {
+    let (Some(one), Some(other)) = (one.parameters, other.parameters) else { return false };
+    [(one.k_per_s, other.k_per_s), (one.t_s, other.t_s)]
+        .into_iter()
+        .any(|(one, other)| one.ci95.zip(other.ci95).is_some_and(|([low, high], [from, to])| high < from || to < low))
+}
