@@ -16,6 +16,7 @@ use ship::first_order::{State, Transition};
 use trial::{Trial, zigzag};
 
 use crate::replay::{Replay, replay};
+use crate::robust;
 
 /// Half-width of the local fits that tell the noise of the heading, in T; bends of the heading last longer.
 const HALF_WIDTH: f64 = 0.25;
@@ -35,13 +36,15 @@ pub struct LackOfFit {
     pub with_ship_terms: f64,
     /// Standard deviation of the white noise of the heading, rad.
     pub noise: f64,
+    /// Whether neighbouring residuals are correlated by no more than chance makes them.
+    pub is_white: bool,
 }
 
 impl LackOfFit {
     /// Of a response on the records it was fitted to; `None` where a replay is not finite, and where so few headings
     /// were read that their noise is not known.
     pub fn of(trials: &[Trial], response: &FirstOrder) -> Option<Self> {
-        let mut residual = Vec::new();
+        let (mut residual, mut pieces) = (Vec::new(), Vec::new());
         let mut terms: Vec<Vec<f64>> = Vec::new();
         let (mut noise, mut initial) = (0.0, 0);
         for trial in trials {
@@ -53,7 +56,8 @@ impl LackOfFit {
             noise += sd * sd * own.residual.len() as f64;
             initial += own.initial;
             terms.iter_mut().zip(&own.terms).for_each(|(all, one)| all.extend(one));
-            residual.extend(own.residual);
+            residual.extend(&own.residual);
+            pieces.push(own.residual);
         }
         let rows = residual.len() as f64;
         let rms = |values: &[f64], free: usize| (dot(values, values) / (rows - free as f64).max(1.0)).sqrt();
@@ -64,16 +68,18 @@ impl LackOfFit {
         }
         remove(&basis, &mut residual);
         let after = rms(&residual, basis.len() + initial);
-        let found = Self { residual: before, with_ship_terms: after, noise: (noise / rows).sqrt() };
+        let lag1 = robust::lag1_autocorrelation(pieces.iter().map(Vec::as_slice));
+        let is_white = !robust::is_coloured(lag1, residual.len());
+        let found = Self { residual: before, with_ship_terms: after, noise: (noise / rows).sqrt(), is_white };
         (before.is_finite() && after.is_finite() && noise.is_finite()).then_some(found)
     }
 
     /// Which share of the residual beyond the noise the terms of a ship leave, from 0 to 1: small where the ship lacks
-    /// a term, large where chance moves her. `None` where the residual is no larger than the noise.
+    /// a term, large where chance moves her. `None` where it is white.
     pub fn unexplained(&self) -> Option<f64> {
         let beyond = |rms: f64| (rms * rms - self.noise * self.noise).max(0.0);
         let all = beyond(self.residual);
-        (all > 0.1 * self.noise * self.noise).then(|| (beyond(self.with_ship_terms) / all).sqrt().min(1.0))
+        (!self.is_white && all > 0.0).then(|| (beyond(self.with_ship_terms) / all).sqrt().min(1.0))
     }
 }
 
@@ -181,5 +187,30 @@ fn remove(basis: &[Vec<f64>], column: &mut [f64]) {
     for direction in basis {
         let size = dot(direction, column);
         column.iter_mut().zip(direction).for_each(|(value, own)| *value -= size * own);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Case;
+
+    #[test]
+    fn an_exact_ship_leaves_noise_on_either_side_of_neutral() {
+        for time_constant in [16.3, -40.0] {
+            let case = Case { T: time_constant, K: 0.1 * time_constant.signum(), noise_deg: 0.1, ..Case::default() };
+            let lack = LackOfFit::of(&[case.trial()], &case.ship()).expect("a zig-zag");
+            assert!(lack.is_white && lack.unexplained().is_none(), "{lack:?}");
+            assert!((lack.residual / lack.noise - 1.0).abs() < 0.2, "{lack:?}");
+        }
+    }
+
+    /// K 2 % off is a fault that no term of a ship has to explain: K is free.
+    #[test]
+    fn what_k_and_t_explain_is_no_lack() {
+        let case = Case { noise_deg: 0.01, ..Case::default() };
+        let off = FirstOrder { K_over_T: 1.02 * case.ship().K_over_T, ..case.ship() };
+        let lack = LackOfFit::of(&[case.trial()], &off).expect("a zig-zag");
+        assert!(lack.residual > 10.0 * lack.noise && lack.with_ship_terms < 1.2 * lack.noise, "{lack:?}");
     }
 }

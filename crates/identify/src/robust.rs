@@ -13,7 +13,7 @@ const COLOURED: f64 = 0.2;
 /// Where neighbours differ in sign the robust error would be smaller than the white one, which a record of two
 /// instruments read in turn does not deserve: the white one stays.
 pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<String>) {
-    if lag1.abs() <= COLOURED.max(3.0 / (rows as f64).sqrt()) {
+    if !is_coloured(lag1, rows) {
         return (Uncertainty::Covariance(white), None);
     }
     if lag1 > 0.0 {
@@ -28,6 +28,11 @@ pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usi
          disagree are read in turn: intervals take it for white; look at the heading"
     );
     (Uncertainty::Covariance(white), Some(warning))
+}
+
+/// Whether neighbours are correlated by more than is usual, and by more than chance.
+pub(crate) fn is_coloured(lag1: f64, rows: usize) -> bool {
+    lag1.abs() > COLOURED.max(3.0 / (rows as f64).sqrt())
 }
 
 /// Lag-1 autocorrelation of residuals, pooled over trials.

@@ -91,24 +91,24 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
     let [residual, rest] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
     words += &match verdict.residual {
         None => String::new(),
-        Some(ResidualKind::Noise) => String::from(" The residual of output error is the noise of the heading."),
+        Some(ResidualKind::Noise) => String::from("\nThe residual of output error is noise of the heading."),
         Some(ResidualKind::LacksEffect) => format!(
-            " The residual of output error, {residual}°, falls to {rest}° with the terms of a larger ship: the model lacks an \
+            "\nThe residual of output error, {residual}°, falls to {rest}° with the terms of a larger ship: the model lacks an \
              effect, which `study trace` looks for."
         ),
         Some(ResidualKind::Random) => {
             format!(
-                " The residual of output error, {residual}°, is random: terms of a larger ship leave {rest}° of it."
+                "\nThe residual of output error, {residual}°, is random: terms of a larger ship leave {rest}° of it."
             )
         }
     };
     if let Some(other) = &verdict.contradicted_by {
         words += &format!(
-            " The intervals of {other} exclude this answer: a random moment explains a part of the manoeuvre in one of the two."
+            "\nThe intervals of {other} exclude this answer: a random moment explains a part of the manoeuvre in one of the two."
         );
     }
     if !verdict.set_apart.is_empty() {
-        words += &format!(" More than ten times as far from the headings are: {}.", verdict.set_apart.join(", "));
+        words += &format!("\nMore than ten times as far from the headings are: {}.", verdict.set_apart.join(", "));
     }
     Some(words)
 }
