@@ -105,6 +105,29 @@ fn whatever_a_program_does_the_reason_is_told() {
     assert!(error.starts_with("outside: not started: "), "{error}");
 }
 
+/// A script that waits for a program is ended with it.
+#[cfg(unix)]
+#[test]
+fn a_time_out_ends_all_that_was_started() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let pid = desk.path().join("pid");
+    let script = format!("sleep 3600 & echo $! > '{}'; wait; true", pid.display());
+    let settings = Settings { timeout_s: 1.0, ..Settings::new(["sh", "-c", &script]) };
+    let method = settings.build(Path::new("")).expect("valid settings");
+    assert!(method.identify(&[record(4)]).expect_err("it does not answer").to_string().contains("within 1 s"));
+    let pid = fs::read_to_string(&pid).expect("it was started");
+    let is_alive = || {
+        // One that has ended may wait for somebody to look.
+        let state = std::process::Command::new("ps").args(["-o", "stat=", "-p", pid.trim()]).output().expect("ps");
+        !matches!(state.stdout.first(), None | Some(b'Z'))
+    };
+    let start = std::time::Instant::now();
+    while is_alive() {
+        assert!(start.elapsed().as_secs() < 10, "the process {pid} was left behind");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+}
+
 /// A record that is longer than the pipe between the two does not make anybody wait for ever.
 #[test]
 fn a_long_record_is_no_trap() {
