@@ -103,7 +103,7 @@ impl TraceCurves {
     pub fn of(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
         Self::from_tables(document, |name| {
             let path = folder.join(name);
-            Ok((std::fs::read_to_string(&path).on("read", &path)?, path.display().to_string()))
+            Ok((super::read_text(&path)?, path.display().to_string()))
         })
     }
 
