@@ -79,7 +79,7 @@ fn refused(arguments: &[&str], timeout_s: f64) -> String {
     let settings = Settings { timeout_s, ..Settings::new([&[ESTIMATOR], arguments].concat()) };
     let method = settings.build(Path::new("")).expect("valid settings");
     let failure = |method: &dyn Identifier| match method.identify(&[record(4)]) {
-        Err(IdentifyError::Outside { reason }) => reason,
+        Err(IdentifyError::Outside { reason } | IdentifyError::NotStarted { reason }) => reason,
         other => panic!("{arguments:?}: {other:?}"),
     };
     let reason = failure(&method);
@@ -255,6 +255,30 @@ fn an_answer_to_one_cell_is_never_taken_in_another() {
     let of = |method: usize| rows.iter().filter(move |row| row.method == method).map(|row| (row.cell, row.t_s));
     assert!(of(1).eq(of(2)), "{rows:?}");
     assert!(rows.iter().all(|row| row.t_s.is_some()), "{rows:?}");
+}
+
+/// Rows say what a method makes of a record, and nothing of the machine: a study goes on when the program starts again.
+#[cfg(unix)]
+#[test]
+fn a_program_that_the_system_does_not_start_ends_the_study() {
+    use std::os::unix::fs::PermissionsExt;
+    let desk = tempfile::tempdir().expect("a folder");
+    let program = desk.path().join("mine");
+    fs::copy(ESTIMATOR, &program).expect("a program");
+    let text = scenario_of(&[&["honest"]], "", &desk.path().join("outside.toml")).text.replace(ESTIMATOR, "./mine");
+    let study = Scenario::parse(&desk.path().join("outside.toml"), "outside", text, None).expect("a scenario");
+    let may = |mode| fs::set_permissions(&program, fs::Permissions::from_mode(mode)).expect("our own file");
+    may(0o600);
+    let held = ResultFolder::hold(&desk.path().join("out")).expect("a folder");
+    let failure = collect(&study, Shard::WHOLE, &held, false, &NoObserver).err().expect("it does not start");
+    assert!(
+        failure.message.contains("mine honest` is not started") && failure.message.contains("0 of 24"),
+        "{failure}"
+    );
+    drop(held);
+    may(0o700);
+    run(&study, 2, &desk.path().join("out"), &NoObserver);
+    assert!(rows(&desk.path().join("out")).iter().all(|row| row.failure.is_none()));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::path::Path;
 use ::trace::comparison::RecordComparison;
 use campaign::curves::degrees;
 use identify::replay::Replay;
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
 use ship::angle::from_deg;
 use trial::{Channel, Columns as Channels, Origin, Trial};
 
