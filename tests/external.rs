@@ -11,7 +11,7 @@ use campaign::rows::StudyRow;
 use campaign::store::StoredStudy;
 use campaign::task::Shard;
 use campaign::{NoObserver, Observer};
-use identify::external::{External, Settings};
+use identify::external::{External, Settings, protocol};
 use identify::{Identifier, IdentifyError};
 use kempf_tests::outside::least_squares;
 use kempf_tests::records::Case;
@@ -79,7 +79,7 @@ fn refused(arguments: &[&str], timeout_s: f64) -> String {
     let settings = Settings { timeout_s, ..Settings::new([&[ESTIMATOR], arguments].concat()) };
     let method = settings.build(Path::new("")).expect("valid settings");
     let failure = |method: &dyn Identifier| match method.identify(&[record(4)]) {
-        Err(IdentifyError::Outside { reason }) => reason,
+        Err(IdentifyError::Outside { reason } | IdentifyError::NotStarted { reason }) => reason,
         other => panic!("{arguments:?}: {other:?}"),
     };
     let reason = failure(&method);
@@ -94,13 +94,38 @@ fn whatever_a_program_does_the_reason_is_told() {
     assert_eq!(refused(&["deaf"], 0.2), "no answer within 0.2 s");
     assert_eq!(refused(&["dies"], 5.0), "the process ended without an answer (exit status: 7)");
     assert_eq!(refused(&["cut"], 5.0), "the process ended without an answer (exit status: 0)");
-    assert_eq!(refused(&["nonsense"], 5.0), "not JSON: Warning: \\u{1b}[31m4");
+    let (number, _) = protocol::question(4, &record(4), &[]);
+    assert_eq!(refused(&["nonsense"], 5.0), format!("not JSON: Warning: \\u{{1b}}[31m{number}"));
     assert_eq!(refused(&["endless"], 30.0), "an answer of more than 4194304 bytes");
-    assert_eq!(refused(&["wrong-number"], 5.0), "an answer to trial 5 where 4 was asked");
-    assert_eq!(refused(&["fails", "4"], 5.0), "no \\u{7}excitation at all");
+    let wrong = format!("an answer to trial {} where {number} was asked", number + 1);
+    assert_eq!(refused(&["wrong-number"], 5.0), wrong);
+    assert_eq!(refused(&["fails", &(number % 7).to_string()], 5.0), "no \\u{7}excitation at all");
     let missing = Settings::new(["no-such-program-here"]).build(Path::new("")).expect("nothing is started");
     let error = missing.identify(&[record(1)]).expect_err("there is no such program").to_string();
     assert!(error.starts_with("outside: not started: "), "{error}");
+}
+
+/// A script that waits for a program is ended with it.
+#[cfg(unix)]
+#[test]
+fn a_time_out_ends_all_that_was_started() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let pid = desk.path().join("pid");
+    let script = format!("sleep 3600 & echo $! > '{}'; wait; true", pid.display());
+    let settings = Settings { timeout_s: 1.0, ..Settings::new(["sh", "-c", &script]) };
+    let method = settings.build(Path::new("")).expect("valid settings");
+    assert!(method.identify(&[record(4)]).expect_err("it does not answer").to_string().contains("within 1 s"));
+    let pid = fs::read_to_string(&pid).expect("it was started");
+    let is_alive = || {
+        // One that has ended may wait for somebody to look.
+        let state = std::process::Command::new("ps").args(["-o", "stat=", "-p", pid.trim()]).output().expect("ps");
+        !matches!(state.stdout.first(), None | Some(b'Z'))
+    };
+    let start = std::time::Instant::now();
+    while is_alive() {
+        assert!(start.elapsed().as_secs() < 10, "the process {pid} was left behind");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
 }
 
 /// A record that is longer than the pipe between the two does not make anybody wait for ever.
@@ -196,14 +221,64 @@ fn rows_do_not_depend_on_threads_or_interruptions() {
         .into_iter()
         .filter_map(|row| Some((row.cell, row.replicate, row.method, row.failure?.into())))
         .collect();
-    let expected = |cell: u64| {
-        [
-            (cell, 3, 2, "outside: the process ended without an answer (exit status: 7)".to_owned()),
-            (cell, 4, 3, "outside: not JSON: Warning: \\u{1b}[31m4".to_owned()),
-            (cell, 5, 4, "outside: no \\u{7}excitation at all".to_owned()),
-        ]
-    };
-    assert_eq!(failures, [expected(0), expected(1)].concat());
+    let mut expected = Vec::new();
+    for (cell, replicate) in (0..2).flat_map(|cell| (0_u64..12).map(move |replicate| (cell, replicate))) {
+        let number = number(&study, cell, replicate);
+        let (method, why) = match number % 7 {
+            3 => (2, "the process ended without an answer (exit status: 7)".to_owned()),
+            4 => (3, format!("not JSON: Warning: \\u{{1b}}[31m{number}")),
+            5 => (4, "no \\u{7}excitation at all".to_owned()),
+            _ => continue,
+        };
+        expected.push((cell as u64, replicate, method, format!("outside: {why}")));
+    }
+    assert!(expected.len() > 5);
+    assert_eq!(failures, expected);
+}
+
+/// The number of the question about a trial of a study.
+fn number(study: &Scenario, cell: usize, replicate: u64) -> u64 {
+    let trials = campaign::engine::simulate(study, campaign::task::Task { cell, replicate }).expect("a record");
+    protocol::question(replicate, &trials[0].trial, &[]).0
+}
+
+/// The cells of a sweep share processes: the line that an estimator says too often is not taken in the next cell.
+#[test]
+fn an_answer_to_one_cell_is_never_taken_in_another() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let mut study = scenario_of(&[&["twice"], &["honest"]], "", &desk.path().join("outside.toml"));
+    let text = study.text.replace("replicates = 12", "replicates = 1");
+    study = Scenario::parse(&desk.path().join("outside.toml"), "outside", text, None).expect("a scenario");
+    let one = run(&study, 1, &desk.path().join("one"), &NoObserver);
+    assert!(run(&study, 2, &desk.path().join("two"), &NoObserver) == one, "one thread and two give other rows");
+    let rows = rows(&desk.path().join("one"));
+    let of = |method: usize| rows.iter().filter(move |row| row.method == method).map(|row| (row.cell, row.t_s));
+    assert!(of(1).eq(of(2)), "{rows:?}");
+    assert!(rows.iter().all(|row| row.t_s.is_some()), "{rows:?}");
+}
+
+/// Rows say what a method makes of a record, and nothing of the machine: a study goes on when the program starts again.
+#[cfg(unix)]
+#[test]
+fn a_program_that_the_system_does_not_start_ends_the_study() {
+    use std::os::unix::fs::PermissionsExt;
+    let desk = tempfile::tempdir().expect("a folder");
+    let program = desk.path().join("mine");
+    fs::copy(ESTIMATOR, &program).expect("a program");
+    let text = scenario_of(&[&["honest"]], "", &desk.path().join("outside.toml")).text.replace(ESTIMATOR, "./mine");
+    let study = Scenario::parse(&desk.path().join("outside.toml"), "outside", text, None).expect("a scenario");
+    let may = |mode| fs::set_permissions(&program, fs::Permissions::from_mode(mode)).expect("our own file");
+    may(0o600);
+    let held = ResultFolder::hold(&desk.path().join("out")).expect("a folder");
+    let failure = collect(&study, Shard::WHOLE, &held, false, &NoObserver).err().expect("it does not start");
+    assert!(
+        failure.message.contains("mine honest` is not started") && failure.message.contains("0 of 24"),
+        "{failure}"
+    );
+    drop(held);
+    may(0o700);
+    run(&study, 2, &desk.path().join("out"), &NoObserver);
+    assert!(rows(&desk.path().join("out")).iter().all(|row| row.failure.is_none()));
 }
 
 #[test]
@@ -227,7 +302,8 @@ fn what_a_program_says_beside_its_answers_is_kept_within_bounds() {
     let folder = desk.path().join("out");
     run(&study, 2, &folder, &NoObserver);
     let log = fs::read_to_string(folder.join("external-mine-0.log")).expect("a log");
-    assert_eq!((log.lines().count(), log.matches("trial 3 of 101 rows").count()), (24, 2), "{log}");
+    let named = log.matches(&format!("trial {} of 101 rows", number(&study, 1, 3))).count();
+    assert_eq!((log.lines().count(), named), (24, 1), "{log}");
     let long = fs::metadata(folder.join("external-mine-1.log")).expect("a log").len();
     assert!((1 << 20..(1 << 20) + 100).contains(&long), "{long} bytes");
     // It is no part of the study, and grows with it.

@@ -130,7 +130,7 @@ pub fn is_same(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), F
 }
 
 /// How a run of trials ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 enum RunEnd {
     /// All were run, or nobody takes more.
     Done,
@@ -138,6 +138,8 @@ enum RunEnd {
     Interrupted,
     /// It was asked to stop, and a trial under way does not end.
     Stuck,
+    /// No trial can be run here and now, and why.
+    Trouble(String),
 }
 
 /// Runs what is left of a plan; rows go to a writer of their own while the next trials run.
@@ -158,9 +160,9 @@ fn run_all(
         drop(send);
         let written = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         observer.end();
-        let stopped = || {
+        let stopped = |why: &str| {
             Failure::work(format!(
-                "stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there",
+                "{why}stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there",
                 plan.most() - plan.left(),
                 plan.most(),
                 folder.join(unfinished::NAME).display()
@@ -168,9 +170,13 @@ fn run_all(
         };
         match end {
             RunEnd::Done => written,
-            RunEnd::Interrupted => written.and_then(|()| Err(stopped())),
+            RunEnd::Interrupted => written.and_then(|()| Err(stopped(""))),
+            RunEnd::Trouble(why) => {
+                let advice = "see to its rights, and to open files and processes (`ulimit -a`)";
+                written.and_then(|()| Err(stopped(&format!("{why}; {advice}; "))))
+            }
             RunEnd::Stuck => {
-                let failure = written.err().unwrap_or_else(stopped);
+                let failure = written.err().unwrap_or_else(|| stopped(""));
                 observer.give_up(&failure);
                 Err(failure)
             }
@@ -230,10 +236,13 @@ fn watched<'scope>(
         let runner = runner(scenario, &tasks);
         let run = || {
             tasks.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
-                if !observer.is_asked_to_stop() {
-                    // Nobody receives any more when the wait for a trial was given up.
-                    let _ = send.send((index, runner.run(task)));
+                if observer.is_asked_to_stop() || runner.trouble().is_some() {
+                    return;
                 }
+                let outcome = runner.run(task);
+                let outcome = runner.trouble().map_or(Ok((index, outcome)), |trouble| Err(trouble.to_owned()));
+                // Nobody receives any more when the wait for a trial was given up.
+                let _ = send.send(outcome);
             });
         };
         match observer.threads() {
@@ -242,12 +251,14 @@ fn watched<'scope>(
         }
     });
     let mut asked: Option<Instant> = None;
+    let mut trouble = None;
     let is_stuck = loop {
         match receive.recv_timeout(LOOK) {
-            Ok((index, outcome)) => {
+            Ok(Ok((index, outcome))) => {
                 outcomes[index] = Some(outcome);
                 observer.advance();
             }
+            Ok(Err(why)) => trouble = Some(RunEnd::Trouble(why)),
             Err(RecvTimeoutError::Disconnected) => break false,
             Err(RecvTimeoutError::Timeout) if observer.is_asked_to_stop() => {
                 if asked.get_or_insert_with(Instant::now).elapsed() >= PATIENCE {
@@ -263,7 +274,7 @@ fn watched<'scope>(
         (false, false) => RunEnd::Interrupted,
         (false, true) => RunEnd::Done,
     };
-    (outcomes.into_iter().map_while(|outcome| outcome).collect(), end)
+    (outcomes.into_iter().map_while(|outcome| outcome).collect(), trouble.unwrap_or(end))
 }
 
 /// All rows of a small study, in their order, without a folder; and its design.

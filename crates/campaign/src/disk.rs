@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use parquet::file::reader::{ChunkReader, Length};
 
 pub mod faults;
+pub mod unsupported;
 
 /// An operation on a path, which a test may let fail.
 fn at<T>(path: &Path, operation: impl FnOnce() -> io::Result<T>) -> io::Result<T> {
@@ -29,9 +30,9 @@ impl File {
         Ok(Self { file: at(path, open)?, path: path.to_owned() })
     }
 
-    /// Opens a file to read.
+    /// Opens a file to read. Fails where something else has its name: a pipe would be waited for without an end.
     pub fn open(path: &Path) -> io::Result<Self> {
-        Self::of(path, || fs::File::open(path))
+        Self::of(path, || regular(path).and_then(|_| fs::File::open(path)))
     }
 
     /// Makes a file that is not there yet; a link is not followed.
@@ -41,22 +42,27 @@ impl File {
 
     /// Opens a file that others may have open too, and makes it when it is missing; its content stays.
     pub fn open_shared(path: &Path) -> io::Result<Self> {
-        Self::of(path, || fs::OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path))
+        Self::of(path, || {
+            found(regular(path))?;
+            fs::OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)
+        })
     }
 
     /// Waits until all that was written is on the disk.
     pub fn sync(&self) -> io::Result<()> {
-        at(&self.path, || self.file.sync_all())
+        at(&self.path, || sync(&self.path, &self.file))
     }
 
-    /// Keeps all others out while the file is open; `false` when another one holds it.
+    /// Keeps all others out while the file is open; `false` when another one holds it. Where the file system has no
+    /// locks, nobody is kept out.
     pub fn lock(&self) -> io::Result<bool> {
-        at(&self.path, || is_taken(|| self.file.try_lock()))
+        at(&self.path, || unsupported::NO_LOCKS.or(true, &self.path, || is_taken(|| self.file.try_lock())))
     }
 
-    /// Keeps out those who want to write while the file is open; `false` when one of them holds it.
+    /// Keeps out those who want to write while the file is open; `false` when one of them holds it. Where the file
+    /// system has no locks, nobody is kept out.
     pub fn lock_for_reading(&self) -> io::Result<bool> {
-        at(&self.path, || is_taken(|| self.file.try_lock_shared()))
+        at(&self.path, || unsupported::NO_LOCKS.or(true, &self.path, || is_taken(|| self.file.try_lock_shared())))
     }
 }
 
@@ -123,11 +129,21 @@ impl ChunkReader for File {
     }
 }
 
-/// Opens a file to write at its end, and makes it when it is missing. Fails where a link is in its place.
+/// Opens a file to write at its end, and makes it when it is missing. Fails where a link or a pipe is in its place.
 pub fn append(path: &Path) -> io::Result<fs::File> {
-    match is_link(path)? {
-        true => Err(io::Error::other("this is a link")),
-        false => fs::OpenOptions::new().append(true).create(true).open(path),
+    if is_link(path)? {
+        return Err(io::Error::other("this is a link"));
+    }
+    found(regular(path))?;
+    fs::OpenOptions::new().append(true).create(true).open(path)
+}
+
+/// Size of a file, looked at before it is opened, bytes. Fails where something else is there.
+fn regular(path: &Path) -> io::Result<u64> {
+    let about = fs::metadata(path)?;
+    match about.is_file() {
+        true => Ok(about.len()),
+        false => Err(io::Error::other("this is not a regular file")),
     }
 }
 
@@ -151,16 +167,14 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
 
 /// Reads a file of at most `largest` bytes; `None` when there is none.
 pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
+    let too_large = || io::Error::other(format!("it has more than {largest} bytes"));
     let Some(mut file) = found(File::open(path))? else { return Ok(None) };
-    if !file.file.metadata()?.is_file() {
-        return Err(io::Error::other("this is not a regular file"));
+    if Length::len(&file) > largest {
+        return Err(too_large());
     }
     let mut bytes = Vec::new();
     (&mut file).take(largest + 1).read_to_end(&mut bytes)?;
-    match bytes.len() as u64 > largest {
-        true => Err(io::Error::other(format!("it has more than {largest} bytes"))),
-        false => Ok(Some(bytes)),
-    }
+    if bytes.len() as u64 > largest { Err(too_large()) } else { Ok(Some(bytes)) }
 }
 
 /// Makes a folder and those above it.
@@ -199,5 +213,32 @@ pub fn names(path: &Path) -> io::Result<Vec<String>> {
 /// Waits until the names in a folder are on the disk.
 pub fn sync_folder(path: &Path) -> io::Result<()> {
     // Other systems have no such call: there a name is as safe as the file system makes it.
-    at(path, || if cfg!(unix) { fs::File::open(path)?.sync_all() } else { Ok(()) })
+    at(path, || if cfg!(unix) { sync(path, &fs::File::open(path)?) } else { Ok(()) })
+}
+
+fn sync(path: &Path, file: &fs::File) -> io::Result<()> {
+    unsupported::NO_SYNC.or((), path, || file.sync_all())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    /// Whoever opens a pipe waits for somebody at its other end.
+    #[test]
+    fn a_pipe_in_the_place_of_a_file_is_not_opened() {
+        let desk = tempfile::tempdir().expect("a folder");
+        let pipe = desk.path().join("showcase.json");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+        let errors = [
+            read(&pipe, 10).map(drop).err(),
+            File::open(&pipe).map(drop).err(),
+            File::open_shared(&pipe).map(drop).err(),
+            append(&pipe).map(drop).err(),
+            crate::folder::sha256_of(&pipe).map(drop).err(),
+        ];
+        for error in errors {
+            assert!(error.expect("refused").to_string().contains("not a regular file"));
+        }
+    }
 }

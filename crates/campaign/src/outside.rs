@@ -33,8 +33,7 @@ impl<'a> RunningEstimators<'a> {
                     shown(outside.command())
                 ))
             })?;
-            let log = folder.path().join(log_of(&method.label));
-            outside.log_to(Box::new(move || disk::append(&log)));
+            keep_log(*outside, &method.label, folder);
         }
         told(scenario).iter().for_each(|line| observer.note(line));
         Ok(this)
@@ -45,6 +44,13 @@ impl Drop for RunningEstimators<'_> {
     fn drop(&mut self) {
         self.0.iter().for_each(|(_, outside)| outside.end());
     }
+}
+
+/// Lets what an outside estimator says beside its answers go into `external-LABEL.log` of a folder, up to a bounded
+/// size.
+pub fn keep_log(outside: &dyn Outside, label: &str, folder: &ResultFolder) {
+    let log = folder.path().join(log_of(label));
+    outside.log_to(Box::new(move || disk::append(&log)));
 }
 
 /// The name of the log of a method.

@@ -158,7 +158,14 @@ impl<'a> Unfinished<'a> {
         }
         let known = manifest_in(results.path())?;
         if known.is_none() {
-            // What is left of a study that ended.
+            let names = disk::names(path).on("list", path)?;
+            if let Some(part) = names.iter().find(|name| number_of(name).is_some()) {
+                return Err(Failure::input(format!(
+                    "{} holds rows of a study ({part}) without {MANIFEST}, so nobody knows of which one; put the manifest \
+                     back, give another folder with --out, or --restart to discard the rows",
+                    path.display()
+                )));
+            }
             clear(path, observer)?;
             results.inside(NAME)?.keep(MARK, MARK_TEXT)?;
         }

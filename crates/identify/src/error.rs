@@ -100,6 +100,12 @@ pub enum IdentifyError {
         /// K/T, 1/s².
         gain: f64,
     },
+    /// The system does not start another program. It is no matter of the record: a study ends with it.
+    #[error("outside: not started: {reason}")]
+    NotStarted {
+        /// What the system says.
+        reason: String,
+    },
     /// Another program gave no answer; made by [`IdentifyError::outside`].
     #[error("outside: {reason}")]
     Outside {
@@ -158,14 +164,14 @@ impl IdentifyError {
             Self::NotConverged { .. } => "not-converged",
             Self::NoRudderEffect { .. } => "no-rudder-effect",
             Self::NotAShip { .. } => "not-a-ship",
-            Self::Outside { .. } => "outside",
+            Self::NotStarted { .. } | Self::Outside { .. } => "outside",
         }
     }
 
     /// What a row says: the same word, and behind `outside` the words of the other program.
     pub fn in_a_row(&self) -> Cow<'static, str> {
         match self {
-            Self::Outside { .. } => self.to_string().into(),
+            Self::NotStarted { .. } | Self::Outside { .. } => self.to_string().into(),
             own => own.kind().into(),
         }
     }

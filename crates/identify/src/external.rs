@@ -97,15 +97,15 @@ impl Identifier for External {
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let (first, others) = trials.split_first().ok_or(IdentifyError::NoTrial)?;
+        let replicate = match first.origin() {
+            Origin::Simulated { replicate, .. } => *replicate,
+            Origin::Measured { .. } => 0,
+        };
+        let (number, question) = protocol::question(replicate, first, others);
         let mut process = self.pool.take()?;
         loop {
             let before = process.answered();
-            // The number of a simulated trial is the same whoever asks, so a program may draw by it.
-            let number = match first.origin() {
-                Origin::Simulated { replicate, .. } => *replicate,
-                Origin::Measured { .. } => before,
-            };
-            let asked = process.ask(self.timeout, protocol::question(number, first, others));
+            let asked = process.ask(self.timeout, question.clone());
             match asked.and_then(|line| protocol::answer(&line, number)) {
                 Ok(answer) => {
                     self.pool.give_back(process);

@@ -76,7 +76,7 @@ pub trait Outside {
     fn find(&self) -> Result<(), String>;
 
     /// Where what processes that are started from now on say beside their answers goes: opened when there is something,
-    /// written up to a bounded size. Else it goes to the standard error of this program.
+    /// written up to a bounded size. Without one it is dropped.
     fn log_to(&self, open: Opener);
 
     /// Ends the processes that wait for a trial, and the log with them.

@@ -26,7 +26,7 @@ impl PageFigure {
 /// A part of a page.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PageBlock {
-    /// A headline and its level, 1 for the page itself.
+    /// A headline, read as it is, and its level, 1 for the page itself.
     Headline(usize, String),
     /// A paragraph of Markdown.
     Prose(String),
@@ -102,7 +102,7 @@ impl Page {
     /// As Markdown (the GitHub flavour). HTML in it is shown and not obeyed.
     pub fn to_markdown(&self) -> String {
         let block = |block: &PageBlock| match block {
-            PageBlock::Headline(level, title) => format!("{} {title}\n", "#".repeat(*level)),
+            PageBlock::Headline(level, title) => format!("{} {title}\n", "#".repeat(*level), title = text(title)),
             PageBlock::Prose(prose) => format!("{prose}\n"),
             PageBlock::List(entries) => entries.iter().map(|entry| format!("- {entry}\n")).collect(),
             PageBlock::Table(table) => table.to_markdown(),
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn blocks_stand_apart_in_every_form() {
-        let mut page = Page::titled("Trial");
+        let mut page = Page::titled("Trial [1](x) a_b");
         page.words("a*b\n<b>c");
         page.say("  ");
         page.part("Numbers");
@@ -151,7 +151,7 @@ mod tests {
         page.table(table);
         page.figures([PageFigure::new("fit", "a*b", Panels::default())]);
         page.list(["one".to_owned(), "two".to_owned()]);
-        let markdown = "# Trial\n\na\\*b\n\n\\<b>c\n\n## Numbers\n\n| K   |\n| --- |\n| 0.1 |\n\n![a\\*b](fit.png)\n\n\
+        let markdown = "# Trial [1]\\(x) a\\_b\n\na\\*b\n\n\\<b>c\n\n## Numbers\n\n| K   |\n| --- |\n| 0.1 |\n\n![a\\*b](fit.png)\n\n\
                         *a\\*b*\n\n- one\n- two\n";
         assert_eq!(page.to_markdown(), markdown);
         assert!(page.to_text().ends_with("Numbers\n\nK\n───\n0.1\n\none\ntwo\n"), "{}", page.to_text());

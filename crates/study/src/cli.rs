@@ -11,6 +11,7 @@ use crate::commands::{
 };
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
 use crate::{screen, threads};
+use campaign::disk::unsupported;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use scenario::failure::{Blame, Failure};
 use scenario::problem::suggestion;
@@ -85,13 +86,22 @@ enum Command {
 impl<R: Args> With<R> {
     /// Runs a command that works on one thread.
     fn answer(&self, run: impl FnOnce(&R, &Common) -> Result<(), Failure>) -> Result<(), Failure> {
+        warn_of_file_systems(&self.common);
         run(&self.request, &self.common)
     }
 
     /// Runs a command that works on several.
     fn work(&self, run: impl FnOnce(&R, &Common) -> Result<(), Failure>) -> Result<(), Failure> {
+        warn_of_file_systems(&self.common);
         threads::start(&self.common)?;
         run(&self.request, &self.common)
+    }
+}
+
+/// Says once what the file system of results lacks.
+fn warn_of_file_systems(common: &Common) {
+    if !common.quiet {
+        unsupported::warn_with(screen::warn);
     }
 }
 
@@ -134,6 +144,7 @@ fn answer(cli: Cli) -> Result<(), Failure> {
     let Some(command) = cli.command else {
         let none = "no scenario is named; try `study scenarios/yukun.toml` or `study --help`";
         let scenario = cli.scenario.ok_or_else(|| Failure::input(none))?;
+        warn_of_file_systems(&cli.common);
         threads::start(&cli.common)?;
         return run::run(&scenario, &cli.request, &cli.common);
     };

@@ -1,12 +1,12 @@
 //! How figures are drawn, as options of the command line and as a file.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use report::Theme;
 use report::theme::{DPI, WIDTH_MM};
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
+use trial::file::{Kind, read_text};
 
 /// How figures are drawn.
 #[derive(Debug, Clone, Args)]
@@ -74,14 +74,18 @@ impl FigureOptions {
     }
 }
 
+const STYLE: Kind = Kind { name: "a style", largest: 1 << 20 };
+
 /// A style from its file.
 fn style_of(path: &Path) -> Result<report::Style, Failure> {
-    let text = fs::read_to_string(path).on("read", path)?;
+    let text = read_text(path, STYLE).map_err(|error| Failure::about(path, error))?;
     toml::from_str(&text).map_err(|error| Failure::about(path, format!("{}", error.to_string().trim_end())))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn theme(file: &Path) -> Result<Theme, Failure> {
@@ -107,5 +111,8 @@ mod tests {
             let error = theme(&path).expect_err("refused").to_string();
             assert!(error.contains("own.toml") && error.contains(said), "{error}");
         }
+        fs::write(&path, "#".repeat((1 << 20) + 1)).expect("written");
+        let error = theme(&path).expect_err("refused").to_string();
+        assert!(error.contains("own.toml") && error.contains("a style has at most 1048576"), "{error}");
     }
 }

@@ -1,7 +1,7 @@
 //! An outside estimator for tests: least squares, and on request whatever an estimator should not do.
 //!
-//! `estimator MODE [NUMBER]`: what MODE says is done at the trials with this number, at all others the record is
-//! identified. `started FILE` adds a line to a file at the start.
+//! `estimator MODE [REST]`: what MODE says is done at the trials whose number leaves this rest when it is divided by 7, at
+//! all others the record is identified. `started FILE` adds a line to a file at the start.
 
 use std::fs::OpenOptions;
 use std::io::{self, BufRead, Write};
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 fn main() -> io::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let mode = arguments.first().map_or("honest", String::as_str);
-    let number = arguments.get(1).and_then(|number| number.parse::<u64>().ok());
+    let rest = arguments.get(1).and_then(|rest| rest.parse::<u64>().ok());
     if mode == "started" {
         let mut file = OpenOptions::new().append(true).create(true).open(&arguments[1])?;
         writeln!(file, "started")?;
@@ -27,7 +27,7 @@ fn main() -> io::Result<()> {
         let answer = answer(&question);
         let mut output = io::stdout().lock();
         match mode {
-            _ if number.is_some_and(|own| own != trial) => writeln!(output, "{answer}")?,
+            _ if rest.is_some_and(|own| own != trial % 7) => writeln!(output, "{answer}")?,
             "silent" => std::thread::sleep(Duration::from_secs(3600)),
             "dies" => std::process::exit(7),
             "nonsense" => writeln!(output, "Warning: \u{1b}[31m{trial}")?,

@@ -36,14 +36,17 @@ struct SharedFit<'a> {
     records: Vec<Trial>,
 }
 
-/// Runs a benchmark: every method on the records that are there.
+/// Runs a benchmark: every method on the records that are there. Where there is something to ask, `begin` is called
+/// before the first answer, to see to the place of results.
 ///
-/// Fails when two methods have one label, when records of a set are of different scale, and when it is asked to stop.
+/// Fails when two methods have one label, when records of a set are of different scale, when `begin` fails, and when it
+/// is asked to stop.
 pub fn run(
     definition: &Definition,
     store: &RecordStore,
     methods: &[BenchMethod],
     observer: &dyn Observer,
+    begin: impl FnOnce() -> Result<(), Failure>,
 ) -> Result<BenchDocument, Failure> {
     method::check_labels(methods)?;
     let (mut trials, mut present, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
@@ -58,6 +61,9 @@ pub fn run(
     let fits: Vec<SharedFit> = trials.iter().flat_map(fits_of).collect();
     let work: Vec<(&SharedFit, &BenchMethod)> =
         fits.iter().flat_map(|fit| methods.iter().map(move |method| (fit, method))).collect();
+    if !work.is_empty() {
+        begin()?;
+    }
     observer.begin(work.len() as u64, 0);
     let answer = |(fit, method): &(&SharedFit, &BenchMethod)| {
         let answers = (!observer.is_asked_to_stop()).then(|| answers(fit, method));

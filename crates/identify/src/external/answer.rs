@@ -58,7 +58,13 @@ impl Answer {
         let transformed = |(known, warning)| (jacobian * known * jacobian.transpose(), warning);
         let is_finite = |(matrix, _): &(Matrix3<f64>, _)| matrix.iter().all(|value| value.is_finite());
         let (uncertainty, warning) = match self.covariance().map(transformed).filter(is_finite) {
-            None => (Uncertainty::None { reason: "the outside estimator gave no errors of both K and T" }, None),
+            None => {
+                let reason = match self.errors {
+                    Errors::Covariance(_) => "the covariance of the outside estimator is not positive definite",
+                    _ => "the outside estimator gave no errors of both K and T",
+                };
+                (Uncertainty::None { reason }, None)
+            }
             Some((matrix, warning)) => {
                 (Uncertainty::Covariance(Covariance { matrix, degrees_of_freedom: None }), warning)
             }
@@ -89,16 +95,22 @@ impl Answer {
     }
 }
 
-/// Whether a matrix is finite and symmetric, with variances that are not negative and correlations up to one.
+/// Whether a matrix is finite and symmetric, with variances that are not negative and correlations that go together:
+/// no combination of K, T and δ_r may have a negative variance. One that has no error at all may be left at zero.
 fn is_covariance(matrix: &Matrix3<f64>) -> bool {
-    (0..3).all(|i| {
+    let is_plausible = (0..3).all(|i| {
         (0..3).all(|j| {
             let (one, other) = (matrix[(i, j)], matrix[(j, i)]);
             let most = (matrix[(i, i)] * matrix[(j, j)]).sqrt() * (1.0 + ROUNDING);
             // Written so that NaN is refused too.
             one.abs() <= most && most.is_finite() && (one - other).abs() <= ROUNDING * most && matrix[(i, i)] >= 0.0
         })
-    })
+    });
+    let scaled = Matrix3::from_fn(|i, j| match (matrix[(i, i)] * matrix[(j, j)]).sqrt() {
+        0.0 => 0.0,
+        scale => matrix[(i, j)] / scale,
+    });
+    is_plausible && scaled.symmetric_eigenvalues().min() >= -ROUNDING
 }
 
 #[cfg(test)]
@@ -149,6 +161,12 @@ mod tests {
         let bad = Matrix3::from_diagonal(&Vector3::new(1e-6, -1.0, 1e-6));
         let skew = Matrix3::new(1e-4, 5e-3, 0.0, -5e-3, 1.0, 0.0, 0.0, 0.0, 1e-6);
         let beyond = Matrix3::new(1e-4, 5e-2, 0.0, 5e-2, 1.0, 0.0, 0.0, 0.0, 1e-6);
+        // Every pair of correlations is possible, all three together are not.
+        let contradiction = Matrix3::new(1.0, 0.9, 0.9, 0.9, 1.0, -0.9, 0.9, -0.9, 1.0) * 1e-6;
+        match estimate(Errors::Covariance(contradiction)).uncertainty {
+            Uncertainty::None { reason } => assert!(reason.contains("not positive definite"), "{reason}"),
+            other => panic!("{other:?}"),
+        }
         let none = [
             Errors::Unknown,
             Errors::Deviations([Some(0.004), None, Some(0.1)]),

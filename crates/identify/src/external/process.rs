@@ -31,12 +31,10 @@ pub fn locked<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Kills every process that an outside estimator runs in, for a program that is about to end itself. What such a
-/// process has started has to see to its own end.
+/// Kills every process that an outside estimator runs in, for a program that is about to end itself.
 pub fn end_all() {
     for child in locked(&STARTED).drain(..).filter_map(|child| child.upgrade()) {
-        // It has ended, or there is nothing more that can be done.
-        let _ = locked(&child).kill();
+        kill(&mut locked(&child));
     }
 }
 
@@ -54,12 +52,12 @@ pub struct Process {
 }
 
 impl Process {
-    /// Starts a command, which says where it runs. Its standard error goes to `log`, or to that of this program.
+    /// Starts a command, which says where it runs. Its standard error goes to `log`; without one it is dropped.
     pub fn start(mut command: Command, log: Option<Listener>) -> io::Result<Self> {
         let unset = THREADS.into_iter().filter(|name| std::env::var_os(name).is_none());
         command.envs(unset.map(|name| (name, "1"))).env("PYTHONUNBUFFERED", "1");
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
-        command.stderr(if log.is_some() { Stdio::piped() } else { Stdio::inherit() });
+        command.stderr(if log.is_some() { Stdio::piped() } else { Stdio::null() });
         apart(&mut command);
         let mut child = command.spawn()?;
         let (input, output) = (child.stdin.take(), child.stdout.take());
@@ -121,11 +119,10 @@ impl Process {
         }
     }
 
-    /// Ends it at once.
+    /// Ends it at once, with all that it has started.
     pub fn kill(&mut self) {
         let mut child = locked(&self.child);
-        // Both fail for a process that has ended, which is what is wanted.
-        let _ = child.kill();
+        kill(&mut child);
         let _ = child.wait();
     }
 
@@ -152,6 +149,16 @@ impl Drop for Process {
             self.kill();
         }
     }
+}
+
+/// Kills a process with its group: a script that waits for a program must not leave it behind.
+fn kill(child: &mut Child) {
+    #[cfg(unix)]
+    if let Ok(group) = i32::try_from(child.id()) {
+        // It fails where all of the group have ended, which is what is wanted; so does the next.
+        let _ = nix::sys::signal::killpg(nix::unistd::Pid::from_raw(group), nix::sys::signal::Signal::SIGKILL);
+    }
+    let _ = child.kill();
 }
 
 /// Ctrl-C is a request to this program, which ends the others when it does: a trial under way must not fail by it.

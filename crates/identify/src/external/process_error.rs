@@ -39,6 +39,9 @@ impl ProcessError {
 
 impl From<ProcessError> for IdentifyError {
     fn from(error: ProcessError) -> Self {
-        Self::outside(&error.to_string())
+        match error {
+            ProcessError::NotStarted(error) => Self::NotStarted { reason: error.to_string() },
+            other => Self::outside(&other.to_string()),
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The lines between this program and an outside estimator, JSON objects both.
 //!
-//! A question holds one trial: its number, the times (s), headings and rudder angles (rad) of all rows, yaw rates
+//! A question holds one trial: its number, which is made from all else that it holds so that only its own answer can
+//! carry it, the times (s), headings and rudder angles (rad) of all rows, yaw rates
 //! (rad/s) where the record has them, and the declared standard deviations of heading and rudder (rad). A reading that
 //! is missing is `null`. Further records of the same ship follow in `also`.
 //!
@@ -27,8 +28,6 @@ use super::process_error::ProcessError;
 
 #[derive(Serialize)]
 struct Record<'a> {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    trial: Option<u64>,
     t_s: &'a [f64],
     heading_rad: &'a [f64],
     rudder_rad: &'a [f64],
@@ -45,10 +44,9 @@ struct DeclaredNoise {
 }
 
 impl<'a> Record<'a> {
-    fn of(number: Option<u64>, trial: &'a Trial) -> Self {
+    fn of(trial: &'a Trial) -> Self {
         let trial::Noise { heading, rudder, .. } = trial.noise();
         Self {
-            trial: number,
             t_s: trial.time(),
             heading_rad: trial.heading(),
             rudder_rad: trial.rudder(),
@@ -59,14 +57,26 @@ impl<'a> Record<'a> {
     }
 }
 
-/// The question about a trial, of which further records are those behind the first, with the end of its line.
-pub fn question(number: u64, trial: &Trial, others: &[Trial]) -> Vec<u8> {
-    let also = others.iter().map(|other| Record::of(None, other)).collect();
-    let record = Record { also, ..Record::of(Some(number), trial) };
+/// The number of a question and its line about a trial, of which further records are those behind the first.
+///
+/// The number is the same whoever asks and whenever, so a program may draw at random by it. It differs between any two
+/// questions of a study, so that a line too many is never taken for the answer to another one; `replicate` tells those
+/// about equal records apart.
+pub fn question(replicate: u64, trial: &Trial, others: &[Trial]) -> (u64, Vec<u8>) {
+    let record = Record { also: others.iter().map(Record::of).collect(), ..Record::of(trial) };
     // Numbers that are not finite become `null`, which is what a missing reading is.
-    let mut line = serde_json::to_vec(&record).expect("numbers and lists can be written to memory");
-    line.push(b'\n');
-    line
+    let body = serde_json::to_vec(&record).expect("numbers and lists can be written to memory");
+    let number = number_of(&body, replicate);
+    let head = format!("{{\"trial\":{number},");
+    (number, [head.as_bytes(), &body[1..], b"\n"].concat())
+}
+
+/// Digest of a question (FNV-1a) of at most 14 digits, which every language writes as it reads them.
+fn number_of(body: &[u8], replicate: u64) -> u64 {
+    const BITS: u32 = 46;
+    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    let hash = body.iter().chain(&replicate.to_le_bytes()).fold(0xcbf2_9ce4_8422_2325, step);
+    (hash ^ (hash >> BITS)) & ((1 << BITS) - 1)
 }
 
 #[derive(Deserialize)]
@@ -176,10 +186,14 @@ mod tests {
         heading[3] = f64::NAN;
         let trial = record("gap", truth.time().to_vec(), heading.clone(), truth.rudder().to_vec());
         let trial = trial.with_noise(trial::Noise { heading: Some(0.0017), ..Default::default() });
-        let line = question(17, &trial, std::slice::from_ref(&trial));
+        let (number, line) = question(17, &trial, std::slice::from_ref(&trial));
         assert_eq!(line.iter().filter(|byte| **byte == b'\n').count(), 1);
         let read: serde_json::Value = serde_json::from_slice(&line).expect("JSON");
-        assert_eq!((&read["trial"], &read["yaw_rate_rad_s"]), (&17.into(), &serde_json::Value::Null));
+        assert_eq!((&read["trial"], &read["yaw_rate_rad_s"]), (&number.into(), &serde_json::Value::Null));
+        assert!(number < 100_000_000_000_000 && question(17, &trial, std::slice::from_ref(&trial)).0 == number);
+        assert!(
+            question(17, &trial, &[]).0 != number && question(18, &trial, std::slice::from_ref(&trial)).0 != number
+        );
         assert_eq!(read["noise"].to_string(), r#"{"heading_rad":0.0017,"rudder_rad":null}"#);
         let also = &read["also"][0];
         assert!(also["trial"].is_null() && also["also"].is_null());

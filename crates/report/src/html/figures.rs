@@ -11,6 +11,9 @@ use super::escape::escaped;
 /// Largest drawing that stands in a page as shapes, bytes: beyond it browsers become slow, and pixels are smaller.
 const LARGEST_DRAWING: usize = 300_000;
 
+/// Most bytes of a file that is looked at for a figure.
+const LARGEST_FILE: u64 = 1 << 26;
+
 /// Bytes that all figures of a page have together: the whole page stays below 2 MB.
 const ROOM: usize = 1_850_000;
 
@@ -27,8 +30,13 @@ impl Images {
     /// What [`crate::Drawing::write`] has put into a folder under a stem; a file that cannot be read is none, because a
     /// page can do without a figure.
     pub fn written(folder: &Path, stem: &str) -> Self {
-        let file = |kind: &str| folder.join(format!("{stem}.{kind}"));
-        Self { svg: fs::read_to_string(file("svg")).ok(), png: fs::read(file("png")).ok() }
+        let file = |kind: &str| {
+            let path = folder.join(format!("{stem}.{kind}"));
+            // A pipe would be waited for without an end.
+            let is_figure = path.metadata().is_ok_and(|about| about.is_file() && about.len() <= LARGEST_FILE);
+            is_figure.then(|| fs::read(path).ok())?
+        };
+        Self { svg: file("svg").and_then(|bytes| String::from_utf8(bytes).ok()), png: file("png") }
     }
 }
 

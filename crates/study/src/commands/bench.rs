@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use campaign::benchmark::{BenchDocument, BenchMethod, BenchTask, Definition, RecordStore};
 use campaign::folder::ResultFolder;
+use campaign::outside::keep_log;
 use clap::Args;
 use report::Theme;
 use scenario::failure::{Failure, OnPath};
@@ -80,14 +81,21 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
     let definition = definition.only(&request.sets, &request.tasks)?;
     let methods = methods(request)?;
     let store = RecordStore::search(&folders(&request.data), &definition)?;
-    let results = campaign::benchmark::run(&definition, &store, &methods, &Terminal::new(common.quiet))?;
-    if results.cases.is_empty() {
-        let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
-        return Err(Failure::input(format!("there is nothing to ask:\n  {}", reasons.join("\n  "))));
-    }
     let default =
         || PathBuf::from("results").join(if request.definition.is_none() { "bench" } else { &definition.name });
-    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(default))?;
+    let mut held = None;
+    let begin = || {
+        let folder = held.insert(ResultFolder::hold(&common.out.clone().unwrap_or_else(default))?);
+        for method in &methods {
+            method.outside().into_iter().for_each(|outside| keep_log(outside, method.label(), folder));
+        }
+        Ok(())
+    };
+    let results = campaign::benchmark::run(&definition, &store, &methods, &Terminal::new(common.quiet), begin)?;
+    let Some(folder) = held.filter(|_| !results.cases.is_empty()) else {
+        let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
+        return Err(Failure::input(format!("there is nothing to ask:\n  {}", reasons.join("\n  "))));
+    };
     publish(&results, &folder, &theme)?;
 
     let notes: String = results.skipped.iter().map(|one| format!("skipped: {}\n", skipped(one))).collect();

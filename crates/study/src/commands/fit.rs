@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use campaign::folder::ResultFolder;
+use campaign::outside::keep_log;
 use report::Theme;
 use scenario::failure::Failure;
 
@@ -26,8 +27,11 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let others = read_others(&request.validate, &request.reading, &mut warnings)?;
     warn_of_repetition(&trials, &others, &mut warnings);
     let theme = request.style.theme()?;
-    let fit = fit(&trials, &others, &methods, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
+    for (label, method) in &methods {
+        method.outside().into_iter().for_each(|outside| keep_log(outside, label, &folder));
+    }
+    let fit = fit(&trials, &others, &methods, common.quiet, &mut warnings)?;
     documents::keep_with_curves(&folder, FIT, &fit.document, &fit.curves())?;
     show(&folder, folder.path(), &theme, common)
 }

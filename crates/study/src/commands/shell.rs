@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use campaign::folder::ResultFolder;
 use clap::{Args, Command};
 use clap_complete::Shell;
 use scenario::failure::{Failure, OnPath};
@@ -48,18 +49,19 @@ pub fn completions(
 /// Fails when the folder cannot be written.
 pub fn man(ManRequest { folder }: &ManRequest, mut command: Command, common: &Common) -> Result<(), Failure> {
     command.build();
-    std::fs::create_dir_all(folder).on("make", folder)?;
+    let pages = ResultFolder::shared(folder)?;
     let mut files = Vec::new();
     let program = command.get_name().to_owned();
     let below: Vec<Command> = command.get_subcommands().filter(|one| one.get_name() != "help").cloned().collect();
     let below = below.into_iter().map(|one| (format!("{program}-{}", one.get_name()), one));
     for (name, command) in std::iter::once((program.clone(), command.clone())).chain(below) {
-        let path = folder.join(format!("{name}.1"));
+        let file = format!("{name}.1");
+        let path = folder.join(&file);
         // `man` has no word for a blank in a name.
         let page = clap_mangen::Man::new(command.name(name));
         let mut text = Vec::new();
         page.render(&mut text).on("make", &path)?;
-        std::fs::write(&path, text).on("write", &path)?;
+        pages.write(&file, text)?;
         files.push(path.display().to_string());
     }
     let line = format!("{} pages in {}; read one with `man {}`", files.len(), folder.display(), files[0]);

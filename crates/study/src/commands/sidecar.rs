@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use campaign::disk;
+use campaign::folder::ResultFolder;
 use clap::Args;
 use serde_json::json;
 use trial::file::STDIN;
@@ -31,17 +33,15 @@ pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(
         Some(folder) => folder.join(Sidecar::beside(log).file_name().unwrap_or_default()),
         None => Sidecar::beside(log),
     };
-    if path.exists() {
+    if disk::is_there(&path).on("look for", &path)? {
         return Err(Failure::about(
             &path,
             "this description is there already; remove it, or write another one elsewhere with `--out DIR`",
         ));
     }
     let text = reader::describe(log).map_err(Failure::input)?;
-    if let Some(folder) = &common.out {
-        std::fs::create_dir_all(folder).on("make", folder)?;
-    }
-    std::fs::write(&path, &text).on("write", &path)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    ResultFolder::shared(path.parent().unwrap_or(Path::new("")))?.write(&name, &text)?;
     tell(&text, Some((&path, log)), common)
 }
 

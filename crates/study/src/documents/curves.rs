@@ -7,7 +7,7 @@ use std::path::Path;
 use ::trace::comparison::RecordComparison;
 use campaign::curves::degrees;
 use identify::replay::Replay;
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
 use ship::angle::from_deg;
 use trial::{Channel, Columns as Channels, Origin, Trial};
 
@@ -103,7 +103,7 @@ impl TraceCurves {
     pub fn of(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
         Self::from_tables(document, |name| {
             let path = folder.join(name);
-            Ok((std::fs::read_to_string(&path).on("read", &path)?, path.display().to_string()))
+            Ok((super::read_text(&path)?, path.display().to_string()))
         })
     }
 

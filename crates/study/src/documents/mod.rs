@@ -10,10 +10,11 @@ pub mod trace;
 pub mod truth;
 pub mod verdict;
 
+use std::io::ErrorKind;
 use std::path::Path;
 
+use campaign::disk;
 use campaign::folder::ResultFolder;
-
 use scenario::failure::{Failure, OnPath};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -49,10 +50,19 @@ pub fn keep_with_curves(
 ///
 /// Fails when the file cannot be read or is none of this program.
 pub fn read_json<T: DeserializeOwned>(path: &Path, command: &str) -> Result<(T, String), Failure> {
-    let text = std::fs::read_to_string(path).on("read", path)?;
+    let text = read_text(path)?;
     let document = serde_json::from_str(&text)
         .map_err(|error| Failure::about(path, format!("{error}; make it again with `study {command}`")))?;
     Ok((document, text))
+}
+
+/// Most bytes of a document or a table of curves.
+const LARGEST: u64 = 1 << 30;
+
+/// The text of a file that a command wrote. Fails when there is none, and when it is too large or no file.
+fn read_text(path: &Path) -> Result<String, Failure> {
+    let bytes = disk::read(path, LARGEST).and_then(|bytes| bytes.ok_or_else(|| ErrorKind::NotFound.into()));
+    String::from_utf8(bytes.on("read", path)?).on("read", path)
 }
 
 /// The document of a command without a file of its own: an object, with the name of what it holds first.

@@ -6,6 +6,7 @@ use campaign::benchmark::BenchDocument;
 use campaign::benchmark::board::FEWEST;
 use campaign::benchmark::cases::{BenchCase, CaseAnswer};
 use report::Page;
+use report::markdown::text;
 
 use super::bench_figures::{capital, figures};
 use super::bench_tables as tables;
@@ -51,7 +52,7 @@ pub fn page(results: &BenchDocument) -> Page {
     page.table(tables::present(results));
     if !results.skipped.is_empty() {
         page.say("Skipped:");
-        page.list(results.skipped.iter().map(|own| format!("{}, {}: {}", own.set, own.record, own.reason)));
+        page.list(results.skipped.iter().map(|own| text(&format!("{}, {}: {}", own.set, own.record, own.reason))));
     }
     page.part("Methods");
     let methods = results.methods.iter().zip(&results.summaries);
@@ -120,7 +121,7 @@ pub fn of_method(results: &BenchDocument, method: &str) -> Page {
         page.say("None.");
     }
     let line = |((kind, task, set), (count, first)): ((&str, &str, &str), (usize, String))| {
-        format!("{set}, {task}: {count} × {kind}; the first: {first}")
+        text(&format!("{set}, {task}: {count} × {kind}; the first: {first}"))
     };
     page.list(failures.into_iter().map(line));
     page

@@ -44,7 +44,7 @@ pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
     let (declared, tested): (Vec<_>, Vec<_>) = sections.partition(is_declared);
     for (section, own) in declared {
         if !section.is_empty() {
-            page.part(text(&capital(section)));
+            page.part(capital(section));
         }
         let mut table = Table::headed("entry | value | unit | source");
         for entry in own {

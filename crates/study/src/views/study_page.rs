@@ -4,6 +4,7 @@ use campaign::manifest::Manifest;
 use campaign::showcase::Showcase;
 use campaign::store::StoredStudy;
 use campaign::summary::Summary;
+use report::markdown::text;
 use report::{Page, Table, number};
 
 use super::study_figures::{FigurePlace, StudyFigure};
@@ -77,7 +78,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
         let warnings = showcase
             .methods
             .iter()
-            .flat_map(|entry| entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
+            .flat_map(|entry| entry.warnings.iter().map(|warning| text(&format!("{}: {warning}", entry.method))));
         page.list(warnings);
         page.figures(at(&|place| place == FigurePlace::Showcase(index)));
     }
@@ -136,7 +137,7 @@ fn over_all_trials(page: &mut Page, stored: &StoredStudy, summary: &Summary, bri
             times.join(", ")
         ));
     }
-    page.list(tables::failures(summary, design));
+    page.list(tables::failures(summary, design).iter().map(|line| text(line)));
 }
 
 fn how_it_was_made(page: &mut Page, manifest: &Manifest) {

@@ -137,3 +137,16 @@ fn the_benchmark_of_the_project_runs_from_anywhere() {
     assert!(run.is_done().out.starts_with("task,records,n,method,median"), "{}", run.out);
     assert!(run.err.contains("skipped: kvlcc2-marin, circle-35: no file turning_35.csv"), "{}", run.err);
 }
+
+/// Hours of work are not begun for a folder that cannot be written.
+#[cfg(unix)]
+#[test]
+fn the_folder_of_results_is_held_before_the_work() {
+    let desk = Desk::new();
+    lay_out(&desk);
+    desk.file("taken", "");
+    desk.file("works.sh", "touch worked; exit 3");
+    let asked = ["bench", "own.toml", "--data", "records", "--method", "straight-on", "--out", "taken/x"];
+    desk.run(&[&asked[..], &["--external", "works=sh works.sh"]].concat()).is_refused(1, &["taken/x", "--out"]);
+    assert!(!desk.path("worked").exists(), "the work was begun");
+}

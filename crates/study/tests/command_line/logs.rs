@@ -103,3 +103,23 @@ fn a_first_description_is_written_for_a_person_to_check() {
     std::fs::write(&path, text.replace(wanted, &wanted.replace("# ", ""))).expect("written");
     desk.run(&["fit", "run.csv", "--method", "output-error"]).is_done();
 }
+
+/// A description is put in its place when it is whole, and a link is not followed to where nothing is.
+#[cfg(unix)]
+#[test]
+fn a_sidecar_is_written_whole_and_beside_its_table() {
+    let desk = Desk::new();
+    desk.file("in/log.csv", crate::desk::zig_zag_csv());
+    std::os::unix::fs::symlink("../escaped.toml", desk.path("in/log.trial.toml")).expect("a link");
+    desk.run(&["sidecar", "in/log.csv"]).is_refused(2, &["log.trial.toml", "there already"]);
+    assert!(!desk.path("escaped.toml").exists());
+    std::fs::remove_file(desk.path("in/log.trial.toml")).expect("it is there");
+    // No file may grow: what a full disk does.
+    let full = "trap '' XFSZ; ulimit -f 0; exec \"$0\" sidecar in/log.csv";
+    let program = env!("CARGO_BIN_EXE_study");
+    let mut shell = std::process::Command::new("sh");
+    let run = shell.args(["-c", full, program]).current_dir(desk.path("")).output().expect("a shell");
+    assert_eq!(run.status.code(), Some(1), "{}", String::from_utf8_lossy(&run.stderr));
+    let left = std::fs::read_dir(desk.path("in")).expect("a folder").count();
+    assert_eq!(left, 1, "the table alone is left");
+}

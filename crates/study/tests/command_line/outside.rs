@@ -4,7 +4,7 @@
 use campaign::rows::StudyRow;
 use campaign::store::StoredStudy;
 
-use crate::desk::Desk;
+use crate::desk::{Desk, zig_zag_csv};
 use crate::scenarios::GOOD;
 
 const OUTSIDE: &str =
@@ -177,4 +177,19 @@ fn answers_to_other_trials_are_refused() {
     desk.file("changed.toml", study().replace("[0.1, 0.2]", "[0.1, 0.3]"));
     let changed = ["score", "records/right.csv", "--scenario", "changed.toml"];
     desk.run(&changed).is_refused(2, &["are not those of the scenario"]);
+}
+
+/// What a program says beside its answers could act on a terminal, and has no end.
+#[cfg(unix)]
+#[test]
+fn what_a_program_of_a_fit_says_goes_into_a_bounded_log() {
+    let desk = Desk::new();
+    desk.file("zz.csv", zig_zag_csv());
+    let talks = "read line; printf '\\033]0;title\\007' >&2; head -c 3000000 /dev/zero | tr '\\0' z >&2; exit 3";
+    desk.file("talks.sh", talks);
+    let fit = ["fit", "zz.csv", "--method", "least-squares", "--external", "it talks=sh talks.sh", "--out", "o"];
+    let run = desk.run(&fit);
+    assert!(run.is_done().err.len() < 10_000 && !run.err.contains('\u{1b}'), "{} bytes", run.err.len());
+    let size = std::fs::metadata(desk.path("o/external-it-talks.log")).expect("a log").len();
+    assert!((1 << 20..(1 << 20) + 100).contains(&size), "{size} bytes");
 }

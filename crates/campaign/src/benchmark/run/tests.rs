@@ -94,7 +94,8 @@ fn results(definition: &Definition) -> BenchDocument {
     for (label, known) in [("perfect", Some([0.1, 20.0])), ("slow", Some([0.1, 24.0])), ("silent", None)] {
         methods.push(BenchMethod::new(label, Arc::new(KnownIndices(known))));
     }
-    run(definition, &RecordStore::default(), &methods, &NoObserver).unwrap_or_else(|failure| panic!("{failure}"))
+    run(definition, &RecordStore::default(), &methods, &NoObserver, || Ok(()))
+        .unwrap_or_else(|failure| panic!("{failure}"))
 }
 
 #[test]
@@ -146,7 +147,9 @@ fn labels_are_names_of_files_and_different() {
     let definition = definition();
     for (labels, said) in [(["a", "A"], "two methods are called"), (["a", "b/c"], "the name of a file")] {
         let methods = labels.map(|label| BenchMethod::new(label, Arc::new(KnownIndices(None))));
-        let error = run(&definition, &RecordStore::default(), &methods, &NoObserver).expect_err("refused").to_string();
+        let error = run(&definition, &RecordStore::default(), &methods, &NoObserver, || Ok(()))
+            .expect_err("refused")
+            .to_string();
         assert!(error.contains(said), "{error}");
     }
 }
@@ -160,6 +163,7 @@ fn an_interrupted_run_has_no_result() {
             true
         }
     }
-    let stopped = run(&definition(), &RecordStore::default(), &BenchMethod::ours(), &Impatient).expect_err("stopped");
+    let stopped =
+        run(&definition(), &RecordStore::default(), &BenchMethod::ours(), &Impatient, || Ok(())).expect_err("stopped");
     assert!(stopped.message.contains("nothing was written"));
 }
