@@ -209,7 +209,7 @@ fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &Sensor) -> G
     let gain = seen.map(|value| value / variance);
     for i in 0..N {
         for j in 0..=i {
-            covariance[i][j] = covariance[i][j] - gain[i] * seen[j];
+            covariance[i][j] -= gain[i] * seen[j];
             covariance[j][i] = covariance[i][j];
         }
     }

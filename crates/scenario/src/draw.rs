@@ -235,7 +235,7 @@ impl DrawnDistribution {
         if self.of_logarithm { value.ln() } else { value }
     }
 
-    fn to_value(&self, drawn: f64) -> f64 {
+    fn to_value(self, drawn: f64) -> f64 {
         if self.of_logarithm { drawn.exp() } else { drawn }
     }
 

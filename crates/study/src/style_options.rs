@@ -79,7 +79,7 @@ const STYLE: Kind = Kind { name: "a style", largest: 1 << 20 };
 /// A style from its file.
 fn style_of(path: &Path) -> Result<report::Style, Failure> {
     let text = read_text(path, STYLE).map_err(|error| Failure::about(path, error))?;
-    toml::from_str(&text).map_err(|error| Failure::about(path, format!("{}", error.to_string().trim_end())))
+    toml::from_str(&text).map_err(|error| Failure::about(path, error.to_string().trim_end().to_owned()))
 }
 
 #[cfg(test)]

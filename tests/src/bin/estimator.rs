@@ -1,7 +1,7 @@
 //! An outside estimator for tests: least squares, and on request whatever an estimator should not do.
 //!
-//! `estimator MODE [REST]`: what MODE says is done at the trials whose number leaves this rest when it is divided by 7, at
-//! all others the record is identified. `started FILE` adds a line to a file at the start.
+//! `estimator MODE [REST]`: what MODE says is done at the trials whose number leaves this rest when it is divided by 7,
+//! at all others the record is identified. `started FILE` adds a line to a file at the start.
 
 use std::fs::OpenOptions;
 use std::io::{self, BufRead, Write};

@@ -62,26 +62,3 @@ fn is_lack(error: &io::Error) -> bool {
 fn is_lack(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::Unsupported
 }
-
-#[cfg(all(test, unix))]
-mod tests {
-    use nix::errno::Errno;
-
-    use super::*;
-    use crate::folder::{ReadLock, ResultFolder};
-
-    #[test]
-    fn results_are_written_without_locks_and_without_waiting() {
-        for lack in [Errno::ENOSYS, Errno::EINVAL, Errno::EOPNOTSUPP, Errno::ENOLCK] {
-            let desk = tempfile::tempdir().expect("a folder");
-            let _armed = faults::lack(desk.path(), lack as i32);
-            let held = ResultFolder::hold(desk.path()).unwrap_or_else(|failure| panic!("{lack}: {failure}"));
-            held.keep("a.txt", "a").unwrap_or_else(|failure| panic!("{lack}: {failure}"));
-            ReadLock::begin(desk.path()).unwrap_or_else(|failure| panic!("{lack}: {failure}"));
-            assert_eq!(std::fs::read(desk.path().join("a.txt")).expect("a file"), b"a");
-        }
-        let desk = tempfile::tempdir().expect("a folder");
-        let _armed = faults::lack(desk.path(), Errno::EIO as i32);
-        assert!(ResultFolder::hold(desk.path()).is_err(), "a broken disk is no lack");
-    }
-}
