@@ -27,11 +27,15 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let others = read_others(&request.validate, &request.reading, &mut warnings)?;
     warn_of_repetition(&trials, &others, &mut warnings);
     let theme = request.style.theme()?;
-    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
-    for (label, method) in &methods {
-        method.outside().into_iter().for_each(|outside| keep_log(outside, label, &folder));
+    let hold = || ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")));
+    // What other programs say has a place from the start; a record that is refused leaves no folder.
+    let outside: Vec<_> = methods.iter().filter_map(|(label, method)| Some((label, method.outside()?))).collect();
+    let early = (!outside.is_empty()).then(hold).transpose()?;
+    for (label, outside) in outside {
+        early.iter().for_each(|folder| keep_log(outside, label, folder));
     }
     let fit = fit(&trials, &others, &methods, common.quiet, &mut warnings)?;
+    let folder = early.map_or_else(hold, Ok)?;
     documents::keep_with_curves(&folder, FIT, &fit.document, &fit.curves())?;
     show(&folder, folder.path(), &theme, common)
 }
