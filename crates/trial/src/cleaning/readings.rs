@@ -201,6 +201,18 @@ mod tests {
     }
 
     #[test]
+    fn a_poll_that_was_not_answered_is_missing() {
+        for every in [3, 7] {
+            let lost = |row: usize, values: &[f64]| if row.is_multiple_of(every) { 0.0 } else { values[row] };
+            let mut polled = with(Channel::Rudder, lost);
+            let told = clean(&mut polled).remove(0);
+            assert!(told.contains("of exactly zero between others far from it"), "{told}");
+            let rudder = &polled.channels[&Channel::Rudder];
+            assert!(rudder.iter().filter(|delta| delta.is_nan()).count() > rudder.len() / every / 2);
+        }
+    }
+
+    #[test]
     fn a_rate_at_the_end_of_its_scale_is_missing() {
         let mut clipped = columns();
         let heading = clipped.channels[&Channel::Heading].clone();

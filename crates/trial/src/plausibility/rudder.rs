@@ -112,3 +112,48 @@ fn feedback(trial: &Trial, order: &[f64]) -> Option<String> {
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{Columns, Origin};
+    use ship::angle::from_deg;
+
+    /// What is said of a rudder that goes to and fro between ±20° at a rate (deg/s), read every `step` s, and of its order.
+    fn told(rate_deg_s: f64, step: f64, scale: f64, with_order: bool) -> String {
+        let rows = 400;
+        let time: Vec<f64> = (0..rows).map(|row| f64::from(row) * step).collect();
+        let order = |t: f64| -> f64 { if (t / (100.0 * step)) as usize % 2 == 0 { 20.0 } else { -20.0 } };
+        let mut angle = 0.0;
+        let rudder = time.iter().map(|&t| {
+            angle += (order(t) - angle).clamp(-rate_deg_s * step, rate_deg_s * step);
+            scale * from_deg(angle)
+        });
+        let mut channels = std::collections::BTreeMap::from([(Channel::Rudder, rudder.collect::<Vec<f64>>())]);
+        channels.insert(Channel::Heading, time.iter().map(|t| 0.1 * (t / (50.0 * step)).sin()).collect());
+        if with_order {
+            channels.insert(Channel::RudderOrder, time.iter().map(|&t| from_deg(order(t))).collect());
+        }
+        let origin = Origin::Measured { file: String::new(), sha256: String::new() };
+        let trial = Trial::new("run", origin, Columns { time, channels, unknown: Vec::new() }).expect("columns");
+        let mut warnings = Vec::new();
+        rudder_movements(&trial, &mut warnings);
+        warnings.join("; ")
+    }
+
+    #[test]
+    fn a_rudder_that_is_none_is_told() {
+        for (rate, step) in [(2.5, 1.0), (2.5, 0.1), (15.8, 0.1), (2.5, 10.0)] {
+            assert_eq!(told(rate, step, 1.0, false), "", "{rate} deg/s read every {step} s");
+        }
+        for step in [0.1, 1.0, 2.0] {
+            assert!(told(1e9, step, 1.0, false).contains("looks like the order"), "every {step} s");
+        }
+        // Minutes for seconds, and minutes and seconds for hours and minutes.
+        assert!(told(150.0, 1.0 / 60.0, 1.0, false).contains("check the unit of the time"));
+        assert!(told(2.5 / 60.0, 60.0, 1.0, false).contains("check the unit of the time"));
+        assert!(told(2.5, 1.0, 0.85, true).contains("comes to 0.85 of its order"));
+        assert_eq!(told(2.5, 1.0, 1.02, true), "");
+        assert!(told(7.0, 1.0, 57.0 / 20.0, false).contains("per cent"));
+    }
+}
