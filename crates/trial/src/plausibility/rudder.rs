@@ -119,7 +119,8 @@ mod tests {
     use crate::record::{Columns, Origin};
     use ship::angle::from_deg;
 
-    /// What is said of a rudder that goes to and fro between ±20° at a rate (deg/s), read every `step` s, and of its order.
+    /// What is said of a rudder that goes to and fro between ±20° at a rate (deg/s), read every `step` s, and of its
+    /// order.
     fn told(rate_deg_s: f64, step: f64, scale: f64, with_order: bool) -> String {
         let rows = 400;
         let time: Vec<f64> = (0..rows).map(|row| f64::from(row) * step).collect();
