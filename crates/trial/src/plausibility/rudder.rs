@@ -124,7 +124,7 @@ mod tests {
     fn told(rate_deg_s: f64, step: f64, scale: f64, with_order: bool) -> String {
         let rows = 400;
         let time: Vec<f64> = (0..rows).map(|row| f64::from(row) * step).collect();
-        let order = |t: f64| -> f64 { if (t / (100.0 * step)) as usize % 2 == 0 { 20.0 } else { -20.0 } };
+        let order = |t: f64| -> f64 { if ((t / (100.0 * step)) as usize).is_multiple_of(2) { 20.0 } else { -20.0 } };
         let mut angle = 0.0;
         let rudder = time.iter().map(|&t| {
             angle += (order(t) - angle).clamp(-rate_deg_s * step, rate_deg_s * step);
