@@ -75,7 +75,7 @@ def test_warnings_are_warnings_at_the_line_that_asked(undeclared, first_order):
         (lambda: kempf.read(undeclared), "the zig-zag 20/20 from 0.0 s to 234.0 s is used"),
         (lambda: kempf.fit([first_order, first_order]), "given twice with the same content"),
         (lambda: kempf.trace(first_order, validate=first_order), "validates nothing"),
-        (lambda: kempf.predict(kempf.fit(first_order)), "the answer of maximum-likelihood is used"),
+        (lambda: kempf.predict(kempf.fit(first_order)), "the answer of output-error is used"),
         (lambda: kempf.Record.from_frame(kempf.read(undeclared).to_frame(), length_m=100, ship_speed_kn=9), "zig-zag"),
     ]:
         with warnings.catch_warnings(record=True) as caught:
