@@ -16,6 +16,15 @@ fn searched(columns: &Columns) -> Vec<FoundManoeuvre> {
     })
 }
 
+/// A measured record and the one manoeuvre in it, which has this name.
+fn only(file: &str, name: &str) -> Option<(Columns, FoundManoeuvre)> {
+    let table = measured::columns(file)?;
+    let mut found = searched(&table);
+    assert_eq!(found.len(), 1, "{file}: {found:?}");
+    assert_eq!(found[0].name(), name, "{file}");
+    Some((table, found.remove(0)))
+}
+
 /// Parts bounded by hand (`scenarios/measured`): the row in which the first full order is given, and the last before
 /// the rudder is ordered amidships. The approaches are manual, and the model still gathers way.
 const BY_HAND: [(&str, &str, f64, f64); 5] = [
@@ -29,13 +38,10 @@ const BY_HAND: [(&str, &str, f64, f64); 5] = [
 #[test]
 fn whole_logs_of_esso_osaka_give_the_parts_bounded_by_hand() {
     for (file, name, from, until) in BY_HAND {
-        let Some(table) = measured::columns(&format!("esso_osaka/{file}.csv")) else { return };
-        let found = searched(&table);
-        assert_eq!(found.len(), 1, "{file}: {found:?}");
-        assert_eq!(found[0].name(), name, "{file}");
-        assert!((found[0].from - from).abs() < 0.11, "{file}: from {}", found[0].from);
-        assert!((found[0].until - until).abs() < 0.11, "{file}: until {}", found[0].until);
-        assert_eq!(found[0].quality.approach, Some(Approach::Unsteady), "{file}");
+        let Some((_, found)) = only(&format!("esso_osaka/{file}.csv"), name) else { return };
+        assert!((found.from - from).abs() < 0.11, "{file}: from {}", found.from);
+        assert!((found.until - until).abs() < 0.11, "{file}: until {}", found.until);
+        assert_eq!(found.quality.approach, Some(Approach::Unsteady), "{file}");
     }
 }
 
@@ -50,12 +56,9 @@ const CIRCLES: [(&str, &str, f64, f64); 4] = [
 #[test]
 fn turns_of_esso_osaka_are_found() {
     for (file, name, from, until) in CIRCLES {
-        let Some(table) = measured::columns(&format!("esso_osaka/{file}.csv")) else { return };
-        let found = searched(&table);
-        assert_eq!(found.len(), 1, "{file}: {found:?}");
-        assert_eq!(found[0].name(), name, "{file}");
-        assert!((found[0].from - from).abs() < 0.21, "{file}: from {}", found[0].from);
-        assert!((found[0].until - until).abs() < 0.11, "{file}: until {}", found[0].until);
+        let Some((_, found)) = only(&format!("esso_osaka/{file}.csv"), name) else { return };
+        assert!((found.from - from).abs() < 0.21, "{file}: from {}", found.from);
+        assert!((found.until - until).abs() < 0.11, "{file}: until {}", found.until);
     }
 }
 
@@ -77,15 +80,13 @@ const FILLED: [(&str, &str, f64, usize); 11] = [
 #[test]
 fn records_filled_by_a_zig_zag_are_taken_whole() {
     for (file, name, start, executes) in FILLED {
-        let Some(table) = measured::columns(file) else { return };
-        let found = searched(&table);
-        assert_eq!(found.len(), 1, "{file}: {found:?}");
-        assert_eq!((found[0].name().as_str(), found[0].executes), (name, executes), "{file}");
+        let Some((table, found)) = only(file, name) else { return };
+        assert_eq!(found.executes, executes, "{file}");
         let ends = (table.time[0], table.time[table.time.len() - 1]);
-        assert_eq!((found[0].from, found[0].until), ends, "{file}");
+        assert_eq!((found.from, found.until), ends, "{file}");
         let row = 1.01 * (table.time[1] - table.time[0]);
-        assert!((found[0].start - start).abs() < row, "{file}: starts at {}", found[0].start);
-        assert_eq!(found[0].quality.remarks(), [""; 0], "{file}");
+        assert!((found.start - start).abs() < row, "{file}: starts at {}", found.start);
+        assert_eq!(found.quality.remarks(), [""; 0], "{file}");
     }
 }
 

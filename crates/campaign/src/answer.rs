@@ -94,6 +94,11 @@ pub struct MethodEntry {
 }
 
 impl MethodEntry {
+    /// Id of the method, whatever name it goes by.
+    pub fn id(&self) -> &str {
+        self.id.as_deref().unwrap_or(&self.method)
+    }
+
     /// The entry of a method that gave an answer.
     pub fn of(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>) -> Self {
         let diagnostics = estimate.diagnostics.iter().filter(|(_, value)| value.is_finite());

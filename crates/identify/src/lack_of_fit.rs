@@ -7,8 +7,8 @@
 //! return with every rudder movement, random moments do not: nine terms explain nearly all of the one and part of the
 //! other.
 //!
-//! It is a test of first order in small terms. It names nothing; [`Share`](LackOfFit::unexplained) is compared with a
-//! limit that simulated trials gave.
+//! It is a test of first order in small terms. It names nothing; [`unexplained`](LackOfFit::unexplained) is compared
+//! with a limit that simulated trials gave.
 
 use estimation::column::dot;
 use ship::FirstOrder;
@@ -94,7 +94,7 @@ impl RecordTerms {
     fn of(trial: &Trial, replayed: &Replay, response: &FirstOrder) -> Self {
         let FirstOrder { inverse_T: a, K_over_T: b, rudder_bias } = *response;
         let (time, r) = (&replayed.time[..], &replayed.yaw_rate[..]);
-        let first = trial.time().iter().position(|t| *t == time[0]).unwrap_or(0);
+        let first = trial.observed_rows().next().unwrap_or(0);
         let rudder = &trial.rudder()[first..first + time.len()];
         let turning = slopes(time, rudder);
         let acceleration = |row: usize| -a * r[row] + b * (rudder[row] + rudder_bias);

@@ -2,7 +2,7 @@
 //! repeat an old value until the next one comes, a heading that stood still while the ship turned, and single readings
 //! that are wrong. Each is located and told; nothing is changed where a sound record could look the same.
 
-mod readings;
+pub(crate) mod readings;
 
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};

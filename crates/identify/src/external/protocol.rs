@@ -1,9 +1,9 @@
 //! The lines between this program and an outside estimator, JSON objects both.
 //!
 //! A question holds one trial: its number, which is made from all else that it holds so that only its own answer can
-//! carry it, the times (s), headings and rudder angles (rad) of all rows, yaw rates
-//! (rad/s) where the record has them, and the declared standard deviations of heading and rudder (rad). A reading that
-//! is missing is `null`. Further records of the same ship follow in `also`.
+//! carry it, the times (s), headings and rudder angles (rad) of all rows, yaw rates (rad/s) where the record has them,
+//! and the declared standard deviations of heading and rudder (rad). A reading that is missing is `null`. Further
+//! records of the same ship follow in `also`.
 //!
 //! ```json
 //! {"trial":17,"t_s":[0.0,1.0],"heading_rad":[0.0,null],"rudder_rad":[0.1,0.1],"yaw_rate_rad_s":null,

@@ -23,7 +23,7 @@ fn draws(seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// What moves the ship of a record beside its rudder, as rudder angle in degrees at every row, linear between them.
-enum Beside {
+enum ExtraNoise {
     /// A random walk with this standard deviation after a second.
     Walk(f64),
     /// Nothing, but the recorded rudder is wrong by white noise.
@@ -31,17 +31,17 @@ enum Beside {
 }
 
 /// A record whose heading was computed with another rudder than the recorded one.
-fn disturbed(case: &Case, beside: &Beside) -> Trial {
+fn disturbed(case: &Case, beside: &ExtraNoise) -> Trial {
     let truth = case.truth();
     let mut draw = draws(1000 + case.seed);
     let mut walk = 0.0;
     let extra: Vec<f64> = (truth.time.iter())
         .map(|_| match beside {
-            Beside::Walk(step) => {
+            ExtraNoise::Walk(step) => {
                 walk += from_deg(*step) * draw();
                 walk
             }
-            Beside::RudderError(sd) => from_deg(*sd) * draw(),
+            ExtraNoise::RudderError(sd) => from_deg(*sd) * draw(),
         })
         .collect();
     // The response is linear: what the extra rudder does is added.
@@ -57,13 +57,13 @@ fn disturbed(case: &Case, beside: &Beside) -> Trial {
         heading.push(truth.heading[row] + state.heading + from_deg(case.noise_deg) * draw());
     }
     let rudder = match beside {
-        Beside::Walk(_) => truth.rudder.clone(),
-        Beside::RudderError(_) => truth.rudder.iter().zip(&extra).map(|(delta, error)| delta - error).collect(),
+        ExtraNoise::Walk(_) => truth.rudder.clone(),
+        ExtraNoise::RudderError(_) => truth.rudder.iter().zip(&extra).map(|(delta, error)| delta - error).collect(),
     };
     let trial = record("disturbed", truth.time, heading, rudder);
     match beside {
-        Beside::Walk(_) => trial,
-        Beside::RudderError(sd) => trial.with_noise(Noise { rudder: Some(from_deg(*sd)), ..Noise::default() }),
+        ExtraNoise::Walk(_) => trial,
+        ExtraNoise::RudderError(sd) => trial.with_noise(Noise { rudder: Some(from_deg(*sd)), ..Noise::default() }),
     }
 }
 
@@ -108,7 +108,7 @@ fn the_score_is_the_derivative() {
         let rate: Vec<f64> = noisy().truth().yaw_rate.iter().map(|r| r + 1e-4 * (1e3 * r).sin()).collect();
         record_with_gyro(trial.time().to_vec(), trial.heading().to_vec(), trial.rudder().to_vec(), rate)
     };
-    let trials = [disturbed(&noisy(), &Beside::Walk(0.1)), gyro(&Case { seed: 6, ..noisy() }.trial())];
+    let trials = [disturbed(&noisy(), &ExtraNoise::Walk(0.1)), gyro(&Case { seed: 6, ..noisy() }.trial())];
     let records: Vec<Record> =
         trials.iter().map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true)).collect();
     for moment in Moment::ALL {
@@ -147,7 +147,7 @@ fn a_walking_moment_is_borne() {
     let plain = output_error::Settings::default().build().expect("valid");
     let (mut own, mut other, mut held) = (0.0, 0.0, 0);
     for seed in 0..40 {
-        let trial = disturbed(&Case { seed, ..noisy() }, &Beside::Walk(0.1));
+        let trial = disturbed(&Case { seed, ..noisy() }, &ExtraNoise::Walk(0.1));
         let found = identify(std::slice::from_ref(&trial)).T();
         let [low, high] = found.ci95.expect("bounded");
         held += usize::from((low..=high).contains(&16.3));
@@ -164,7 +164,7 @@ fn a_walking_moment_is_borne() {
 fn a_declared_rudder_error_counts() {
     let (mut held, mut known) = (0, 0);
     for seed in 0..40 {
-        let trial = disturbed(&Case { seed, ..noisy() }, &Beside::RudderError(0.2));
+        let trial = disturbed(&Case { seed, ..noisy() }, &ExtraNoise::RudderError(0.2));
         let found = identify(std::slice::from_ref(&trial));
         let [low, high] = found.rudder_bias().ci95.expect("bounded");
         held += usize::from((low..=high).contains(&0.0));
@@ -230,8 +230,8 @@ fn a_coloured_compass_is_named() {
 #[test]
 fn records_are_taken_together() {
     let trials = [
-        disturbed(&noisy(), &Beside::Walk(0.1)),
-        disturbed(&Case { seed: 8, rudder_deg: -20.0, heading_deg: 20.0, ..noisy() }, &Beside::Walk(0.02)),
+        disturbed(&noisy(), &ExtraNoise::Walk(0.1)),
+        disturbed(&Case { seed: 8, rudder_deg: -20.0, heading_deg: 20.0, ..noisy() }, &ExtraNoise::Walk(0.02)),
     ];
     let together = identify(&trials).T();
     for trial in &trials {

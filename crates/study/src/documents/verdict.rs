@@ -34,7 +34,7 @@ impl VerdictEntry {
     pub fn of(recommendation: &Recommendation, entries: &[MethodEntry]) -> Option<Self> {
         let answered = || entries.iter().filter(|entry| entry.parameters.is_some());
         let rms = |entry: &&MethodEntry| entry.heading_rmse_deg.unwrap_or(f64::INFINITY);
-        let is_own = |entry: &&MethodEntry| entry.id.as_deref().unwrap_or(&entry.method) == recommendation.method();
+        let is_own = |entry: &&MethodEntry| entry.id() == recommendation.method();
         let nearest = answered().min_by(|one, other| rms(one).total_cmp(&rms(other)))?;
         let taken = answered().find(is_own);
         let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);

@@ -145,7 +145,7 @@ fn verdict(
     entries: &[MethodEntry],
 ) -> Option<VerdictEntry> {
     let of = |id: &str| {
-        let own = answers.iter().find(|(entry, _)| entry.id.as_deref().unwrap_or(&entry.method) == id);
+        let own = answers.iter().find(|(entry, _)| entry.id() == id);
         own.and_then(|(_, estimate)| estimate.as_ref())
     };
     VerdictEntry::of(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries)

@@ -37,7 +37,7 @@ fn readings(values: &[f64]) -> impl Iterator<Item = usize> {
 }
 
 /// Distance of every inner reading from the straight line between its neighbours, with its rows.
-fn deviations<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = ([usize; 3], f64)> + 'a {
+pub(crate) fn deviations<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = ([usize; 3], f64)> + 'a {
     let (mut one, mut two) = (None, None);
     readings(values).filter_map(move |row| {
         let rows = one.zip(two).map(|(one, two): (usize, usize)| [one, two, row]);

@@ -1,5 +1,7 @@
 //! A channel whose readings come from two sensors in turn.
 
+use crate::cleaning::readings::deviations;
+
 /// Correlation of deviations one reading apart below the first and two apart above the second shows two sensors: that
 /// of white noise is −0.67 and 0.17.
 const CORRELATIONS: [f64; 2] = [-0.75, 0.6];
@@ -12,15 +14,10 @@ const FEWEST: usize = 40;
 
 /// How far the two sensors of a channel are apart (rms), in the unit of the values; `None` where there is one.
 ///
-/// The deviation of a reading from the mean of its neighbours, d_k = x_k − (x_(k−1) + x_(k+1))/2, changes its sign from
+/// The deviation of a reading from the straight line between its neighbours changes its sign from
 /// reading to reading where two smooth signals take turns.
 pub(super) fn alternation(time: &[f64], values: &[f64]) -> Option<f64> {
-    let read: Vec<usize> = (0..time.len()).filter(|&row| values[row].is_finite()).collect();
-    let line = |rows: &[usize]| {
-        let share = (time[rows[1]] - time[rows[0]]) / (time[rows[2]] - time[rows[0]]);
-        values[rows[1]] - values[rows[0]] - share * (values[rows[2]] - values[rows[0]])
-    };
-    let deviations: Vec<f64> = read.windows(3).map(line).collect();
+    let deviations: Vec<f64> = deviations(time, values).map(|(_, deviation)| deviation).collect();
     if deviations.len() < FEWEST {
         return None;
     }

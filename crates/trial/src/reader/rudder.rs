@@ -1,5 +1,6 @@
 //! What a sidecar says of the rudder: that it is read late, or that its column is the order.
 
+use ship::Polyline;
 use ship::angle::from_deg;
 
 use crate::channel::Channel;
@@ -31,15 +32,11 @@ pub(super) fn describe(columns: &mut Columns, keys: &RudderKeys) -> Vec<String> 
 
 /// The values at the same rows if every reading was made `late` seconds before; missing beyond the ends.
 fn earlier(time: &[f64], values: &[f64], late: f64) -> Vec<f64> {
-    let read: Vec<usize> = (0..time.len()).filter(|&row| values[row].is_finite()).collect();
-    let at = |instant: f64| {
-        let next = read.partition_point(|&row| time[row] < instant);
-        let (from, to) = (*read.get(next.checked_sub(1)?)?, *read.get(next)?);
-        let share = (instant - time[from]) / (time[to] - time[from]);
-        Some(values[from] + share * (values[to] - values[from]))
-    };
-    let first = |instant: f64| read.first().filter(|&&row| time[row] == instant).map(|&row| values[row]);
-    time.iter().map(|t| t + late).map(|t| at(t).or_else(|| first(t)).unwrap_or(f64::NAN)).collect()
+    let read = time.iter().copied().zip(values.iter().copied()).filter(|(_, value)| value.is_finite());
+    let (times, values): (Vec<f64>, Vec<f64>) = read.unzip();
+    let Ok(signal) = Polyline::new(times, values) else { return vec![f64::NAN; time.len()] };
+    let ends = signal.times()[0]..=signal.times()[signal.times().len() - 1];
+    time.iter().map(|t| t + late).map(|t| if ends.contains(&t) { signal.at(t) } else { f64::NAN }).collect()
 }
 
 /// The angle of a gear that follows an order at one rate (rad/s); an order that changes between two rows changes

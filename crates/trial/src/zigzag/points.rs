@@ -104,13 +104,13 @@ pub fn zero_crossings(time: &[f64], heading: &[f64], settings: &Settings) -> Vec
 }
 
 /// A change of sign of the heading, several close ones taken together.
-struct Passage {
+struct RoughCrossing {
     time: f64,
     /// +1 when the heading goes to starboard.
     direction: f64,
 }
 
-fn passages(time: &[f64], heading: &[f64]) -> Vec<Passage> {
+fn passages(time: &[f64], heading: &[f64]) -> Vec<RoughCrossing> {
     // Crossings nearer to each other than a twelfth of the period are one: 10 s for a ship with a period of 120 s.
     let merge = half_period(time, heading).map_or(0.0, |half| half / 6.0);
     let mut changes: Vec<(f64, f64)> = Vec::new();
@@ -128,7 +128,10 @@ fn passages(time: &[f64], heading: &[f64]) -> Vec<Passage> {
     changes
         .chunk_by(|a, b| b.0 - a.0 < merge)
         .filter(|cluster| cluster.len() % 2 == 1)
-        .map(|cluster| Passage { time: 0.5 * (cluster[0].0 + cluster[cluster.len() - 1].0), direction: cluster[0].1 })
+        .map(|cluster| RoughCrossing {
+            time: 0.5 * (cluster[0].0 + cluster[cluster.len() - 1].0),
+            direction: cluster[0].1,
+        })
         .collect()
 }
 
