@@ -17,7 +17,7 @@ use crate::theme::Theme;
 pub(crate) const NAMES: f64 = 0.42;
 
 /// Line spacing, in font sizes.
-const LEADING: f64 = 1.35;
+pub(crate) const LEADING: f64 = 1.35;
 
 /// One side of a grid of panels: a column with its horizontal axis or a row with its vertical one.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,11 +69,6 @@ impl Grid {
         let all = self.rows.len() * self.columns.len();
         self.panels.map_or(all, |n| n.min(all))
     }
-
-    fn has_heads(&self, row: usize) -> bool {
-        let columns = self.columns.len();
-        self.heads.iter().skip(row * columns).take(columns).any(Option::is_some)
-    }
 }
 
 /// A figure in the making, filled from top to bottom.
@@ -114,14 +109,17 @@ impl Sheet {
             entries.chunks(starts.len()).filter_map(|row| row.get(last)).map(|e| e.width(&theme)).fold(0.0, f64::max)
                 + starts[last];
         let left = ((theme.width - used) / 2.0).max(margin);
+        let room = theme.width - left - margin;
         for row in entries.chunks(starts.len()) {
             self.y += LEADING * theme.small_font;
             for (entry, start) in row.iter().zip(&starts) {
                 if let Some(ink) = entry.ink() {
                     self.scene.key(ink, &entry.label);
                 }
-                entry.draw(&mut self.scene, (left + start, self.y), &theme);
+                entry.draw(&mut self.scene, (left + start, self.y), room - start, &theme);
             }
+            let lines = row.iter().zip(&starts).map(|(entry, start)| entry.lines(room - start, &theme).len());
+            self.y += LEADING * theme.small_font * (lines.max().unwrap_or(1).max(1) - 1) as f64;
         }
         self.y += 0.7 * theme.small_font;
     }
@@ -211,8 +209,11 @@ impl Sheet {
         let mut panels = Vec::with_capacity(total);
         let mut lowest = self.y;
         for (row, (side, height)) in grid.rows.iter().enumerate() {
-            if grid.has_heads(row) {
-                self.y += 1.5 * theme.small_font;
+            let room = width + gap - theme.small_font;
+            let heads = grid.heads.iter().skip(row * count).take(count).flatten();
+            let lines = heads.map(|head| head.lines(room, &theme).len()).max().unwrap_or(0) as f64;
+            if lines > 0.0 {
+                self.y += (0.15 + LEADING * lines) * theme.small_font;
             }
             let ticks = self.row_ticks(side, *height);
             for (column, across) in grid.columns.iter().enumerate() {
@@ -222,7 +223,8 @@ impl Sheet {
                 }
                 let rect = Rect { x: left + column as f64 * (width + gap), y: self.y, w: width, h: *height };
                 if let Some(head) = grid.heads.get(index).and_then(Option::as_ref) {
-                    head.draw(&mut self.scene, (rect.x, rect.y - 0.45 * theme.small_font), &theme);
+                    let above = 0.45 + LEADING * (lines - 1.0);
+                    head.draw(&mut self.scene, (rect.x, rect.y - above * theme.small_font), room, &theme);
                 }
                 let marks = fitting_ticks(&across.axis, width, &theme);
                 self.frame(&rect, &marks, &ticks);
@@ -391,7 +393,8 @@ fn label_width(ticks: &Ticks, theme: &Theme) -> f64 {
     ticks.major.iter().map(|(_, label)| TextLine::new(label.as_str(), theme.tick_font).width()).fold(0.0, f64::max)
 }
 
-/// Splits a text at (breaking) spaces into lines of at most `width` points; a single longer word stays whole.
+/// Splits a text at (breaking) spaces into lines of at most `width` points; a longer word is broken, after a mark such
+/// as a dot where it has one.
 pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     // Not at every white space: a no-break space keeps a symbol and its value together.
@@ -399,10 +402,24 @@ pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String>
         let longer = lines.last().map(|line| format!("{line} {word}"));
         match longer.filter(|line| text_width(line, size, bold) <= width) {
             Some(line) => *lines.last_mut().expect("a longer line extends one that is there") = line,
-            None => lines.push(word.to_owned()),
+            None => broken(word, size, bold, width, &mut lines),
         }
     }
     lines
+}
+
+/// Adds a word to the lines, in several of them where it is too long for one. What has no room for a letter stays whole.
+fn broken(word: &str, size: f64, bold: bool, width: f64, lines: &mut Vec<String>) {
+    let mut rest = word;
+    while text_width(rest, size, bold) > width {
+        let ends = rest.char_indices().map(|(start, letter)| start + letter.len_utf8());
+        let fitting: Vec<usize> = ends.take_while(|end| text_width(&rest[..*end], size, bold) <= width).collect();
+        let after_mark = fitting.iter().rev().find(|end| rest[..**end].ends_with(['.', '-', '_', '/']));
+        let Some(end) = after_mark.or(fitting.last()) else { break };
+        lines.push(rest[..*end].to_owned());
+        rest = &rest[*end..];
+    }
+    lines.push(rest.to_owned());
 }
 
 #[cfg(test)]
@@ -430,9 +447,26 @@ mod tests {
     }
 
     #[test]
-    fn text_wraps_at_spaces_only() {
+    fn heads_and_keys_that_are_too_long_go_on_below() {
+        let theme = Theme::paper(85.0, 300.0).unwrap();
+        let side = || AxisSide::new(PlotAxis::linear(0.0, 1.0, TickSteps::Decimal), "x");
+        let head = |text: &str| Some(KeyEntry::new(legend::KeySample::Nothing, text));
+        let drawn = |text: &str| {
+            let mut sheet = Sheet::new(&theme, None);
+            sheet.legend(&[KeyEntry::new(legend::KeySample::Nothing, text.repeat(4))]);
+            let heads = vec![head(text), head("b"), head("c")];
+            let panels = sheet.grid(Grid { heads, ..Grid::new(vec![side(), side(), side()], vec![(side(), 40.0)]) });
+            panels[0].rect.y
+        };
+        assert!(drawn("heading noise of the compass = 0.01 ") > drawn("a") + 3.0 * theme.small_font);
+    }
+
+    #[test]
+    fn text_wraps_at_spaces_and_long_words_are_broken() {
         assert_eq!(wrap("one two three", 10.0, false, 45.0), ["one two", "three"]);
-        assert_eq!(wrap("indivisible", 10.0, false, 5.0), ["indivisible"]);
+        assert_eq!(wrap("indivisible", 10.0, false, 1.0), ["indivisible"]);
+        assert_eq!(wrap("a ship.first-order.T-s", 10.0, false, 60.0), ["a", "ship.first-", "order.T-s"]);
+        assert_eq!(wrap("mmmmmm", 10.0, false, 30.0), ["mmm", "mmm"]);
         assert!(wrap("  ", 10.0, false, 5.0).is_empty());
     }
 }

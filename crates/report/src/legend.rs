@@ -1,6 +1,7 @@
 //! The key of a figure: samples with their names in aligned columns, always outside the data.
 
 use crate::clip::PagePoint;
+use crate::layout;
 use crate::paint::Paint;
 use crate::palette::{CurveOrigin, Look};
 use crate::scene::{Canvas, Ink, Layer, Stroke, TextLine};
@@ -61,8 +62,13 @@ impl KeyEntry {
         self.sample_width(theme) + TextLine::new(self.label.as_str(), theme.small_font).width()
     }
 
-    /// Draws the entry with its base line at `place`.
-    pub(crate) fn draw(&self, scene: &mut Canvas, (x, y): PagePoint, theme: &Theme) {
+    /// The lines of its name in a place this wide, sample and all.
+    pub(crate) fn lines(&self, room: f64, theme: &Theme) -> Vec<String> {
+        layout::wrap(&self.label, theme.small_font, false, room - self.sample_width(theme))
+    }
+
+    /// Draws the entry in a place this wide, with the base line of its first line at `place`.
+    pub(crate) fn draw(&self, scene: &mut Canvas, (x, y): PagePoint, room: f64, theme: &Theme) {
         let text = TextLine::new(self.label.as_str(), theme.small_font);
         let middle = y - text.centring();
         let width = self.sample_width(theme);
@@ -83,7 +89,10 @@ impl KeyEntry {
             }
             KeySample::Hull(colour) => scene.hull(Layer::Note, centre, (1.0, 0.0), 1.6 * theme.small_font, colour),
         }
-        scene.text(Layer::Note, (x + width, y), text);
+        for (index, line) in self.lines(room, theme).into_iter().enumerate() {
+            let down = layout::LEADING * theme.small_font * index as f64;
+            scene.text(Layer::Note, (x + width, y + down), TextLine::new(line, theme.small_font));
+        }
     }
 }
 

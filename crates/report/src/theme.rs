@@ -84,6 +84,12 @@ impl Theme {
         })
     }
 
+    /// Titles that a style gives limits by and that are not among these.
+    pub fn limits_without_axis(&self, titles: &[String]) -> Vec<&'static str> {
+        let wanted = self.changes.limits.iter().map(|(title, _)| title.as_str());
+        wanted.filter(|wanted| !titles.iter().any(|title| title == wanted)).collect()
+    }
+
     /// Height of a panel, points: `share` of the width, more in a narrow figure whose type is large beside its width.
     pub(crate) fn tall(&self, share: f64) -> f64 {
         share * self.width * if self.is_narrow() { 1.45 } else { 1.0 }

@@ -174,9 +174,26 @@ fn unit_of(key: &str) -> &'static str {
     UNITS.iter().find(|(ending, _)| key.ends_with(ending)).map_or("1", |(_, unit)| unit)
 }
 
+/// A dotted key in words, as the title of an axis: `sensor.heading-noise-deg` is "heading noise [°]".
+pub fn in_words(key: &str) -> String {
+    let last = key.rsplit('.').next().unwrap_or(key);
+    let (name, unit) = match UNITS.iter().find(|(ending, _)| last.len() > ending.len() && last.ends_with(ending)) {
+        Some((ending, unit)) => (last.trim_end_matches(ending), format!(" [{}]", unit.replace("deg", "°"))),
+        None => (last, String::new()),
+    };
+    format!("{}{unit}", name.replace('-', " "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_key_in_words_has_its_unit() {
+        assert_eq!(in_words("sensor.heading-noise-deg"), "heading noise [°]");
+        assert_eq!(in_words("ship.first-order.T-s"), "T [s]");
+        assert_eq!(in_words("replicates"), "replicates");
+    }
 
     #[test]
     fn every_key_has_a_meaning_and_no_link() {

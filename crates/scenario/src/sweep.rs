@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
 use toml::{Table, Value};
 
+use crate::keys::in_words;
 use crate::limits;
 use crate::name;
 use crate::part::ScenarioPart;
@@ -161,7 +162,8 @@ impl AxisWire {
             ));
         }
         distinguish(&mut points);
-        let name = self.name.clone().or_else(|| self.key.clone()).unwrap_or_else(|| "point".to_owned());
+        let name =
+            self.name.clone().or_else(|| self.key.as_deref().map(in_words)).unwrap_or_else(|| "point".to_owned());
         self.check_names(&place, &name, &points)?;
         Ok(SweepAxis { name, points })
     }

@@ -24,6 +24,7 @@ pub use stored::{
 pub use zigzag_trial::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
 
 use crate::figure::Drawing;
+use crate::markup::is_markup;
 use crate::theme::Theme;
 
 /// A figure to draw.
@@ -48,6 +49,21 @@ impl Plot {
             Self::Cells(data) => cells::cells(data, theme),
             Self::ZigZag(data) => zigzag_trial::zigzag_trial(data, theme),
         }
+    }
+
+    /// Titles of its axes of numbers, without italics: what a style gives limits by.
+    pub fn axis_titles(&self) -> Vec<String> {
+        let rulers: Vec<Ruler> = match self {
+            Self::Panels(data) => {
+                let of =
+                    |stack: &Stack| [stack.x.clone(), stack.rows.iter().map(|row| row.y.clone()).collect()].concat();
+                data.stacks.iter().flat_map(of).collect()
+            }
+            Self::Rows(data) => data.columns.iter().map(|column| column.x.clone()).collect(),
+            Self::Cells(_) => Vec::new(),
+            Self::ZigZag(_) => vec![Ruler::time(), Ruler::heading(), Ruler::rudder()],
+        };
+        rulers.iter().map(|ruler| ruler.title.chars().filter(|letter| !is_markup(*letter)).collect()).collect()
     }
 
     /// The title above it.

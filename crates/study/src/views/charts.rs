@@ -230,9 +230,12 @@ pub fn over_axes(design: &Design, summary: &Summary, measure: ErrorMeasure) -> V
     parts.filter_map(chart).collect()
 }
 
-/// ChartGroup that differ in one axis only.
+/// Cells that differ in one axis only.
 struct ChartGroup {
+    /// The labels of the other axes.
     name: String,
+    /// The same, numbers with the names of their axes.
+    head: String,
     cells: Vec<usize>,
 }
 
@@ -241,8 +244,16 @@ fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
         let labels = design.cells[*cell].labels.iter().enumerate().filter(|(axis, _)| *axis != x);
         labels.map(|(_, label)| label.as_str()).collect::<Vec<_>>().join(", ")
     };
+    let head = |cell: usize| {
+        let named = |(axis, label): (usize, &String)| match design.cells[cell].values[axis] {
+            Some(_) => format!("{} = {label}", design.axes[axis]),
+            None => label.clone(),
+        };
+        let labels = design.cells[cell].labels.iter().enumerate().filter(|(axis, _)| *axis != x);
+        labels.map(named).collect::<Vec<_>>().join(", ")
+    };
     let groups = grouped(0..design.cells.len(), others).into_iter();
-    groups.map(|(name, cells)| ChartGroup { name, cells }).collect()
+    groups.map(|(name, cells)| ChartGroup { name, head: head(cells[0]), cells }).collect()
 }
 
 /// How a method is drawn.
@@ -279,7 +290,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
         let pen = Pen::of(&CurveOrigin::Bound).width(1.3);
         let bound = (!bx.is_empty()).then(|| Layer::line(CurveOrigin::Bound.label(), PlotCurve { x: bx, y: by }, pen));
         LayeredPanel {
-            head: (panel == 0 && groups.len() > 1).then(|| group.name.clone()),
+            head: (panel == 0 && groups.len() > 1).then(|| group.head.clone()),
             layers: compared.methods.iter().filter_map(of_method).chain(bound).collect(),
         }
     };

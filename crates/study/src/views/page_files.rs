@@ -14,9 +14,20 @@ pub const BROWSER: &str = "report.html";
 
 /// Draws the figures of a page and writes it in both forms.
 ///
-/// Fails when a file cannot be written, with the first failure in the order of the page.
+/// Fails when the style has limits for an axis that is in none of the figures, and when a file cannot be written, with
+/// the first failure in the order of the page.
 pub fn write_page(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure> {
     let figures: Vec<&PageFigure> = page.drawings().collect();
+    let mut titles: Vec<String> = figures.iter().flat_map(|figure| figure.plot.axis_titles()).collect();
+    titles.sort_unstable();
+    titles.dedup();
+    if let Some(title) = theme.limits_without_axis(&titles).first() {
+        let known = titles.join("\", \"");
+        return Err(Failure::input(format!(
+            "[limits] \"{title}\": no figure of this page has an axis with this title; take one of \"{known}\" in the style, \
+             or a style of its own for this page"
+        )));
+    }
     first_failure(figures.par_iter().map(|PageFigure { stem, plot, .. }| {
         let figure = plot.draw(theme);
         folder.write(&format!("{stem}.svg"), figure.svg())?;

@@ -34,3 +34,14 @@ fn every_report_has_a_page_for_a_browser() {
     desk.run(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
     assert_eq!(page(&desk, "f"), fit, "the same bytes");
 }
+
+#[test]
+fn limits_of_an_axis_that_no_figure_has_are_refused() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv());
+    desk.file("style.toml", "[limits]\n\"residual [°]\" = [-1.0, 1.0]\n");
+    desk.run(&["fit", "run.csv", "--style", "style.toml"]).is_done();
+    desk.file("style.toml", "[limits]\n\"residual\" = [-1.0, 1.0]\n");
+    desk.run(&["fit", "run.csv", "--style", "style.toml"])
+        .is_refused(2, &["[limits] \"residual\"", "no figure of this page has an axis", "\"residual [°]\""]);
+}
