@@ -1,6 +1,8 @@
 //! Single readings that are wrong: spikes and jumps of a heading, a yaw rate at the end of its scale. A spike is left
 //! out; a jump is told and left, for nobody can say which side of it is right.
 
+use std::f64::consts::TAU;
+
 use super::reject;
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
@@ -19,8 +21,14 @@ const ALONE: f64 = 4.0;
 /// Largest share of the readings that may be spikes: more are the noise of the sensor.
 const FEW: f64 = 0.05;
 
-/// Fewest readings of exactly zero that are lost polls, and the largest share of a channel they may be.
+/// Fewest readings of one value that are lost polls, and the largest share of a channel they may be.
 const LOST_POLLS: (usize, f64) = (3, 0.4);
+
+/// Share of the readings far from both neighbours that have this one value: those of a noisy sensor have many.
+const OF_ONE_VALUE: f64 = 0.8;
+
+/// Values that agree to this many parts of a radian are one.
+const DIGITS: f64 = 1e9;
 
 /// A lost poll is as many times farther from its neighbours as they are apart.
 const FROM_BOTH: f64 = 2.0;
@@ -57,32 +65,54 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
     upper_median(&mut sizes).filter(|_| sizes.len() > 2 * CLIPPED).map(|size| 1.4826 * size)
 }
 
-/// Takes single readings of exactly zero as missing where both neighbours are far from zero and near each other: a poll
-/// that was not answered. A channel that passes through zero has neighbours on either side of it.
+/// Takes single readings of one and the same value as missing where both neighbours are far from it and near each other:
+/// polls that were not answered, for which a logger writes zero, and a calibration behind it another number. A channel
+/// that passes through the value has neighbours on either side of it.
 pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<String> {
     let time = &columns.time;
     let mut told = Vec::new();
     for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate] {
         let Some(values) = columns.channels.get_mut(&channel) else { continue };
         let rows: Vec<usize> = readings(values).collect();
-        let is_lost = |rows: &[usize]| {
-            let [before, at, after] = [values[rows[0]], values[rows[1]], values[rows[2]]];
-            let near = before.abs().min(after.abs());
-            at == 0.0 && before * after > 0.0 && near > LEAST && near > FROM_BOTH * (after - before).abs()
+        let is_alone = |at: usize, beside: [usize; 2]| {
+            let [one, other] = beside.map(|row| values[row] - values[at]);
+            let near = one.abs().min(other.abs());
+            one * other > 0.0 && near > LEAST && near > FROM_BOTH * (one - other).abs()
         };
-        let lost: Vec<usize> = rows.windows(3).filter(|rows| is_lost(rows)).map(|rows| rows[1]).collect();
-        if lost.len() < LOST_POLLS.0 || lost.len() as f64 > LOST_POLLS.1 * rows.len() as f64 {
+        let inner = rows.windows(3).filter(|rows| is_alone(rows[1], [rows[0], rows[2]])).map(|rows| rows[1]);
+        // The first and the last have their neighbours on one side.
+        let first = rows.get(..3).filter(|rows| is_alone(rows[0], [rows[1], rows[2]])).map(|rows| rows[0]);
+        let last = rows.last_chunk::<3>().filter(|rows| is_alone(rows[2], [rows[1], rows[0]])).map(|rows| rows[2]);
+        let alone: Vec<usize> = first.into_iter().chain(inner).chain(last).collect();
+        // Whole turns of a heading are nothing.
+        let value = |row: &usize| match channel {
+            Channel::Heading => (values[*row].rem_euclid(TAU) * DIGITS).round().rem_euclid((TAU * DIGITS).round()),
+            _ => (values[*row] * DIGITS).round(),
+        };
+        let groups = grouped_by_value(&alone, value);
+        let Some((lost, written)) = groups.into_iter().max_by_key(|(rows, _)| rows.len()) else { continue };
+        let is_most = lost.len() as f64 >= OF_ONE_VALUE * alone.len() as f64;
+        if lost.len() < LOST_POLLS.0 || lost.len() as f64 > LOST_POLLS.1 * rows.len() as f64 || !is_most {
             continue;
         }
         let times = reject(channel, time, values, &lost, rejected);
         lost.iter().for_each(|&row| values[row] = f64::NAN);
-        // What is zero beside them may be lost, too, and nobody can tell.
+        // What is the same beside them may be lost, too, and nobody can tell.
         told.push(format!(
-            "{} of exactly zero between others far from it taken as missing, as polls that were not answered, {times}",
+            "{} of exactly {} between others far from it taken as missing, as polls that were not answered, {times}",
             counted(lost.len(), channel.spoken()),
+            if written == 0.0 { "zero".to_owned() } else { format!("{:.2}°", (written / DIGITS).to_degrees()) },
         ));
     }
     told
+}
+
+/// Rows with the same value, and the value.
+fn grouped_by_value(rows: &[usize], value: impl Fn(&usize) -> f64) -> Vec<(Vec<usize>, f64)> {
+    let mut sorted = rows.to_vec();
+    sorted.sort_by(|one, other| value(one).total_cmp(&value(other)));
+    let groups = sorted.chunk_by(|one, other| value(one) == value(other));
+    groups.map(|group| (group.to_vec(), value(&group[0]))).collect()
 }
 
 /// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.
@@ -207,9 +237,22 @@ mod tests {
             let mut polled = with(Channel::Rudder, lost);
             let told = clean(&mut polled).remove(0);
             assert!(told.contains("of exactly zero between others far from it"), "{told}");
+            let calibrated = |row: usize, values: &[f64]| lost(row, values) + 0.04;
+            let told = clean(&mut with(Channel::Rudder, calibrated)).remove(0);
+            assert!(told.contains("of exactly 2.29° between"), "{told}");
             let rudder = &polled.channels[&Channel::Rudder];
             assert!(rudder.iter().filter(|delta| delta.is_nan()).count() > rudder.len() / every / 2);
         }
+    }
+
+    /// A heading that was made continuous has zeros at whole turns, and one may be the first row.
+    #[test]
+    fn a_heading_of_north_that_was_not_read_is_missing() {
+        let lost = |row: usize, values: &[f64]| if row.is_multiple_of(7) { TAU } else { values[row] - 0.4 };
+        let mut polled = with(Channel::Heading, lost);
+        let told = clean(&mut polled).remove(0);
+        assert!(told.contains("of exactly zero between others far from it") && told.contains("at t = 0, "), "{told}");
+        assert!(polled.channels[&Channel::Heading].iter().step_by(7).all(|psi| psi.is_nan()));
     }
 
     #[test]
