@@ -5,8 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use identify::{Identifier, output_error};
-use kempf_tests::logs::{self, File, Outcome, voyage};
+use kempf_tests::logs::{self, File, Outcome, combined, voyage};
 use rayon::prelude::*;
+use study::views::fit_page;
+use study::work::fit;
 use trial::reader::read_bytes;
 use trial::{Log, Quantity, ReadError, ReadRecord};
 
@@ -74,6 +76,46 @@ fn every_log_gives_the_answer_of_the_sound_one_or_says_why_not() {
     }
     let faults: Vec<String> = files.par_iter().flat_map_iter(|file| faults(file, &answer)).collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// What a fit says of a log: K and T of the answer to take with their standard deviations, and every word; or why there
+/// is none.
+fn said(text: &str) -> Result<([Quantity; 2], String), String> {
+    let names = ["output-error", "maximum-likelihood"].map(str::to_owned);
+    let read = read_bytes(Path::new("log.csv"), text.as_bytes(), None, None).map_err(|error| error.to_string())?;
+    let mut warnings = read.warnings;
+    let methods = fit::methods(&names, &[], None).expect("they are known");
+    let fitted = fit::fit(&[read.trial], &[], &methods, true, &mut warnings).map_err(|failure| failure.to_string())?;
+    let document = fitted.document;
+    let verdict = document.verdict.as_ref().expect("there is an answer");
+    let entry = document.methods.iter().find(|entry| entry.method == verdict.method).expect("it is among them");
+    let own = entry.parameters.expect("it answered");
+    let words = format!("{}\n{}", fit_page::verdict(&document).unwrap_or_default(), document.all_warnings().join("\n"));
+    Ok(([own.k_per_s, own.t_s], words))
+}
+
+/// Whether a quantity is farther from the truth than 3 % and three standard deviations.
+fn is_wrong(found: &Quantity, truth: f64) -> bool {
+    let error = (found.value - truth).abs();
+    error > 0.03 * truth && found.sd.is_none_or(|sd| error > 3.0 * sd)
+}
+
+#[test]
+fn two_troubles_are_refused_or_told_or_do_no_harm() {
+    let troubles = &combined::TROUBLES;
+    let pairs = (0..troubles.len()).flat_map(|one| (0..one).map(move |other| [&troubles[other], &troubles[one]]));
+    let pairs: Vec<[&combined::Trouble; 2]> = pairs.collect();
+    let fault = |pair: &[&combined::Trouble; 2]| {
+        let mut rows = combined::rows();
+        pair.iter().for_each(|trouble| (trouble.put)(&mut rows));
+        let (found, words) = said(&combined::written(&rows)).ok()?;
+        let is_wrong = found.iter().zip([voyage::K, voyage::T]).any(|(found, truth)| is_wrong(found, truth));
+        let is_told = pair.iter().flat_map(|trouble| trouble.told).any(|word| words.contains(word));
+        let [k, t] = found.map(|quantity| quantity.value);
+        (is_wrong && !is_told).then(|| format!("{} and {}: {k:.4} 1/s, {t:.1} s\n{words}\n", pair[0].name, pair[1].name))
+    };
+    let faults: Vec<String> = pairs.par_iter().filter_map(fault).collect();
+    assert!(pairs.len() >= 60 && faults.is_empty(), "{} of {}\n{}", faults.len(), pairs.len(), faults.join("\n"));
 }
 
 #[test]

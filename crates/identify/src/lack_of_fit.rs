@@ -24,6 +24,9 @@ const HALF_WIDTH: f64 = 0.25;
 /// Time constant of the loss of speed, in T.
 const SPEED_LAG: f64 = 3.0;
 
+/// Terms that are those of K, T and δ_r; the others are of larger ships, the first of them δ'.
+const OWN_TERMS: usize = 3;
+
 /// A column that keeps less than this share of its length beside the others is one of them.
 const INDEPENDENT: f64 = 1e-6;
 
@@ -38,6 +41,11 @@ pub struct LackOfFit {
     pub noise: f64,
     /// Whether neighbouring residuals are correlated by no more than chance makes them.
     pub is_white: bool,
+    /// Time by which the rudder acts later than it was recorded, s, by the term in δ' alone; negative for a rudder that
+    /// was recorded late.
+    pub delay: f64,
+    /// Root mean square of the residual with that one term, rad.
+    pub with_delay: f64,
 }
 
 impl LackOfFit {
@@ -63,23 +71,40 @@ impl LackOfFit {
         let rms = |values: &[f64], free: usize| (dot(values, values) / (rows - free as f64).max(1.0)).sqrt();
         let before = rms(&residual, 0);
         let mut basis = Vec::new();
-        for column in terms {
-            extend(&mut basis, column);
-        }
+        let (own, of_ships) = terms.split_at(OWN_TERMS);
+        own.iter().for_each(|column| extend(&mut basis, column.clone()));
+        remove(&basis, &mut residual);
+        // δ(t − τ) is δ − τ δ', so what δ' adds is −τ K/T of its column.
+        let mut turning = of_ships[0].clone();
+        remove(&basis, &mut turning);
+        let size = dot(&turning, &residual) / dot(&turning, &turning);
+        let delayed: Vec<f64> = residual.iter().zip(&turning).map(|(rest, own)| rest - size * own).collect();
+        let with_delay = rms(&delayed, basis.len() + 1 + initial);
+        of_ships.iter().for_each(|column| extend(&mut basis, column.clone()));
         remove(&basis, &mut residual);
         let after = rms(&residual, basis.len() + initial);
         let lag1 = robust::lag1_autocorrelation(pieces.iter().map(Vec::as_slice));
         let is_white = !robust::is_coloured(lag1, residual.len());
-        let found = Self { residual: before, with_ship_terms: after, noise: (noise / rows).sqrt(), is_white };
+        let (noise, delay) = ((noise / rows).sqrt(), -size / response.K_over_T);
+        let found = Self { residual: before, with_ship_terms: after, noise, is_white, delay, with_delay };
         (before.is_finite() && after.is_finite() && noise.is_finite()).then_some(found)
     }
 
     /// Which share of the residual beyond the noise the terms of a ship leave, from 0 to 1: small where the ship lacks
     /// a term, large where chance moves her. `None` where it is white.
     pub fn unexplained(&self) -> Option<f64> {
+        self.left_by(self.with_ship_terms)
+    }
+
+    /// Which share of it is left by a rudder that acts at another time than it was recorded. `None` where it is white.
+    pub fn unexplained_by_delay(&self) -> Option<f64> {
+        self.left_by(self.with_delay)
+    }
+
+    fn left_by(&self, residual: f64) -> Option<f64> {
         let beyond = |rms: f64| (rms * rms - self.noise * self.noise).max(0.0);
         let all = beyond(self.residual);
-        (!self.is_white && all > 0.0).then(|| (beyond(self.with_ship_terms) / all).sqrt().min(1.0))
+        (!self.is_white && all > 0.0).then(|| (beyond(residual) / all).sqrt().min(1.0))
     }
 }
 
@@ -103,13 +128,13 @@ impl RecordTerms {
             &|row| r[row],
             &|row| rudder[row],
             &|_| 1.0,
+            &|row| turning[row],
             &|row| r[row].powi(3),
             &|row| r[row] * r[row].abs(),
             &|row| r[row].powi(2),
             &|row| rudder[row].powi(3),
             &|row| rudder[row].abs(),
             &|row| -a * acceleration(row) + b * turning[row],
-            &|row| turning[row],
             &|row| speed[row] * r[row],
             &|row| speed[row] * rudder[row],
         ];
@@ -193,7 +218,9 @@ fn remove(basis: &[Vec<f64>], column: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Case;
+    use crate::identifier::Identifier;
+    use crate::output_error;
+    use crate::testing::{Case, record};
 
     #[test]
     fn an_exact_ship_leaves_noise_on_either_side_of_neutral() {
@@ -202,6 +229,22 @@ mod tests {
             let lack = LackOfFit::of(&[case.trial()], &case.ship()).expect("a zig-zag");
             assert!(lack.is_white && lack.unexplained().is_none(), "{lack:?}");
             assert!((lack.residual / lack.noise - 1.0).abs() < 0.2, "{lack:?}");
+        }
+    }
+
+    #[test]
+    fn a_rudder_at_another_time_is_seen() {
+        for delay in [-3.0, -1.0, 1.0, 3.0] {
+            let case = Case { T: 40.0, K: 0.05, noise_deg: 0.1, ..Case::default() };
+            let sound = case.trial();
+            let (time, rudder) = (sound.time(), sound.rudder_signal());
+            let moved = time.iter().map(|t| rudder.at(t + delay)).collect();
+            let trials = [record("moved", time.to_vec(), sound.heading().to_vec(), moved)];
+            let method = output_error::Settings::default().build().expect("default settings");
+            let answer = method.identify(&trials).expect("an answer");
+            let lack = LackOfFit::of(&trials, &answer.response).expect("a zig-zag");
+            assert!((lack.delay / delay - 1.0).abs() < 0.2, "{delay} s: {lack:?}");
+            assert!(lack.unexplained_by_delay().is_some_and(|share| share < 0.3), "{delay} s: {lack:?}");
         }
     }
 

@@ -2,6 +2,7 @@
 //! loggers and instruments make. What has to come of each stands beside it; the test is `tests/logs.rs`. The small text
 //! files among them lie in `tests/logs`.
 
+pub mod combined;
 pub mod sentences;
 pub mod tables;
 pub mod troubles;

@@ -1,6 +1,7 @@
 //! Which answer of a fit is to be taken, and what its residual says.
 
 use campaign::answer::MethodEntry;
+use identify::lack_of_fit::LackOfFit;
 use identify::recommended::{Reason, Recommendation, ResidualKind};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
@@ -23,6 +24,9 @@ pub struct VerdictEntry {
     pub with_ship_terms_deg: Option<f64>,
     /// Standard deviation of the noise of the heading, deg.
     pub noise_deg: Option<f64>,
+    /// Time by which the rudder acts later than it was recorded, s, where that alone explains most of the residual;
+    /// negative for a rudder that was recorded late.
+    pub rudder_delay_s: Option<f64>,
     /// Methods whose replays are more than ten times worse than the best.
     pub set_apart: Vec<String>,
     /// A method whose 95 % interval of K or T lies wholly outside that of the answer to take.
@@ -40,7 +44,7 @@ impl VerdictEntry {
         let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);
         let taken = taken.unwrap_or(nearest);
         let far = answered().filter(|entry| rms(entry) > FAR_WORSE * rms(&nearest) && entry.method != taken.method);
-        let degrees = |of: fn(&identify::lack_of_fit::LackOfFit) -> f64| {
+        let degrees = |of: fn(&LackOfFit) -> f64| {
             recommendation.lack.as_ref().map(|lack| to_deg(of(lack)))
         };
         let usual = ["output-error", "maximum-likelihood"];
@@ -52,10 +56,16 @@ impl VerdictEntry {
             residual_deg: degrees(|lack| lack.residual),
             with_ship_terms_deg: degrees(|lack| lack.with_ship_terms),
             noise_deg: degrees(|lack| lack.noise),
+            rudder_delay_s: recommendation.lack.filter(explains_most).map(|lack| lack.delay),
             set_apart: far.map(|entry| entry.method.clone()).collect(),
             contradicted_by: answered().find(contradicts).map(|entry| entry.method.clone()),
         })
     }
+}
+
+/// Whether a rudder that acts at another time leaves less than half of the residual.
+fn explains_most(lack: &LackOfFit) -> bool {
+    lack.unexplained_by_delay().is_some_and(|share| share < 0.5)
 }
 
 /// Whether the intervals of K or of T have nothing in common.

@@ -102,6 +102,18 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
             )
         }
     };
+    if let Some(delay) = verdict.rudder_delay_s {
+        words += &match fixed(delay.abs(), 1) {
+            late if delay < 0.0 => format!(
+                "\nMost of it goes with a rudder that was recorded about {late} s late: check the clocks, or write `late-s = {late}` \
+                 under [rudder] in the sidecar."
+            ),
+            later => format!(
+                "\nMost of it goes with a rudder that acts about {later} s later than it was recorded: a dead time or the second \
+                 order of the ship, a slow compass, or the order in place of the angle."
+            ),
+        };
+    }
     if let Some(other) = &verdict.contradicted_by {
         words += &format!(
             "\nThe intervals of {other} exclude this answer: a random moment explains a part of the manoeuvre in one of the two."
