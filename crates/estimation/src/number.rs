@@ -36,6 +36,15 @@ pub trait Real:
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
 
+    /// The exponential.
+    fn exp(self) -> Self;
+
+    /// The natural logarithm of a positive number.
+    fn ln(self) -> Self;
+
+    /// The square root of a positive number.
+    fn sqrt(self) -> Self;
+
     /// A power of a positive number.
     fn powf(self, exponent: Self) -> Self;
 
@@ -78,6 +87,21 @@ impl Real for f64 {
     #[inline]
     fn tanh(self) -> Self {
         f64::tanh(self)
+    }
+
+    #[inline]
+    fn exp(self) -> Self {
+        f64::exp(self)
+    }
+
+    #[inline]
+    fn ln(self) -> Self {
+        f64::ln(self)
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
     }
 
     #[inline]
@@ -239,6 +263,20 @@ impl<const N: usize> Real for Dual<N> {
         self.chained(tanh, 1.0 - tanh * tanh)
     }
 
+    fn exp(self) -> Self {
+        let exp = self.value.exp();
+        self.chained(exp, exp)
+    }
+
+    fn ln(self) -> Self {
+        self.chained(self.value.ln(), self.value.recip())
+    }
+
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chained(root, 0.5 / root)
+    }
+
     fn powf(self, exponent: Self) -> Self {
         let power = self.value.powf(exponent.value);
         let by_base = exponent.value * power / self.value;
@@ -263,7 +301,7 @@ mod tests {
     /// Every function of the trait in one expression, of two variables.
     fn expression<R: Real>(x: R, y: R) -> R {
         let (sin, cos) = (x * y).sin_cos();
-        let power = (x * x + 0.5).powf(y / 3.0) + (y - x).powi(3) * 2.0;
+        let power = (x * x + 0.5).powf(y / 3.0) + (y - x).powi(3) * 2.0 + (x * x + 0.1).sqrt().ln() * (y * 0.3).exp();
         power / (cos + 2.0) - (sin - y).tanh() + (-x).abs() * x.at_least(0.4).between(R::from(0.1), y + 5.0)
     }
 

@@ -9,6 +9,7 @@
 //! line in [`all`].
 
 mod effect;
+mod formula;
 pub mod instant;
 mod moment_drift;
 mod nonlinear_damping;
@@ -26,6 +27,7 @@ mod wind_moment;
 pub use effect::{
     Acts, Description, Effect, EffectReal, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale, SwayCoupling,
 };
+pub use formula::{Formula, FormulaError};
 pub use moment_drift::MomentDrift;
 pub use nonlinear_damping::NonlinearDamping;
 pub use port_starboard_asymmetry::PortStarboardAsymmetry;
@@ -75,10 +77,15 @@ pub fn all() -> Vec<Arc<dyn Effect>> {
 /// The effect with this identifier, form and constants ([`Effect::constants`]); `None` where there is none, or one that
 /// has other constants.
 ///
+/// Any other identifier is that of a formula, which its form holds, for a ship of a length (m).
+///
 /// Constants are positive: an approach speed (m/s), a rate of the propeller (1/s), an edge (s); a reference time (s)
 /// may be any.
 pub fn named(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>> {
-    let known = all().into_iter().find(|effect| effect.id() == id && effect.form() == form)?;
+    let Some(known) = all().into_iter().find(|effect| effect.id() == id && effect.form() == form) else {
+        let &[length] = constants else { return None };
+        return Some(Arc::new(Formula::named(id, form).ok()?.with_length(length)));
+    };
     let holds = constants.iter().all(|constant| constant.is_finite()) && constants.len() == known.constants().len();
     if !holds {
         return None;

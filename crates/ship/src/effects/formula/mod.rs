@@ -1,0 +1,432 @@
+//! An effect that is written as a line of text: a name and a formula over the signals of a trial, with constants that
+//! are fitted. The formula is the yaw moment as the rudder angle with that moment, rad:
+//! T r' + r = K (δ + δ_r + formula).
+
+mod parse;
+mod program;
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
+use estimation::number::Real;
+
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use crate::dynamics::Regressor;
+pub use parse::FormulaError;
+use program::{Program, Signal};
+
+/// Ends of a constant that was given none.
+const ANY: f64 = 1e9;
+
+/// Expected moment over the largest angle of the rudder, where nothing is said of the size of a constant.
+const MODERATE: f64 = 0.2;
+
+/// Points at which a formula is looked at.
+const POINTS: usize = 64;
+
+/// Longest name of an effect, characters.
+const LONGEST_NAME: usize = 40;
+
+/// What is said of a constant: an expected size, and ends.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Expectation {
+    about: Option<f64>,
+    ends: Option<[f64; 2]>,
+}
+
+/// A yaw moment as a formula.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Formula {
+    program: Program,
+    description: Description,
+    expected: Vec<Expectation>,
+    /// Whether the moment is proportional to a constant: it is absent where all these are zero. The others are shapes.
+    is_size: Vec<bool>,
+    is_symmetric: bool,
+    /// Length of the ship, m, for signals without dimension.
+    length: f64,
+}
+
+impl Formula {
+    /// Reads `name = formula`, with `; k about 5` or `; k from 1 to 20` behind it for a constant of which something is
+    /// known.
+    ///
+    /// Fails with the place and what was expected there.
+    pub fn read(line: &str) -> Result<Arc<Self>, FormulaError> {
+        let error = |at: usize, problem: &str| FormulaError { text: line.to_owned(), at, problem: problem.to_owned() };
+        let Some((name, formula)) = line.split_once('=') else {
+            return Err(error(line.chars().count(), "expected `name = formula`, as in `bank = c * r * abs(v)`"));
+        };
+        let before = name.chars().count() + 1;
+        Self::named(name.trim(), formula.trim()).map_err(|own| {
+            let blanks = formula.chars().take_while(|letter| letter.is_whitespace()).count();
+            FormulaError { text: line.to_owned(), at: before + blanks + own.at, ..own }
+        })
+    }
+
+    /// The effect of a name with a formula and what is known of its constants.
+    ///
+    /// Fails as [`read`](Self::read) does.
+    pub fn named(name: &str, text: &str) -> Result<Arc<Self>, FormulaError> {
+        // Descriptions last as long as the program, so each text is described once.
+        static KNOWN: LazyLock<Mutex<BTreeMap<(String, String), Arc<Formula>>>> = LazyLock::new(Mutex::default);
+        let key = (name.to_owned(), text.to_owned());
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = known.get(&key) {
+            return Ok(Arc::clone(found));
+        }
+        let made = Arc::new(Self::made(name, text)?);
+        known.insert(key, Arc::clone(&made));
+        Ok(made)
+    }
+
+    fn made(name: &str, text: &str) -> Result<Self, FormulaError> {
+        let error = |at: usize, problem: String| FormulaError { text: text.to_owned(), at, problem };
+        let is_name = name.starts_with(|letter: char| letter.is_ascii_alphabetic())
+            && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        if !is_name || name.len() > LONGEST_NAME || super::all().iter().any(|effect| effect.id() == name) {
+            let expected = format!(
+                "`{name}` cannot be the name of an effect: expected letters, digits and _, at most {LONGEST_NAME}, and none of \
+                 `study list effects`"
+            );
+            return Err(error(0, expected));
+        }
+        let (formula, said) = text.split_once(';').unwrap_or((text, ""));
+        let program = parse::parse(formula.trim_end())?;
+        if program.constants().is_empty() {
+            return Err(error(0, String::from("no constant to be fitted: expected one, as in `c * r * abs(v)`")));
+        }
+        let expected =
+            expectations(said, program.constants()).map_err(|problem| error(formula.chars().count() + 1, problem))?;
+        let mut own = Self {
+            description: Description { id: "", form: "", equation: "", parameters: &[] },
+            is_size: vec![false; program.constants().len()],
+            is_symmetric: true,
+            length: 1.0,
+            program,
+            expected,
+        };
+        own.is_size = own.sizes();
+        let sample = own.shapes(&Scales::ones());
+        let absent: Vec<f64> =
+            sample.iter().zip(&own.is_size).map(|(value, size)| if *size { 0.0 } else { *value }).collect();
+        let values: Vec<f64> = own.points(&Scales::ones()).map(|point| own.moment(&absent, &point)).collect();
+        if !own.is_size.contains(&true) || values.iter().any(|value| *value != 0.0) {
+            let problem = "no value of the constants takes the effect away: multiply every term with a constant, as in `c * tanh(k * psi)`";
+            return Err(error(0, problem.to_owned()));
+        }
+        own.describe(name, text);
+        Ok(own)
+    }
+
+    /// Which constants the moment is proportional to.
+    fn sizes(&self) -> Vec<bool> {
+        let count = self.program.constants().len();
+        (0..count)
+            .map(|own| {
+                let value = |size: f64, point: &Point| {
+                    let mut constants: Vec<f64> = (0..count).map(|place| 0.7 + 0.3 * place as f64).collect();
+                    constants[own] = size;
+                    self.moment(&constants, point)
+                };
+                self.points(&Scales::ones()).all(|point| {
+                    let [zero, one, three] = [0.0, 1.0, 3.0].map(|size| value(size, &point));
+                    let is_finite = [zero, one, three].iter().all(|value| value.is_finite());
+                    is_finite && (three - zero - 3.0 * (one - zero)).abs() <= 1e-9 * (three.abs() + zero.abs() + 1e-12)
+                })
+            })
+            .collect()
+    }
+
+    fn describe(&mut self, name: &str, text: &str) {
+        let kept = |words: String| -> &'static str { words.leak() };
+        let shapes = self.shapes(&Scales::ones());
+        let symmetries: Vec<Option<bool>> = (0..shapes.len()).map(|place| self.symmetry(place, &shapes)).collect();
+        self.is_symmetric = symmetries.iter().all(Option::is_some);
+        let parameters = (0..self.expected.len()).map(|place| {
+            let key = kept(self.program.constants()[place].clone());
+            let [lowest, highest] = self.expected[place].ends.unwrap_or([-ANY, ANY]);
+            let typical = self.expected[place].about.unwrap_or(if self.is_size[place] { 0.01 } else { shapes[place] });
+            let neutral = if self.is_size[place] { 0.0 } else { typical };
+            Parameter {
+                odd: symmetries[place] == Some(false),
+                ..Parameter::even([key, key, "SI"], [neutral, typical], [lowest, highest])
+            }
+        });
+        let parameters: Vec<Parameter> = parameters.collect();
+        let formula = text.split(';').next().unwrap_or(text).trim();
+        self.description = Description {
+            id: kept(name.to_owned()),
+            form: kept(text.to_owned()),
+            equation: kept(format!("T r' + r = K (δ + δ_r + {formula})")),
+            parameters: Box::leak(parameters.into_boxed_slice()),
+        };
+    }
+
+    /// Whether the part that belongs to a constant changes its sign where port and starboard are exchanged, as a moment
+    /// does; `None` where it does neither.
+    fn symmetry(&self, place: usize, shapes: &[f64]) -> Option<bool> {
+        let mut constants = shapes.to_vec();
+        constants.iter_mut().zip(&self.is_size).for_each(|(value, size)| {
+            if *size {
+                *value = 0.0
+            }
+        });
+        if !self.is_size[place] {
+            return Some(true);
+        }
+        constants[place] = 1.0;
+        let agrees = |sign: f64| {
+            self.points(&Scales::ones()).all(|point| {
+                let [one, other] = [&point, &point.mirrored()].map(|point| self.moment(&constants, point));
+                (other - sign * one).abs() <= 1e-9 * (one.abs() + other.abs() + 1e-12)
+            })
+        };
+        match (agrees(-1.0), agrees(1.0)) {
+            (true, _) => Some(true),
+            (_, true) => Some(false),
+            _ => None,
+        }
+    }
+
+    /// Whether it acts alike to port and to starboard, each constant with its sign or with the other.
+    pub fn is_symmetric(&self) -> bool {
+        self.is_symmetric
+    }
+
+    fn moment(&self, constants: &[f64], point: &Point) -> f64 {
+        self.program.value(constants, |signal| Some(point.of(signal))).unwrap_or(f64::NAN)
+    }
+
+    /// Points all over the range of the signals, always the same.
+    fn points(&self, scales: &Scales) -> impl Iterator<Item = Point> {
+        let scales = *scales;
+        (1..=POINTS).map(move |number| Point::of_number(number, &scales))
+    }
+
+    /// Values of the constants where a fit starts: of a shape the expected one, else the one at which the moment begins
+    /// to bend.
+    fn shapes(&self, scales: &Scales) -> Vec<f64> {
+        let mut values: Vec<f64> = self.expected.iter().map(|own| own.about.unwrap_or(1.0)).collect();
+        for place in 0..values.len() {
+            if self.is_size[place] || self.expected[place].about.is_some() {
+                continue;
+            }
+            let spread = |value: f64| {
+                let mut constants = values.clone();
+                constants[place] = value;
+                let moments = self.points(scales).map(|point| self.moment(&constants, &point));
+                moments.map(|moment| moment * moment).sum::<f64>().sqrt()
+            };
+            // How the moment grows with the constant: as a power at first, less where it bends.
+            let slope = |value: f64| (spread(1.1 * value) / spread(value)).ln() / 1.1_f64.ln();
+            let ladder = (-24..=24).map(|step| 10f64.powf(f64::from(step) / 4.0));
+            let first = slope(1e-6);
+            let bend = ladder.clone().find(|value| (slope(*value) - first).abs() > 0.5);
+            values[place] = bend.filter(|_| first.is_finite()).unwrap_or(1.0);
+            if let Some([lowest, highest]) = self.expected[place].ends {
+                values[place] = values[place].clamp(lowest, highest);
+            }
+        }
+        values
+    }
+}
+
+/// Reads `k about 5; c from 0 to 1`.
+fn expectations(said: &str, constants: &[String]) -> Result<Vec<Expectation>, String> {
+    let mut expected = vec![Expectation::default(); constants.len()];
+    for part in said.split(';').map(str::trim).filter(|part| !part.is_empty()) {
+        let words: Vec<&str> = part.split_whitespace().collect();
+        let number = |word: &str| word.parse().ok().filter(|number: &f64| number.is_finite());
+        let place = constants.iter().position(|known| words.first() == Some(&known.as_str()));
+        let place = place.ok_or_else(|| format!("`{part}`: expected one of the constants {}", constants.join(", ")))?;
+        let own = &mut expected[place];
+        let unread = || format!("`{part}`: expected `{0} about 5` or `{0} from 1 to 20`", constants[place]);
+        match words[1..] {
+            ["about", about] => own.about = Some(number(about).filter(|size| *size != 0.0).ok_or_else(unread)?),
+            ["from", lowest, "to", highest] => {
+                let ends = [number(lowest).ok_or_else(unread)?, number(highest).ok_or_else(unread)?];
+                own.ends = Some(ends).filter(|[low, high]| low < high);
+                own.ends.ok_or_else(unread)?;
+            }
+            _ => return Err(unread()),
+        }
+    }
+    Ok(expected)
+}
+
+/// Sizes of the signals in some records.
+#[derive(Debug, Clone, Copy)]
+struct Scales {
+    yaw_rate: f64,
+    rudder: f64,
+    speed: f64,
+    propeller: f64,
+    duration: f64,
+    wind: f64,
+    length: f64,
+}
+
+impl Scales {
+    fn ones() -> Self {
+        Self { yaw_rate: 1.0, rudder: 1.0, speed: 1.0, propeller: 1.0, duration: 1.0, wind: 1.0, length: 1.0 }
+    }
+
+    /// r L/U of a zig-zag is about 0.3.
+    fn of(about: &Manoeuvres) -> Self {
+        let speed = about.speed.or(about.sway).unwrap_or(1.0);
+        Self {
+            yaw_rate: 0.3 / about.time,
+            rudder: about.rudder,
+            speed,
+            propeller: about.propeller.unwrap_or(1.0),
+            duration: about.duration,
+            wind: about.wind_square.unwrap_or(1.0).sqrt(),
+            length: about.time * speed,
+        }
+    }
+}
+
+/// The signals at a point.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    scales: Scales,
+    /// From −1 to 1: yaw rate, rudder, heading, sway, direction of the wind.
+    signed: [f64; 5],
+    /// From 0.5 to 1: speed, propeller, time, speed of the wind.
+    positive: [f64; 4],
+}
+
+impl Point {
+    /// The point of a number: parts of multiples of roots, which fill a box evenly (Weyl).
+    fn of_number(number: usize, scales: &Scales) -> Self {
+        const ROOTS: [f64; 9] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0];
+        let part = |root: f64| (number as f64 * root.sqrt()).fract();
+        Self {
+            scales: *scales,
+            signed: std::array::from_fn(|place| 2.0 * part(ROOTS[place]) - 1.0),
+            positive: std::array::from_fn(|place| 0.5 + 0.5 * part(ROOTS[5 + place])),
+        }
+    }
+
+    fn mirrored(self) -> Self {
+        Self { signed: self.signed.map(|value| -value), ..self }
+    }
+
+    fn of(&self, signal: Signal) -> f64 {
+        let Self { scales, signed: [r, delta, psi, v, angle], positive: [speed, n, t, wind] } = *self;
+        match signal {
+            Signal::YawRate => r * scales.yaw_rate,
+            Signal::Rudder => delta * scales.rudder,
+            // A zig-zag turns about as far as its rudder goes.
+            Signal::Heading => psi * scales.rudder,
+            Signal::Sway => 0.15 * v * scales.speed,
+            Signal::Surge | Signal::Speed => speed * scales.speed,
+            Signal::Propeller => n * scales.propeller,
+            Signal::Time => t * scales.duration,
+            Signal::WindSpeed => wind * scales.wind,
+            Signal::WindAngle => std::f64::consts::PI * angle,
+            Signal::PrimeYawRate => r * scales.yaw_rate * scales.length / (speed * scales.speed),
+            Signal::PrimeSway => 0.15 * v / speed,
+        }
+    }
+}
+
+impl Effect for Formula {
+    fn description(&self) -> Description {
+        self.description
+    }
+
+    /// A size is a normal law about zero: the expected one, or that of a moment of a fifth of the largest rudder angle.
+    /// A shape is a normal law about its expected value, half as wide.
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        let has = |channel| match channel {
+            Regressor::Speed => about.speed.is_some(),
+            Regressor::Sway => about.sway.is_some(),
+            Regressor::Wind => about.wind_square.is_some(),
+            Regressor::Propeller => about.propeller.is_some(),
+        };
+        if !self.channels().all(has) {
+            return None;
+        }
+        let scales = Scales::of(about);
+        let own = Self { length: scales.length, ..self.clone() };
+        let shapes = own.shapes(&scales);
+        let priors = own.parameters().iter().enumerate().map(|(place, parameter)| {
+            if !own.is_size[place] {
+                return Prior::normal(parameter, shapes[place], 0.5 * shapes[place].abs()).shape();
+            }
+            let mut alone = shapes.clone();
+            alone.iter_mut().zip(&own.is_size).for_each(|(value, size)| {
+                if *size {
+                    *value = 0.0
+                }
+            });
+            alone[place] = 1.0;
+            let square = own.points(&scales).map(|point| own.moment(&alone, &point).powi(2)).sum::<f64>();
+            let usual = MODERATE * about.rudder / (square / POINTS as f64).sqrt();
+            let sd = own.expected[place].about.map_or(usual, f64::abs);
+            Prior::normal(parameter, 0.0, sd)
+        });
+        let priors: Vec<Prior> = priors.collect();
+        let is_finite = priors.iter().all(|prior| prior.sd.is_finite() && prior.mean.is_finite());
+        is_finite.then(|| Proposal::new(own, priors))
+    }
+
+    fn places(&self) -> Places {
+        Places::MOMENT
+    }
+
+    fn needs(&self) -> Option<Regressor> {
+        self.channels().next()
+    }
+
+    fn uses(&self, channel: Regressor) -> bool {
+        self.channels().any(|own| own == channel)
+    }
+
+    fn constants(&self) -> Vec<f64> {
+        vec![self.length]
+    }
+
+    fn is_of_time(&self) -> bool {
+        self.program.signals().contains(&Signal::Time)
+    }
+
+    fn sees_heading(&self) -> bool {
+        self.program.signals().contains(&Signal::Heading)
+    }
+}
+
+impl Formula {
+    /// The measured channels it needs.
+    fn channels(&self) -> impl Iterator<Item = Regressor> {
+        let signals = self.program.signals();
+        let needs = move |any: &[Signal]| any.iter().any(|signal| signals.contains(signal));
+        [
+            (Regressor::Sway, needs(&[Signal::Sway, Signal::Surge, Signal::PrimeSway])),
+            (Regressor::Speed, needs(&[Signal::Speed, Signal::Surge, Signal::PrimeSway, Signal::PrimeYawRate])),
+            (Regressor::Wind, needs(&[Signal::WindSpeed, Signal::WindAngle])),
+            (Regressor::Propeller, needs(&[Signal::Propeller])),
+        ]
+        .into_iter()
+        .filter_map(|(channel, is_needed)| is_needed.then_some(channel))
+    }
+
+    /// The same for a ship of this length, m.
+    #[must_use]
+    pub fn with_length(&self, length: f64) -> Self {
+        Self { length, ..self.clone() }
+    }
+}
+
+impl<R: Real> Acts<R> for Formula {
+    #[inline]
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+        let moment = self.program.value(p, |signal| signal.at(now, self.length));
+        moment.map_or(R::from(0.0), |moment| now.gain * moment)
+    }
+}
+
+#[cfg(test)]
+mod tests;

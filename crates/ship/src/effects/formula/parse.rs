@@ -1,0 +1,390 @@
+//! From the text of a formula to a program: recursive descent over sums, products, signs, powers and atoms.
+
+use std::fmt;
+
+use super::program::{Function, Instruction, Operator, Program, STACK, Signal};
+
+/// Longest text, characters.
+const LONGEST: usize = 400;
+/// Deepest nesting of brackets, signs and powers.
+const DEEPEST: usize = 24;
+/// Most constants that are fitted.
+const MOST_CONSTANTS: usize = 4;
+
+/// Why a text is no formula, and where.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FormulaError {
+    /// The text.
+    pub text: String,
+    /// Characters before the place.
+    pub at: usize,
+    /// What is there, and what was expected.
+    pub problem: String,
+}
+
+impl std::error::Error for FormulaError {}
+
+impl fmt::Display for FormulaError {
+    /// The text with a mark under the place.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}\n  {}\n  {}^", self.problem, self.text, " ".repeat(self.at))
+    }
+}
+
+/// Reads a formula.
+///
+/// Fails where the text is no formula, is too long or too deep, or has too many constants.
+pub fn parse(text: &str) -> Result<Program, FormulaError> {
+    let mut parser =
+        Parser { letters: text.chars().collect(), at: 0, depth: 0, waiting: 0, program: Program::default() };
+    let found = parser.letters.len();
+    if found > LONGEST {
+        return Err(parser.error(LONGEST, format!("{found} characters, expected at most {LONGEST}")));
+    }
+    if let Some(at) = parser.letters.iter().position(|letter| letter.is_control()) {
+        return Err(parser.error(at, String::from("a character that cannot be printed")));
+    }
+    parser.sum()?;
+    match parser.peek() {
+        None => Ok(parser.program),
+        Some(')') => Err(parser.error(parser.at, String::from("a bracket that was not opened"))),
+        Some(letter) => Err(parser.error(parser.at, format!("`{letter}`, expected an operator or the end"))),
+    }
+}
+
+struct Parser {
+    letters: Vec<char>,
+    at: usize,
+    depth: usize,
+    /// Values that wait for an operator.
+    waiting: usize,
+    program: Program,
+}
+
+impl Parser {
+    fn error(&self, at: usize, problem: String) -> FormulaError {
+        FormulaError { text: self.letters.iter().collect(), at, problem }
+    }
+
+    /// The next letter that is no blank.
+    fn peek(&mut self) -> Option<char> {
+        while self.letters.get(self.at).is_some_and(|letter| letter.is_whitespace()) {
+            self.at += 1;
+        }
+        self.letters.get(self.at).copied()
+    }
+
+    /// Takes the next letter if it is one of these.
+    fn take(&mut self, any: &[char]) -> Option<char> {
+        let found = self.peek().filter(|letter| any.contains(letter));
+        self.at += usize::from(found.is_some());
+        found
+    }
+
+    fn push(&mut self, step: Instruction) -> Result<(), FormulaError> {
+        match step {
+            Instruction::Number(_) | Instruction::Constant(_) | Instruction::Signal(_) => self.waiting += 1,
+            Instruction::Operate(_) => self.waiting -= 1,
+            _ => {}
+        }
+        if self.waiting > STACK {
+            return Err(
+                self.error(self.at, format!("more than {STACK} values wait here for an operator; use fewer brackets"))
+            );
+        }
+        self.program.instructions.push(step);
+        Ok(())
+    }
+
+    /// Runs one level deeper.
+    fn deeper(&mut self, part: fn(&mut Self) -> Result<(), FormulaError>) -> Result<(), FormulaError> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(self.error(self.at, format!("more than {DEEPEST} levels of brackets, signs and powers")));
+        }
+        part(self)?;
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn sum(&mut self) -> Result<(), FormulaError> {
+        self.product()?;
+        while let Some(sign) = self.take(&['+', '-', '−']) {
+            self.product()?;
+            self.push(Instruction::Operate(if sign == '+' { Operator::Add } else { Operator::Subtract }))?;
+        }
+        Ok(())
+    }
+
+    fn product(&mut self) -> Result<(), FormulaError> {
+        self.deeper(Self::signed)?;
+        while let Some(sign) = self.take(&['*', '/', '·']) {
+            self.deeper(Self::signed)?;
+            self.push(Instruction::Operate(if sign == '/' { Operator::Divide } else { Operator::Multiply }))?;
+        }
+        Ok(())
+    }
+
+    /// A sign before a power: −x² is −(x²).
+    fn signed(&mut self) -> Result<(), FormulaError> {
+        match self.take(&['+', '-', '−']) {
+            None => self.power(),
+            Some('+') => self.deeper(Self::signed),
+            Some(_) => {
+                self.deeper(Self::signed)?;
+                self.push(Instruction::Negate)
+            }
+        }
+    }
+
+    fn power(&mut self) -> Result<(), FormulaError> {
+        self.atom()?;
+        if self.take(&['^']).is_some() {
+            let from = self.program.instructions.len();
+            self.deeper(Self::signed)?;
+            return self.raise(from);
+        }
+        Ok(())
+    }
+
+    /// A power whose exponent was read from instruction `from` on; a whole number takes negative bases, too.
+    fn raise(&mut self, from: usize) -> Result<(), FormulaError> {
+        let exponent = match self.program.instructions[from..] {
+            [Instruction::Number(number)] => Some(number),
+            [Instruction::Number(number), Instruction::Negate] => Some(-number),
+            _ => None,
+        };
+        match exponent.filter(|number| number.fract() == 0.0 && number.abs() <= 20.0) {
+            Some(whole) => {
+                self.program.instructions.truncate(from);
+                self.waiting -= 1;
+                self.push(Instruction::WholePower(whole as i32))
+            }
+            None => self.push(Instruction::Operate(Operator::Power)),
+        }
+    }
+
+    fn atom(&mut self) -> Result<(), FormulaError> {
+        match self.peek() {
+            Some('(') => {
+                let open = self.at;
+                self.at += 1;
+                self.deeper(Self::sum)?;
+                self.close(open)
+            }
+            Some(letter) if letter.is_ascii_digit() || letter == '.' => self.number(),
+            Some(letter) if letter.is_alphabetic() || letter == '_' => self.name(),
+            Some(letter) => Err(self.error(self.at, format!("`{letter}`, expected a number, a name or a bracket"))),
+            None => {
+                Err(self.error(self.at, String::from("the formula ends here, expected a number, a name or a bracket")))
+            }
+        }
+    }
+
+    fn close(&mut self, open: usize) -> Result<(), FormulaError> {
+        match self.take(&[')']) {
+            Some(_) => Ok(()),
+            None if self.peek().is_none() => Err(self.error(open, String::from("a bracket that is not closed"))),
+            None => Err(self.error(self.at, String::from("expected `)` or an operator"))),
+        }
+    }
+
+    fn number(&mut self) -> Result<(), FormulaError> {
+        let from = self.at;
+        let letter = |at: usize| self.letters.get(at).copied().unwrap_or(' ');
+        let mut end = from;
+        while letter(end).is_ascii_digit() || letter(end) == '.' {
+            end += 1;
+        }
+        if matches!(letter(end), 'e' | 'E') {
+            let digits = end + 1 + usize::from(matches!(letter(end + 1), '+' | '-'));
+            if letter(digits).is_ascii_digit() {
+                end = digits;
+                while letter(end).is_ascii_digit() {
+                    end += 1;
+                }
+            }
+        }
+        let text: String = self.letters[from..end].iter().collect();
+        let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+        let number = number.ok_or_else(|| self.error(from, format!("`{text}` is no number")))?;
+        self.at = end;
+        self.push(Instruction::Number(number))
+    }
+
+    fn name(&mut self) -> Result<(), FormulaError> {
+        let from = self.at;
+        let is_of_name = |letter: &&char| letter.is_alphanumeric() || **letter == '_';
+        let name: String = self.letters[from..].iter().take_while(is_of_name).collect();
+        self.at += name.chars().count();
+        if self.peek() == Some('(') {
+            return self.call(&name, from);
+        }
+        if let Some((_, signal)) = Signal::NAMES.iter().find(|(known, _)| *known == name) {
+            return self.push(Instruction::Signal(*signal));
+        }
+        if name == "pi" {
+            return self.push(Instruction::Number(std::f64::consts::PI));
+        }
+        if let Some(known) = misspelt(&name, from) {
+            return Err(self.error(from, format!("`{name}` is no signal; did you mean `{known}`?")));
+        }
+        if !name.is_ascii() {
+            return Err(self.error(from, format!("`{name}`: expected letters without accents, digits and _")));
+        }
+        if Function::NAMES.iter().any(|(known, _)| *known == name) {
+            return Err(self.error(self.at, format!("expected `(` after the function `{name}`")));
+        }
+        let constants = &mut self.program.constants;
+        let place = constants.iter().position(|known| *known == name).unwrap_or(constants.len());
+        if place == MOST_CONSTANTS {
+            return Err(self
+                .error(from, format!("`{name}` is one more than the {MOST_CONSTANTS} constants that can be fitted")));
+        }
+        if place == constants.len() {
+            constants.push(name);
+        }
+        self.push(Instruction::Constant(place))
+    }
+
+    fn call(&mut self, name: &str, from: usize) -> Result<(), FormulaError> {
+        let one = Function::NAMES.iter().find(|(known, _)| *known == name);
+        let two = Operator::NAMES.iter().find(|(known, _)| *known == name);
+        if one.is_none() && two.is_none() {
+            let known: Vec<&str> = Function::NAMES.iter().map(|own| own.0).chain(["min", "max", "pow"]).collect();
+            return Err(self.error(from, format!("`{name}` is no function; use one of {}", known.join(", "))));
+        }
+        let open = self.at;
+        self.at += 1;
+        self.deeper(Self::sum)?;
+        let between = self.take(&[',', ';']);
+        match (one, two, between) {
+            (_, Some((_, operator)), Some(_)) => {
+                let second = self.program.instructions.len();
+                self.deeper(Self::sum)?;
+                self.close(open)?;
+                if *operator == Operator::Power {
+                    self.raise(second)
+                } else {
+                    self.push(Instruction::Operate(*operator))
+                }
+            }
+            (Some((_, function)), _, None) => {
+                self.close(open)?;
+                self.push(Instruction::Call(*function))
+            }
+            (None, ..) => Err(self.error(self.at, format!("`{name}` takes two values, as in `{name}(r, 0)`"))),
+            (Some(_), None, Some(_)) => Err(self.error(self.at - 1, format!("`{name}` takes one value"))),
+        }
+    }
+}
+
+/// A signal that a name is meant for: another spelling of it.
+fn misspelt(name: &str, _from: usize) -> Option<&'static str> {
+    const SPELLINGS: [(&str, &[&str]); 8] = [
+        ("delta", &["δ", "rudder", "dleta", "detla", "delt", "rudder_angle"]),
+        ("psi", &["ψ", "heading", "Psi", "phi_heading"]),
+        ("r", &["R", "yaw_rate", "yawrate"]),
+        ("v", &["V", "sway", "sway_velocity"]),
+        ("U", &["speed", "Speed"]),
+        ("n", &["rpm", "rps", "propeller"]),
+        ("wind_speed", &["windspeed", "Vw", "U_wind"]),
+        ("wind_angle", &["winddir", "wind_direction", "wind_from", "windangle"]),
+    ];
+    let is_near = |known: &str| known.len() > 2 && strsim_one(known, name);
+    let spelt = SPELLINGS.iter().find(|(known, others)| others.contains(&name) || is_near(known));
+    spelt.map(|(known, _)| *known)
+}
+
+/// Whether two names differ by one letter that is wrong, missing or too many.
+fn strsim_one(one: &str, other: &str) -> bool {
+    let (long, short) = if one.len() >= other.len() { (one, other) } else { (other, one) };
+    let (long, short): (Vec<char>, Vec<char>) = (long.chars().collect(), short.chars().collect());
+    let same = long.iter().zip(&short).take_while(|(a, b)| a == b).count();
+    match long.len() - short.len() {
+        0 => same < long.len() && long[same + 1..] == short[same + 1..],
+        1 => long[same + 1..] == short[same..],
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(text: &str) -> f64 {
+        let signal = |signal: Signal| {
+            Some(match signal {
+                Signal::YawRate => -0.5,
+                Signal::Rudder => 2.0,
+                Signal::Sway => -3.0,
+                _ => 1.5,
+            })
+        };
+        parse(text).unwrap_or_else(|error| panic!("{error}")).value(&[2.0, 3.0, 5.0, 7.0], signal).expect("all there")
+    }
+
+    #[test]
+    fn formulas_are_worked_out_as_they_are_written() {
+        for (text, expected) in [
+            ("1 + 2 * 3", 7.0),
+            ("8 / 4 / 2", 1.0),
+            ("2 - 3 - 4", -5.0),
+            ("-r^2", -0.25),
+            ("2^-1", 0.5),
+            ("2^3^2", 512.0),
+            ("(r)^3", -0.125),
+            ("c * r * abs(v)", -3.0),
+            ("a*r + b*delta", 5.0),
+            ("max(r, 0) + min(r, 0)", -0.5),
+            ("pow(delta, 1.5)", 2f64.powf(1.5)),
+            ("pow(r, 3)", -0.125),
+            ("step(delta) + step(r)", 1.0),
+            ("step(delta, 2)", 0.5 * (1.0 + 1f64.tanh())),
+            ("sign(v) * sqrt(4) * exp(0) + log(1)", -2.0),
+            ("sin(0) + cos(0) + tan(0) + tanh(0)", 1.0),
+            (".5e1 · 2 − pi", 10.0 - std::f64::consts::PI),
+            ("- - 2", 2.0),
+        ] {
+            assert!((value(text) - expected).abs() < 1e-12, "{text}: {} is not {expected}", value(text));
+        }
+        assert_eq!(parse("k*tanh(c*psi)*k").expect("a formula").constants(), ["k", "c"]);
+        assert_eq!(parse("c*r*abs(v)*r").expect("a formula").signals(), [Signal::YawRate, Signal::Sway]);
+    }
+
+    #[test]
+    fn what_is_no_formula_is_marked() {
+        for (text, at, said) in [
+            ("", 0, "ends here"),
+            ("c * ", 4, "ends here"),
+            ("c * r r", 6, "`r`, expected an operator"),
+            ("c * (r + 1", 4, "not closed"),
+            ("c * r)", 5, "not opened"),
+            ("c * dleta", 4, "did you mean `delta`"),
+            ("c * rudder", 4, "did you mean `delta`"),
+            ("c * windspeed", 4, "did you mean `wind_speed`"),
+            ("c * foo(r)", 4, "`foo` is no function; use one of abs"),
+            ("c * max(r)", 9, "takes two values"),
+            ("c * abs(r, 1)", 9, "takes one value"),
+            ("c * abs", 7, "expected `(`"),
+            ("c $ r", 2, "`$`, expected an operator"),
+            ("1.2.3 * c", 0, "is no number"),
+            ("a*b*c*d*e*r", 8, "one more than the 4 constants"),
+            ("c*é", 2, "without accents"),
+        ] {
+            let error = parse(text).expect_err(text);
+            assert!(error.at == at && error.problem.contains(said), "{text}: {error:?}");
+        }
+        let marked = parse("c * dleta").expect_err("misspelt").to_string();
+        assert!(marked.ends_with("\n  c * dleta\n      ^"), "{marked}");
+    }
+
+    #[test]
+    fn length_and_depth_are_bounded() {
+        for text in
+            ["(".repeat(300), "-".repeat(300), "2^".repeat(150), "r+(".repeat(100), "c*".repeat(300), "a\u{0}".into()]
+        {
+            assert!(parse(&text).is_err(), "{text}");
+        }
+    }
+}
