@@ -9,7 +9,7 @@ use estimation::residuals::{self, GappedSeries, Whiteness};
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use ship::{Regressor, Response, effects};
+use ship::{Regressor, Response};
 use trial::Trial;
 
 use crate::average::{Average, AveragedModel};
@@ -69,7 +69,7 @@ fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
 fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(), TraceError> {
     let is_there = |id: &&EffectId| candidates.iter().any(|one| one.effect.id() == id.as_str());
     let Some(&effect) = selection.with.iter().find(|id| !is_there(id)) else { return Ok(()) };
-    let forms: Vec<_> = effects::all().into_iter().filter(|form| form.id() == effect.as_str()).collect();
+    let forms: Vec<_> = selection.effects().into_iter().filter(|form| form.id() == effect.as_str()).collect();
     let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::lacking));
     let reason = match forms.iter().any(|form| form.is_random()) {
         true => "it is a kind of noise, which is looked for in every record",

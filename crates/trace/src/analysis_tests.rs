@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ship::effects::{Effect, NonlinearDamping};
+use ship::effects::{Effect, Formula, NonlinearDamping};
 use trial::Trial;
 
 use crate::testing::{TrialPlan, record, ship, wandering};
@@ -56,6 +56,24 @@ fn what_is_asked_for_is_in_the_model_and_what_is_excluded_is_not() {
     assert!(!named(&without).contains(&"nonlinear_damping"));
     let lacking = with(Selection::only(vec![id("sway_coupling_measured")])).expect_err("no sway");
     assert!(lacking.to_string().contains("sway"), "{lacking}");
+}
+
+/// A formula is a candidate like those of the list: named where it acts, with its text, and not where it does not.
+#[test]
+fn a_formula_is_named_where_it_acts() {
+    let bank = Formula::read("bank = c * tanh(k * psi)").expect("a formula");
+    let selection = Selection { formulas: vec![Arc::clone(&bank)], ..Selection::default() };
+    let settings = Settings { selection, ..Settings::default() };
+    let banked = record(&ship(vec![(bank, vec![-0.05, 8.0])]), TrialPlan::default());
+    let analysis = trace(&[banked], &[], &settings).expect("a base");
+    assert_eq!(named(&analysis), ["bank"], "{:?}", analysis.document.candidates);
+    let effect = &analysis.document.effects[0];
+    assert_eq!(effect.form, "c * tanh(k * psi)");
+    let errors = &analysis.identification[0];
+    assert!(errors.after.errors.heading < 0.3 * errors.before.errors.heading);
+    let other = trace(&[damped(TrialPlan::default())], &[], &settings).expect("a base");
+    assert_eq!(named(&other), ["nonlinear_damping"]);
+    assert!(other.document.candidates.iter().any(|one| one.id == "bank"), "it is on the list");
 }
 
 #[test]

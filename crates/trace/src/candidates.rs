@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ship::effects::{self, Effect, Manoeuvres, Proposal, RudderDeadband, SecondOrder, SteeringLag};
+use ship::effects::{Effect, Manoeuvres, Proposal, RudderDeadband, SecondOrder, SteeringLag};
 use ship::{Polyline, Regressor};
 use trial::Trial;
 
@@ -59,7 +59,7 @@ pub fn manoeuvres<'a>(records: &'a [PreparedRecord], trials: &[Trial], time: f64
 /// depends on time alone is one of every record.
 pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Arc<Term>> {
     let mut candidates = Vec::new();
-    for effect in effects::all().iter().filter(|effect| selection.allows(effect.id())) {
+    for effect in selection.effects().iter().filter(|effect| selection.allows(effect.id())) {
         let places: Vec<Option<usize>> = match effect.is_of_time() && records.len() > 1 {
             true => (0..records.len()).map(Some).collect(),
             false => vec![None],

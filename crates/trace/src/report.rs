@@ -21,7 +21,6 @@ use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::{EffectNaming, named};
 use crate::noise::CorrelatedNoise;
 use crate::remainder::Remainder;
-use crate::selection::EffectId;
 use crate::settings::Settings;
 use crate::signature::Signature;
 use crate::structures::Structures;
@@ -68,7 +67,8 @@ const LISTED: usize = 20;
 impl TraceParts<'_> {
     /// The document.
     pub fn document(&self) -> Document {
-        let named = named(self.structures, self.settings.probability, &self.settings.selection);
+        let selection = &self.settings.selection;
+        let named = named(self.structures, self.settings.probability, selection);
         let effects = self.effects(&named);
         let signature = self.remainder.signature.as_ref();
         let verdict = match (signature, effects.is_empty()) {
@@ -83,7 +83,7 @@ impl TraceParts<'_> {
             headline: words::headline(verdict, &effects, &error),
             verdict,
             base: self.base_indices(),
-            candidates: EffectId::all().into_iter().map(|id| self.candidate(id.as_str(), &named)).collect(),
+            candidates: selection.ids().into_iter().map(|id| self.candidate(id.as_str(), &named)).collect(),
             structures: self.listed(),
             prior: PriorEntry {
                 candidates: self.candidates.len(),
@@ -265,7 +265,8 @@ impl TraceParts<'_> {
         let reason = match (forms.is_empty(), excluded) {
             (_, true) => Some("excluded on request"),
             (true, false) if !is_sea => {
-                let needs = effects::all().into_iter().filter(|form| form.id() == id).find_map(|form| form.needs());
+                let known = self.settings.selection.effects();
+                let needs = known.into_iter().filter(|form| form.id() == id).find_map(|form| form.needs());
                 Some(needs.map_or("the records leave no place for it", Regressor::lacking))
             }
             _ => None,

@@ -1,7 +1,9 @@
 //! What a user wants to be in the model, or kept out of it, whatever the evidence says.
 
+use std::sync::Arc;
+
 use identify::settings::SettingsError;
-use ship::effects;
+use ship::effects::{self, Effect, Formula};
 
 /// Identifier of an effect on the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -24,6 +26,11 @@ impl EffectId {
         ids
     }
 
+    /// The effect of a formula.
+    pub fn of(formula: &Formula) -> Self {
+        Self(formula.id())
+    }
+
     /// The name.
     pub fn as_str(self) -> &'static str {
         self.0
@@ -42,28 +49,45 @@ pub struct Selection {
     pub without: Vec<EffectId>,
     /// Whether effects that were not asked for are looked for.
     pub search: bool,
+    /// Effects written as formulas, candidates like those of the list.
+    pub formulas: Vec<Arc<Formula>>,
 }
 
 impl Default for Selection {
     fn default() -> Self {
-        Self { with: Vec::new(), without: Vec::new(), search: true }
+        Self { with: Vec::new(), without: Vec::new(), search: true, formulas: Vec::new() }
     }
 }
 
 impl Selection {
     /// Exactly these effects and no search.
     pub fn only(with: Vec<EffectId>) -> Self {
-        Self { with, without: Vec::new(), search: false }
+        Self { with, search: false, ..Self::default() }
     }
 
     /// A search that has these effects alone on its menu.
     pub fn among(menu: &[EffectId]) -> Self {
         let without = EffectId::all().into_iter().filter(|id| !menu.contains(id)).collect();
-        Self { with: Vec::new(), without, search: true }
+        Self { without, ..Self::default() }
     }
 
-    /// Refuses an effect that is asked for and excluded at once.
+    /// Every effect in every form: those of the list, then the formulas.
+    pub fn effects(&self) -> Vec<Arc<dyn Effect>> {
+        let formulas = self.formulas.iter().map(|formula| Arc::clone(formula) as Arc<dyn Effect>);
+        effects::all().into_iter().chain(formulas).collect()
+    }
+
+    /// Every effect once, in the order of reports.
+    pub fn ids(&self) -> Vec<EffectId> {
+        EffectId::all().into_iter().chain(self.formulas.iter().map(|formula| EffectId::of(formula))).collect()
+    }
+
+    /// Refuses an effect that is asked for and excluded at once, and two formulas of one name.
     pub fn check(&self) -> Result<(), SettingsError> {
+        let ids: Vec<&str> = self.formulas.iter().map(|formula| formula.id()).collect();
+        if let Some(twice) = (1..ids.len()).find(|&place| ids[..place].contains(&ids[place])) {
+            return Err(SettingsError::new("effect", ids[twice], "effects with names of their own"));
+        }
         match self.with.iter().find(|id| self.without.contains(id)) {
             Some(both) => {
                 let expected = "an effect that is not asked for at the same time";
@@ -101,7 +125,8 @@ mod tests {
 
     #[test]
     fn what_is_asked_for_is_allowed_and_what_is_excluded_is_not() {
-        let usual = Selection { with: vec![id("speed_loss")], without: vec![id("wind_moment")], search: true };
+        let usual =
+            Selection { with: vec![id("speed_loss")], without: vec![id("wind_moment")], ..Selection::default() };
         assert_eq!(usual.check(), Ok(()));
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| usual.allows(id)), [true, false, true]);
         let few = Selection::among(&[id("speed_loss")]);
