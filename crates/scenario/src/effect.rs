@@ -8,8 +8,8 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, json};
 use ship::angle::DEGREE;
 use ship::effects::{
-    Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, RudderDeadband, RudderSaturation, SecondOrder,
-    SpeedLoss, SteeringLag, TransientDisturbance, WaveYaw, WindMoment,
+    Effect, Formula, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, RudderDeadband, RudderSaturation,
+    SecondOrder, SpeedLoss, SteeringLag, TransientDisturbance, WaveYaw, WindMoment,
 };
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ShortNumber};
@@ -147,6 +147,34 @@ fn asked<'a>(
     Ok((form, key, numbers))
 }
 
+/// The line of an entry that is written as a formula, `name = formula`.
+fn line_of(entry: &NamedNumbers) -> Option<&String> {
+    entry.keys().next().filter(|name| name.contains('='))
+}
+
+/// An effect that is written as a formula, and a value for every constant of it.
+fn formula(entry: &NamedNumbers, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), KeyFault> {
+    let (line, key, numbers) = number_table::only(entry, place, &[])?;
+    let formula = Formula::read(line).map_err(|error| {
+        let advice = "write `\"name = formula\" = { constant = value }`; docs/src/howto/own-effect.md has the names";
+        KeyFault::name(key.clone(), error.to_string(), "this is no formula", advice)
+    })?;
+    let keys: Vec<NumberKey> =
+        formula.parameters().iter().map(|own| NumberKey::required(own.key, "A constant of the formula.")).collect();
+    number_table::refuse_unknown(numbers, &keys, &key)?;
+    number_table::refuse_incomplete(numbers, &keys, &key)?;
+    for own in formula.parameters() {
+        let value = numbers[own.key];
+        if !own.holds(value) {
+            let expected =
+                format!("expected a number from {} to {}", ShortNumber(own.lowest), ShortNumber(own.highest));
+            return Err(KeyFault::of(key.child(own.key), ShortNumber(value), expected, "change the value"));
+        }
+    }
+    let values = formula.parameters().iter().map(|own| numbers[own.key]).collect();
+    Ok((formula, values))
+}
+
 /// The ship with effects added to its response.
 ///
 /// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, and
@@ -157,7 +185,9 @@ pub fn added(ship: Ship, entries: &[NamedNumbers]) -> Result<Ship, KeyFault> {
     }
     limits::entries("effect", entries.len(), limits::MOST_EFFECTS)?;
     let list = KeyPath::dotted("effect");
-    let asked = entries.iter().enumerate().map(|(index, entry)| asked(entry, &list.child(index)));
+    let (formulas, listed): (Vec<_>, Vec<_>) =
+        entries.iter().enumerate().partition(|(_, entry)| line_of(entry).is_some());
+    let asked = listed.into_iter().map(|(index, entry)| asked(entry, &list.child(index)));
     let asked = asked.collect::<Result<Vec<_>, _>>()?;
     let Model::Response(response) = &ship.model else {
         return Err(KeyFault::name(
@@ -195,6 +225,11 @@ pub fn added(ship: Ship, entries: &[NamedNumbers]) -> Result<Ship, KeyFault> {
         }
         effects.push(effect);
         parameters.extend(settings.iter().map(|setting| setting.value));
+    }
+    for (index, entry) in formulas {
+        let (formula, values) = formula(entry, &list.child(index))?;
+        effects.push(Arc::new(formula.with_length(ship.particulars.map_or(1.0, |own| own.length))));
+        parameters.extend(values);
     }
     let model = Model::Response(ResponseModel::new(effects).with(parameters));
     Ok(Ship { model, ..ship })
@@ -241,5 +276,11 @@ pub fn schema(_: &mut SchemaGenerator) -> Schema {
         effect["description"] = meaning.into();
         effect
     });
-    json_schema!({ "type": "array", "items": { "oneOf": effects.collect::<Vec<_>>() } })
+    let formula = json!({
+        "type": "object",
+        "description": "A moment as a line of text, `\"bank = c * tanh(k * psi)\" = { c = 0.05, k = 8.0 }`: an angle of the rudder, rad.",
+        "patternProperties": { "=": { "type": "object", "additionalProperties": { "type": "number" } } },
+        "additionalProperties": false
+    });
+    json_schema!({ "type": "array", "items": { "oneOf": effects.chain([formula]).collect::<Vec<_>>() } })
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use ::ship::effects::Formula;
 use ::trace::{EffectId, Rule, Selection, empirical};
 use identify::settings::SettingsError;
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError, Outside, external};
@@ -113,12 +114,14 @@ pub(crate) struct TraceWire {
     menu: Option<Vec<String>>,
     /// Monomials that stand among the candidates.
     monomials: usize,
+    /// Effects as lines of text, `bank = c * tanh(k * psi)`, candidates like those of the list.
+    formulas: Vec<String>,
 }
 
 impl Default for TraceWire {
     fn default() -> Self {
         let ::trace::Settings { probability, monomials, .. } = ::trace::Settings::default();
-        Self { rule: Rule::default(), probability, menu: None, monomials }
+        Self { rule: Rule::default(), probability, menu: None, monomials, formulas: Vec::new() }
     }
 }
 
@@ -180,8 +183,13 @@ fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
 
 /// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.
 fn tracing(wire: &TraceWire) -> Result<::trace::Settings, SettingsError> {
-    let TraceWire { rule, probability, ref menu, monomials } = *wire;
-    let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), among)?;
+    let TraceWire { rule, probability, ref menu, monomials, ref formulas } = *wire;
+    let mut selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), among)?;
+    let read = |line: &String| {
+        Formula::read(line)
+            .map_err(|error| SettingsError::new("formulas", error, "formulas as `bank = c * tanh(k * psi)`"))
+    };
+    selection.formulas = formulas.iter().map(read).collect::<Result<_, _>>()?;
     if monomials > empirical::all().len() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }

@@ -72,8 +72,6 @@ impl Signal {
             Self::PrimeSway => R::from(measured.sway? / measured.speed?),
         })
     }
-
-
 }
 
 /// A function of one value.
