@@ -44,9 +44,7 @@ impl VerdictEntry {
         let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);
         let taken = taken.unwrap_or(nearest);
         let far = answered().filter(|entry| rms(entry) > FAR_WORSE * rms(&nearest) && entry.method != taken.method);
-        let degrees = |of: fn(&LackOfFit) -> f64| {
-            recommendation.lack.as_ref().map(|lack| to_deg(of(lack)))
-        };
+        let degrees = |of: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(of(lack)));
         let usual = ["output-error", "maximum-likelihood"];
         let contradicts = |entry: &&MethodEntry| usual.contains(&entry.method.as_str()) && are_apart(taken, entry);
         Some(Self {
@@ -56,16 +54,11 @@ impl VerdictEntry {
             residual_deg: degrees(|lack| lack.residual),
             with_ship_terms_deg: degrees(|lack| lack.with_ship_terms),
             noise_deg: degrees(|lack| lack.noise),
-            rudder_delay_s: recommendation.lack.filter(explains_most).map(|lack| lack.delay),
+            rudder_delay_s: recommendation.lack.and_then(|lack| lack.rudder_delay()),
             set_apart: far.map(|entry| entry.method.clone()).collect(),
             contradicted_by: answered().find(contradicts).map(|entry| entry.method.clone()),
         })
     }
-}
-
-/// Whether a rudder that acts at another time leaves less than half of the residual.
-fn explains_most(lack: &LackOfFit) -> bool {
-    lack.unexplained_by_delay().is_some_and(|share| share < 0.5)
 }
 
 /// Whether the intervals of K or of T have nothing in common.
