@@ -37,17 +37,17 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let fit = fit(&trials, &others, &methods, common.quiet, &mut warnings)?;
     let folder = early.map_or_else(hold, Ok)?;
     documents::keep_with_curves(&folder, FIT, &fit.document, &fit.curves())?;
-    show(&folder, folder.path(), &theme, common)
+    show(&folder, folder.path(), theme.as_ref(), common)
 }
 
 /// Draws a fit from the `fit.json` and the curves of a folder, into `into`, and tells what it says.
 ///
 /// Fails when a file is missing or was not written by this program.
-pub fn show(into: &ResultFolder, from: &Path, theme: &Theme, common: &Common) -> Result<(), Failure> {
+pub fn show(into: &ResultFolder, from: &Path, theme: Option<&Theme>, common: &Common) -> Result<(), Failure> {
     let (document, text): (FitDocument, String) = read_json(&from.join(FIT), "fit")?;
     let (curves, _): (FitCurves, String) = read_json(&from.join(CURVES), "fit")?;
     curve_tables::write_replays(&curves, into)?;
-    write_page(into, &fit_page::page(&document, &curves), theme)?;
+    write_page(into, fit_page::page(&document, &curves), theme)?;
     let rest = format!("{}\nresults: {}", fit_page::rest(&document, &curves), into.path().join(FIT).display());
     let verdict = fit_page::verdict(&document).map_or_else(String::new, |words| format!("{words}\n\n"));
     let head = format!("{verdict}{}\n", fit_page::headline(&document, &curves));

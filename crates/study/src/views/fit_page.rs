@@ -31,6 +31,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     page.part("Methods");
     page.table(answers(document, curves));
     page.say(MODEL);
+    page.say(FILES);
     let notes = notes(document, curves);
     if !notes.trim().is_empty() {
         page.part("Records");
@@ -56,7 +57,6 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     }
     page.part("Figures");
     page.figures(fit_figures::figures(document, curves));
-    page.say(FILES);
     page
 }
 
