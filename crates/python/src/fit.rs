@@ -39,7 +39,7 @@ impl PyFit {
     }
 }
 
-/// Identifies records by the named methods, or by all.
+/// Identifies records by the named methods, or by the usual ones.
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,

@@ -4,12 +4,9 @@ use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-use crate::desk::{Desk, measured, of_repository, with_column, zig_zag_csv, zig_zag_csv_of};
+use identify::registry::{self, USUAL};
 
-fn method_ids() -> Vec<&'static str> {
-    let built = |settings: &identify::IdentifierSettings| settings.build().expect("default settings are valid").id();
-    identify::registry::defaults().iter().map(built).collect()
-}
+use crate::desk::{Desk, measured, of_repository, with_column, zig_zag_csv, zig_zag_csv_of};
 
 fn refused(content: impl AsRef<[u8]>, parts: &[&str]) {
     let desk = Desk::new();
@@ -185,7 +182,7 @@ fn a_good_record_gives_a_table_figures_and_json() {
     let desk = Desk::new();
     desk.file("run 1.csv", zig_zag_csv());
     let run = desk.run(&["fit", "run 1.csv"]);
-    for method in method_ids() {
+    for method in USUAL {
         assert!(run.is_done().out.contains(method), "{method}\n{}", run.out);
     }
     assert!(run.out.contains("overshoots") && run.out.contains("run 1-fit"), "{}", run.out);
@@ -204,7 +201,7 @@ fn a_good_record_gives_a_table_figures_and_json() {
     assert_eq!(trial["sha256"].as_str().map(str::len), Some(64));
     let methods = fit["methods"].as_array().expect("a list");
     let ids: Vec<&str> = methods.iter().filter_map(|method| method["method"].as_str()).collect();
-    assert_eq!(ids, method_ids());
+    assert_eq!(ids, USUAL);
     let exact = methods.iter().find(|method| method["method"] == "output-error").expect("it is there");
     assert_eq!(
         (&exact["status"], &exact["reason"], &exact["course_unstable"]),
@@ -226,6 +223,72 @@ fn a_good_record_gives_a_table_figures_and_json() {
     let zigzag = &fit["zigzag"];
     assert!(["initial_turning_time_s", "period_s"].iter().all(|key| zigzag[*key].is_number()), "{zigzag}");
     assert!(zigzag["overshoots_deg"].as_array().is_some_and(|overshoots| overshoots.len() > 3), "{zigzag}");
+}
+
+/// Nobody has to read past a method that is known to be wrong, or one that repeats another; both are run when asked for.
+#[test]
+fn fit_asks_the_usual_methods_and_all_on_request() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv());
+    let fitted = |options: &[&str], folder: &str| {
+        let own = ["fit", "run.csv", "--figures", "none", "--quiet", "--out", folder];
+        desk.run(&[&own, options].concat()).is_done();
+        let fit = desk.json(&format!("{folder}/fit.json"));
+        let ids = fit["methods"].as_array().into_iter().flatten().filter_map(|own| own["method"].as_str());
+        (ids.map(str::to_owned).collect::<Vec<String>>(), fit["verdict"].clone())
+    };
+    let (usual, verdict) = fitted(&[], "usual");
+    let (all, with_all) = fitted(&["--method", "all"], "all");
+    assert_eq!(usual, USUAL);
+    assert!(all.starts_with(&usual) && all.len() == registry::defaults().len(), "{all:?}");
+    assert!(["method", "reason", "residual", "residual_deg"].iter().all(|key| verdict[*key] == with_all[*key]));
+    let (asked, _) = fitted(&["--method", "srivc", "--method", "output-error"], "asked");
+    assert_eq!(asked, ["output-error", "srivc"]);
+    desk.run(&["fit", "run.csv", "--method", "al"]).is_refused(2, &["--method al", "use all, or one of output-error"]);
+}
+
+#[test]
+fn what_can_be_drawn_can_be_told_without_figures() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv());
+    let fast = ["--figures", "none", "--quiet"];
+    for (command, document) in [
+        (&["fit", "run.csv", "--method", "output-error", "--out", "fit"][..], "fit/fit.json"),
+        (&["trace", "run.csv", "--only", "second_order", "--out", "trace"], "trace/trace.json"),
+        (&["predict", "fit/fit.json", "--manoeuvre", "zig-zag:10/10", "--draws", "50", "--out", "predict"], "predict/predict.json"),
+    ] {
+        desk.run(&[command, &fast].concat()).is_done();
+        let folder = document.split('/').next().expect("a folder");
+        let files = std::fs::read_dir(desk.path(folder)).expect("a folder").map(|entry| entry.expect("a file").path());
+        let drawn: Vec<_> = files.filter(|file| file.extension().is_some_and(|own| own == "png" || own == "svg")).collect();
+        assert!(drawn.is_empty() && desk.path(document).is_file(), "{drawn:?}");
+        let report = desk.text(&format!("{folder}/report.md"));
+        assert!(desk.path(&format!("{folder}/report.html")).is_file() && !report.contains("!["), "{report}");
+        assert!(!report.contains("igures\n"), "a headline over nothing\n{report}");
+    }
+    let bytes = desk.bytes("fit/fit.json");
+    desk.run(&["fit", "run.csv", "--method", "output-error", "--out", "fit", "--quiet"]).is_done();
+    assert!(desk.path("fit/fit.png").is_file() && desk.bytes("fit/fit.json") == bytes);
+}
+
+/// What was mended or is doubtful in a record is known to whoever reads the answer, in `fit.json` and on the page.
+#[test]
+fn what_the_reader_noticed_is_in_the_document() {
+    let desk = Desk::new();
+    for (log, said) in [
+        ("frozen.csv", "the same heading from"),
+        ("checksums.nmea", "checksum"),
+        ("spike.csv", "1 row with a rudder angle no rudder has"),
+        ("gaps.csv", "gaps longer than ten sampling periods"),
+    ] {
+        let path = of_repository("tests/logs").join(log).display().to_string();
+        let own = ["fit", &path, "--method", "least-squares", "--figures", "none", "--quiet", "--out", "fit"];
+        desk.run(&own).is_done();
+        let warnings = desk.json("fit/fit.json")["warnings"].clone();
+        let told = warnings.as_array().into_iter().flatten().filter_map(|own| own.as_str());
+        assert!(told.clone().any(|own| own.contains(said)), "{log}: {warnings}");
+        assert!(desk.text("fit/report.md").contains(said), "{log}");
+    }
 }
 
 #[test]
@@ -278,7 +341,7 @@ fn options_of_fit_do_what_they_say() {
 
     let csv = desk.run(&["fit", "a/run.csv", "--format", "csv", "--out", "csv"]);
     let lines: Vec<&str> = csv.is_done().out.lines().collect();
-    assert!(lines[0].starts_with("method,K [1/s],") && lines.len() == 1 + method_ids().len(), "{}", csv.out);
+    assert!(lines[0].starts_with("method,K [1/s],") && lines.len() == 1 + USUAL.len(), "{}", csv.out);
     let latex = desk.run(&["fit", "a/run.csv", "--format", "latex", "--out", "latex"]);
     assert!(
         latex.is_done().out.starts_with("% Needs \\usepackage{booktabs,siunitx")
