@@ -13,7 +13,7 @@ use crate::documents::{self, CURVES, read_json};
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, CommandOutput};
-use crate::views::page_files::write_page;
+use crate::views::page_files::{REPORT, write_page};
 use crate::views::{curve_tables, fit_page};
 use crate::work::fit::{fit, methods};
 
@@ -53,5 +53,16 @@ pub fn show(into: &ResultFolder, from: &Path, theme: Option<&Theme>, common: &Co
     let head = format!("{verdict}{}\n", fit_page::headline(&document, &curves));
     let table = fit_page::answers(&document, &curves);
     let output = CommandOutput { words: [&head, ""], table: &table, notes: &rest, document: &text };
-    screen::tell(common, &output, &document.all_warnings())
+    screen::tell(common, &output, &shortened(document.ranked_warnings()))
+}
+
+/// Warnings that stand on the screen.
+const ON_SCREEN: usize = 3;
+
+/// The first warnings, and how many there are beside them.
+fn shortened(mut warnings: Vec<String>) -> Vec<String> {
+    let more = warnings.len().saturating_sub(ON_SCREEN);
+    warnings.truncate(ON_SCREEN);
+    warnings.extend((more > 0).then(|| format!("{more} more in {REPORT}")));
+    warnings
 }
