@@ -39,7 +39,7 @@ impl PyFit {
     }
 }
 
-/// Identifies records by the named methods, or by all.
+/// Identifies records by the named methods, or by the usual ones.
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,
@@ -57,9 +57,7 @@ pub fn fit(
         warn_of_repetition(&records, &others, &mut warnings);
         let done = work::fit::fit(&records, &others, &methods, true, &mut warnings)?;
         warnings.drain(..told);
-        for entry in &done.document.methods {
-            warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
-        }
+        warnings.extend(done.document.of_methods(true));
         Ok(PyFit {
             text: document::text(&done.document).map_err(Failure::work)?,
             warnings,

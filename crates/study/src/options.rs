@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use crate::outside::NamedCommand;
 use crate::style_options::within;
-pub use crate::style_options::{FigureChoice, FigureOptions, StudyFigureOptions};
+pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, StudyFigureOptions};
 use ::trace::{EffectId, Rule, Selection};
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};
@@ -166,8 +166,8 @@ pub struct FitRequest {
     /// Records on which the identified responses are replayed; only their initial state is fitted
     #[arg(long, value_name = "TRIAL")]
     pub validate: Vec<PathBuf>,
-    /// Methods to use [default: all]
-    #[arg(long = "method", value_name = "ID")]
+    /// Method to use, or `all`; can be given several times [default: all but fourier-published and srivc]
+    #[arg(long = "method", value_name = "ID|all")]
     pub methods: Vec<String>,
     /// Also ask another program: it is started, and reads and writes lines of JSON
     #[arg(long = "external", value_name = "LABEL=COMMAND")]
@@ -175,9 +175,9 @@ pub struct FitRequest {
     /// How the records are read
     #[command(flatten)]
     pub reading: ReadingOptions,
-    /// How the figures are drawn
+    /// How figures are drawn, and whether
     #[command(flatten)]
-    pub style: FigureOptions,
+    pub style: PageFigureOptions,
 }
 
 /// What `study simulate` is asked to do.
@@ -241,9 +241,9 @@ pub struct TraceRequest {
     /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
     #[arg(long, value_name = "NAME", default_value = Rule::default().as_str(), value_parser = rule)]
     pub rule: Rule,
-    /// How figures are drawn
+    /// How figures are drawn, and whether
     #[command(flatten)]
-    pub style: FigureOptions,
+    pub style: PageFigureOptions,
 }
 
 impl TraceRequest {
@@ -321,9 +321,9 @@ pub struct PredictRequest {
     /// How the records are read, and the scale that is predicted for: another length scales the ship by Froude
     #[command(flatten)]
     pub reading: ReadingOptions,
-    /// How figures are drawn
+    /// How figures are drawn, and whether
     #[command(flatten)]
-    pub style: FigureOptions,
+    pub style: PageFigureOptions,
 }
 
 /// Files that have a schema.

@@ -76,7 +76,7 @@ fn bands_hold_the_record() {
     let analysis = trace(&[trial], &[other], &Settings::default()).expect("a base");
     for one in analysis.identification.iter().chain(&analysis.validation) {
         let (coverage, width) =
-            (one.after.coverage().expect("a band"), one.after.width().expect("a band").to_degrees());
+            (one.after.coverage().expect("a band").share(), one.after.width().expect("a band").to_degrees());
         assert!((0.85..=1.0).contains(&coverage) && (0.15..0.6).contains(&width), "{coverage}, {width} deg");
     }
 }

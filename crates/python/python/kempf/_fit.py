@@ -209,7 +209,7 @@ def fit(
     :param records: one record or several of the same ship, which are identified together: of :func:`kempf.read`, of
         :func:`kempf.simulate`, tables with columns such as ``heading_deg``, or paths of files
     :param validate: records on which the answers are replayed; only their initial state is fitted
-    :param methods: identifiers of the methods; all where it is left out
+    :param methods: identifiers of the methods, or "all"; all but fourier-published and srivc where it is left out
     :param seed: seed of the methods that draw at random
 
     Raises :class:`kempf.KempfError` where a record cannot be read, and where no method can identify the records; a

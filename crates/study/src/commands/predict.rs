@@ -56,7 +56,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
-    show(&folder, folder.path(), &theme, common, &warnings)
+    show(&folder, folder.path(), theme.as_ref(), common, &warnings)
 }
 
 /// Draws a prediction from the `predict.json` and the curves of a folder, into `into`, and tells what it says.
@@ -65,7 +65,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
 pub fn show(
     into: &ResultFolder,
     from: &Path,
-    theme: &Theme,
+    theme: Option<&Theme>,
     common: &Common,
     warnings: &[String],
 ) -> Result<(), Failure> {
@@ -74,7 +74,7 @@ pub fn show(
     for (stem, table) in predict_curves::curves(predicted) {
         into.write(&format!("{stem}.csv"), table)?;
     }
-    write_page(into, &predict_page::page(predicted), theme)?;
+    write_page(into, predict_page::page(predicted), theme)?;
     let mut notes = format!("\nresults: {}", into.path().join(PREDICT).display());
     if let (Some(form), Some(remarks)) = (&predicted.form, &predicted.form_remarks) {
         into.write(FORM, predict_form::page(form, remarks).to_markdown())?;

@@ -94,7 +94,7 @@ pub fn put(
         }
     }
     curve_tables::write_showcases(stored, &figures, folder)?;
-    write_page(folder, &page(stored, &summary, brief, figures), theme)?;
+    write_page(folder, page(stored, &summary, brief, figures), Some(theme))?;
     Ok(summary)
 }
 

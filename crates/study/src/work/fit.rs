@@ -1,4 +1,4 @@
-//! An identification: every method on the records together, its answer held against other records, and what is known of
+//! An identification: all methods asked for on the records together, its answer held against other records, and what is known of
 //! the ship.
 
 use identify::estimate::Uncertainty;
@@ -151,22 +151,31 @@ fn verdict(
     VerdictEntry::of(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries)
 }
 
-/// The named methods of the project with their default settings, all for no name, and outside estimators behind them;
-/// those that draw at random with this seed.
+/// Stands for every method where methods are named.
+const ALL: &str = "all";
+
+/// The named methods of the project with their default settings, the best first, the usual ones for no name, and
+/// outside estimators behind them; those that draw at random with this seed.
 ///
 /// Fails for a name that no method has, and for a command that cannot be one.
 pub fn methods(names: &[String], external: &[NamedCommand], seed: Option<u64>) -> Result<Vec<Named>, Failure> {
     let all = registry::defaults().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
-    let all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
+    let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
+    let place = |id: &str| registry::USUAL.iter().position(|usual| *usual == id);
+    all.sort_by_key(|method| place(method.id()).unwrap_or(usize::MAX));
     let known: Vec<&str> = all.iter().map(|method| method.id()).collect();
-    if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
-        return Err(Failure::input(format!("--method {unknown}: no such method; use one of {}", known.join(", "))));
+    if let Some(unknown) = names.iter().find(|name| *name != ALL && !known.contains(&name.as_str())) {
+        let known = known.join(", ");
+        return Err(Failure::input(format!("--method {unknown}: no such method; use {ALL}, or one of {known}")));
     }
     let outside = outside::methods(external, &known)?;
     if !outside.is_empty() {
         interrupt::install();
     }
-    let is_named = |id: &str| names.is_empty() || names.iter().any(|name| name == id);
+    let is_named = |id: &str| match names {
+        [] => place(id).is_some(),
+        names => names.iter().any(|name| name == id || name == ALL),
+    };
     let own = all.into_iter().filter(|method| is_named(method.id())).map(|method| {
         let method = seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method);
         (method.id().to_owned(), method)
