@@ -12,7 +12,7 @@ use simulate::{Manoeuvre, Purpose};
 use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::figures::Figures;
+use crate::figures::{self, Figures};
 use crate::helm_replay::{self, SteeredZigZag};
 use crate::interval::{PredictionInterval, band};
 use crate::line::StraightLine;

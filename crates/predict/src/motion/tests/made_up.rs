@@ -12,10 +12,12 @@ use std::sync::Arc;
 use trial::{Channel, Columns, Origin, Trial};
 
 use super::{changed, mirrored, sd};
+use crate::identified_ship::IdentifiedShip;
 use crate::motion::planar::pooled;
 use crate::motion::{
     COEFFICIENTS, MotionError, MotionOutput, Planar, PlanarCoefficients, PlanarShip, SYMBOLS, fit, track,
 };
+use crate::testing;
 
 const LENGTH: f64 = 7.0;
 const SPEED: f64 = 1.2;
