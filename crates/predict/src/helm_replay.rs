@@ -51,7 +51,7 @@ impl SteeredZigZag {
                 .map(|(read, nominal)| if (read - nominal).abs() < NOMINAL * nominal { nominal } else { read }),
             None => [rudder, heading],
         };
-        let yaw_rate = match measured.approach_yaw_rate() {
+        let yaw_rate = match measured.straight_yaw_rate() {
             // A slope that is read off a few headings is not known well.
             Some(rate) => {
                 let known = approach.powi(2) + rate.sd.unwrap_or(0.0).powi(2);

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use estimation::statistics::upper_median;
 use report::number::fixed;
-use ship::Particulars;
 use ship::angle::KNOT;
+use ship::{Particulars, ShortNumber};
 use trial::file::{STDIN, called};
 use trial::find::FoundManoeuvre;
 use trial::{Channel, Log, Manoeuvre, Origin, ReadRecord, Sidecar, Trial};
@@ -264,7 +264,7 @@ pub fn warn_of_no_track(shown: &RecordFacts, warnings: &mut Vec<String>) {
 
 /// What a negative dead time of so many seconds says, and what mends it.
 pub fn rudder_logged_late(late: f64) -> String {
-    let late = fixed(late, 1);
+    let late = ShortNumber::rounded(late, 2);
     format!(
         "the dead time is −{late} s, which no steering gear has: a rudder logged {late} s late; write `late-s = {late}` \
          under [rudder] in a sidecar NAME.trial.toml"

@@ -203,14 +203,18 @@ pub const STRAIGHT_APPROACH: f64 = 0.1;
 const READ: f64 = 2.0;
 
 impl ZigZag {
-    /// Yaw rate at the end of a straight approach, rad/s: that at the first execute, where it is at most
-    /// [`STRAIGHT_APPROACH`] of the largest but for the error of its readings. `None` for a record that begins in a
-    /// turn or within the trial.
-    pub fn approach_yaw_rate(&self) -> Option<Quantity> {
+    /// Yaw rate at the first execute, rad/s, where the ship goes straight: it is at most [`STRAIGHT_APPROACH`] of the
+    /// largest but for the error of its readings. `None` for a record that begins in a turn or within the trial.
+    pub fn straight_yaw_rate(&self) -> Option<Quantity> {
         self.side?;
         let (rate, largest) = (self.executes.first()?.yaw_rate?, self.largest_yaw_rate?);
         let limit = STRAIGHT_APPROACH * largest.value + READ * rate.sd.unwrap_or(0.0);
         (rate.value.abs() <= limit).then_some(rate)
+    }
+
+    /// The same where the record shows the approach before it.
+    pub fn approach_yaw_rate(&self) -> Option<Quantity> {
+        self.straight_yaw_rate().filter(|_| self.base_course.source == BaseCourseSource::Approach)
     }
 
     /// Whether the record begins within the trial, so that its first execute is not known.
