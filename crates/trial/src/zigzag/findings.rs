@@ -200,7 +200,7 @@ pub struct ZigZag {
 pub const STRAIGHT_APPROACH: f64 = 0.1;
 
 /// Standard deviations of a yaw rate by which it may be off for its readings alone.
-const READ: f64 = 2.0;
+const READ: f64 = 3.0;
 
 impl ZigZag {
     /// Yaw rate at the first execute, rad/s, where the ship goes straight: it is at most [`STRAIGHT_APPROACH`] of the
