@@ -19,6 +19,10 @@ use crate::answer::pooled_rms;
 /// What is not predicted where nothing is known of speed and drift.
 const NO_MOTION: &str = "speed loss and drift are not told by these records, and no track can be predicted";
 
+/// The same where there is a speed and neither sway nor positions.
+const NO_DRIFT: &str = "a speed alone does not tell drift, so no track is predicted, only the loss of speed; give positions \
+                        (north_m, east_m) or the sway velocity (sway_m_s)";
+
 /// What records show of a ship, whatever model is fitted to them: read once for all of its answers.
 #[derive(Debug, Clone)]
 pub struct RecordFacts<'a> {
@@ -73,11 +77,7 @@ impl<'a> RecordFacts<'a> {
         if self.hull.is_none() && self.trials.iter().all(is_told) {
             match motion::fit(self.trials, length) {
                 Ok(planar) if loses_speed(&planar) => {
-                    let no_drift = (!planar.tells_drift()).then(|| {
-                        "a speed alone does not tell drift, so no track is predicted, only the loss of speed; give \
-                         positions (north_m, east_m) or the sway velocity (sway_m_s)"
-                    });
-                    self.no_track = no_drift.map(str::to_owned);
+                    self.no_track = (!planar.tells_drift()).then(|| NO_DRIFT.to_owned());
                     self.motion = Some(planar);
                 }
                 Ok(_) => self.no_track = Some(format!("{NO_MOTION}: the fitted ship loses no speed in a turn")),
