@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use estimation::statistics::upper_median;
-use ship::Particulars;
+use report::number::fixed;
 use ship::angle::KNOT;
+use ship::{Particulars, ShortNumber};
 use trial::file::{STDIN, called};
 use trial::find::FoundManoeuvre;
 use trial::{Channel, Log, Manoeuvre, Origin, ReadRecord, Sidecar, Trial};
@@ -228,7 +229,7 @@ fn ask(log: &Log, path: &Path, several: &[(usize, &FoundManoeuvre)]) -> Failure 
 /// A time of a log for people: seconds, and what the clock shows.
 pub fn at(log: &Log, time: f64) -> String {
     let clock = log.clock().map(|clock| format!(" ({})", clock.at(time)));
-    format!("{} s{}", report::number::fixed(time, 1), clock.unwrap_or_default())
+    format!("{} s{}", fixed(time, 1), clock.unwrap_or_default())
 }
 
 /// Length and approach speed from the options; the speed from the record where it is not given.
@@ -251,16 +252,23 @@ fn ship(
     };
     warnings.push(format!(
         "{file}: the approach speed is taken from the record, {} kn in its first tenth",
-        report::number::fixed(speed / KNOT, 2)
+        fixed(speed / KNOT, 2)
     ));
     Ok(Some(Particulars { length, speed }))
 }
 
 /// Says why records that have a speed or positions tell no track.
 pub fn warn_of_no_track(shown: &RecordFacts, warnings: &mut Vec<String>) {
-    warnings.extend(shown.no_track().map(|why| {
-        format!("speed loss and drift are not told by these records, and no track can be predicted: {why}")
-    }));
+    warnings.extend(shown.no_track().map(str::to_owned));
+}
+
+/// What a negative dead time of so many seconds says, and what mends it.
+pub fn rudder_logged_late(late: f64) -> String {
+    let late = ShortNumber::rounded(late, 2);
+    format!(
+        "the dead time is −{late} s, which no steering gear has: a rudder logged {late} s late; write `late-s = {late}` \
+         under [rudder] in a sidecar NAME.trial.toml"
+    )
 }
 
 /// The same record counts only once: given twice for identification its errors come out too small, and on a record that

@@ -257,12 +257,6 @@ impl Analysis {
         )
     }
 
-    /// Root mean square yaw rate with which the fitted records begin, rad/s.
-    pub fn initial_yaw_rate(&self) -> f64 {
-        let squares = self.identification.iter().map(|one| one.after.replay.initial()[1].powi(2));
-        (squares.sum::<f64>() / self.identification.len() as f64).sqrt()
-    }
-
     /// The average on a further trial, in a calm and perfectly recorded, from the best initial state near `start`: its
     /// band is that of the errors of parameters and structures alone. `None` when no replay is finite.
     pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {

@@ -4,6 +4,7 @@
 use identify::estimate::Uncertainty;
 use identify::recommended::Recommendation;
 use identify::replay::replay;
+use identify::suspicion::suspicion;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
@@ -115,7 +116,20 @@ pub fn fit(
     if entries.iter().all(|entry| entry.parameters.is_none()) {
         return Err(unusable(&records[0], &entries, warnings));
     }
-    let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &ZigZag::of(trial))).collect();
+    let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|own| own.K().sd.is_some());
+    warnings.extend(surest.and_then(|estimate| suspicion(estimate, ship, records)));
+    let of_record = |trial: &Trial| {
+        let zigzag = ZigZag::of(trial);
+        if zigzag.as_ref().is_ok_and(|zigzag| zigzag.begins_at_reversal) {
+            warnings.push(format!(
+                "{}: the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier, \
+                 with --from",
+                file_of(trial).0
+            ));
+        }
+        trial_entry(trial, &zigzag)
+    };
+    let records: Vec<TrialEntry> = records.iter().map(of_record).collect();
     let shown = RecordFacts::of(trials).with_motion();
     warn_of_no_track(&shown, warnings);
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {

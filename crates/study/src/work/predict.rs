@@ -19,7 +19,7 @@ use trial::{Conditions, Manoeuvre, Trial, file};
 
 use crate::options::{PredictRequest, ReadingOptions};
 use crate::progress;
-use crate::records::file_of;
+use crate::records::{file_of, rudder_logged_late};
 
 /// Methods of fit.json in the order in which they are asked; those that are not named come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
@@ -99,6 +99,9 @@ impl StoredModel {
                  of such models held less often than others, so trace again with --without-effect sway_coupling_measured"
             ));
         }
+        if let Some(late) = known.rudder_logged_late() {
+            warnings.push(format!("{shown}: {}; she is steered without it", rudder_logged_late(late)));
+        }
         let known = if calm { known.in_calm() } else { Ok(known) };
         Ok(Self { known: known.map_err(|error| refuse(error.to_string()))?, file: shown.to_owned(), method })
     }
@@ -149,7 +152,16 @@ fn predictions(
     let (mut predictions, mut lost) = (Vec::new(), None);
     for kind in &manoeuvres(request) {
         match mixture.predict(kind, request.draws as usize, true) {
-            Ok(prediction) => predictions.push(prediction),
+            Ok(prediction) => {
+                warnings.extend(prediction.undetermined.iter().map(|(name, interval)| {
+                    let [low, high] = interval.ci90.map(|end| fixed(end, interval.decimals()));
+                    format!(
+                        "{file}: {kind}: {name} is left out: nine tenths of the drawn ships lie from {low} to {high}, so \
+                         the records do not tell it; fit records with positions (north_m, east_m) or sway_m_s"
+                    )
+                }));
+                predictions.push(prediction);
+            }
             // One manoeuvre that the model cannot make says nothing of the others.
             Err(error @ PredictError::Lost { .. }) => {
                 warnings.push(format!("{file}: {error}; it is left out"));

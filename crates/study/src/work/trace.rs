@@ -4,6 +4,7 @@
 use ::trace::{Analysis, Settings, TraceError};
 use campaign::folder::ResultFolder;
 use campaign::known::{self, RecordFacts};
+use identify::suspicion::suspicion;
 use scenario::failure::Failure;
 use trial::{Channel, Trial};
 
@@ -13,7 +14,7 @@ use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
 use crate::documents::{self, missing_moment};
 use crate::options::{TraceRequest, Withheld};
 use crate::progress;
-use crate::records::{file_of, names, warn_of_no_track};
+use crate::records::{file_of, names, rudder_logged_late, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
 
 /// A trace before it is written: its document, and the tables of its curves under the names of their files.
@@ -59,6 +60,7 @@ pub fn trace(
     let RescaledRecords { trials, others: held_out, .. } = together;
     let shown = RecordFacts::of(&trials).with_motion();
     warn_of_no_track(&shown, warnings);
+    warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
     let all = records.iter().chain(others);
     let names = names(trials.iter().chain(&held_out).map(Trial::name));
     let entry = |((number, own), name): ((usize, &Trial), &String)| RecordEntry {
@@ -86,8 +88,10 @@ pub fn trace(
         tables.push((entry.curves.clone(), missing_moment::over_channels(missing)));
         moments.push(entry);
     }
+    let ship = known::of_analysis(&analysis, &shown);
+    warnings.extend(ship.rudder_logged_late().map(rudder_logged_late));
     let document = TraceDocument {
-        ship: known::of_analysis(&analysis, &shown),
+        ship,
         records: entries,
         missing_moment: moments,
         scales,
