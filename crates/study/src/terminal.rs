@@ -45,7 +45,7 @@ impl Observer for Terminal {
     }
 
     fn warn(&self, line: &str) {
-        screen::warn(&format!("warning: {line}"));
+        self.note(&format!("warning: {line}"));
     }
 
     fn is_asked_to_stop(&self) -> bool {

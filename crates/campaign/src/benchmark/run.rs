@@ -67,6 +67,8 @@ pub fn run(
     observer.begin(work.len() as u64, 0);
     let answer = |(fit, method): &(&SharedFit, &BenchMethod)| {
         let answers = (!observer.is_asked_to_stop()).then(|| answers(fit, method));
+        let notice = method.outside().and_then(|outside| outside.notice());
+        notice.iter().for_each(|notice| observer.warn(&format!("{}: {notice}", method.label())));
         observer.advance();
         answers
     };

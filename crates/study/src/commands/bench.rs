@@ -9,10 +9,12 @@ use campaign::benchmark::{BenchDocument, BenchMethod, BenchTask, Definition, Rec
 use campaign::folder::ResultFolder;
 use campaign::outside::keep_log;
 use clap::Args;
+use clap::builder::StringValueParser;
 use report::Theme;
 use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
 
+use crate::completed::{self, completed};
 use crate::interrupt;
 use crate::options::{Common, FigureOptions};
 use crate::outside::{self, NamedCommand};
@@ -46,13 +48,21 @@ pub struct BenchRequest {
     #[arg(long, value_name = "DIR")]
     pub data: Vec<PathBuf>,
     /// Methods that take part [default: all]
-    #[arg(long = "method", value_name = "ID")]
+    #[arg(
+        long = "method", value_name = "ID",
+        value_parser = completed(StringValueParser::new(), completed::competitors),
+        hide_possible_values = true
+    )]
     pub methods: Vec<String>,
     /// An outside estimator that takes part as well: what it is called, and the command that starts it
     #[arg(long, value_name = "LABEL=COMMAND")]
     pub external: Vec<NamedCommand>,
     /// Tasks that are set [default: all]
-    #[arg(long = "task", value_name = "ID", value_parser = task)]
+    #[arg(
+        long = "task", value_name = "ID",
+        value_parser = completed(task, completed::tasks),
+        hide_possible_values = true
+    )]
     pub tasks: Vec<BenchTask>,
     /// Sets of records that are used [default: all]
     #[arg(long = "set", value_name = "NAME")]

@@ -1,16 +1,14 @@
 //! `study find`: the manoeuvres inside long logs.
 
-use std::path::Path;
-
 use report::Table;
 use report::number::{MISSING, fixed, optional};
-use serde_json::{Value, json};
 use ship::angle::to_deg;
 use trial::Log;
 use trial::file::called;
 use trial::find::FoundManoeuvre;
 
 use crate::documents;
+use crate::documents::find::{FindAnswer, LogEntry};
 use crate::options::{Common, FindRequest, Format};
 use crate::records::{expand, manoeuvres, open};
 use crate::screen;
@@ -31,7 +29,10 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         let file = called(file);
         let found = manoeuvres(&log);
         if common.format == Format::Json {
-            logs.push(entry(file, &log, &found));
+            logs.push(LogEntry::of(file, &log, &found));
+            continue;
+        }
+        if common.is_silent() {
             continue;
         }
         let table = common.format.render(&table(&log, &found));
@@ -54,30 +55,10 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
     if common.format == Format::Json {
-        documents::say("find/1", json!({ "logs": logs }))?;
+        documents::say(&FindAnswer { logs })?;
     }
-    screen::warn_of(&warnings);
+    screen::warn_of(common, &warnings);
     Ok(())
-}
-
-/// A log with its manoeuvres for a program.
-fn entry(file: &Path, log: &Log, found: &[FoundManoeuvre]) -> Value {
-    let clock = |time: f64| log.clock().map(|clock| clock.at(time).to_string());
-    let manoeuvre = |(number, one): (usize, &FoundManoeuvre)| {
-        let [rudder, heading] = one.angles().map(|angle| angle.map(to_deg));
-        json!({
-            "trial": number, "kind": one.name(), "from_s": one.from, "until_s": one.until,
-            "clock": clock(one.from).zip(clock(one.until)), "executes": one.executes,
-            "rudder_deg": rudder, "heading_deg": heading, "remarks": one.quality.remarks(),
-        })
-    };
-    let manoeuvres: Vec<Value> = (1..).zip(found).map(manoeuvre).collect();
-    let (first, last) = (log.time()[0], log.time()[log.time().len() - 1]);
-    let date = log.clock().and_then(|clock| clock.date_at(first)).map(|day| day.to_string());
-    json!({
-        "file": file.display().to_string(), "rows": log.time().len(), "duration_s": last - first, "date": date,
-        "manoeuvres": manoeuvres,
-    })
 }
 
 fn table(log: &Log, found: &[FoundManoeuvre]) -> Table {

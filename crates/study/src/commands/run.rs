@@ -7,9 +7,9 @@ use campaign::folder::ResultFolder;
 use campaign::task::{Shard, default_folder};
 use scenario::Scenario;
 use scenario::failure::Failure;
-use serde_json::json;
 
 use super::reply;
+use crate::documents::answers::ShardAnswer;
 use crate::options::{Common, RunRequest};
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
@@ -26,5 +26,5 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
     }
     let place = folder.path().display().to_string();
     let line = format!("shard {shard} of {} is in {place}; `study merge` joins all {}", scenario.name, shard.of);
-    reply(common, "shard/1", json!({ "folder": place, "manifest": stored.manifest }), &line)
+    reply(common, &ShardAnswer { folder: place, manifest: &stored.manifest }, &line)
 }

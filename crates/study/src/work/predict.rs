@@ -51,7 +51,7 @@ impl StoredModel {
     ///
     /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Self, Failure> {
-        let shown = path.display().to_string();
+        let shown = file::called(path).display().to_string();
         name::of_file(path)?;
         let text =
             file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))?;
