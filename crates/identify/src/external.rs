@@ -21,6 +21,7 @@ use crate::estimate::Estimate;
 use crate::identifier::{Identifier, Opener, Outside};
 use crate::settings::{SettingsError, require};
 use pool::ProcessPool;
+use process_error::ProcessError;
 
 mod answer;
 mod place;

@@ -1,5 +1,7 @@
 //! `study find`: the manoeuvres inside long logs.
 
+use std::path::PathBuf;
+
 use report::Table;
 use report::number::{MISSING, fixed, optional};
 use ship::angle::to_deg;
@@ -14,24 +16,43 @@ use crate::records::{expand, manoeuvres, open};
 use crate::screen;
 use scenario::failure::Failure;
 
-/// Prints the manoeuvres of every log.
+/// The logs of a request.
 ///
-/// Fails when a log cannot be read.
-pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
+/// Fails when a folder of them cannot be listed, and when a file is to be joined with several.
+fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
     let files = expand(&request.logs)?;
     if files.len() > 1 && !request.with_columns.is_empty() {
         return Err(Failure::input(format!("--with-columns is for one log, {} are given; give one", files.len())));
     }
+    Ok(files)
+}
+
+/// The manoeuvres of every log, for other programs.
+///
+/// Fails when a log cannot be read.
+pub fn found(request: &FindRequest, warnings: &mut Vec<String>) -> Result<FindAnswer, Failure> {
+    let one = |file: PathBuf| {
+        let log = open(&file, request.columns.as_deref(), &request.with_columns, warnings)?;
+        Ok(LogEntry::of(called(&file), &log, &manoeuvres(&log)))
+    };
+    Ok(FindAnswer { logs: files(request)?.into_iter().map(one).collect::<Result<_, Failure>>()? })
+}
+
+/// Prints the manoeuvres of every log.
+///
+/// Fails when a log cannot be read.
+pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
     let mut warnings = Vec::new();
-    let mut logs = Vec::new();
+    if common.format == Format::Json {
+        documents::say(&found(request, &mut warnings)?)?;
+        screen::warn_of(common, &warnings);
+        return Ok(());
+    }
+    let files = files(request)?;
     for file in &files {
         let log = open(file, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
         let file = called(file);
         let found = manoeuvres(&log);
-        if common.format == Format::Json {
-            logs.push(LogEntry::of(file, &log, &found));
-            continue;
-        }
         if common.is_silent() {
             continue;
         }
@@ -53,9 +74,6 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         let remarks = remarked.map(|(number, one)| format!("{number}: {}\n", one.quality.remarks().join(" ")));
         let remarks: String = remarks.collect();
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
-    }
-    if common.format == Format::Json {
-        documents::say(&FindAnswer { logs })?;
     }
     screen::warn_of(common, &warnings);
     Ok(())

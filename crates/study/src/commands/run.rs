@@ -20,7 +20,7 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
     let shard = request.shard.unwrap_or(Shard::WHOLE);
     let theme = request.style.style.theme()?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&scenario.name, shard)))?;
-    let stored = collect(&scenario, shard, &folder, request.restart, &Terminal::new(common.quiet))?;
+    let stored = collect(&scenario, shard, &folder, request.restart, &Terminal::new("trials", common.quiet))?;
     if shard == Shard::WHOLE {
         return publish(&stored, &folder, (&theme, request.style.figures), common);
     }

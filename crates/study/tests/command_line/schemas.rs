@@ -65,7 +65,11 @@ fn check(root: &Value, part: &Value, value: &Value) -> Result<(), String> {
             }
             "items" => {
                 let mut items = value.as_array().into_iter().flatten().enumerate();
-                items.try_for_each(|(place, item)| within(&place, check(root, limit, item)))?;
+                // One schema for all, or one for each place.
+                let of = |place: usize| limit.as_array().map_or(Some(limit), |limits| limits.get(place));
+                items.try_for_each(|(place, item)| {
+                    of(place).map_or(Ok(()), |own| within(&place, check(root, own, item)))
+                })?;
                 true
             }
             "properties" | "additionalProperties" => {
