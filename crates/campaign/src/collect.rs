@@ -55,8 +55,10 @@ pub fn collect(
     if let Some(stored) = store::manifest_of_rows(folder.path())? {
         is_same(&stored, &manifest, folder.path())?;
         keep()?;
-        let _outside = RunningEstimators::begin(scenario, folder, observer)?;
-        return look_again(scenario, manifest, folder, observer);
+        let outside = RunningEstimators::begin(scenario, folder, observer)?;
+        let stored = look_again(scenario, manifest, folder, observer);
+        outside.tell(observer);
+        return stored;
     }
     let design = Design::of(scenario);
     let layout = RowLayout::of(&design);

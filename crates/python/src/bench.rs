@@ -27,7 +27,7 @@ pub fn bench(
     let work = move || {
         let words = words.into_iter().chain([String::from("--")]).chain(definition);
         let asked: BenchRequest = request(words.collect())?;
-        let method = |(label, function)| BenchMethod::new::<String>(label, Arc::new(PyIdentifier(function)));
+        let method = |(label, function): (String, _)| BenchMethod::new(label, Arc::new(PyIdentifier(function)));
         let own = own.into_iter().map(method).collect();
         let results = measure(&asked, seed, own, observer.as_ref(), |_, _| Ok(()))?;
         let text = results.json().on("describe", "bench.json".as_ref())?;

@@ -275,7 +275,7 @@ TIMES = ("t", "t_s", "t_ms", "t_min", "time", "timestamp", "datetime", "utc", "d
 def _columns(frame: Any) -> dict[str, Any]:
     """The columns of a table, the dates of its index before them."""
     columns = {str(key): frame[key] for key in frame.columns}
-    index = getattr(frame, "index", None)
+    index: Any = getattr(frame, "index", None)
     if hasattr(index, "tz_localize") and not any(name.lower() in TIMES for name in columns):
         return {"time": index.tz_localize(None), **columns}
     return columns
