@@ -379,6 +379,12 @@ pub enum Described {
     Bench,
     /// Definition of a benchmark
     BenchDefinition,
+    /// curves.json of a fit
+    FitCurves,
+    /// cells.json of a study
+    Cells,
+    /// showcase.json of a study
+    Showcase,
     /// Style of figures
     Style,
     /// trials.toml, beside simulated records

@@ -2,7 +2,9 @@
 
 use campaign::answers::Trials;
 use campaign::benchmark::{BenchDocument, DefinitionWire};
+use campaign::design::Design;
 use campaign::manifest::Manifest;
+use campaign::showcase::Showcase;
 use clap::Args;
 use predict::PredictDocument;
 use report::Style;
@@ -19,7 +21,7 @@ use crate::documents::answers::{
 };
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
-use crate::documents::fit::FitDocument;
+use crate::documents::fit::{FitCurves, FitDocument};
 use crate::documents::trace::TraceDocument;
 use crate::documents::truth::TruthDocument;
 use crate::options::{Common, Described};
@@ -49,6 +51,9 @@ pub fn schema(what: Described) -> Schema {
         Described::Manifest => of::<Manifest>(),
         Described::Bench => of::<BenchDocument>(),
         Described::BenchDefinition => read::<DefinitionWire>(),
+        Described::FitCurves => of::<FitCurves>(),
+        Described::Cells => of::<Design>(),
+        Described::Showcase => of::<Vec<Showcase>>(),
         Described::Style => read::<Style>(),
         Described::Trials => of::<Trials>(),
         Described::Truth => of::<TruthDocument>(),

@@ -135,6 +135,15 @@ pub fn hold_below(folder: &Path) {
                 let Ok(document) = serde_json::from_str(&text) else { continue };
                 hold(name.trim_end_matches(".json"), &path, &document);
             }
+            "cells.json" | "showcase.json" => {
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                serde_json::from_str(&text).iter().for_each(|own| hold(name.trim_end_matches(".json"), &path, own));
+            }
+            // That of a prediction has no schema.
+            "curves.json" if folder.join("fit.json").is_file() => {
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                serde_json::from_str(&text).iter().for_each(|own| hold("fit-curves", &path, own));
+            }
             "manifest.toml" => {
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
                 let Some(manifest) = of_toml(&text) else { continue };
