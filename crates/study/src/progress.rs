@@ -2,7 +2,7 @@
 //! with the time to expect, where that is long.
 
 use std::io::IsTerminal;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
@@ -38,11 +38,15 @@ pub fn busy(what: &'static str, quiet: bool) -> ProgressBar {
 /// Time to expect, s, from which it is said where no bar is seen.
 const LONG: f64 = 10.0;
 
+/// Time after which the steps so far are taken for what comes: the first ones of many are slower.
+const ENOUGH: Duration = Duration::from_secs(1);
+
 /// A known number of steps that take about the same time.
 pub struct Steps {
     bar: ProgressBar,
     what: &'static str,
-    left: u64,
+    most: u64,
+    done: AtomicU64,
     side_by_side: usize,
     begin: Instant,
     is_told: AtomicBool,
@@ -54,20 +58,22 @@ impl Steps {
         Self {
             bar: of(what, most, quiet).with_position(done).with_elapsed(Duration::ZERO),
             what,
-            left: most.saturating_sub(done),
+            most: most.saturating_sub(done),
+            done: AtomicU64::new(0),
             side_by_side,
             begin: Instant::now(),
             is_told: AtomicBool::new(quiet || std::io::stderr().is_terminal()),
         }
     }
 
-    /// One more is done. The first one tells how long all will take.
+    /// One more is done. The first one that takes a second, or those of a second, tell how long all will take.
     pub fn advance(&self) {
         self.bar.inc(1);
-        if !self.is_told.swap(true, Ordering::Relaxed) {
-            forecast(self.what, self.left, self.side_by_side, self.begin.elapsed())
-                .iter()
-                .for_each(|line| screen::warn(line));
+        let (done, elapsed) = (self.done.fetch_add(1, Ordering::Relaxed) + 1, self.begin.elapsed());
+        if elapsed >= ENOUGH && !self.is_told.swap(true, Ordering::Relaxed) {
+            // Those that are under way are about as far as the first that is done.
+            let line = forecast(self.what, self.most, done.max(self.side_by_side as u64), elapsed);
+            line.iter().for_each(|line| screen::warn(line));
         }
     }
 
@@ -77,10 +83,10 @@ impl Steps {
     }
 }
 
-/// How long `left` steps will take of which the first took so long, where that is long.
-fn forecast(what: &str, left: u64, side_by_side: usize, first: Duration) -> Option<String> {
-    let seconds = first.as_secs_f64() * (left as f64 / side_by_side.max(1) as f64).ceil();
-    (seconds >= LONG).then(|| format!("{left} {what}: about {seconds:.0} s"))
+/// How long so many steps take of which some took so long, where that is long.
+fn forecast(what: &str, most: u64, done: u64, elapsed: Duration) -> Option<String> {
+    let seconds = elapsed.as_secs_f64() * (most as f64 / done as f64).max(1.0);
+    (seconds >= LONG).then(|| format!("{most} {what}: about {seconds:.0} s"))
 }
 
 #[cfg(test)]
@@ -89,10 +95,9 @@ mod tests {
 
     #[test]
     fn long_work_says_how_long() {
-        let said =
-            |left, side_by_side, first: f64| forecast("trials", left, side_by_side, Duration::from_secs_f64(first));
-        assert_eq!(said(1000, 4, 0.1).as_deref(), Some("1000 trials: about 25 s"));
-        assert_eq!(said(9, 2, 60.0).as_deref(), Some("9 trials: about 300 s"));
-        assert_eq!((said(1000, 16, 0.1), said(1, 1, 9.0), said(0, 1, 60.0)), (None, None, None));
+        let said = |most, done, elapsed: f64| forecast("trials", most, done, Duration::from_secs_f64(elapsed));
+        assert_eq!(said(1000, 40, 1.0).as_deref(), Some("1000 trials: about 25 s"));
+        assert_eq!(said(9, 2, 60.0).as_deref(), Some("9 trials: about 270 s"));
+        assert_eq!((said(1000, 160, 1.0), said(1, 1, 9.0)), (None, None));
     }
 }
