@@ -8,12 +8,12 @@ use ship::angle::KNOT;
 use ship::{Particulars, ShortNumber};
 use trial::file::{STDIN, called};
 use trial::find::FoundManoeuvre;
-use trial::{Channel, Log, Manoeuvre, Origin, ReadRecord, Sidecar, Trial};
+use trial::{Channel, Log, Manoeuvre, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
 use campaign::answers::TRIALS;
 use campaign::known::RecordFacts;
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::{Failure, FailureParts, OnPath};
 use scenario::name;
 
 /// Endings of files that a folder of records is looked through for.
@@ -86,10 +86,23 @@ pub fn open(
     let sidecar = own
         .or_else(|| columns.filter(|columns| !columns.is_dir()).map(Path::to_path_buf))
         .or_else(|| Sidecar::found_beside(path));
-    let mut log = Log::open(path, sidecar.as_deref(), others).map_err(Failure::input)?;
+    let mut log = Log::open(path, sidecar.as_deref(), others).map_err(refused)?;
     let found = std::mem::take(&mut log.warnings);
     warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", called(path).display())));
     Ok(log)
+}
+
+/// Why a file is no record, with the file told apart.
+fn refused(error: ReadError) -> Failure {
+    match error {
+        ReadError::Table { file, problem } => Failure::about(&file, problem),
+        ReadError::Sidecar(error) => {
+            let SidecarError { file, line, problem } = &error;
+            let (file, problem) = (Some(file.display().to_string()), problem.to_string());
+            let parts = FailureParts { file, line: *line, problem, ..FailureParts::default() };
+            Failure { parts: Box::new(parts), ..Failure::input(&error) }
+        }
+    }
 }
 
 /// Reads the records that are to be identified: of each the part that was asked for, or its zig-zag.
@@ -132,12 +145,12 @@ fn read(path: &Path, options: &ReadingOptions, warnings: &mut Vec<String>) -> Re
 pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
     let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
     let log = if from.is_some() || until.is_some() {
-        log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(Failure::input)?
+        log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(refused)?
     } else {
         chosen(log, path, options.trial, warnings)?
     };
     let ship = ship(&log, path, options, warnings)?;
-    let ReadRecord { trial, warnings: found } = log.into_trial(ship).map_err(Failure::input)?;
+    let ReadRecord { trial, warnings: found } = log.into_trial(ship).map_err(refused)?;
     warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
     Ok(trial)
 }
@@ -214,7 +227,7 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
         at(&log, from),
         at(&log, until)
     ));
-    log.part(from, until).map_err(Failure::input)
+    log.part(from, until).map_err(refused)
 }
 
 /// The question which of several zig-zags is meant.

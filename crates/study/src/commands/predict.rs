@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use predict::PredictDocument;
 use predict::turn::{self, Current};
 use report::Theme;
+use trial::file::called;
 use trial::{Sidecar, Trial};
 
 use crate::documents::{self, CURVES, read_json};
@@ -92,6 +93,7 @@ pub fn show(
 
 /// Where the results go unless a folder is named: after the folder of the model, which has the name of its record.
 fn default_folder(model: &Path) -> PathBuf {
+    let model = called(model);
     let named = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let own =
         model.parent().and_then(named).or_else(|| model.file_stem().map(|stem| stem.to_string_lossy().into_owned()));

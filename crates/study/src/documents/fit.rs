@@ -188,7 +188,7 @@ pub struct SingleRecord {
 }
 
 /// `curves.json`: what the figures of a fit show, so that they can be drawn again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FitCurves {
     /// The records, first the fitted ones.
     pub records: Vec<FitRecord>,
@@ -197,7 +197,7 @@ pub struct FitCurves {
 }
 
 /// A record with its replays, in degrees.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FitRecord {
     /// A name that no other record has.
     pub name: String,
