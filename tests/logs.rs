@@ -90,7 +90,8 @@ fn said(text: &str) -> Result<([Quantity; 2], String), String> {
     let verdict = document.verdict.as_ref().expect("there is an answer");
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method).expect("it is among them");
     let own = entry.parameters.expect("it answered");
-    let words = format!("{}\n{}", fit_page::verdict(&document).unwrap_or_default(), document.all_warnings().join("\n"));
+    let words =
+        format!("{}\n{}", fit_page::verdict(&document).unwrap_or_default(), document.ranked_warnings().join("\n"));
     Ok(([own.k_per_s, own.t_s], words))
 }
 
