@@ -16,7 +16,7 @@ use identify::{Identifier, IdentifyError};
 use kempf_tests::outside::least_squares;
 use kempf_tests::records::Case;
 use scenario::Scenario;
-use study::options::{Common, FigureOptions, FitRequest, Format, ReadingOptions};
+use study::options::{Common, FigureOptions, FitRequest, Format, PageFigureOptions, PageFigures, ReadingOptions};
 use trial::Trial;
 
 const ESTIMATOR: &str = env!("CARGO_BIN_EXE_estimator");
@@ -90,8 +90,9 @@ fn refused(arguments: &[&str], timeout_s: f64) -> String {
 
 #[test]
 fn whatever_a_program_does_the_reason_is_told() {
-    assert_eq!(refused(&["silent"], 0.2), "no answer within 0.2 s");
-    assert_eq!(refused(&["deaf"], 0.2), "no answer within 0.2 s");
+    let silence = "no answer within 0.2 s; after 3 such silences in succession it is asked no more";
+    assert_eq!(refused(&["silent"], 0.2), silence);
+    assert_eq!(refused(&["deaf"], 0.2), silence);
     assert_eq!(refused(&["dies"], 5.0), "the process ended without an answer (exit status: 7)");
     assert_eq!(refused(&["cut"], 5.0), "the process ended without an answer (exit status: 0)");
     let (number, _) = protocol::question(4, &record(4), &[]);
@@ -103,6 +104,28 @@ fn whatever_a_program_does_the_reason_is_told() {
     let missing = Settings::new(["no-such-program-here"]).build(Path::new("")).expect("nothing is started");
     let error = missing.identify(&[record(1)]).expect_err("there is no such program").to_string();
     assert!(error.starts_with("outside: not started: "), "{error}");
+}
+
+/// The fourth trial is not waited for, and its reason is that of those that were; a study that ends forgets it.
+#[test]
+fn a_program_that_hangs_is_given_up_after_three_silences() {
+    let settings = Settings { timeout_s: 0.4, ..Settings::new([ESTIMATOR, "silent"]) };
+    let silent = settings.build(Path::new("")).expect("valid settings");
+    let outside = silent.outside().expect("it is another program");
+    let ask = || {
+        let start = std::time::Instant::now();
+        let error = silent.identify(&[record(4)]).expect_err("it does not answer");
+        (error.to_string(), start.elapsed().as_secs_f64())
+    };
+    let first: Vec<(String, f64)> = (0..3).map(|_| ask()).collect();
+    assert!(first.iter().all(|(_, seconds)| *seconds >= 0.4), "{first:?}");
+    let (reason, seconds) = ask();
+    assert!(reason == first[0].0 && seconds < 0.2, "{reason} after {seconds} s");
+    let notice = outside.notice().expect("it was given up");
+    assert!(notice.contains("silent") && notice.contains("given up"), "{notice}");
+    assert_eq!(outside.notice(), None, "it is told once");
+    outside.end();
+    assert!(ask().1 >= 0.4, "the next study asks again");
 }
 
 /// A script that waits for a program is ended with it.
@@ -360,7 +383,10 @@ fn a_fit_asks_other_programs_too() {
             speed_m_s: None,
             speed_kn: None,
         },
-        style: FigureOptions { paper: Some(60.0), dpi: 72.0, style: None },
+        style: PageFigureOptions {
+            style: FigureOptions { paper: Some(60.0), dpi: 72.0, style: None },
+            figures: PageFigures::All,
+        },
     };
     let out = desk.path().join("fit");
     let common = Common { out: Some(out.clone()), threads: None, seed: None, quiet: true, format: Format::Text };

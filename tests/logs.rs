@@ -90,7 +90,8 @@ fn said(text: &str) -> Result<([Quantity; 2], String), String> {
     let verdict = document.verdict.as_ref().expect("there is an answer");
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method).expect("it is among them");
     let own = entry.parameters.expect("it answered");
-    let words = format!("{}\n{}", fit_page::verdict(&document).unwrap_or_default(), document.all_warnings().join("\n"));
+    let words =
+        format!("{}\n{}", fit_page::verdict(&document).unwrap_or_default(), document.ranked_warnings().join("\n"));
     Ok(([own.k_per_s, own.t_s], words))
 }
 
@@ -112,7 +113,8 @@ fn two_troubles_are_refused_or_told_or_do_no_harm() {
         let is_wrong = found.iter().zip([voyage::K, voyage::T]).any(|(found, truth)| is_wrong(found, truth));
         let is_told = pair.iter().flat_map(|trouble| trouble.told).any(|word| words.contains(word));
         let [k, t] = found.map(|quantity| quantity.value);
-        (is_wrong && !is_told).then(|| format!("{} and {}: {k:.4} 1/s, {t:.1} s\n{words}\n", pair[0].name, pair[1].name))
+        (is_wrong && !is_told)
+            .then(|| format!("{} and {}: {k:.4} 1/s, {t:.1} s\n{words}\n", pair[0].name, pair[1].name))
     };
     let faults: Vec<String> = pairs.par_iter().filter_map(fault).collect();
     assert!(pairs.len() >= 60 && faults.is_empty(), "{} of {}\n{}", faults.len(), pairs.len(), faults.join("\n"));

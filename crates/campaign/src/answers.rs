@@ -21,7 +21,7 @@ use crate::task::Task;
 pub const TRIALS: &str = "trials.toml";
 
 /// What `trials.toml` says. A scenario can be read from it as from a manifest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub struct Trials {
     /// Name of the scenario.

@@ -21,6 +21,7 @@ use crate::outside::RunningEstimators;
 use crate::plan::TrialPlan;
 use crate::rows::{RowLayout, StudyRow};
 use crate::showcase;
+use crate::sources;
 use crate::store::{self, StoredStudy};
 use crate::task::{Shard, Task};
 use crate::unfinished::{self, Unfinished};
@@ -50,10 +51,14 @@ pub fn collect(
     if restart {
         discard(folder, observer)?;
     }
+    let keep = || sources::keep(scenario, folder);
     if let Some(stored) = store::manifest_of_rows(folder.path())? {
         is_same(&stored, &manifest, folder.path())?;
-        let _outside = RunningEstimators::begin(scenario, folder, observer)?;
-        return look_again(scenario, manifest, folder, observer);
+        keep()?;
+        let outside = RunningEstimators::begin(scenario, folder, observer)?;
+        let stored = look_again(scenario, manifest, folder, observer);
+        outside.tell(observer);
+        return stored;
     }
     let design = Design::of(scenario);
     let layout = RowLayout::of(&design);
@@ -67,7 +72,8 @@ pub fn collect(
             files::MANIFEST
         )));
     }
-    let _outside = RunningEstimators::begin(scenario, folder, observer)?;
+    keep()?;
+    let outside = RunningEstimators::begin(scenario, folder, observer)?;
     let mut plan = TrialPlan::new(scenario, shard);
     let mut unfinished = Unfinished::open(folder, manifest, &design, &layout, observer)?;
     let mut spots = SpotCheck::new(scenario, folder.path());
@@ -77,7 +83,7 @@ pub fn collect(
     if resumed > 0 {
         observer.note(&format!("going on after {resumed} of {} trials in {}", plan.most(), folder.path().display()));
     }
-    run_all(scenario, &mut plan, &mut unfinished, folder.path(), observer)?;
+    run_all((scenario, &outside), &mut plan, &mut unfinished, folder.path(), observer)?;
     finish(scenario, &plan, unfinished, folder)
 }
 
@@ -144,7 +150,7 @@ enum RunEnd {
 
 /// Runs what is left of a plan; rows go to a writer of their own while the next trials run.
 fn run_all(
-    scenario: &Scenario,
+    (scenario, outside): (&Scenario, &RunningEstimators),
     plan: &mut TrialPlan,
     unfinished: &mut Unfinished,
     folder: &Path,
@@ -156,7 +162,12 @@ fn run_all(
         let (send, receive) = sync_channel::<Vec<TrialOutcome>>(1);
         let writer = scope.spawn(move || unfinished.store(receive));
         let take = |outcomes| send.send(outcomes).is_ok();
-        let end = run_batches(plan, |tasks| watched(scope, scenario, tasks, observer), take);
+        let run = |tasks| {
+            let outcomes = watched(scope, scenario, tasks, observer);
+            outside.tell(observer);
+            outcomes
+        };
+        let end = run_batches(plan, run, take);
         drop(send);
         let written = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         observer.end();

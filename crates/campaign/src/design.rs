@@ -7,7 +7,7 @@ use scenario::{DesignCell, MethodName, Scenario, Words, name};
 use serde::{Deserialize, Serialize};
 
 /// What tables and figures need of a scenario.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Design {
     /// Names of the axes.
@@ -27,7 +27,7 @@ pub struct Design {
 }
 
 /// What is known of a cell without its rows.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellFacts {
     /// Labels of its points, one an axis.

@@ -268,8 +268,8 @@ impl TrialQuestion<'_> {
                     .collect(),
                 margin: margin(analysis, self.missing),
                 expected: self.reference.expected,
-                band_fitted: analysis.identification[0].after.coverage(),
-                band_held_out: validation.as_ref().and_then(ReplayResult::coverage),
+                band_fitted: analysis.identification[0].after.coverage().map(|own| own.share()),
+                band_held_out: validation.as_ref().and_then(ReplayResult::coverage).map(|own| own.share()),
             })),
             ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
         }

@@ -8,5 +8,7 @@ pub const TIMINGS: &str = "timings.csv";
 pub const MANIFEST: &str = "manifest.toml";
 /// The design: axes, methods, cells.
 pub const DESIGN: &str = "cells.json";
+/// Folder with the scripts that the study starts.
+pub const SOURCES: &str = "sources";
 /// The first trial of every cell in detail.
 pub const SHOWCASES: &str = "showcase.json";

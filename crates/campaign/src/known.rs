@@ -11,9 +11,17 @@ use ship::angle::{from_deg, to_deg};
 use trace::Analysis;
 use trace::analysis::Plausible;
 use trace::document::RecordNoiseEntry;
+use trial::zigzag::STRAIGHT_APPROACH;
 use trial::{Channel, Trial, ZigZag};
 
 use crate::answer::pooled_rms;
+
+/// What is not predicted where nothing is known of speed and drift.
+const NO_MOTION: &str = "speed loss and drift are not told by these records, and no track can be predicted";
+
+/// The same where there is a speed and neither sway nor positions.
+const NO_DRIFT: &str = "a speed alone does not tell drift, so no track is predicted, only the loss of speed; give positions \
+                        (north_m, east_m) or the sway velocity (sway_m_s)";
 
 /// What records show of a ship, whatever model is fitted to them: read once for all of its answers.
 #[derive(Debug, Clone)]
@@ -22,8 +30,8 @@ pub struct RecordFacts<'a> {
     gear: Option<KnownGear>,
     /// Noise of the readings of the heading, rad.
     reading_noise: Option<f64>,
-    /// Yaw rate at the first execute, rad/s.
-    approach: Option<f64>,
+    /// The zig-zag of every record that is one.
+    zigzags: Vec<Option<ZigZag>>,
     length: Option<f64>,
     speed: Option<f64>,
     motion: Option<Planar>,
@@ -41,7 +49,7 @@ impl<'a> RecordFacts<'a> {
             trials,
             gear: gear(trials, &zigzags),
             reading_noise: reading_noise(&zigzags),
-            approach: approach(&zigzags),
+            zigzags,
             length: particular(|own| own.length),
             speed: particular(|own| own.speed),
             motion: None,
@@ -68,34 +76,37 @@ impl<'a> RecordFacts<'a> {
         let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
         if self.hull.is_none() && self.trials.iter().all(is_told) {
             match motion::fit(self.trials, length) {
-                Ok(planar) if loses_speed(&planar) => self.motion = Some(planar),
-                Ok(_) => self.no_track = Some("the fitted ship loses no speed in a turn".to_owned()),
-                Err(error) => self.no_track = Some(error.to_string()),
+                Ok(planar) if loses_speed(&planar) => {
+                    self.no_track = (!planar.tells_drift()).then(|| NO_DRIFT.to_owned());
+                    self.motion = Some(planar);
+                }
+                Ok(_) => self.no_track = Some(format!("{NO_MOTION}: the fitted ship loses no speed in a turn")),
+                Err(error) => self.no_track = Some(format!("{NO_MOTION}: {error}")),
             }
         }
         self
     }
 
     /// What is known of the ship, when a model says the rest of it.
+    ///
+    /// `rates` are the yaw rates of its replays of the records, rad/s.
     fn with<'b>(
         &self,
         members: Vec<WeightedStructure>,
         noise: KnownNoise,
-        initial_yaw_rate: f64,
         rates: impl Iterator<Item = &'b [f64]>,
     ) -> IdentifiedShip {
-        let largest =
-            |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, value| most.max(value.abs()));
+        let rates: Vec<&[f64]> = rates.collect();
         // A hull leaves no residual that would tell the noise of a reading.
         let of_readings = self.hull.as_ref().and(self.reading_noise);
         IdentifiedShip {
             members,
             noise: KnownNoise { heading_sd_rad: of_readings.unwrap_or(noise.heading_sd_rad), ..noise },
             gear: self.gear,
-            approach_yaw_rate_rad_s: self.approach.unwrap_or(initial_yaw_rate),
+            approach_yaw_rate_rad_s: self.approach_yaw_rate(&rates),
             seen: ValidityRange {
-                rudder_rad: largest(&mut self.trials.iter().flat_map(|trial| trial.rudder().iter().copied())),
-                yaw_rate_rad_s: largest(&mut rates.flat_map(|rates| rates.iter().copied())),
+                rudder_rad: largest(self.trials.iter().flat_map(|trial| trial.rudder())),
+                yaw_rate_rad_s: largest(rates.into_iter().flatten()),
             },
             length_m: self.length,
             speed_m_s: self.speed,
@@ -103,6 +114,29 @@ impl<'a> RecordFacts<'a> {
             hull: self.hull.clone(),
         }
     }
+
+    /// Root mean square of the yaw rates at the ends of straight approaches, rad/s: of a zig-zag that at its first
+    /// execute, without what its reading errors make of it, of another record the first of its replay. Records that
+    /// begin in a turn have no part in it; 0 without any other.
+    fn approach_yaw_rate(&self, replays: &[&[f64]]) -> f64 {
+        let square = |(zigzag, rates): (&Option<ZigZag>, &&[f64])| match zigzag {
+            Some(zigzag) => {
+                let rate = zigzag.approach_yaw_rate()?;
+                Some(rate.value.powi(2) - rate.sd.unwrap_or(0.0).powi(2))
+            }
+            None => {
+                let first = *rates.first()?;
+                (first.abs() <= STRAIGHT_APPROACH * largest(*rates)).then_some(first * first)
+            }
+        };
+        let squares: Vec<f64> = self.zigzags.iter().zip(replays).filter_map(square).collect();
+        (squares.iter().sum::<f64>() / squares.len().max(1) as f64).max(0.0).sqrt()
+    }
+}
+
+/// Largest size of some values.
+fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
+    values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// What a method knows of the ship of some records; `None` for a method without a covariance.
@@ -121,7 +155,6 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
     ];
     let moment = kinds.into_iter().find_map(|(kind, name)| Some((kind, from_deg(told(name)?))));
     let (moment, moment_sd_rudder_rad) = moment.unwrap_or_default();
-    let initial: f64 = replays.iter().map(|replay| replay.initial()[1].powi(2)).sum();
     let member = WeightedStructure {
         weight: 1.0,
         effects: Vec::new(),
@@ -137,8 +170,7 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
         moment_sd_rudder_rad,
         moment_correlation_s: told("gusts_correlation_s"),
     };
-    let initial = (initial / replays.len() as f64).sqrt();
-    Some(facts.with(vec![member], noise, initial, replays.iter().map(|replay| replay.yaw_rate.as_slice())))
+    Some(facts.with(vec![member], noise, replays.iter().map(|replay| replay.yaw_rate.as_slice())))
 }
 
 /// What an analysis knows of the ship of its fitted records.
@@ -149,7 +181,7 @@ pub fn of_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
     let members = analysis.plausible().iter().map(member).collect();
     let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
     let noise = mean_noise(&analysis.document.noise);
-    let known = facts.with(members, noise, analysis.initial_yaw_rate(), rates);
+    let known = facts.with(members, noise, rates);
     match known.members.first() {
         Some(first) if first.effects.is_empty() && noise.moment != Moment::None => with_likelihood(known, facts),
         _ => known,
@@ -201,22 +233,8 @@ fn loses_speed(planar: &Planar) -> bool {
 /// record does not show it.
 fn reading_noise(zigzags: &[Option<ZigZag>]) -> Option<f64> {
     let square = |zigzag: &Option<ZigZag>| zigzag.as_ref()?.heading_noise.map(|noise| noise * noise);
-    mean(zigzags, square).map(f64::sqrt)
-}
-
-/// The mean over all records; `None` where one does not have the number.
-fn mean(zigzags: &[Option<ZigZag>], of: impl Fn(&Option<ZigZag>) -> Option<f64>) -> Option<f64> {
-    Some(zigzags.iter().map(of).sum::<Option<f64>>()? / zigzags.len() as f64)
-}
-
-/// Root mean square of the yaw rates at the first executes, rad/s, without what their reading errors make of it; `None`
-/// where a record does not show its first execute.
-fn approach(zigzags: &[Option<ZigZag>]) -> Option<f64> {
-    let square = |zigzag: &Option<ZigZag>| {
-        let rate = zigzag.as_ref().filter(|zigzag| !zigzag.begins_within_trial())?.executes.first()?.yaw_rate?;
-        Some(rate.value.powi(2) - rate.sd.unwrap_or(0.0).powi(2))
-    };
-    mean(zigzags, square).map(|square| square.max(0.0).sqrt())
+    let sum: Option<f64> = zigzags.iter().map(square).sum();
+    sum.map(|sum| (sum / zigzags.len() as f64).sqrt())
 }
 
 fn member(plausible: &Plausible) -> WeightedStructure {
@@ -331,6 +349,33 @@ mod tests {
         assert!((first.interval.median - 19.71).abs() < 0.5, "{:?}", first.interval);
         assert!(first.interval.ci90[1] - first.interval.ci90[0] < 1.5, "{:?}", first.interval);
         assert!(prediction.is_extrapolated(), "20 deg of rudder after 10");
+    }
+
+    /// A record cut within a turn says nothing of how straight an approach is: 1.97 L of the initial turning to the
+    /// limit of 2.5 are certain.
+    #[test]
+    fn a_record_that_begins_in_a_turn_says_nothing_of_the_approach() {
+        let whole = record(0.0);
+        let turning = whole.time().partition_point(|time| *time < 45.0);
+        let columns = trial::Columns {
+            time: whole.time()[turning..].to_vec(),
+            channels: [(Channel::Heading, whole.heading()), (Channel::Rudder, whole.rudder())]
+                .map(|(channel, values)| (channel, values[turning..].to_vec()))
+                .into(),
+            unknown: Vec::new(),
+        };
+        let ship = Particulars { length: 105.0, speed: 8.59 };
+        let cut = Trial::new("cut", whole.origin().clone(), columns).expect("a record").with_particulars(ship);
+        assert!(ZigZag::of(&cut).is_ok(), "the rest is a zig-zag");
+        let trials = [cut];
+        let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
+        let known = of_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
+        assert_eq!(known.approach_yaw_rate_rad_s, 0.0);
+        let kind: Manoeuvre = "initial-turning:10".parse().expect("known");
+        let prediction =
+            ShipMixture::new(vec![(known, 1.0)]).expect("sound").predict(&kind, 200, false).expect("a turn");
+        let lengths = &prediction.figures["initial_turning_lengths"];
+        assert_eq!(lengths.share_within(2.5), 1.0, "{:?}", lengths.interval);
     }
 
     #[test]

@@ -36,6 +36,7 @@ mod prediction_check;
 mod reference;
 pub mod rows;
 pub mod showcase;
+pub mod sources;
 pub mod statistics;
 pub mod stopping;
 pub mod store;

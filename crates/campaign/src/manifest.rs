@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::disk;
 use crate::files::MANIFEST;
 use crate::folder::ResultFolder;
+use crate::sources;
 use crate::task::Shard;
 use scenario::failure::{Failure, OnPath};
 use scenario::{Scenario, Words, identity};
@@ -43,6 +44,9 @@ pub struct Manifest {
     /// SHA-256 of the files a finished study is read from, by their names; of one in progress none.
     #[serde(default)]
     pub sha256: BTreeMap<String, String>,
+    /// Folder beside this file that stands for that of the scenario, where the study starts scripts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sources: Option<String>,
     /// The scenario file as it was read.
     pub scenario: String,
 }
@@ -93,6 +97,7 @@ impl Manifest {
             assumptions: scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect(),
             crates: env!("KEMPF_NUMERIC_CRATES").split_terminator(',').map(str::to_owned).collect(),
             sha256: BTreeMap::new(),
+            sources: sources::place(scenario),
             scenario: scenario.text.clone(),
         }
     }

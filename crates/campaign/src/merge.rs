@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use scenario::Scenario;
 use scenario::failure::Failure;
 
 use crate::collect::is_same;
 use crate::design::Design;
-use crate::files::ROWS;
+use crate::files::{MANIFEST, ROWS};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::rows::{RowLayout, RowWriter};
+use crate::sources;
 use crate::store::{self, StoredStudy};
 use crate::task::Shard;
 use crate::timings::Timings;
@@ -34,6 +36,9 @@ pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<StoredStudy, Fail
     design.cells.iter_mut().for_each(|cell| cell.trials = 0..0);
     let layout = RowLayout::of(&design);
     let mut writer = RowWriter::create(out, ROWS, &layout)?;
+    if manifest.sources.is_some() {
+        sources::keep(&Scenario::read(&folders[0].join(MANIFEST), None)?, out)?;
+    }
     let mut timings = Timings::default();
     let mut showcases = Vec::new();
     // One shard after the other: thousands of designs of thousands of cells do not fit into memory.

@@ -40,6 +40,14 @@ impl<'a> RunningEstimators<'a> {
     }
 }
 
+impl RunningEstimators<'_> {
+    /// Tells of those that were given up since this was asked last.
+    pub fn tell(&self, observer: &dyn Observer) {
+        let notices = self.0.iter().filter_map(|(method, outside)| Some((&method.label, outside.notice()?)));
+        notices.for_each(|(label, notice)| observer.warn(&format!("{label}: {notice}")));
+    }
+}
+
 impl Drop for RunningEstimators<'_> {
     fn drop(&mut self) {
         self.0.iter().for_each(|(_, outside)| outside.end());

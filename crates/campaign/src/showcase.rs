@@ -18,7 +18,7 @@ use crate::task::Task;
 use scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};
 
 /// The first trial of one cell.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Showcase {
     /// Title of the cell.
     pub title: String,

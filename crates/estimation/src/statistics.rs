@@ -33,6 +33,18 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     if part == 0.0 || low == high { low } else { low + part * (high - low) }
 }
 
+/// Interval of a share that was seen in `of` independent cases (Wilson 1927); `quantile` is that of the standard normal
+/// distribution, 1.96 for 95 %. From 0 to 1 of nothing.
+pub fn wilson(share: f64, of: f64, quantile: f64) -> [f64; 2] {
+    if of <= 0.0 {
+        return [0.0, 1.0];
+    }
+    let z2 = quantile * quantile;
+    let centre = (share + z2 / (2.0 * of)) / (1.0 + z2 / of);
+    let reach = quantile / (1.0 + z2 / of) * (share * (1.0 - share) / of + z2 / (4.0 * of * of)).sqrt();
+    [(centre - reach).max(0.0), (centre + reach).min(1.0)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,6 +55,13 @@ mod tests {
         assert_eq!(median(&mut [-3.0, -1.0, -2.0, -7.0]), Some(-2.5));
         assert_eq!(median(&mut []), None);
         assert_eq!([upper_median(&mut [3.0, 1.0, 2.0, 7.0]), upper_median(&mut [])], [Some(3.0), None]);
+    }
+
+    #[test]
+    fn shares_have_the_interval_of_wilson() {
+        let [low, high] = wilson(0.8, 10.0, 1.96);
+        assert!((low - 0.490).abs() < 1e-3 && (high - 0.943).abs() < 1e-3);
+        assert_eq!(wilson(0.0, 0.0, 1.96), [0.0, 1.0]);
     }
 
     #[test]

@@ -4,6 +4,9 @@
 //!
 //! A program works on one trial at a time, so there are never more processes of a command than threads that ask. An
 //! answer may depend on nothing but its question: then rows do not depend on the number of threads.
+//!
+//! A program that is silent three times in succession is given up. Questions after that fail at once, with the reason of
+//! those that were waited for: the rows of a program that always hangs are the same however many threads asked it.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,6 +21,7 @@ use crate::estimate::Estimate;
 use crate::identifier::{Identifier, Opener, Outside};
 use crate::settings::{SettingsError, require};
 use pool::ProcessPool;
+use process_error::ProcessError;
 
 mod answer;
 mod place;
@@ -76,13 +80,12 @@ impl Settings {
         }
         let holds = TIMEOUTS_S.contains(&timeout_s);
         require(holds, "timeout-s", ShortNumber(timeout_s), "a time from 0.01 to 86400 s")?;
-        Ok(External { timeout: Duration::from_secs_f64(timeout_s), pool: ProcessPool::of(command, folder) })
+        Ok(External { pool: ProcessPool::of(command, folder, Duration::from_secs_f64(timeout_s)) })
     }
 }
 
 /// An outside estimator with its settings.
 pub struct External {
-    timeout: Duration,
     pool: Arc<ProcessPool>,
 }
 
@@ -105,7 +108,11 @@ impl Identifier for External {
         let mut process = self.pool.take()?;
         loop {
             let before = process.answered();
-            let asked = process.ask(self.timeout, question.clone());
+            let asked = process.ask(self.pool.timeout(), question.clone());
+            match asked {
+                Err(ProcessError::Silent(_)) => self.pool.was_silent(),
+                _ => self.pool.was_answered(),
+            }
             match asked.and_then(|line| protocol::answer(&line, number)) {
                 Ok(answer) => {
                     self.pool.give_back(process);
@@ -136,6 +143,10 @@ impl Outside for External {
 
     fn find(&self) -> Result<(), String> {
         place::find(self.pool.command(), self.pool.folder())
+    }
+
+    fn notice(&self) -> Option<String> {
+        self.pool.notice()
     }
 
     fn log_to(&self, open: Opener) {

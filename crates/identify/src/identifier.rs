@@ -79,6 +79,9 @@ pub trait Outside {
     /// written up to a bounded size. Without one it is dropped.
     fn log_to(&self, open: Opener);
 
+    /// What a person should be told, once: that it was given up.
+    fn notice(&self) -> Option<String>;
+
     /// Ends the processes that wait for a trial, and the log with them.
     fn end(&self);
 }

@@ -42,6 +42,7 @@ pub mod savitzky_golay;
 mod scan;
 pub mod settings;
 pub mod srivc;
+pub mod suspicion;
 #[cfg(test)]
 mod testing;
 

@@ -26,7 +26,7 @@ use crate::{maximum_likelihood, output_error};
 const RANDOM: f64 = 0.33;
 
 /// Diagnostics of maximum likelihood that stand for a random moment.
-const MOMENTS: [&str; 3] =
+pub const MOMENTS: [&str; 3] =
     ["white_moment_rudder_deg_root_s", "moment_walk_rudder_deg_per_root_s", "gusts_sd_rudder_deg"];
 
 /// Why an answer is to be taken.

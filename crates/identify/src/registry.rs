@@ -62,6 +62,17 @@ methods! {
     in a folder: Recommended(recommended), External(external),
 }
 
+/// Ids of the methods that one record is worth, the best first. Without `srivc`, which comes to the answer of
+/// `output-error`, and `fourier-published`, whose T is biased whatever the noise.
+pub const USUAL: [&str; 6] = [
+    "output-error",
+    "maximum-likelihood",
+    "integral-least-squares",
+    "least-squares",
+    "fourier-projected",
+    "characteristic-points",
+];
+
 #[cfg(test)]
 mod tests {
     use crate::savitzky_golay::SavitzkyGolay;

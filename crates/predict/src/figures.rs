@@ -8,6 +8,7 @@ use ship::angle::to_deg;
 use simulate::Manoeuvre;
 use trial::manoeuvre::INITIAL_TURN;
 
+use crate::interval::PredictionInterval;
 use crate::motion::turning_circle;
 use crate::simulated_manoeuvre::{PlanarMotion, SimulatedManoeuvre};
 use crate::standard::EXECUTES;
@@ -65,22 +66,33 @@ fn initial_turning(passage: &SimulatedManoeuvre, turning: Option<f64>, particula
     [("initial_turning_time_s", turning)].into_iter().chain(lengths).collect()
 }
 
-/// Figures of the track of a turn that was begun at `execute` s, where there is one.
+/// Figures of the track of a turn that was begun at `execute` s, where there is one; the loss of speed alone where
+/// nothing is known of drift.
 pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Figures {
     let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Figures::default() };
     let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
     let found = turning_circle([&time, &passage.heading, &passage.yaw_rate], [track, velocity], execute);
     let lengths = |metres: Option<f64>| metres.map(|metres| metres / length);
+    let speed_loss = ("speed_loss_share", found.speed_ratio.map(|ratio| 1.0 - ratio));
+    if track.is_empty() {
+        return Figures::from([speed_loss]);
+    }
     Figures::from([
         ("advance_m", found.advance),
         ("advance_lengths", lengths(found.advance)),
         ("transfer_m", found.transfer),
         ("tactical_diameter_m", found.tactical_diameter),
         ("tactical_diameter_lengths", lengths(found.tactical_diameter)),
-        ("speed_loss_share", found.speed_ratio.map(|ratio| 1.0 - ratio)),
+        speed_loss,
         ("drift_angle_deg", found.drift_angle.map(|angle| to_deg(angle.abs()))),
         ("pivot_ahead_lengths", lengths(found.pivot_ahead)),
     ])
+}
+
+/// Whether an interval means something for a figure: the size of a turning circle is above zero.
+pub(crate) fn is_sound(name: &str, interval: &PredictionInterval) -> bool {
+    let is_size = ["advance", "transfer", "tactical_diameter"].iter().any(|size| name.starts_with(size));
+    !is_size || interval.ci90[0] > 0.0
 }
 
 /// Overshoots, executes and period of a zig-zag.

@@ -33,8 +33,8 @@ pub(crate) struct SteeredZigZag {
 }
 
 impl SteeredZigZag {
-    /// The zig-zag of a record; `approach` is the root mean square of the yaw rate with which records of the ship
-    /// begin, rad/s. `None` where the record begins within the trial, or has a single execute.
+    /// The zig-zag of a record; `approach` is the root mean square of the yaw rate at the end of a straight approach of
+    /// the ship, rad/s. `None` where the record begins within the trial, or has a single execute.
     pub fn of(measured: &Measured, approach: f64) -> Option<Self> {
         let side = measured.side?;
         let executes = &measured.executes;
@@ -51,12 +51,14 @@ impl SteeredZigZag {
                 .map(|(read, nominal)| if (read - nominal).abs() < NOMINAL * nominal { nominal } else { read }),
             None => [rudder, heading],
         };
-        // An approach is nearly straight, and a slope that is read off a few headings is not known well.
-        let yaw_rate = executes[0].yaw_rate.map_or(0.0, |rate| {
-            let doubt = rate.sd.unwrap_or(0.0);
-            let known = approach.powi(2) + doubt.powi(2);
-            if known > 0.0 { rate.value * approach.powi(2) / known } else { 0.0 }
-        });
+        let yaw_rate = match measured.straight_yaw_rate() {
+            // A slope that is read off a few headings is not known well.
+            Some(rate) => {
+                let known = approach.powi(2) + rate.sd.unwrap_or(0.0).powi(2);
+                if known > 0.0 { rate.value * approach.powi(2) / known } else { 0.0 }
+            }
+            None => executes[0].yaw_rate.map_or(0.0, |rate| rate.value),
+        };
         let kind = Manoeuvre::zig_zag(rudder, heading).to(side);
         Some(Self { kind, yaw_rate, rudder_rate: measured.rudder_rate })
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::motion::{IdentifiedHull, Planar};
 use serde::{Deserialize, Serialize};
 use ship::ResponseModel;
-use ship::effects::{self, Effect};
+use ship::effects::{self, Effect, SteeringLag};
 pub use trial::noise_model::Moment;
 
 use crate::error::PredictError;
@@ -83,7 +83,7 @@ pub struct IdentifiedShip {
     pub noise: KnownNoise,
     /// Steering gear; none where the records do not show it: the rudder then jumps.
     pub gear: Option<KnownGear>,
-    /// Root mean square of the yaw rate with which the records begin, rad/s.
+    /// Root mean square of the yaw rate at the end of straight approaches, rad/s; 0 where no record shows one.
     pub approach_yaw_rate_rad_s: f64,
     /// Where the ship was seen.
     pub seen: ValidityRange,
@@ -129,6 +129,18 @@ impl WeightedStructure {
             return wrong("the parameters `fitted` counts", expected, place + 1);
         }
         Ok(model)
+    }
+
+    /// Places among the parameters of the dead times of its effects.
+    pub(crate) fn dead_times(&self, model: &ResponseModel) -> Vec<usize> {
+        let named = (SteeringLag::DeadTime.id(), SteeringLag::DeadTime.form());
+        let mut next = ship::response::BASE_PARAMETERS;
+        let first = model.effects().iter().map(|effect| {
+            let first = next;
+            next += effect.parameters().len();
+            (effect, first)
+        });
+        first.filter(|(effect, _)| (effect.id(), effect.form()) == named).map(|(_, first)| first).collect()
     }
 }
 
@@ -223,6 +235,14 @@ impl IdentifiedShip {
             }
         }
         Ok(calm)
+    }
+
+    /// How much later than it acted the rudder was logged, s: a negative dead time of the most probable structure.
+    pub fn rudder_logged_late(&self) -> Option<f64> {
+        let likeliest = self.members.iter().max_by(|one, other| one.weight.total_cmp(&other.weight))?;
+        let places = likeliest.dead_times(&likeliest.model().ok()?);
+        let late = -places.iter().map(|place| likeliest.parameters[*place]).sum::<f64>();
+        (late > 0.0).then_some(late)
     }
 
     /// Whether the most probable structure has a term in the measured sway and no hull takes its place: a manoeuvre

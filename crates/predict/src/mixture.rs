@@ -58,6 +58,8 @@ struct DrawableStructure {
     model: ResponseModel,
     known: WeightedStructure,
     root: DMatrix<f64>,
+    /// Places of dead times among the parameters.
+    dead_times: Vec<usize>,
     /// The file it is from.
     file: usize,
 }
@@ -143,7 +145,8 @@ impl ShipMixture {
                     }
                 }
                 let root = root_of(&member.covariance)?;
-                parts.push(DrawableStructure { weight, model, known: member.clone(), root, file });
+                let dead_times = member.dead_times(&model);
+                parts.push(DrawableStructure { weight, model, known: member.clone(), root, dead_times, file });
             }
         }
         let motion = |(known, _): &(IdentifiedShip, f64)| match (&known.hull, &known.motion) {
@@ -188,10 +191,12 @@ impl ShipMixture {
         let part = if has(UncertaintySource::Structure) { self.chosen(number) } else { self.likeliest() };
         let known = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
-        let values = match has(UncertaintySource::Parameters) {
+        let mut values = match has(UncertaintySource::Parameters) {
             true => part.drawn(&mut rng),
             false => part.known.parameters.clone(),
         };
+        // Below zero it is the clock of a record, and no ship answers before its rudder moves.
+        part.dead_times.iter().for_each(|place| values[*place] = values[*place].max(0.0));
         let mut other = key.indexed(Purpose::Specification, 1);
         let [of_gear, of_rate]: [f64; 2] = std::array::from_fn(|_| other.sample(StandardNormal));
         let gear = known.gear.map_or_else(SteeringGear::default, |gear| {
@@ -325,6 +330,26 @@ mod tests {
         let simple = (0..1000).filter(|&k| is_simple(k)).count();
         assert!((240..=260).contains(&simple), "{simple}");
         assert!((0..100).all(|k| mixture.draw(k, &[]).response.parameters().len() == 4));
+    }
+
+    /// A rudder that was logged late gives a negative dead time; no ship has one.
+    #[test]
+    fn a_rudder_logged_late_is_told_and_steered_on_time() {
+        let mut known = testing::known();
+        let late = ship::effects::SteeringLag::DeadTime;
+        known.members[0].effects.push(crate::identified_ship::StoredEffect {
+            id: ship::effects::Effect::id(&late).into(),
+            form: ship::effects::Effect::form(&late).into(),
+            constants: Vec::new(),
+        });
+        known.members[0].parameters.push(-3.1);
+        assert_eq!(known.rudder_logged_late(), Some(3.1));
+        assert_eq!(testing::known().rudder_logged_late(), None);
+        let kind = "zig-zag:10/10".parse().expect("known");
+        let [own, late] = [testing::known(), known].map(|known| {
+            testing::mixture(known).predict(&kind, 40, false).expect("ships that come to the end of it").figures
+        });
+        assert_eq!(own["first_overshoot_deg"].interval, late["first_overshoot_deg"].interval);
     }
 
     #[test]

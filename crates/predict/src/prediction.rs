@@ -81,6 +81,9 @@ pub struct Prediction {
     pub figures: IndexMap<String, Predicted>,
     /// Draws that did not come to the end.
     pub lost: usize,
+    /// Sizes of a turning circle whose interval reaches below zero: the records do not tell them.
+    #[serde(skip)]
+    pub undetermined: Vec<(String, PredictionInterval)>,
     /// Its curves.
     #[serde(skip)]
     pub curves: ManoeuvreCurves,
@@ -140,7 +143,7 @@ impl ShipMixture {
         };
         let without_series = |number: u64, passage: SimulatedManoeuvre| {
             let largest_rate = passage.largest_rate();
-            let track = passage.way.filter(|_| number < TRACKS).map(|way| way.track);
+            let track = passage.track().filter(|_| number < TRACKS).map(<[_]>::to_vec);
             (passage.heading, largest_rate, track)
         };
         let all = drawn(draws, |number| {
@@ -161,8 +164,14 @@ impl ShipMixture {
             tracks: made.into_iter().filter_map(|(.., track)| track).collect(),
             steady: Vec::new(),
         };
-        let figures = predicted(&values, extrapolated, sources, |number, sources| Some(sail(number, sources)?.0));
-        Ok(Prediction { kind: kind.clone(), figures, lost, curves })
+        let mut figures = predicted(&values, extrapolated, sources, |number, sources| Some(sail(number, sources)?.0));
+        let mut undetermined = Vec::new();
+        figures.retain(|name, figure| {
+            let sound = figures::is_sound(name, &figure.interval);
+            undetermined.extend((!sound).then(|| (name.clone(), figure.interval)));
+            sound
+        });
+        Ok(Prediction { kind: kind.clone(), figures, lost, undetermined, curves })
     }
 
     /// Steady turns; chance has no part in them.
@@ -179,7 +188,7 @@ impl ShipMixture {
         let figures = predicted(&values, self.is_unseen(kind.rudder(), rates), sources, alone);
         let steady = std::iter::once(most_probable).chain(all).collect();
         let curves = ManoeuvreCurves { steady, ..ManoeuvreCurves::default() };
-        Prediction { kind: kind.clone(), figures, lost: 0, curves }
+        Prediction { kind: kind.clone(), figures, lost: 0, undetermined: Vec::new(), curves }
     }
 
     /// Whether a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond what the records have seen.
@@ -206,7 +215,7 @@ fn predicted(
     let alone = |source: &UncertaintySource| drawn(draws.len().div_ceil(ALONE), |number| draw(number, &[*source]));
     let alone: Vec<(&str, Vec<_>)> = sources.iter().map(|source| (source.as_str(), alone(source))).collect();
     let figure = |&name: &&'static str| {
-        let of = |draw: &Option<Figures>| draw.as_ref().and_then(|figures| figures[name]);
+        let of = |draw: &Option<Figures>| draw.as_ref().and_then(|figures| *figures.get(name)?);
         let of_draws: Vec<Option<f64>> = draws.iter().map(of).collect();
         let mut values: Vec<f64> = of_draws.iter().copied().flatten().collect();
         let defined = values.len() as f64 / draws.len() as f64;

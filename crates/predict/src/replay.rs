@@ -12,7 +12,7 @@ use simulate::{Manoeuvre, Purpose};
 use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::figures::Figures;
+use crate::figures::{self, Figures};
 use crate::helm_replay::{self, SteeredZigZag};
 use crate::interval::{PredictionInterval, band};
 use crate::line::StraightLine;
@@ -209,7 +209,7 @@ fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<f64>) -> ByName {
     let figure = |&name: &&'static str| {
         let measured = shown(name)?;
         let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[name]).collect();
-        let interval = PredictionInterval::of(&mut values)?;
+        let interval = PredictionInterval::of(&mut values).filter(|own| figures::is_sound(name, own))?;
         Some((name.to_owned(), Compared { measured, interval, inside90: interval.holds90(measured) }))
     };
     drawn.first().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()

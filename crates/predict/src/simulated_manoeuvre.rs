@@ -49,7 +49,7 @@ pub struct PlanarMotion {
     pub length: f64,
     /// Surge, and sway to starboard, m/s.
     pub velocity: Vec<[f64; 2]>,
-    /// North and east, m, 0 at the first execute; north is the course of the approach.
+    /// North and east, m, 0 at the first execute; north is the course of the approach. Empty where drift is not known.
     pub track: Vec<[f64; 2]>,
 }
 
@@ -78,6 +78,11 @@ fn vessel(ship: &DrawnShip) -> Vessel {
 }
 
 impl SimulatedManoeuvre {
+    /// North and east, m; `None` where nothing is known of drift.
+    pub fn track(&self) -> Option<&[[f64; 2]]> {
+        self.way.as_ref().map(|way| way.track.as_slice()).filter(|track| !track.is_empty())
+    }
+
     /// A series on the rows of the passage at a time, s.
     pub(crate) fn at(&self, values: &[f64], time: f64) -> f64 {
         let place = (time / self.period).clamp(0.0, (values.len() - 1) as f64);
@@ -136,7 +141,8 @@ impl SimulatedManoeuvre {
         let way = planar.map(|planar| {
             // From her approach speed on.
             let velocity = planar.drive(&time, &yaw_rate, &rudder, [planar.approach_speed, 0.0]);
-            let track = motion::track(&time, &heading, &velocity);
+            let told = planar.tells_drift();
+            let track = if told { motion::track(&time, &heading, &velocity) } else { Vec::new() };
             PlanarMotion { length: planar.length, velocity, track }
         });
         Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })

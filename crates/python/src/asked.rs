@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser};
 use scenario::failure::Failure;
+use study::cli::misused;
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]
@@ -14,10 +15,5 @@ struct OptionWords<R: Args> {
 ///
 /// Fails as the command line does.
 pub fn request<R: Args>(words: Vec<String>) -> Result<R, Failure> {
-    OptionWords::try_parse_from(words).map(|words| words.request).map_err(|usage| {
-        let said = usage.to_string();
-        let (said, _) = said.split_once("\n\nUsage:").unwrap_or((&said, ""));
-        let (said, _) = said.split_once("\n\nFor more information").unwrap_or((said, ""));
-        Failure::input(said.trim().trim_start_matches("error: "))
-    })
+    OptionWords::try_parse_from(words).map(|words| words.request).map_err(|usage| misused(&usage))
 }

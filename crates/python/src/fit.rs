@@ -4,12 +4,14 @@ use identify::Estimate;
 use identify::replay::replay;
 use pyo3::prelude::*;
 use scenario::failure::Failure;
+use scenario::name;
 use study::documents as document;
 use study::records::warn_of_repetition;
 use study::work;
 use trial::Trial;
 
 use crate::curve::{ReplayArrays, curve};
+use crate::own::{OwnMethods, PyIdentifier};
 use crate::record::{PyRecord, read_warnings, trials};
 use crate::wait::patiently;
 
@@ -39,13 +41,14 @@ impl PyFit {
     }
 }
 
-/// Identifies records by the named methods, or by all.
+/// Identifies records by the named methods, or by the usual ones, and by functions of the caller's own.
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,
     records: Vec<Py<PyRecord>>,
     validate: Vec<Py<PyRecord>>,
     methods: Vec<String>,
+    own: OwnMethods,
     seed: Option<u64>,
 ) -> PyResult<PyFit> {
     // The document has what reading warned of, as that of the command; Python has been told before.
@@ -53,13 +56,19 @@ pub fn fit(
     let told = warnings.len();
     let (records, others) = (trials(&records), trials(&validate));
     patiently(py, move || {
-        let methods = work::fit::methods(&methods, &[], seed)?;
+        let mut methods = work::fit::methods(&methods, &[], seed)?;
+        for (label, function) in own {
+            name::label(&label).map_err(|unfit| Failure::input(format!("own: a label is {label:?}; {unfit}")))?;
+            if methods.iter().any(|(known, _)| *known == label) {
+                let advice = "there is another method with this label; give it one of its own";
+                return Err(Failure::input(format!("own: {label:?}: {advice}")));
+            }
+            methods.push((label, Box::new(PyIdentifier(function))));
+        }
         warn_of_repetition(&records, &others, &mut warnings);
         let done = work::fit::fit(&records, &others, &methods, true, &mut warnings)?;
         warnings.drain(..told);
-        for entry in &done.document.methods {
-            warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
-        }
+        warnings.extend(done.document.of_methods(true));
         Ok(PyFit {
             text: document::text(&done.document).map_err(Failure::work)?,
             warnings,

@@ -4,15 +4,19 @@
 //! | to learn about | read |
 //! |---|---|
 //! | records | `record` |
-//! | what is asked of them | `fit`, `trace`, `predict` |
+//! | what is asked of them | `find`, `fit`, `trace`, `predict`, `bench` |
+//! | functions of Python as methods | `own` |
 //! | scenarios | `scene`, `simulate`, `run` |
 //! | work that is waited for, and Ctrl-C | `wait` |
 //! | keywords as options of the command line | `asked` |
 //! | exceptions | `raise` |
 
 mod asked;
+mod bench;
 mod curve;
+mod find;
 mod fit;
+mod own;
 mod predict;
 mod raise;
 mod record;
@@ -37,6 +41,8 @@ fn _kempf(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(record::read, module)?)?;
     module.add_function(wrap_pyfunction!(record::record_of, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
+    module.add_function(wrap_pyfunction!(find::find, module)?)?;
+    module.add_function(wrap_pyfunction!(bench::bench, module)?)?;
     module.add_function(wrap_pyfunction!(trace::trace, module)?)?;
     module.add_function(wrap_pyfunction!(predict::predict, module)?)?;
     module.add_function(wrap_pyfunction!(scene::toml_of, module)?)?;

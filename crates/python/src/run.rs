@@ -19,9 +19,9 @@ use crate::raise::raised;
 use crate::scene::ScenarioInput;
 use crate::wait::Underway;
 
-/// Who watches a study that Python waits for.
+/// Who watches work that Python waits for.
 #[derive(Default)]
-struct Watch {
+pub struct Watch {
     is_asked: AtomicBool,
     most: AtomicU64,
     done: AtomicU64,
@@ -31,6 +31,11 @@ struct Watch {
 }
 
 impl Watch {
+    /// Notes and warnings, once.
+    pub fn told(&self) -> [Vec<String>; 2] {
+        std::mem::take(&mut *self.said())
+    }
+
     fn said(&self) -> MutexGuard<'_, [Vec<String>; 2]> {
         self.said.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -108,30 +113,40 @@ pub fn run(
     let threads = threads.map(pool).transpose().map_err(raised)?;
     let watch = Arc::new(Watch { threads, ..Watch::default() });
     let own = Arc::clone(&watch);
-    let mut underway = Underway::start(move || study(&scene, out, seed, restart, &own))?;
+    let text = watched(py, &watch, progress.as_ref(), move || study(&scene, out, seed, restart, &own))?;
+    let [notes, warnings] = watch.told();
+    Ok((text, notes, warnings))
+}
+
+/// Waits for work that is watched; `progress` is called with the steps that are done and that there are at most.
+pub fn watched<T: Send + 'static>(
+    py: Python<'_>,
+    watch: &Watch,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+) -> PyResult<T> {
+    let mut underway = Underway::start(work)?;
     let mut told = None;
-    let text = loop {
+    loop {
         let done = underway.wait(py);
         let now = (watch.done.load(Ordering::Relaxed), watch.most.load(Ordering::Relaxed));
-        if let Some(progress) = progress.as_ref().filter(|_| now.1 > 0 && told.replace(now) != Some(now))
+        if let Some(progress) = progress.filter(|_| now.1 > 0 && told.replace(now) != Some(now))
             && let Err(raised) = progress.call1(py, now)
         {
-            return Err(stopped(py, &watch, underway, raised));
+            return Err(stopped(py, watch, underway, raised));
         }
         if let Some(done) = done {
-            break done?;
+            return done;
         }
         if let Err(raised) = py.check_signals() {
-            return Err(stopped(py, &watch, underway, raised));
+            return Err(stopped(py, watch, underway, raised));
         }
-    };
-    let [notes, warnings] = std::mem::take(&mut *watch.said());
-    Ok((text, notes, warnings))
+    }
 }
 
 /// Asks a study to stop and waits until its rows are kept, unless there is another signal. An interruption says what
 /// was kept.
-fn stopped(py: Python<'_>, watch: &Watch, mut underway: Underway<String>, raised: PyErr) -> PyErr {
+fn stopped<T: Send + 'static>(py: Python<'_>, watch: &Watch, mut underway: Underway<T>, raised: PyErr) -> PyErr {
     watch.is_asked.store(true, Ordering::Relaxed);
     loop {
         if let Some(done) = underway.wait(py) {

@@ -19,7 +19,7 @@ from conftest import ZIGZAG
         (lambda path: kempf.read(path, speed_kn=15), "--length-m"),
         (lambda path: kempf.read(path, length_m=100, speed_kn=15, speed_m_s=7), "cannot be used with"),
         (lambda path: kempf.read(path.parent), "this is a folder of 2 records"),
-        (lambda path: kempf.fit(path, methods="guess"), "--method guess: no such method; use one of fourier-published"),
+        (lambda path: kempf.fit(path, methods="guess"), "--method guess: no such method; use all, or one of output-error"),
         (lambda path: kempf.fit(path, seed=-1), "seed = -1: expected a whole number from 0"),
         (lambda path: kempf.fit(3), "int: expected a record"),
         (lambda path: kempf.fit(path).plot("nothing"), 'expected "record" or "estimates"'),

@@ -24,10 +24,10 @@ def ran(tmp_path_factory):
 def test_a_fit_is_read_by_names(fitted):
     found = fitted["output-error"]
     assert found.K_per_s.ci95[0] < 0.1 < found.K_per_s.ci95[1] and found.ok and not found.course_unstable
-    assert [one.method for one in fitted.methods][0] == "fourier-published" and len(fitted.methods) == 8
+    assert [one.method for one in fitted.methods][0] == "output-error" and len(fitted.methods) == 6
     assert fitted.records[0].zigzag.overshoots_deg[0] == pytest.approx(6.82, abs=0.01)
     assert found.validation_rmse_deg[0] > found.heading_rmse_deg
-    with pytest.raises(KeyError, match="guess: there are fourier-published"):
+    with pytest.raises(KeyError, match="guess: there are output-error"):
         fitted["guess"]
 
 
@@ -96,7 +96,7 @@ def test_numbers_have_the_digits_of_their_errors():
     ("name", "draw", "panels"),
     [
         ("fitted", lambda result: result.plot(), 3),
-        ("fitted", lambda result: result.plot(methods=["srivc", "fourier-published"], record=1), 3),
+        ("fitted", lambda result: result.plot(methods=["maximum-likelihood", "fourier-projected"], record=1), 3),
         ("fitted", lambda result: result.plot("estimates"), 3),
         ("traced", lambda result: result.plot(record=1), 3),
         ("predicted", lambda result: result.plot(), 8),
@@ -110,12 +110,12 @@ def test_figures_are_drawn(name, draw, panels, request, tmp_path):
 
 
 def test_a_figure_shows_the_replay(fitted, first_order):
-    figure = fitted.plot(methods="srivc")
+    figure = fitted.plot(methods="least-squares")
     rudder, heading, residual = figure.axes
     measured, replayed = (line.get_ydata() for line in heading.lines)
     left = residual.lines[1].get_ydata()
     assert measured - replayed == pytest.approx(left, abs=1e-9)
-    assert (left**2).mean() ** 0.5 == pytest.approx(fitted["srivc"].heading_rmse_deg, rel=1e-9)
+    assert (left**2).mean() ** 0.5 == pytest.approx(fitted["least-squares"].heading_rmse_deg, rel=1e-9)
     matplotlib.pyplot.close(figure)
 
 

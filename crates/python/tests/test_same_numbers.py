@@ -14,10 +14,10 @@ def test_a_fit_is_that_of_the_command(study, tmp_path, first_order, undeclared):
     expected = (tmp_path / "f" / "fit.json").read_bytes()
     assert result.save(tmp_path / "own.json").read_bytes() == expected
     assert repr(result.document) == repr(json.loads(expected))
-    entry = next(one for one in json.loads(expected)["methods"] if one["method"] == "srivc")
-    assert result["srivc"].T_s.value == entry["parameters"]["T_s"]["value"]
-    assert result["srivc"].T_s.ci95 == tuple(entry["parameters"]["T_s"]["ci95"])
-    assert result["srivc"].K_prime.value == entry["prime"]["K"]["value"]
+    entry = next(one for one in json.loads(expected)["methods"] if one["method"] == "output-error")
+    assert result["output-error"].T_s.value == entry["parameters"]["T_s"]["value"]
+    assert result["output-error"].T_s.ci95 == tuple(entry["parameters"]["T_s"]["ci95"])
+    assert result["output-error"].K_prime.value == entry["prime"]["K"]["value"]
 
 
 def test_a_fit_of_paths_and_of_some_methods_is_that_of_the_command(study, tmp_path, first_order):
@@ -44,11 +44,13 @@ def test_a_trace_is_that_of_the_command(study, tmp_path, first_order, undeclared
 def test_a_prediction_is_that_of_the_command(study, tmp_path, monkeypatch, first_order, fitted):
     monkeypatch.chdir(tmp_path)
     fitted.save("fit.json")
-    words = ["--manoeuvre", "turning-circle:-35", "--manoeuvre", "zig-zag:20/20", "--draws", 200, "--method", "srivc"]
+    words = ["--manoeuvre", "turning-circle:-35", "--manoeuvre", "zig-zag:20/20", "--draws", 200]
     study(
         "predict",
         "fit.json",
         *words,
+        "--method",
+        "output-error",
         "--replay",
         first_order,
         "--calm",
@@ -59,7 +61,7 @@ def test_a_prediction_is_that_of_the_command(study, tmp_path, monkeypatch, first
         "--out",
         "p",
     )
-    asked = {"method": "srivc", "draws": 200, "calm": True, "length_m": 100, "speed_kn": 15}
+    asked = {"method": "output-error", "draws": 200, "calm": True, "length_m": 100, "speed_kn": 15}
     expected = (tmp_path / "p" / "predict.json").read_bytes()
     replay = kempf.read(first_order, length_m=100, speed_kn=15)
     for model in ("fit.json", fitted):

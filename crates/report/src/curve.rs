@@ -7,13 +7,15 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// A pair with an undefined (NaN or infinite) number is a gap: it is skipped, and a line is broken there. When the
 /// lengths differ the surplus is ignored. In JSON a gap is `null`. What is made by [`PlotCurve::new`] has no more pairs
 /// than a figure can show.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PlotCurve {
     /// Abscissae.
     #[serde(serialize_with = "with_gaps", deserialize_with = "from_gaps")]
+    #[schemars(with = "Vec<Option<f64>>")]
     pub x: Vec<f64>,
     /// Ordinates.
     #[serde(serialize_with = "with_gaps", deserialize_with = "from_gaps")]
+    #[schemars(with = "Vec<Option<f64>>")]
     pub y: Vec<f64>,
 }
 

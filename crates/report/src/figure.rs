@@ -61,19 +61,21 @@ impl Drawing {
         let scale =
             Transform::from_scale(width_px as f32 / tree.size().width(), height_px as f32 / tree.size().height());
         resvg::render(&tree, scale, &mut pixmap.as_mut());
-        self.encode(&pixmap)
+        self.encode(pixmap)
     }
 
-    fn encode(&self, pixmap: &Pixmap) -> Result<Vec<u8>, ReportError> {
+    fn encode(&self, pixmap: Pixmap) -> Result<Vec<u8>, ReportError> {
+        let (width, height) = (pixmap.width(), pixmap.height());
         // The page is opaque, so the alpha channel says nothing and the colours are not premultiplied.
-        let (drawn, _) = pixmap.data().as_chunks::<4>();
-        let mut pixels = vec![0; 3 * drawn.len()];
-        pixels.as_chunks_mut().0.iter_mut().zip(drawn).for_each(|(rgb, &[r, g, b, _])| *rgb = [r, g, b]);
+        let mut pixels = pixmap.take();
+        let count = pixels.len() / 4;
+        (0..count).for_each(|pixel| pixels.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel));
+        pixels.truncate(3 * count);
         let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
+        let mut encoder = png::Encoder::new(&mut bytes, width, height);
         encoder.set_color(png::ColorType::Rgb);
-        // Level 6 packs a fifteenth smaller and takes twice as long.
-        encoder.set_deflate_compression(png::DeflateCompression::Level(4));
+        // Level 4 packs a tenth smaller and takes twice as long.
+        encoder.set_deflate_compression(png::DeflateCompression::Level(2));
         // Flat areas and thin lines pack better unfiltered: measured a fifth smaller and faster than adaptive
         // filtering.
         encoder.set_filter(png::Filter::NoFilter);

@@ -99,6 +99,25 @@ impl Page {
             .filter_map(|block| if let PageBlock::Figure(own) = block { Some(own.as_ref()) } else { None })
     }
 
+    /// The same in words and tables: without figures, and without headlines that have nothing else below them.
+    pub fn without_figures(self) -> Self {
+        let mut blocks: Vec<PageBlock> = Vec::new();
+        for block in self.blocks.into_iter().rev() {
+            let has_content = |level: usize| match blocks.last() {
+                Some(PageBlock::Headline(next, _)) => *next > level,
+                next => next.is_some(),
+            };
+            let stays = match block {
+                PageBlock::Figure(_) => false,
+                PageBlock::Headline(level, _) => has_content(level),
+                _ => true,
+            };
+            blocks.extend(stays.then_some(block));
+        }
+        blocks.reverse();
+        Self { blocks }
+    }
+
     /// As Markdown (the GitHub flavour). HTML in it is shown and not obeyed.
     pub fn to_markdown(&self) -> String {
         let block = |block: &PageBlock| match block {
@@ -156,5 +175,21 @@ mod tests {
         assert_eq!(page.to_markdown(), markdown);
         assert!(page.to_text().ends_with("Numbers\n\nK\n───\n0.1\n\none\ntwo\n"), "{}", page.to_text());
         assert!(page.to_latex().contains("toprule") && page.drawings().count() == 1);
+    }
+
+    #[test]
+    fn without_figures_no_headline_stands_over_nothing() {
+        let figure = || [PageFigure::new("fit", "one", Panels::default())];
+        let mut page = Page::titled("Trial");
+        page.figures(figure());
+        page.part("Seen");
+        page.subpart("Here");
+        page.figures(figure());
+        page.part("Told");
+        page.subpart("There");
+        page.say("words");
+        page.part("Further figures");
+        page.figures(figure());
+        assert_eq!(page.without_figures().to_markdown(), "# Trial\n\n## Told\n\n### There\n\nwords\n");
     }
 }

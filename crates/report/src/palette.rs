@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::paint::Paint;
 
 /// Whom a curve or a value comes from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum CurveOrigin {
     /// The measured (or simulated and noisy) record.

@@ -18,7 +18,7 @@ const LINE: [f64; 2] = [0.1, 10.0];
 /// What may be said of the looks of figures; what is not said is as in the theme. All keys are kebab-case.
 ///
 /// The family of the type is bundled, because labels are placed by its widths.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Style {
     /// Width of the figures, mm; makes them figures for print.

@@ -38,7 +38,7 @@ pub(crate) fn render(scene: &Canvas, width: f64, height: f64, changes: &Changes)
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}pt\" height=\"{height:.3}pt\" \
          viewBox=\"0 0 {across} {down}\">\n<g font-family=\"{FAMILY_WITH_FALLBACK}\" \
-         stroke-linejoin=\"round\">\n{}</g>\n</svg>\n",
+         stroke-linejoin=\"bevel\">\n{}</g>\n</svg>\n",
         page.out
     )
 }

@@ -7,6 +7,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use serde::Serialize;
 
 /// What stands before the message of a failure.
 const ERROR: &str = "error: ";
@@ -18,10 +19,30 @@ pub struct Failure {
     pub blame: Blame,
     /// The whole message, without the word "error" before it.
     pub message: String,
+    /// The same in parts, for programs.
+    pub parts: Box<FailureParts>,
+}
+
+/// The parts of a message; what a failure does not say is missing.
+#[derive(Debug, Default, PartialEq, Eq, Serialize, schemars::JsonSchema)]
+pub struct FailureParts {
+    /// The file it is about.
+    pub file: Option<String>,
+    /// The line of the file, from 1.
+    pub line: Option<usize>,
+    /// The character of the line, from 1.
+    pub column: Option<usize>,
+    /// What is wrong, without the name of the file.
+    pub problem: String,
+    /// What was expected in its place.
+    pub expected: Option<String>,
+    /// What to do.
+    pub help: Option<String>,
 }
 
 /// Who has to act.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Blame {
     /// The input is wrong: usage, scenario or record.
     Input,
@@ -30,19 +51,26 @@ pub enum Blame {
 }
 
 impl Failure {
+    fn new(blame: Blame, message: String, parts: FailureParts) -> Self {
+        Self { blame, message, parts: Box::new(parts) }
+    }
+
     /// The input is wrong.
     pub fn input(message: impl fmt::Display) -> Self {
-        Self { blame: Blame::Input, message: message.to_string() }
+        let message = message.to_string();
+        Self::new(Blame::Input, message.clone(), FailureParts { problem: message, ..FailureParts::default() })
     }
 
     /// The input is wrong, and a file of this name holds it.
     pub fn about(file: &(impl AsRef<Path> + ?Sized), problem: impl fmt::Display) -> Self {
-        Self::input(format!("{}: {problem}", file.as_ref().display()))
+        let (file, problem) = (file.as_ref().display().to_string(), problem.to_string());
+        let message = format!("{file}: {problem}");
+        Self::new(Blame::Input, message, FailureParts { file: Some(file), problem, ..FailureParts::default() })
     }
 
     /// The work could not be done.
     pub fn work(message: impl fmt::Display) -> Self {
-        Self { blame: Blame::Work, message: message.to_string() }
+        Self { blame: Blame::Work, ..Self::input(message) }
     }
 
     /// The input is wrong at a place of a text file: the line is shown, the place underlined with what was `expected`
@@ -50,12 +78,22 @@ impl Failure {
     pub fn at(file: &Path, text: &str, span: Range<usize>, found: &str, expected: &str, advice: &str) -> Self {
         let name = file.display().to_string();
         let span = span.start.min(text.len())..span.end.min(text.len());
+        let start = span.start;
         let place = AnnotationKind::Primary.span(span).label(expected);
         let snippet = Snippet::source(text).path(&name).annotation(place);
         let (found, advice) = (shortened(found), shortened(advice));
         let group = Level::ERROR.primary_title(&*found).element(snippet).element(Level::HELP.message(&*advice));
         let shown = Renderer::plain().render(&[group]);
-        Self { blame: Blame::Input, message: shown.strip_prefix(ERROR).unwrap_or(&shown).to_owned() }
+        let before = text.get(..start).unwrap_or_default();
+        let parts = FailureParts {
+            line: Some(before.matches('\n').count() + 1),
+            column: Some(before.rsplit('\n').next().unwrap_or_default().chars().count() + 1),
+            problem: found.to_string(),
+            expected: Some(expected.to_owned()),
+            help: Some(advice.to_string()),
+            file: Some(name),
+        };
+        Self::new(Blame::Input, shown.strip_prefix(ERROR).unwrap_or(&shown).to_owned(), parts)
     }
 }
 
@@ -89,7 +127,12 @@ pub trait OnPath<T> {
 
 impl<T, E: Error> OnPath<T> for Result<T, E> {
     fn on(self, tried: &str, path: &Path) -> Result<T, Failure> {
-        self.map_err(|error| Failure::work(format!("failed to {tried} {}: {}", path.display(), with_causes(&error))))
+        self.map_err(|error| {
+            let file = path.display().to_string();
+            let mut failure = Failure::work(format!("failed to {tried} {file}: {}", with_causes(&error)));
+            failure.parts.file = Some(file);
+            failure
+        })
     }
 }
 
@@ -126,6 +169,25 @@ mod tests {
             assert!(failure.to_string().starts_with("error: no such thing"), "{failure}");
             assert!(failure.message.starts_with("no such thing"), "{}", failure.message);
         }
+    }
+
+    #[test]
+    fn a_failure_has_the_parts_that_it_tells() {
+        let at = Failure::at(Path::new("a.toml"), "x = 1\nß = -1\n", 11..13, "no such thing", "more", "change it");
+        let parts = FailureParts {
+            file: Some("a.toml".into()),
+            line: Some(2),
+            column: Some(5),
+            problem: "no such thing".into(),
+            expected: Some("more".into()),
+            help: Some("change it".into()),
+        };
+        assert_eq!(*at.parts, parts);
+        let about = Failure::about("b.csv", "it is empty");
+        assert_eq!((about.parts.file.as_deref(), about.parts.problem.as_str()), (Some("b.csv"), "it is empty"));
+        assert_eq!(about.message, "b.csv: it is empty");
+        let io = Err::<(), _>(std::io::Error::other("full")).on("write", Path::new("c")).expect_err("it failed");
+        assert_eq!((io.blame, io.parts.file.as_deref()), (Blame::Work, Some("c")));
     }
 
     #[test]

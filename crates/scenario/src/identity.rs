@@ -12,6 +12,7 @@ use trial::reader::RECORD;
 
 use crate::failure::{Failure, OnPath};
 use crate::part::ScenarioPart;
+use crate::scenario::Script;
 
 /// The document without prose and presentation; comments and layout are gone by themselves.
 pub fn design_of(document: &Table) -> Table {
@@ -52,25 +53,25 @@ pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
 /// A script or program beside a scenario.
 const OF_A_COMMAND: Kind = Kind { name: "a file that a command names", largest: 1 << 30 };
 
-/// An identity, and with it the contents of those words of commands that are files in the folder of the scenario or
-/// named from there; the identity itself where there are none.
+/// Those words of commands that are files in the folder of the scenario or named from there.
+pub fn scripts(words: &BTreeSet<&str>, folder: &Path) -> Vec<Script> {
+    let relative = words.iter().filter(|word| Path::new(word).is_relative());
+    let named = relative.map(|word| Script { word: (*word).to_owned(), path: folder.join(word) });
+    named.filter(|script| script.path.is_file()).collect()
+}
+
+/// An identity, and with it the contents of scripts; the identity itself where there are none.
 ///
-/// Fails when such a file cannot be read.
-pub fn with_files(sha256: String, words: &BTreeSet<&str>, folder: &Path) -> Result<String, Failure> {
+/// Fails when a script cannot be read.
+pub fn with_files(sha256: String, scripts: &[Script]) -> Result<String, Failure> {
     let mut digest = Sha256::new_with_prefix(&sha256);
-    let mut is_any = false;
-    for word in words.iter().filter(|word| Path::new(word).is_relative()) {
-        let path = folder.join(word);
-        if !path.is_file() {
-            continue;
-        }
+    for Script { word, path } in scripts {
         let mut own = Sha256::new();
-        let mut file = file::open(&path, OF_A_COMMAND).on("read", &path)?;
-        io::copy(&mut file, &mut own).on("read", &path)?;
+        let mut file = file::open(path, OF_A_COMMAND).on("read", path)?;
+        io::copy(&mut file, &mut own).on("read", path)?;
         digest.update(format!(" {word} {}", hex(&own.finalize())));
-        is_any = true;
     }
-    Ok(if is_any { hex(&digest.finalize()) } else { sha256 })
+    Ok(if scripts.is_empty() { sha256 } else { hex(&digest.finalize()) })
 }
 
 /// Bytes as hexadecimal digits.

@@ -47,7 +47,7 @@ pub use effect::keys as effect_keys;
 pub use identity::hex;
 pub use method::{Method, MethodName, Procedure, TRACE, identify};
 pub use predictions::Predictions;
-pub use scenario::Scenario;
+pub use scenario::{Scenario, Script};
 pub use specification::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
 pub use words::{MarkedValue, Presentation, Published, Words};

@@ -47,6 +47,8 @@ pub struct Scenario {
     pub stop: Option<StopRule>,
     /// What every answer has to predict.
     pub predictions: Option<Predictions>,
+    /// Files that its commands name, in the order of their names.
+    pub scripts: Vec<Script>,
     /// SHA-256 of all that decides the rows, the seed of the command line apart, and of the files it reads.
     pub design_sha256: String,
     /// The file as it was read.
@@ -55,12 +57,23 @@ pub struct Scenario {
     pub sha256: String,
 }
 
+/// A file that a command of a scenario names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Script {
+    /// How it is named, from the folder of the scenario.
+    pub word: String,
+    /// Where it is.
+    pub path: PathBuf,
+}
+
 /// What a manifest says of the scenario that was run; it may say more.
 #[derive(Deserialize)]
 struct ManifestScenario {
     name: String,
     seed: u64,
     scenario: String,
+    /// The folder beside the manifest that stands for that of the scenario.
+    sources: Option<String>,
 }
 
 impl Scenario {
@@ -76,26 +89,34 @@ impl Scenario {
                     of_text(KeyPath::dotted("name"), &manifest.name, unfit);
                 Failure::at(path, &text, locate::span(&text, &key, mark), &found, &expected, &advice)
             })?;
-            return Self::parse(path, &manifest.name, manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
+            let (seed, beside) = (Some(seed.unwrap_or(manifest.seed)), folder_of(path));
+            // A manifest that was copied to where the scenario was finds its files there.
+            let kept = manifest.sources.map(|sources| beside.join(sources)).filter(|kept| kept.is_dir());
+            return Self::parse_in(&kept.unwrap_or(beside), path, &manifest.name, manifest.scenario, seed);
         }
         Self::parse(path, &name::of_file(path)?, text, seed)
     }
 
     /// Resolves the text of a scenario; `path` is where messages and relative files refer to.
     pub fn parse(path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
+        Self::parse_in(&folder_of(path), path, name, text, seed)
+    }
+
+    /// The same with relative files from a folder.
+    fn parse_in(folder: &Path, path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
         let document: Table = text.parse().map_err(|error| not_toml(path, &text, &error))?;
-        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-        let scenario = Self::of_document(&document, name, &folder).map_err(|problem| {
+        let scenario = Self::of_document(&document, name, folder).map_err(|problem| {
             let span = locate::span(&text, &problem.key, problem.mark);
             Failure::at(path, &text, span, &problem.found, &problem.expected, &problem.advice)
         })?;
         let methods = scenario.cells.iter().flat_map(|cell| &cell.methods);
         let outside = methods.filter_map(|method| method.procedure.outside());
         let words: BTreeSet<&str> = outside.flat_map(|outside| outside.command()).map(String::as_str).collect();
-        let design_sha256 = identity::sha256_of(&identity::design_of(&document), &folder)?;
-        let design_sha256 = identity::with_files(design_sha256, &words, &folder)?;
+        let scripts = identity::scripts(&words, folder);
+        let design_sha256 = identity::sha256_of(&identity::design_of(&document), folder)?;
+        let design_sha256 = identity::with_files(design_sha256, &scripts)?;
         let seed = seed.unwrap_or(scenario.seed);
-        Ok(Self { seed, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
+        Ok(Self { seed, scripts, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
     }
 
     /// Resolves a document; its identity and text are for the caller to set.
@@ -145,6 +166,7 @@ impl Scenario {
             words,
             stop: wire.stop,
             predictions,
+            scripts: Vec::new(),
             design_sha256: String::new(),
             sha256: String::new(),
             text: String::new(),
@@ -239,6 +261,11 @@ fn not_toml(path: &Path, text: &str, error: &toml::de::Error) -> Failure {
         false => "give a scenario (a TOML file); a record is identified with `study fit`",
     };
     Failure::at(path, text, span, "this is not valid TOML", &message, advice)
+}
+
+/// Where relative files of a scenario are looked for.
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().map(PathBuf::from).unwrap_or_default()
 }
 
 /// A scenario, alone or in a manifest; the longest published one has a hundredth of this.

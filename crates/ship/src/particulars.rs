@@ -9,6 +9,30 @@ pub struct Particulars {
     pub speed: f64,
 }
 
+/// K′ = K L/V that ships and models show in zig-zags. KVLCC2 has 0.75 (35/5) to 3.6 (10/10), Esso Osaka 1.2 to 1.5 (records
+/// of SIMMAN 2008; Wakita et al. 2022), the Mariner 0.8 to 2.4.
+pub const USUAL_K_PRIME: [f64; 2] = [0.4, 5.0];
+
+/// T′ = T V/L, likewise: KVLCC2 1.3 to 8.3, Esso Osaka 0.4 to 1.4, the Mariner 1.1 to 2.8.
+pub const USUAL_T_PRIME: [f64; 2] = [0.3, 12.0];
+
+/// K′/T′, which changes less with the rudder: KVLCC2 0.42 to 0.67, Esso Osaka 0.85 to 1.9, the Mariner 0.7 to 0.9.
+pub const USUAL_K_OVER_T_PRIME: [f64; 2] = [0.25, 2.0];
+
+/// Rates of the rudder of ships, deg/s: SOLAS II-1/29 asks for 65° in 28 s, 2.3.
+const SHIP_RUDDER_RATE_DEG_S: [f64; 2] = [2.0, 7.0];
+
+/// A shorter ship is a model of a ship of these lengths, m.
+const SHORTEST_SHIP_M: f64 = 30.0;
+const MODELLED_SHIPS_M: [f64; 2] = [100.0, 400.0];
+
+/// Rates of the rudder, deg/s, that are usual at a length, m: 2 to 7 of ships, and √(L_ship/L) times that of models
+/// (Froude).
+pub fn usual_rudder_rate_deg_s(length: f64) -> [f64; 2] {
+    let quicker = |ship: f64| if length < SHORTEST_SHIP_M { (ship / length).sqrt() } else { 1.0 };
+    [0, 1].map(|end| SHIP_RUDDER_RATE_DEG_S[end] * quicker(MODELLED_SHIPS_M[end]))
+}
+
 /// Exponents of second and metre in a dimension; angles have none.
 pub type Dimension = [i32; 2];
 

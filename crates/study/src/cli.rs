@@ -12,8 +12,9 @@ use crate::commands::{
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
 use crate::{screen, threads};
 use campaign::disk::unsupported;
+use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use scenario::failure::{Blame, Failure};
+use scenario::failure::Failure;
 use scenario::problem::suggestion;
 
 /// What `--version` tells.
@@ -107,34 +108,53 @@ fn warn_of_file_systems(common: &Common) {
 
 /// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong.
 pub fn main() -> ExitCode {
-    if let Some(name) = mistaken_command(std::env::args_os().nth(1)) {
-        let known: Vec<String> =
-            Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
-        let advice = suggestion(&name, &known);
-        screen::warn(&format!("error: there is no command `{name}`, and no scenario file of that name; {advice}"));
-        return ExitCode::from(screen::exit_code(Blame::Input));
+    let words: Vec<OsString> = std::env::args_os().collect();
+    if asks_for_json(&words) {
+        screen::tell_programs();
     }
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
-        Err(usage) if usage.use_stderr() => {
-            // By the same way as all other messages: an argument may hold anything.
-            screen::warn(usage.render().to_string().trim_end());
-            return ExitCode::from(screen::exit_code(Blame::Input));
-        }
-        Err(help) => help.exit(),
-    };
-    match answer(cli) {
+    match parse(&words).and_then(answer) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            screen::warn(&failure.to_string());
-            ExitCode::from(screen::exit_code(failure.blame))
-        }
+        Err(failure) => ExitCode::from(screen::fail(&failure)),
     }
 }
 
+/// Whether the answer is to be JSON, and with it what went wrong, be it in these very words.
+fn asks_for_json(words: &[OsString]) -> bool {
+    words.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json")
+        || words.iter().any(|word| word == "--format=json")
+}
+
+/// What is asked for; help and version are told at once.
+fn parse(words: &[OsString]) -> Result<Cli, Failure> {
+    if let Some(name) = mistaken_command(words.get(1)) {
+        let known: Vec<String> =
+            Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
+        let advice = suggestion(&name, &known);
+        return Err(Failure::input(format!(
+            "there is no command `{name}`, and no scenario file of that name; {advice}"
+        )));
+    }
+    Cli::try_parse_from(words).map_err(|usage| match usage.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            usage.exit()
+        }
+        _ if screen::is_for_programs() => misused(&usage),
+        // By the same way as all other messages: an argument may hold anything.
+        _ => Failure::input(usage.render().to_string().trim_end().trim_start_matches("error: ")),
+    })
+}
+
+/// What is wrong with options, without how the command is used.
+pub fn misused(usage: &clap::Error) -> Failure {
+    let said = usage.to_string();
+    let (said, _) = said.split_once("\n\nUsage:").unwrap_or((&said, ""));
+    let (said, _) = said.split_once("\n\nFor more information").unwrap_or((said, ""));
+    Failure::input(said.trim().trim_start_matches("error: "))
+}
+
 /// A first argument that is a single word, and neither a command nor the path of anything.
-fn mistaken_command(first: Option<OsString>) -> Option<String> {
-    let name = first?.into_string().ok()?;
+fn mistaken_command(first: Option<&OsString>) -> Option<String> {
+    let name = first?.clone().into_string().ok()?;
     let is_word = !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
     let is_known = name.starts_with('-') || name == "help" || Cli::command().find_subcommand(&name).is_some();
     (is_word && !is_known && !Path::new(&name).exists()).then_some(name)

@@ -16,8 +16,7 @@ const INTERRUPTED: i32 = 1;
 
 /// Ends the program while work goes on that cannot be stopped, with the message of a failure.
 pub fn give_up(failure: &Failure) -> ! {
-    screen::warn(&failure.to_string());
-    end(i32::from(screen::exit_code(failure.blame)))
+    end(i32::from(screen::fail(failure)))
 }
 
 /// Ends the program, and the processes of outside estimators with it: a terminal does not tell them.

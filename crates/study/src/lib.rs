@@ -4,7 +4,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | commands and exit codes | [`cli`], [`commands`] |
-//! | options | [`options`], [`outside`] |
+//! | options | [`options`], [`outside`], `completed` |
 //! | what a command works out | [`work`] |
 //! | what it leaves for other programs | [`documents`] |
 //! | tables, figures and pages | [`views`] |
@@ -12,6 +12,7 @@
 
 pub mod cli;
 pub mod commands;
+mod completed;
 pub mod documents;
 #[cfg(test)]
 mod fault_tests;

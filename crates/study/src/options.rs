@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use crate::completed::{self, completed};
 use crate::outside::NamedCommand;
 use crate::style_options::within;
-pub use crate::style_options::{FigureChoice, FigureOptions, StudyFigureOptions};
+pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, PageFigures, StudyFigureOptions};
 use ::trace::{EffectId, Rule, Selection};
 use campaign::task::Shard;
+use clap::builder::StringValueParser;
 use clap::{Args, ValueEnum};
 use report::Table;
 use scenario::problem::suggestion;
@@ -44,12 +46,19 @@ pub struct Common {
     /// Seed in place of the scenario's
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// No progress bar and no table; errors and warnings remain
+    /// No progress bar, table, note or warning; errors remain, and what --format asks for
     #[arg(long)]
     pub quiet: bool,
     /// What is written to standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+}
+
+impl Common {
+    /// Whether standard output is to hold nothing: a form that was asked for is written all the same.
+    pub fn is_silent(&self) -> bool {
+        self.quiet && self.format == Format::Text
+    }
 }
 
 fn seed(text: &str) -> Result<u64, String> {
@@ -166,8 +175,12 @@ pub struct FitRequest {
     /// Records on which the identified responses are replayed; only their initial state is fitted
     #[arg(long, value_name = "TRIAL")]
     pub validate: Vec<PathBuf>,
-    /// Methods to use [default: all]
-    #[arg(long = "method", value_name = "ID")]
+    /// Method to use, or `all`; can be given several times [default: all but fourier-published and srivc]
+    #[arg(
+        long = "method", value_name = "ID|all",
+        value_parser = completed(StringValueParser::new(), completed::methods),
+        hide_possible_values = true
+    )]
     pub methods: Vec<String>,
     /// Also ask another program: it is started, and reads and writes lines of JSON
     #[arg(long = "external", value_name = "LABEL=COMMAND")]
@@ -175,9 +188,9 @@ pub struct FitRequest {
     /// How the records are read
     #[command(flatten)]
     pub reading: ReadingOptions,
-    /// How the figures are drawn
+    /// How figures are drawn, and whether
     #[command(flatten)]
-    pub style: FigureOptions,
+    pub style: PageFigureOptions,
 }
 
 /// What `study simulate` is asked to do.
@@ -230,20 +243,37 @@ pub struct TraceRequest {
     #[arg(long, value_name = "CHANNEL", value_enum)]
     pub without: Vec<Withheld>,
     /// Effects that are in the model whatever the evidence says, by their ids in `study list effects`
-    #[arg(long, value_name = "ID,…", value_delimiter = ',', value_parser = effect)]
+    #[arg(
+        long, value_name = "ID,…", value_delimiter = ',',
+        value_parser = completed(effect, completed::effects),
+        hide_possible_values = true
+    )]
     pub with: Vec<EffectId>,
     /// Exactly these effects and no search
-    #[arg(long, value_name = "ID,…", value_delimiter = ',', value_parser = effect, conflicts_with_all = ["with", "without_effect"])]
+    #[arg(
+        long, value_name = "ID,…", value_delimiter = ',',
+        value_parser = completed(effect, completed::effects),
+        hide_possible_values = true,
+        conflicts_with_all = ["with", "without_effect"]
+    )]
     pub only: Vec<EffectId>,
     /// Effects that are no candidates
-    #[arg(long, value_name = "ID,…", value_delimiter = ',', value_parser = effect)]
+    #[arg(
+        long, value_name = "ID,…", value_delimiter = ',',
+        value_parser = completed(effect, completed::effects),
+        hide_possible_values = true
+    )]
     pub without_effect: Vec<EffectId>,
     /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
-    #[arg(long, value_name = "NAME", default_value = Rule::default().as_str(), value_parser = rule)]
+    #[arg(
+        long, value_name = "NAME", default_value = Rule::default().as_str(),
+        value_parser = completed(rule, completed::rules),
+        hide_possible_values = true
+    )]
     pub rule: Rule,
-    /// How figures are drawn
+    /// How figures are drawn, and whether
     #[command(flatten)]
-    pub style: FigureOptions,
+    pub style: PageFigureOptions,
 }
 
 impl TraceRequest {
@@ -310,7 +340,11 @@ pub struct PredictRequest {
     #[arg(long)]
     pub form: bool,
     /// Method whose answer in fit.json is used [default: maximum-likelihood, or the next that has a covariance]
-    #[arg(long, value_name = "ID")]
+    #[arg(
+        long, value_name = "ID",
+        value_parser = completed(StringValueParser::new(), completed::methods),
+        hide_possible_values = true
+    )]
     pub method: Option<String>,
     /// Without the random moment and the steady wind of the records
     #[arg(long)]
@@ -321,9 +355,9 @@ pub struct PredictRequest {
     /// How the records are read, and the scale that is predicted for: another length scales the ship by Froude
     #[command(flatten)]
     pub reading: ReadingOptions,
-    /// How figures are drawn
+    /// How figures are drawn, and whether
     #[command(flatten)]
-    pub style: FigureOptions,
+    pub style: PageFigureOptions,
 }
 
 /// Files that have a schema.
@@ -341,6 +375,46 @@ pub enum Described {
     Predict,
     /// manifest.toml
     Manifest,
+    /// bench.json
+    Bench,
+    /// Definition of a benchmark
+    BenchDefinition,
+    /// curves.json of a fit
+    FitCurves,
+    /// cells.json of a study
+    Cells,
+    /// showcase.json of a study
+    Showcase,
+    /// Style of figures
+    Style,
+    /// trials.toml, beside simulated records
+    Trials,
+    /// NAME.truth.json, beside a simulated record
+    Truth,
+    /// What a study, `report`, `merge` and `score` say with --format json
+    Study,
+    /// What a shard of a study says
+    Shard,
+    /// What `find` says
+    Find,
+    /// What `check` says
+    Check,
+    /// What `list` says
+    List,
+    /// What `simulate` says
+    Simulate,
+    /// What `sidecar` says
+    SidecarAnswer,
+    /// What `overview` says
+    Overview,
+    /// What `doctor` says
+    Doctor,
+    /// What `completions` says
+    Completions,
+    /// What `man` says
+    Man,
+    /// What every command says on standard error when it fails
+    Error,
 }
 
 /// What can be listed.

@@ -3,16 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use estimation::statistics::upper_median;
-use ship::Particulars;
+use report::number::fixed;
 use ship::angle::KNOT;
+use ship::{Particulars, ShortNumber};
 use trial::file::{STDIN, called};
 use trial::find::FoundManoeuvre;
-use trial::{Channel, Log, Manoeuvre, Origin, ReadRecord, Sidecar, Trial};
+use trial::{Channel, Log, Manoeuvre, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
 use campaign::answers::TRIALS;
 use campaign::known::RecordFacts;
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::{Failure, FailureParts, OnPath};
 use scenario::name;
 
 /// Endings of files that a folder of records is looked through for.
@@ -85,10 +86,23 @@ pub fn open(
     let sidecar = own
         .or_else(|| columns.filter(|columns| !columns.is_dir()).map(Path::to_path_buf))
         .or_else(|| Sidecar::found_beside(path));
-    let mut log = Log::open(path, sidecar.as_deref(), others).map_err(Failure::input)?;
+    let mut log = Log::open(path, sidecar.as_deref(), others).map_err(refused)?;
     let found = std::mem::take(&mut log.warnings);
     warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", called(path).display())));
     Ok(log)
+}
+
+/// Why a file is no record, with the file told apart.
+fn refused(error: ReadError) -> Failure {
+    match error {
+        ReadError::Table { file, problem } => Failure::about(&file, problem),
+        ReadError::Sidecar(error) => {
+            let SidecarError { file, line, problem } = &error;
+            let (file, problem) = (Some(file.display().to_string()), problem.to_string());
+            let parts = FailureParts { file, line: *line, problem, ..FailureParts::default() };
+            Failure { parts: Box::new(parts), ..Failure::input(&error) }
+        }
+    }
 }
 
 /// Reads the records that are to be identified: of each the part that was asked for, or its zig-zag.
@@ -131,12 +145,12 @@ fn read(path: &Path, options: &ReadingOptions, warnings: &mut Vec<String>) -> Re
 pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
     let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
     let log = if from.is_some() || until.is_some() {
-        log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(Failure::input)?
+        log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(refused)?
     } else {
         chosen(log, path, options.trial, warnings)?
     };
     let ship = ship(&log, path, options, warnings)?;
-    let ReadRecord { trial, warnings: found } = log.into_trial(ship).map_err(Failure::input)?;
+    let ReadRecord { trial, warnings: found } = log.into_trial(ship).map_err(refused)?;
     warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
     Ok(trial)
 }
@@ -213,7 +227,7 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
         at(&log, from),
         at(&log, until)
     ));
-    log.part(from, until).map_err(Failure::input)
+    log.part(from, until).map_err(refused)
 }
 
 /// The question which of several zig-zags is meant.
@@ -228,7 +242,7 @@ fn ask(log: &Log, path: &Path, several: &[(usize, &FoundManoeuvre)]) -> Failure 
 /// A time of a log for people: seconds, and what the clock shows.
 pub fn at(log: &Log, time: f64) -> String {
     let clock = log.clock().map(|clock| format!(" ({})", clock.at(time)));
-    format!("{} s{}", report::number::fixed(time, 1), clock.unwrap_or_default())
+    format!("{} s{}", fixed(time, 1), clock.unwrap_or_default())
 }
 
 /// Length and approach speed from the options; the speed from the record where it is not given.
@@ -251,16 +265,23 @@ fn ship(
     };
     warnings.push(format!(
         "{file}: the approach speed is taken from the record, {} kn in its first tenth",
-        report::number::fixed(speed / KNOT, 2)
+        fixed(speed / KNOT, 2)
     ));
     Ok(Some(Particulars { length, speed }))
 }
 
 /// Says why records that have a speed or positions tell no track.
 pub fn warn_of_no_track(shown: &RecordFacts, warnings: &mut Vec<String>) {
-    warnings.extend(shown.no_track().map(|why| {
-        format!("speed loss and drift are not told by these records, and no track can be predicted: {why}")
-    }));
+    warnings.extend(shown.no_track().map(str::to_owned));
+}
+
+/// What a negative dead time of so many seconds says, and what mends it.
+pub fn rudder_logged_late(late: f64) -> String {
+    let late = ShortNumber::rounded(late, 2);
+    format!(
+        "the dead time is −{late} s, which no steering gear has: a rudder logged {late} s late; write `late-s = {late}` \
+         under [rudder] in a sidecar NAME.trial.toml"
+    )
 }
 
 /// The same record counts only once: given twice for identification its errors come out too small, and on a record that

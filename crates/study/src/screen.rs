@@ -4,10 +4,12 @@
 
 use std::borrow::Cow;
 use std::io::{ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use report::Table;
 use report::printable::escaped;
 
+use crate::documents;
 use crate::options::{Common, Format};
 use scenario::failure::{Blame, Failure};
 
@@ -77,25 +79,31 @@ pub struct CommandOutput<'a> {
 /// Fails as [`say`] does.
 pub fn tell(common: &Common, output: &CommandOutput, warnings: &[String]) -> Result<(), Failure> {
     let CommandOutput { words: [before, behind], table, notes, document } = output;
+    let note = |line: &str| {
+        if !common.quiet {
+            warn(line)
+        }
+    };
     match common.format {
-        _ if common.quiet => {}
+        _ if common.is_silent() => {}
         Format::Text => say(&format!("{before}\n{}{behind}{notes}", table.to_text()))?,
         Format::Json => {
             say_document(document)?;
-            warn(notes.lines().last().unwrap_or_default());
+            note(notes.lines().last().unwrap_or_default());
         }
         format => {
             say(format.render(table).trim_end())?;
-            warn(notes.trim_start());
+            note(notes.trim_start());
         }
     }
-    warn_of(warnings);
+    warn_of(common, warnings);
     Ok(())
 }
 
-/// Writes warnings to standard error, one a line.
-pub fn warn_of(warnings: &[String]) {
-    warnings.iter().for_each(|warning| warn(&format!("warning: {warning}")));
+/// Writes warnings to standard error, one a line, unless none are wanted.
+pub fn warn_of(common: &Common, warnings: &[String]) {
+    let wanted = warnings.iter().filter(|_| !common.quiet);
+    wanted.for_each(|warning| warn(&format!("warning: {warning}")));
 }
 
 /// Writes a document to standard output as it is: JSON shows by itself what could act on the terminal.
@@ -108,6 +116,28 @@ pub fn say_document(document: &str) -> Result<(), Failure> {
 /// The lines without anything but text in them, as they are written.
 pub fn shown(lines: &str) -> String {
     lines.split('\n').map(escaped).collect::<Vec<Cow<str>>>().join("\n")
+}
+
+/// Whether a program reads what went wrong.
+static FOR_PROGRAMS: AtomicBool = AtomicBool::new(false);
+
+/// Tells failures from now on as JSON, for programs.
+pub fn tell_programs() {
+    FOR_PROGRAMS.store(true, Ordering::Relaxed);
+}
+
+/// Whether failures are told as JSON.
+pub fn is_for_programs() -> bool {
+    FOR_PROGRAMS.load(Ordering::Relaxed)
+}
+
+/// Tells a failure on standard error, in words or as one line of JSON; returns the exit code of the program.
+pub fn fail(failure: &Failure) -> u8 {
+    match documents::error::text(failure) {
+        Ok(document) if is_for_programs() => drop(writeln!(std::io::stderr().lock(), "{document}")),
+        _ => warn(&failure.to_string()),
+    }
+    exit_code(failure.blame)
 }
 
 /// The exit code of the program after a failure.

@@ -22,6 +22,34 @@ pub struct FigureOptions {
     pub style: Option<PathBuf>,
 }
 
+/// How the figures of a page are drawn, and whether.
+#[derive(Debug, Clone, Args)]
+pub struct PageFigureOptions {
+    /// How they are drawn
+    #[command(flatten)]
+    pub style: FigureOptions,
+    /// Whether figures are made; the document, the curves and the page in words are always written
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t = PageFigures::All)]
+    pub figures: PageFigures,
+}
+
+/// Which figures of a page are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum PageFigures {
+    /// All there are
+    All,
+    /// None
+    None,
+}
+
+impl PageFigureOptions {
+    /// The theme of the figures, `None` where none are made. Fails as [`FigureOptions::theme`] does.
+    pub fn theme(&self) -> Result<Option<Theme>, Failure> {
+        let theme = self.style.theme()?;
+        Ok((self.figures == PageFigures::All).then_some(theme))
+    }
+}
+
 /// How the figures of a study are drawn, and which.
 #[derive(Debug, Clone, Args)]
 pub struct StudyFigureOptions {

@@ -1,40 +1,40 @@
 //! Who watches a study at the command line: a bar, warnings on standard error, and Ctrl-C as a request to stop.
 
 use std::sync::OnceLock;
-use std::time::Duration;
 
 use campaign::Observer;
-use indicatif::ProgressBar;
 use scenario::failure::Failure;
 
-use crate::{interrupt, progress, screen};
+use crate::progress::Steps;
+use crate::{interrupt, screen};
 
 /// The terminal of a person who waits.
 pub struct Terminal {
     quiet: bool,
-    bar: OnceLock<ProgressBar>,
+    what: &'static str,
+    steps: OnceLock<Steps>,
 }
 
 impl Terminal {
-    /// A terminal without a bar yet.
-    pub fn new(quiet: bool) -> Self {
-        Self { quiet, bar: OnceLock::new() }
+    /// A terminal without a bar yet; `what` is done step by step.
+    pub fn new(what: &'static str, quiet: bool) -> Self {
+        Self { quiet, what, steps: OnceLock::new() }
     }
 }
 
 impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
         interrupt::listen(true);
-        let bar = || progress::of("trials", most, self.quiet).with_position(done).with_elapsed(Duration::ZERO);
-        self.bar.get_or_init(bar);
+        let threads = rayon::current_num_threads();
+        self.steps.get_or_init(|| Steps::new(self.what, most, done, threads, self.quiet));
     }
 
     fn advance(&self) {
-        self.bar.get().iter().for_each(|bar| bar.inc(1));
+        self.steps.get().iter().for_each(|steps| steps.advance());
     }
 
     fn end(&self) {
-        self.bar.get().iter().for_each(|bar| bar.finish());
+        self.steps.get().iter().for_each(|steps| steps.finish());
         interrupt::listen(false);
     }
 
@@ -45,7 +45,7 @@ impl Observer for Terminal {
     }
 
     fn warn(&self, line: &str) {
-        screen::warn(&format!("warning: {line}"));
+        self.note(&format!("warning: {line}"));
     }
 
     fn is_asked_to_stop(&self) -> bool {

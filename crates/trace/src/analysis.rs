@@ -106,6 +106,35 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
+    watched(trials, validation, settings, &NoWatcher)
+}
+
+/// Who waits for an analysis of several records, which goes on for long after its result is there.
+pub trait Watcher: Sync {
+    /// The result is there; every one of so many records is now looked at as if it had been held out.
+    fn begin_folds(&self, _count: usize) {}
+
+    /// One of them is done.
+    fn end_fold(&self) {}
+
+    /// Whether to do without; then no record is [left out](Analysis::left_out).
+    fn is_asked_to_stop(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody waits.
+struct NoWatcher;
+
+impl Watcher for NoWatcher {}
+
+/// The same as [`trace`] while somebody watches.
+pub fn watched(
+    trials: &[Trial],
+    validation: &[Trial],
+    settings: &Settings,
+    watcher: &dyn Watcher,
+) -> Result<Analysis, TraceError> {
     settings.check()?;
     let (trials, outliers) = without_spikes(trials);
     let (validation, _) = without_spikes(validation);
@@ -128,7 +157,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let judged: Vec<RecordComparison> =
         validation.par_iter().map(|trial| unseen.compared(trial, &response)).collect::<Result<_, _>>()?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let left_out = if is_folded { leave_one_out(&trials, &problem, &full, &structures) } else { Vec::new() };
+    let left_out = if is_folded { leave_one_out(&trials, &problem, (&full, &structures), watcher) } else { Vec::new() };
     let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
     let whiteness = [
         whiteness(identification.iter().map(|one| &one.before), &trials),
@@ -255,12 +284,6 @@ impl Analysis {
             || Response::first_order_ship(self.base.response),
             |(_, fit)| fit.structure.response(None, &fit.theta),
         )
-    }
-
-    /// Root mean square yaw rate with which the fitted records begin, rad/s.
-    pub fn initial_yaw_rate(&self) -> f64 {
-        let squares = self.identification.iter().map(|one| one.after.replay.initial()[1].powi(2));
-        (squares.sum::<f64>() / self.identification.len() as f64).sqrt()
     }
 
     /// The average on a further trial, in a calm and perfectly recorded, from the best initial state near `start`: its

@@ -1,12 +1,13 @@
 //! The pipeline on records of known truth, where `tests/tracing.rs` has no word on it.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use ship::effects::{Effect, Formula, NonlinearDamping};
 use trial::Trial;
 
 use crate::testing::{TrialPlan, record, ship, wandering};
-use crate::{Analysis, EffectId, Rule, Selection, Settings, trace};
+use crate::{Analysis, EffectId, Rule, Selection, Settings, Watcher, trace, watched};
 
 /// A record of a ship whose damping grows with the cube of its yaw rate.
 fn damped(plan: TrialPlan) -> Trial {
@@ -40,6 +41,28 @@ fn several_records_are_left_out_in_turn() {
         let [before, after] = [&fold.before, &fold.after].map(|on| on.errors.heading.to_degrees());
         assert!(before > 0.3 && after < 0.25 * before, "{before} and {after} deg");
     }
+}
+
+/// The search is over when the folds begin: whoever does not wait for them has the same result without them.
+#[test]
+fn nobody_has_to_wait_for_the_folds() {
+    #[derive(Default)]
+    struct Hurried(AtomicUsize);
+    impl Watcher for Hurried {
+        fn begin_folds(&self, count: usize) {
+            self.0.fetch_add(count, Ordering::Relaxed);
+        }
+
+        fn is_asked_to_stop(&self) -> bool {
+            self.0.load(Ordering::Relaxed) > 0
+        }
+    }
+    let trials = [10.0, 15.0].map(|rudder_deg| damped(TrialPlan { rudder_deg, ..TrialPlan::default() }));
+    let hurried = Hurried::default();
+    let stopped = watched(&trials, &[], &Settings::default(), &hurried).expect("a base");
+    let whole = traced(&trials);
+    assert_eq!((hurried.0.into_inner(), stopped.left_out.len(), whole.left_out.len()), (2, 0, 2));
+    assert_eq!((named(&stopped), stopped.base.response), (named(&whole), whole.base.response));
 }
 
 #[test]
@@ -94,7 +117,7 @@ fn bands_hold_the_record() {
     let analysis = trace(&[trial], &[other], &Settings::default()).expect("a base");
     for one in analysis.identification.iter().chain(&analysis.validation) {
         let (coverage, width) =
-            (one.after.coverage().expect("a band"), one.after.width().expect("a band").to_degrees());
+            (one.after.coverage().expect("a band").share(), one.after.width().expect("a band").to_degrees());
         assert!((0.85..=1.0).contains(&coverage) && (0.15..0.6).contains(&width), "{coverage}, {width} deg");
     }
 }

@@ -1,6 +1,7 @@
 //! Models against records: errors of the recorded rudder replayed, before and after, on the records that were fitted
 //! and on others. Nothing is fitted here but initial states.
 
+use estimation::statistics::wilson;
 use identify::replay::{Replay, replay};
 use ship::{FirstOrder, Response};
 use trial::Trial;
@@ -23,14 +24,53 @@ pub struct ReplayResult {
     pub band: Option<Vec<f64>>,
 }
 
+/// The headings of a record and the 95 % band of its replay.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BandCoverage {
+    /// Measured headings inside the band.
+    pub inside: usize,
+    /// Measured headings.
+    pub of: usize,
+    /// Interval of the share inside, 99 % (Wilson 1927), for as many headings as tell something of their own: neighbours
+    /// are in or out together, and n of them count as n (1 − ρ)/(1 + ρ) with their autocorrelation ρ at lag 1.
+    pub interval: [f64; 2],
+}
+
+/// Share of the headings that a band is made for.
+const HELD: f64 = 0.95;
+
+/// Standard deviations on either side of 99 % of a normal error.
+const QUANTILE_99: f64 = 2.575_829_303_548_901;
+
+impl BandCoverage {
+    /// Of headings in order of time, which are inside; `None` without any.
+    pub fn of(inside: &[bool]) -> Option<Self> {
+        let (count, of) = (inside.iter().filter(|&&inside| inside).count(), inside.len());
+        let share = (of > 0).then(|| count as f64 / of as f64)?;
+        let off: Vec<f64> = inside.iter().map(|&inside| f64::from(u8::from(inside)) - share).collect();
+        let cross: f64 = off.windows(2).map(|pair| pair[0] * pair[1]).sum();
+        let square: f64 = off.iter().map(|off| off * off).sum();
+        let correlation = if square > 0.0 { (cross / square).max(0.0) } else { 0.0 };
+        let independent = of as f64 * (1.0 - correlation) / (1.0 + correlation);
+        Some(Self { inside: count, of, interval: wilson(share, independent, QUANTILE_99) })
+    }
+
+    /// Share of the headings inside.
+    pub fn share(&self) -> f64 {
+        self.inside as f64 / self.of as f64
+    }
+
+    /// Whether the band may hold as much as it is made for.
+    pub fn is_held(&self) -> bool {
+        self.interval[1] >= HELD
+    }
+}
+
 impl ReplayResult {
-    /// Share of the measured headings that lie inside the band.
-    pub fn coverage(&self) -> Option<f64> {
+    /// The measured headings against the band; `None` where there is none.
+    pub fn coverage(&self) -> Option<BandCoverage> {
         let pairs = self.replay.residual.iter().zip(self.band.as_ref()?).filter(|(residual, _)| residual.is_finite());
-        let (inside, rows) = pairs.fold((0usize, 0usize), |(inside, rows), (residual, half)| {
-            (inside + usize::from(residual.abs() <= *half), rows + 1)
-        });
-        (rows > 0).then(|| inside as f64 / rows as f64)
+        BandCoverage::of(&pairs.map(|(residual, half)| residual.abs() <= *half).collect::<Vec<bool>>())
     }
 
     /// Mean width of the band, rad.
@@ -129,4 +169,23 @@ fn result(trial: &Trial, replay: Replay, windows: [Option<Vec<f64>>; HORIZONS.le
         horizon: windows.map(|residual| root_mean_square(&finite(&residual?))),
     };
     ReplayResult { replay, errors, band: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As many headings outside say much where they stand alone and little where they are one swing.
+    #[test]
+    fn neighbours_outside_a_band_count_little() {
+        let outside = |is_out: fn(usize) -> bool| {
+            let inside: Vec<bool> = (0..200).map(|row| !is_out(row)).collect();
+            BandCoverage::of(&inside).expect("headings")
+        };
+        let (apart, swing) = (outside(|row| row % 10 == 0), outside(|row| row >= 180));
+        assert_eq!((apart.inside, swing.inside), (180, 180));
+        assert!(!apart.is_held() && swing.is_held(), "{apart:?} {swing:?}");
+        assert!(outside(|_| false).is_held() && !outside(|_| true).is_held());
+        assert_eq!(BandCoverage::of(&[]), None);
+    }
 }

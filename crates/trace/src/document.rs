@@ -413,7 +413,7 @@ impl From<&ReplayResult> for ErrorsEntry {
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
             overshoot_error_deg: errors.overshoot.map(to_deg),
             horizon_rmse_deg: horizon.map(|(length, error)| (format!("{length:.0}"), error.map(to_deg))).collect(),
-            band_coverage_95: on.coverage(),
+            band_coverage_95: on.coverage().map(|own| own.share()),
             band_width_95_deg: on.width().map(to_deg),
         }
     }

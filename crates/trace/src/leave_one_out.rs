@@ -4,6 +4,7 @@
 use rayon::prelude::*;
 use trial::Trial;
 
+use crate::analysis::Watcher;
 use crate::average::AveragedModel;
 use crate::base::Base;
 use crate::comparison::RecordComparison;
@@ -16,13 +17,14 @@ use crate::weights::NoiseLaw;
 /// Structures that take part.
 const MOST: usize = 4;
 
-/// Comparisons on every record that its fold has not seen.
+/// Comparisons on every record that its fold has not seen; none at all where it was asked to stop.
 pub fn leave_one_out(
     trials: &[Trial],
     problem: &FittedRecords,
-    full: &Full,
-    structures: &Structures,
+    (full, structures): (&Full, &Structures),
+    watcher: &dyn Watcher,
 ) -> Vec<Option<RecordComparison>> {
+    watcher.begin_folds(trials.len());
     let fold = |left: usize| -> Option<RecordComparison> {
         let base = Base::of(&without(trials, left)).ok()?;
         let others =
@@ -49,7 +51,13 @@ pub fn leave_one_out(
         let unseen = AveragedModel { members: &members, law: &law, known: None, time: problem.time };
         unseen.compared(&trials[left], &base.estimate.response).ok()
     };
-    (0..trials.len()).into_par_iter().map(fold).collect()
+    let watched = |left: usize| {
+        let found = (!watcher.is_asked_to_stop()).then(|| fold(left));
+        watcher.end_fold();
+        found
+    };
+    let all: Option<Vec<_>> = (0..trials.len()).into_par_iter().map(watched).collect();
+    all.unwrap_or_default()
 }
 
 /// Log of evidence and prior odds on the others.

@@ -33,7 +33,7 @@ pub mod waves;
 pub mod weights;
 mod words;
 
-pub use analysis::{Analysis, trace};
+pub use analysis::{Analysis, Watcher, trace, watched};
 pub use document::{Document, Verdict};
 pub use selection::{EffectId, Selection};
 pub use settings::{Rule, Settings, TraceError};

@@ -22,7 +22,7 @@ pub fn squares(all: &[RecordComparison]) -> [f64; 2] {
 /// What the structures leave.
 #[derive(Debug, Clone)]
 pub struct Remainder {
-    /// Whether the law describes it.
+    /// Whether the law describes it, and the bands that are made from the law hold.
     pub holds: bool,
     /// Where it is, where it is more than noise.
     pub signature: Option<Signature>,
@@ -46,7 +46,8 @@ impl Remainder {
         trials: &[Trial],
     ) -> Self {
         let Some(best) = structures.all.first() else { return Self { holds: true, signature: None, empirical: None } };
-        let holds = holds(problem, &best.fit.residual, &full.law);
+        let is_held = |one: &RecordComparison| one.after.coverage().is_none_or(|own| own.is_held());
+        let holds = holds(problem, &best.fit.residual, &full.law) && identification.iter().all(is_held);
         let [before, after] = squares(identification);
         let share = (after / before).sqrt();
         let is_noise = holds && !full.law.is_of_model() && !full.law.is_random_moment();

@@ -94,7 +94,7 @@ impl TraceParts<'_> {
             },
             unexplained: UnexplainedEntry {
                 present: signature.is_some(),
-                signature: signature.map(|own| words::signature(own, self.name_of(own))),
+                signature: signature.map(|own| words::signature(own, self.name_of(own)) + &self.bands()),
                 empirical: self.empirical(),
             },
             residual: ResidualEntry { before: self.whiteness[0].into(), after: self.whiteness[1].into() },
@@ -115,6 +115,12 @@ impl TraceParts<'_> {
 
     fn name_of(&self, signature: &Signature) -> &str {
         self.trials[signature.record].name()
+    }
+
+    /// The fitted records whose bands do not hold what they are made for.
+    fn bands(&self) -> String {
+        let covered = self.identification.iter().filter_map(|one| Some((one, one.after.coverage()?)));
+        covered.filter(|(_, own)| !own.is_held()).map(|(one, own)| words::band(&one.name, &own)).collect()
     }
 
     fn ship(&self) -> Option<Particulars> {

@@ -3,6 +3,7 @@
 use ship::angle::to_deg;
 use trial::{Origin, Trial};
 
+use crate::comparison::BandCoverage;
 use crate::document::{BeforeAfter, EffectEntry, ErrorEntry, Verdict};
 use crate::naming::EffectNaming;
 use crate::signature::Signature;
@@ -134,4 +135,11 @@ pub fn signature(own: &Signature, name: &str) -> String {
         short(to_deg(own.side[0])),
         short(to_deg(own.side[1])),
     )
+}
+
+/// A band that holds less than it is made for.
+pub fn band(name: &str, own: &BandCoverage) -> String {
+    let [low, high] = own.interval.map(|end| 100.0 * end);
+    let (inside, of, share) = (own.inside, own.of, 100.0 * own.share());
+    format!("; the 95 % band holds {inside} of {of} headings of {name}, {share:.0} % [{low:.0}, {high:.0}]")
 }

@@ -6,7 +6,7 @@ pub(crate) mod readings;
 
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
-use crate::words::counted;
+use crate::words::{counted, instant};
 
 /// Angle beyond which no rudder goes, rad.
 const NO_RUDDER: f64 = 1.6;
@@ -115,7 +115,7 @@ fn reject(
 ) -> String {
     const SHOWN: usize = 6;
     rejected.extend(rows.iter().map(|&row| RejectedReading { channel, time: time[row], value: values[row] }));
-    let mut shown: Vec<String> = rows.iter().take(SHOWN).map(|&row| time[row].to_string()).collect();
+    let mut shown: Vec<String> = rows.iter().take(SHOWN).map(|&row| instant(time[row]).to_string()).collect();
     shown.extend((rows.len() > SHOWN).then(|| String::from("…")));
     format!("at t = {} s", shown.join(", "))
 }
@@ -263,8 +263,11 @@ fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Op
     };
     // A rest of n steps is one of n + 1 rows, the first of which is honest.
     let frozen: Vec<&[usize]> = rests.filter(is_frozen).map(|rest| &seen[rest.start..=rest.end]).collect();
-    let told: Vec<String> =
-        frozen.iter().map(|rows| format!("from {} s to {} s", time[rows[0]], time[rows[rows.len() - 1]])).collect();
+    let told: Vec<String> = frozen
+        .iter()
+        .map(|rows| [rows[0], rows[rows.len() - 1]].map(|row| instant(time[row])))
+        .map(|[from, to]| format!("from {from} s to {to} s"))
+        .collect();
     let rows: Vec<usize> = frozen.iter().flat_map(|rows| &rows[1..]).copied().collect();
     reject(Channel::Heading, time, heading, &rows, rejected);
     rows.into_iter().for_each(|row| heading[row] = f64::NAN);

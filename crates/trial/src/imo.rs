@@ -109,17 +109,19 @@ pub fn turning_circle(advance: Option<f64>, tactical_diameter: Option<f64>, leng
 }
 
 /// The criteria a zig-zag can measure, with the values this one does: overshoots and initial turning of a 10/10, the
-/// first overshoot of a 20/20, nothing for other pairs or for a record that begins within the trial.
+/// first overshoot of a 20/20, nothing for other pairs or for a record that begins within the trial. Initial turning and
+/// first overshoot are those of a ship that goes straight until the first execute.
 ///
 /// The way of the initial turning is the integral of the recorded speed, or V t_a where the speed was not recorded;
 /// the latter is slightly long, because a ship loses speed as it begins to turn.
 pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
     let is_pair = |angle_deg: f64| zigzag.pair.is_some_and(|pair: Pair| pair.is_deg(angle_deg, angle_deg));
+    let is_straight = zigzag.straight_yaw_rate().is_some();
     let overshoot = |angle_deg: f64, n: usize| {
-        let angle = zigzag.nth_overshoot(n).filter(|_| is_pair(angle_deg))?.angle;
+        let angle = zigzag.nth_overshoot(n).filter(|_| is_pair(angle_deg) && (n > 1 || is_straight))?.angle;
         Some(angle.scaled(to_deg(1.0)))
     };
-    let initial_turning = zigzag.initial_turning_time.filter(|_| is_pair(10.0)).map(|time| {
+    let initial_turning = zigzag.initial_turning_time.filter(|_| is_pair(10.0) && is_straight).map(|time| {
         let Particulars { length, speed } = particulars;
         let way = zigzag.initial_turning_distance.unwrap_or(speed * time.value);
         Quantity::new(way / length, time.sd.map(|sd| sd * speed / length))
@@ -185,6 +187,20 @@ mod tests {
         assert_relative_eq!(twenty[2].expect("20/20"), 18.81, epsilon = 0.02);
 
         assert_eq!(values(&table(10.0, 20.0)), [None; 4]);
+    }
+
+    /// A ship that turns at the first execute, at a third of her largest rate, has another first overshoot.
+    #[test]
+    fn a_turn_before_the_first_execute_leaves_the_second_overshoot() {
+        let plant = Plant { approach: 40.0, ..Plant::new(10.0, 10.0, 2.5) };
+        let (time, heading, rudder) = plant.record(300.0, 1.0);
+        // The rate of the approach dies out in 10 s.
+        let turned = time.iter().zip(heading).map(|(t, psi)| psi + 0.05 * (1.0 - (-(t - 40.0) / 10.0).exp().min(5.0)));
+        let zigzag = ZigZag::of(&trial(time.clone(), turned.collect(), rudder)).expect("a zig-zag");
+        assert!(!zigzag.begins_within_trial() && zigzag.straight_yaw_rate().is_none());
+        let measured = values(&criteria(&zigzag, YUKUN));
+        assert!(measured[1].is_some(), "{measured:?}");
+        assert_eq!([measured[0], measured[3]], [None, None]);
     }
 
     #[test]

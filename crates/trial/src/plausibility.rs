@@ -37,28 +37,30 @@ pub enum Implausible {
     /// Degrees under a name that says radians.
     #[error(
         "the rudder reaches {largest_deg:.0}°, expected less than 92°: it looks like degrees under a name that says radians; \
-         name the column rudder_deg, or write `is = \"rudder_deg\"` for it in a sidecar NAME.trial.toml"
+         name the column rudder_deg, or write `is = \"rudder_deg\"` for it in a sidecar NAME.trial.toml; if it is named so \
+         already, its numbers are of another scale"
     )]
     RudderInDegrees { largest_deg: f64 },
     /// Radians under a name that says degrees.
     #[error(
         "the rudder never exceeds {largest_deg:.3}° while the heading moves through {heading_deg:.0}°: it looks like radians \
          under a name that says degrees; name the column rudder_rad, or write `is = \"rudder_rad\"` for it in a sidecar \
-         NAME.trial.toml"
+         NAME.trial.toml; if it is named so already, its numbers are of another scale"
     )]
     RudderInRadians { largest_deg: f64, heading_deg: f64 },
     /// Degrees under a name that says radians.
     #[error(
         "the heading moves through {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks like degrees \
          under a name that says radians; name the column heading_deg, or write `is = \"heading_deg\"` for it in a sidecar \
-         NAME.trial.toml"
+         NAME.trial.toml; if it is named so already, its numbers are of another scale"
     )]
     HeadingInDegrees { heading_deg: f64, rudder_deg: f64 },
     /// Radians under a name that says degrees.
     #[error(
         "the heading moves through {heading_deg:.2}° only while the rudder moves through {rudder_deg:.1}°: it looks like \
          radians under a name that says degrees; name the column heading_rad, or write `is = \"heading_rad\"` for it in a \
-         sidecar NAME.trial.toml (if it is right, write `plausibility = false` under [check] there)"
+         sidecar NAME.trial.toml (if it is named so already, its numbers are of another scale; if all is right, write \
+         `plausibility = false` under [check] there)"
     )]
     HeadingInRadians { heading_deg: f64, rudder_deg: f64 },
     /// A channel alternates between two sensors.
@@ -219,7 +221,8 @@ fn ranges(trial: &Trial, warnings: &mut Vec<String>) -> Result<(), Implausible> 
             return Err(Implausible::RudderInRadians { largest_deg, heading_deg });
         }
         warnings.push(format!(
-            "the rudder never exceeds {largest_deg:.3}°; if all angles are in radians, name the columns rudder_rad and heading_rad"
+            "the rudder never exceeds {largest_deg:.3}°; if all angles are in radians under names that say degrees, name \
+             the columns rudder_rad and heading_rad"
         ));
         return Ok(());
     }
@@ -297,17 +300,6 @@ fn rudder_sign(trial: &Trial, response: Option<PartialSlope>, warnings: &mut Vec
         }
         if slope.share >= NOTABLE_SHARE {
             warnings.push(flipped.to_string());
-        }
-    } else if let Some(particulars) = trial.particulars().filter(|_| slope.share >= DECISIVE_SHARE)
-        && range_deg(trial.heading()) <= TURNED_DEG
-    {
-        // K'/T' = (K/T)(L/U)² is 0.3 to 1.5 for merchant ships.
-        let prime = slope.value * (particulars.length / particulars.speed).powi(2);
-        if !(0.02..=30.0).contains(&prime) {
-            warnings.push(format!(
-                "K'/T' is {prime:.2e} with the declared length and speed, ships have 0.3 to 1.5; check length, speed and the units \
-                 of rudder and heading"
-            ));
         }
     }
     Ok(())

@@ -1,5 +1,7 @@
 //! Names and texts of others in messages.
 
+use ship::ShortNumber;
+
 /// The names in backquotes, the first thirty of them.
 pub(crate) fn listed(names: &[String]) -> String {
     const SHOWN: usize = 30;
@@ -23,4 +25,20 @@ pub(crate) fn shortened(text: &str) -> String {
 /// `1 sentence`, `12 sentences`.
 pub(crate) fn counted(number: usize, of: &str) -> String {
     format!("{number} {of}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A time for a message, s: to a millisecond, without the digits that arithmetic leaves.
+pub(crate) fn instant(time: f64) -> ShortNumber {
+    ShortNumber((1e3 * time).round() / 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::instant;
+
+    #[test]
+    fn a_time_has_the_digits_that_were_read() {
+        let shown = [0.1 + 0.2, 6.0 * 0.2, 12.3455, 7.0, 1.7e9 + 0.25].map(|time| instant(time).to_string());
+        assert_eq!(shown, ["0.3", "1.2", "12.346", "7", "1700000000.25"]);
+    }
 }

@@ -36,8 +36,24 @@ fn delayed(rows: &mut Rows, column: usize, by: usize) {
     }
 }
 
-/// Every trouble.
+/// Every trouble, those of the instruments before those of the logger.
 pub const TROUBLES: [Trouble; 16] = [
+    Trouble {
+        name: "compass damped over 4 s",
+        put: |rows| {
+            let mut shown = rows[0][1];
+            for row in rows {
+                shown += 0.22 * ((row[1] - shown + 180.0).rem_euclid(360.0) - 180.0);
+                row[1] = shown;
+            }
+        },
+        told: &["slow compass"],
+    },
+    Trouble {
+        name: "compass that jumps by 8 degrees",
+        put: |rows| rows[210..].iter_mut().for_each(|row| row[1] += 8.0),
+        told: &["the heading jumps"],
+    },
     Trouble { name: "rudder 3 s late", put: |rows| delayed(rows, 2, 3), told: &["recorded about"] },
     Trouble { name: "heading 3 s late", put: |rows| delayed(rows, 1, 3), told: &["later than it was recorded"] },
     Trouble {
@@ -101,22 +117,6 @@ pub const TROUBLES: [Trouble; 16] = [
             copies.into_iter().enumerate().for_each(|(at, row)| rows.insert(100 + 2 * at, row));
         },
         told: &[],
-    },
-    Trouble {
-        name: "compass damped over 4 s",
-        put: |rows| {
-            let mut shown = rows[0][1];
-            for row in rows {
-                shown += 0.22 * ((row[1] - shown + 180.0).rem_euclid(360.0) - 180.0);
-                row[1] = shown;
-            }
-        },
-        told: &["slow compass"],
-    },
-    Trouble {
-        name: "compass that jumps by 8 degrees",
-        put: |rows| rows[210..].iter_mut().for_each(|row| row[1] += 8.0),
-        told: &["the heading jumps"],
     },
     Trouble {
         name: "a record from the second execute on",

@@ -10,7 +10,7 @@ use crate::benchmark::statistics::{mean, middle_and_high, ranks, ratio, resample
 pub use crate::benchmark::statistics::{FEWEST, ScoreFigure};
 
 /// All methods on one task.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Board {
     /// The task.
@@ -26,7 +26,7 @@ pub struct Board {
 }
 
 /// A method on one task.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LeaderboardRow {
     /// Its label.
@@ -49,7 +49,7 @@ pub struct LeaderboardRow {
 }
 
 /// A share with Wilson's 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WilsonShare {
     /// How many.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// A task.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BenchTask {
     /// Fit a record and replay its rudder on it.
@@ -68,7 +68,7 @@ impl BenchTask {
 pub const MEASURED: &str = "measured";
 
 /// One question with all answers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BenchCase {
     /// What was asked.
@@ -93,7 +93,7 @@ pub struct BenchCase {
 }
 
 /// The answer of one method.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CaseAnswer {
     /// Label of the method.
@@ -123,7 +123,7 @@ pub struct CaseAnswer {
 }
 
 /// What a method that names effects said.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Naming {
     /// What is missing, and nothing else; of a ship that lacks nothing, nothing.

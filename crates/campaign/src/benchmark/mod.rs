@@ -32,3 +32,4 @@ pub use method::BenchMethod;
 pub use record_store::RecordStore;
 pub use results::BenchDocument;
 pub use run::run;
+pub use wire::DefinitionWire;

@@ -7,7 +7,7 @@ use crate::benchmark::cases::{BenchCase, BenchTask, Naming};
 use crate::statistics::grouped;
 
 /// What a method said of the ships of one set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NamingLine {
     /// Label of the method.

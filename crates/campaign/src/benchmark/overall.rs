@@ -9,7 +9,7 @@ use crate::benchmark::statistics::{mean, resampled_by_set};
 use crate::statistics::grouped;
 
 /// The ranking.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OverallRanking {
     /// The boards it is made of, each counting the same.

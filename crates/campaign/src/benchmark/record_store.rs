@@ -26,7 +26,7 @@ pub struct RecordStore {
 }
 
 /// A file that was used.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UsedFile {
     /// Its name, without its place.

@@ -16,7 +16,7 @@ use crate::statistics::distinct;
 pub const SCHEMA: &str = "bench/1";
 
 /// The whole result.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BenchDocument {
     /// Version of the file.
@@ -46,7 +46,7 @@ pub struct BenchDocument {
 }
 
 /// Which definition was run.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Identity {
     /// What it is called.
@@ -60,7 +60,7 @@ pub struct Identity {
 }
 
 /// A set.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Present {
     /// What it is called.
@@ -76,7 +76,7 @@ pub struct Present {
 }
 
 /// A record of a set.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PresentRecord {
     /// What it is called.
@@ -88,7 +88,7 @@ pub struct PresentRecord {
 }
 
 /// A record that was not used.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Skipped {
     /// Name of the set.

@@ -29,6 +29,9 @@ struct BenchTrial<'a> {
     key: StreamKey,
 }
 
+/// Why a fit is missing that was not asked of every method.
+pub const STOPPED: &str = "the run was stopped before every method had answered";
+
 /// Questions that have their fit in common.
 struct SharedFit<'a> {
     trial: &'a BenchTrial<'a>,
@@ -39,8 +42,10 @@ struct SharedFit<'a> {
 /// Runs a benchmark: every method on the records that are there. Where there is something to ask, `begin` is called
 /// before the first answer, to see to the place of results.
 ///
+/// Where it is asked to stop, what every method has answered is kept, and the rest is skipped as [`STOPPED`].
+///
 /// Fails when two methods have one label, when records of a set are of different scale, when `begin` fails, and when it
-/// is asked to stop.
+/// is asked to stop before anything was answered.
 pub fn run(
     definition: &Definition,
     store: &RecordStore,
@@ -67,20 +72,36 @@ pub fn run(
     observer.begin(work.len() as u64, 0);
     let answer = |(fit, method): &(&SharedFit, &BenchMethod)| {
         let answers = (!observer.is_asked_to_stop()).then(|| answers(fit, method));
+        let notice = method.outside().and_then(|outside| outside.notice());
+        notice.iter().for_each(|notice| observer.warn(&format!("{}: {notice}", method.label())));
         observer.advance();
         answers
     };
-    let answers: Option<Vec<Vec<Option<CaseAnswer>>>> = work.par_iter().map(answer).collect();
+    let answers: Vec<Option<Vec<Option<CaseAnswer>>>> = work.par_iter().map(answer).collect();
     observer.end();
-    let answers = answers.ok_or_else(|| Failure::work("stopped; nothing was written"))?;
-    let mut cases = Vec::new();
+    let (mut cases, mut unanswered) = (Vec::new(), Vec::new());
     for (fit, answers) in fits.iter().zip(answers.chunks(methods.len().max(1))) {
+        // Only what all methods were asked can be compared.
+        let answers: Option<Vec<&Vec<Option<CaseAnswer>>>> = answers.iter().map(Option::as_ref).collect();
+        let Some(answers) = answers else {
+            unanswered.push(fit.trial.set.name.as_str());
+            continue;
+        };
         for (place, question) in fit.questions.iter().enumerate() {
             let own = answers.iter().filter_map(|of_method| of_method[place].clone());
             cases.push(case(fit.trial, question, own.collect()));
         }
     }
     cases.retain(|case| !case.answers.is_empty());
+    if cases.is_empty() && !unanswered.is_empty() {
+        return Err(Failure::work("stopped; nothing was written"));
+    }
+    let stopped = grouped(unanswered, |set| *set).into_iter().map(|(set, fits)| Skipped {
+        set: set.to_owned(),
+        record: format!("{} of its fits", fits.len()),
+        reason: STOPPED.to_owned(),
+    });
+    skipped.extend(stopped);
     // By task, as they are read; within a task in the order of the definition.
     cases.sort_by_key(|case| case.task);
     Ok(BenchDocument::of(definition, methods, present, skipped, cases))

@@ -20,7 +20,7 @@ const SEED: u64 = 1979;
 pub const FEWEST: usize = 6;
 
 /// A figure with its 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScoreFigure {
     /// The figure; none where an answer that failed stands there.

@@ -4,7 +4,9 @@
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
+use std::time::Duration;
 
 use crate::identifier::Opener;
 
@@ -24,25 +26,41 @@ const FULL: &[u8] = b"\n(what was said after this is not kept)\n";
 /// All pools, the one that was asked last at the end.
 static POOLS: Mutex<Vec<Weak<ProcessPool>>> = Mutex::new(Vec::new());
 
+/// Silences in succession after which a command is given up.
+const MOST_SILENCES: u32 = 3;
+
 /// The processes of one command.
 pub struct ProcessPool {
     command: Vec<String>,
     folder: PathBuf,
+    /// How long an answer is waited for.
+    timeout: Duration,
+    /// Silences since the last answer; once it is given up, none end that.
+    silences: AtomicU32,
+    is_told: AtomicBool,
     idle: Mutex<Vec<Process>>,
     log: Mutex<Option<Arc<Mutex<StderrLog>>>>,
 }
 
 impl ProcessPool {
-    /// The pool of a command in a folder, shared with whoever has it already.
-    pub fn of(command: Vec<String>, folder: &Path) -> Arc<Self> {
+    /// The pool of a command in a folder, shared with whoever has it already and waits as long.
+    pub fn of(command: Vec<String>, folder: &Path, timeout: Duration) -> Arc<Self> {
         let mut pools = locked(&POOLS);
         pools.retain(|pool| pool.strong_count() > 0);
         let known = pools.iter().filter_map(Weak::upgrade);
-        if let Some(own) = known.into_iter().find(|pool| pool.command == command && pool.folder == folder) {
+        let is_it = |pool: &Arc<Self>| pool.command == command && pool.folder == folder && pool.timeout == timeout;
+        if let Some(own) = known.into_iter().find(is_it) {
             return own;
         }
-        let own = Self { command, folder: folder.to_owned(), idle: Mutex::default(), log: Mutex::default() };
-        let own = Arc::new(own);
+        let own = Arc::new(Self {
+            command,
+            folder: folder.to_owned(),
+            timeout,
+            silences: AtomicU32::new(0),
+            is_told: AtomicBool::new(false),
+            idle: Mutex::default(),
+            log: Mutex::default(),
+        });
         pools.push(Arc::downgrade(&own));
         own
     }
@@ -52,13 +70,49 @@ impl ProcessPool {
         &self.command
     }
 
+    /// How long an answer is waited for.
+    pub fn timeout(&self) -> Duration {
+        self.timeout
+    }
+
     /// Where it runs.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// A process to ask: one that waits, or a new one.
+    /// Takes note of a question that was answered, with sense or without.
+    pub fn was_answered(&self) {
+        let is_kept = |count: u32| (count < MOST_SILENCES).then_some(0);
+        let _ = self.silences.fetch_update(Ordering::Relaxed, Ordering::Relaxed, is_kept);
+    }
+
+    /// Takes note of a question to which nothing came in time.
+    pub fn was_silent(&self) {
+        self.silences.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn is_given_up(&self) -> bool {
+        self.silences.load(Ordering::Relaxed) >= MOST_SILENCES
+    }
+
+    /// That it was given up, once.
+    pub fn notice(&self) -> Option<String> {
+        let is_new = self.is_given_up() && !self.is_told.swap(true, Ordering::Relaxed);
+        is_new.then(|| {
+            format!(
+                "`{}` gave no answer within {} s to {MOST_SILENCES} trials in succession and is given up: further trials \
+                 fail at once",
+                place::shown(&self.command),
+                self.timeout.as_secs_f64()
+            )
+        })
+    }
+
+    /// A process to ask: one that waits, or a new one; none of a command that was given up, in the words of a silence.
     pub fn take(self: &Arc<Self>) -> Result<Process, ProcessError> {
+        if self.is_given_up() {
+            return Err(ProcessError::Silent(self.timeout));
+        }
         self.was_asked();
         let idle = locked(&self.idle).pop();
         idle.map_or_else(|| self.start(), Ok)
@@ -83,8 +137,10 @@ impl ProcessPool {
         *locked(&self.log) = Some(Arc::new(Mutex::new(StderrLog { open, file: None, left: MOST_LOG })));
     }
 
-    /// Ends the processes that wait, and with them the log.
+    /// Ends the processes that wait, and with them the log; whoever asks next begins anew.
     pub fn end(&self) {
+        self.silences.store(0, Ordering::Relaxed);
+        self.is_told.store(false, Ordering::Relaxed);
         let idle = std::mem::take(&mut *locked(&self.idle));
         Process::end(idle);
         *locked(&self.log) = None;

@@ -14,7 +14,7 @@ pub enum ProcessError {
     #[error("not started: {0}")]
     NotStarted(std::io::Error),
     /// Nothing came in time.
-    #[error("no answer within {} s", .0.as_secs_f64())]
+    #[error("no answer within {} s; after 3 such silences in succession it is asked no more", .0.as_secs_f64())]
     Silent(Duration),
     /// The process is gone, or has closed its output.
     #[error("the process ended without an answer{}", .0.map_or_else(String::new, |status| format!(" ({status})")))]

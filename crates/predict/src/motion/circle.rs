@@ -55,8 +55,8 @@ const STEADY: f64 = TAU;
 const ENOUGH: f64 = PI;
 
 /// The figures of a turn that was begun at the time `execute`, s: times (s, increasing), headings (rad, not wrapped),
-/// positions (m, north and east: measured, or those of [`track`]), surge and sway at the point whose positions these
-/// are (m/s), and yaw rates (rad/s).
+/// positions (m, north and east: measured, or those of [`track`]; none where they are not known), surge and sway at the
+/// point whose positions these are (m/s), and yaw rates (rad/s).
 ///
 /// The course of the approach is the heading at the execute, the side of the turn that of the last heading. Between two
 /// rows the heading runs straight. The steady turn is what follows a heading change of 360° when that is at least half
@@ -69,7 +69,8 @@ pub fn turning_circle(
 ) -> TurningCircleFigures {
     let none = TurningCircleFigures::default();
     let rows = time.len();
-    let lengths = [heading.len(), track.len(), velocity.len(), yaw_rate.len()];
+    let has_track = !track.is_empty();
+    let lengths = [heading.len(), if has_track { track.len() } else { rows }, velocity.len(), yaw_rate.len()];
     let finite = time.iter().chain(heading).chain(track.iter().flatten()).all(|value| value.is_finite());
     if rows < 2 || lengths != [rows; 4] || !finite || !(time[0] <= execute && execute <= time[rows - 1]) {
         return none;
@@ -81,13 +82,13 @@ pub fn turning_circle(
     let at = |columns: &[[f64; 2]], row: usize, share: f64| {
         [0, 1].map(|axis| between(columns[row][axis], columns[row + 1][axis], share))
     };
-    let origin = at(track, begin, share);
+    let origin = has_track.then(|| at(track, begin, share));
     let side = (heading[rows - 1] - course).signum();
     let change = |row: usize| side * (heading[row] - course);
     let (sin, cos) = course.sin_cos();
     // Ahead of the execute and to the side of the turn, when the heading has changed by an angle.
     let way = |angle: f64| {
-        let (row, share) = reached(change, begin, rows, angle)?;
+        let (origin, (row, share)) = (origin?, reached(change, begin, rows, angle)?);
         let now = at(track, row, share);
         let way = [now[0] - origin[0], now[1] - origin[1]];
         Some([way[0] * cos + way[1] * sin, side * (way[1] * cos - way[0] * sin)])

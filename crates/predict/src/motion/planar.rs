@@ -63,6 +63,13 @@ impl Planar {
         Self { coefficients, length, approach_speed, covariance, records: Vec::new() }.scaled_to(length, approach_speed)
     }
 
+    /// Whether the records tell drift, and with it a track: one has sway or positions, or the coefficients were given.
+    /// √(u² + v²) alone is the same for many pairs of surge and sway.
+    pub fn tells_drift(&self) -> bool {
+        let tells = |own: &Residual| matches!(own.output, MotionOutput::Sway | MotionOutput::Position);
+        self.records.is_empty() || self.records.iter().flat_map(|record| &record.residuals).any(tells)
+    }
+
     /// The same coefficients on a ship of another length (m) and approach speed (m/s).
     ///
     /// At the same Froude number, U₀² ~ L, this is the ship of the model: its time runs slower by the root of the ratio

@@ -4,16 +4,20 @@ T r' + r = K (δ + δ_r): yaw rate r, rudder δ, rudder bias δ_r. The numbers a
 
 =====================  ==============================================================================
 ``kempf.read``         a record from a file; ``kempf.Record`` one from arrays or a table
+``kempf.find``         the manoeuvres inside a long log
 ``kempf.simulate``     trials of a scenario, with what is true of them
 ``kempf.fit``          K, T and δ_r by every method, with intervals
 ``kempf.trace``        the effect that a first-order ship lacks, and what it is worth
 ``kempf.predict``      what an identified ship will do in other manoeuvres
+``kempf.bench``        every method, and one of your own, on records that are the same for everybody
 ``kempf.run``          a whole study: many trials, every method, tables and figures in a folder
 =====================  ==============================================================================
 
 Angles are in degrees and lengths in metres; every name ends in its unit.
 """
 
+from ._bench import BenchResult, Standing, bench
+from ._find import FindResult, Found, find
 from ._fit import FitResult, Method, RecordEntry, ZigZag, fit
 from ._kempf import KempfError, KempfWarning, WorkError, __version__
 from ._predict import Criterion, Figure, Manoeuvre, PredictResult, Replay, predict
@@ -24,12 +28,15 @@ from ._study import StudyResult, run
 from ._trace import Candidate, Effect, Errors, Parameter, Structure, TraceResult, trace
 
 __all__ = [
+    "BenchResult",
     "Candidate",
     "Criterion",
     "Effect",
     "Errors",
     "Figure",
+    "FindResult",
     "FitResult",
+    "Found",
     "Indices",
     "KempfError",
     "KempfWarning",
@@ -43,6 +50,7 @@ __all__ = [
     "RecordEntry",
     "Replay",
     "Simulated",
+    "Standing",
     "Structure",
     "StudyResult",
     "TraceResult",
@@ -50,6 +58,8 @@ __all__ = [
     "WorkError",
     "ZigZag",
     "__version__",
+    "bench",
+    "find",
     "fit",
     "predict",
     "read",

@@ -10,6 +10,7 @@ from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 from . import _kempf, _table
 from ._kempf import KempfError
 from ._options import strings, warn, whole
+from ._own import Estimator, natives_of
 from ._quantity import Quantity, number
 from ._record import Record, natives
 from ._result import Result
@@ -118,8 +119,17 @@ class FitResult(Result):
     methods: tuple[Method, ...]
     #: Records that were fitted.
     records: tuple[RecordEntry, ...]
+    #: What a person should know, of the records and of the answers.
+    warnings: tuple[str, ...]
     _text: str = field(repr=False)
     _native: _kempf.Fit = field(repr=False)
+
+    @property
+    def best(self) -> Optional[Method]:
+        """The answer to take, as ``study fit`` says before its table; ``document["verdict"]`` says why. ``None`` where
+        the verdict names none."""
+        verdict = self.document.get("verdict")
+        return None if verdict is None else self[verdict["method"]]
 
     def __getitem__(self, method: str) -> Method:
         for one in self.methods:
@@ -202,6 +212,7 @@ def fit(
     *,
     validate: Any = (),
     methods: Union[str, Iterable[str], None] = None,
+    own: Optional[Mapping[str, Estimator]] = None,
     seed: Optional[int] = None,
 ) -> FitResult:
     """Identifies K (1/s), T (s) and δ_r (deg) of T r' + r = K (δ + δ_r), as ``study fit`` does.
@@ -209,7 +220,10 @@ def fit(
     :param records: one record or several of the same ship, which are identified together: of :func:`kempf.read`, of
         :func:`kempf.simulate`, tables with columns such as ``heading_deg``, or paths of files
     :param validate: records on which the answers are replayed; only their initial state is fitted
-    :param methods: identifiers of the methods; all where it is left out
+    :param methods: identifiers of the methods, or "all"; all but fourier-published and srivc where it is left out
+    :param own: functions that take part as methods, by their labels: each is called with the records
+        (:class:`kempf.Record`) and returns K (1/s), T (s), δ_r (deg) and, where it knows one, their covariance. One
+        that raises has no answer, and its ``reason`` says why
     :param seed: seed of the methods that draw at random
 
     Raises :class:`kempf.KempfError` where a record cannot be read, and where no method can identify the records; a
@@ -232,7 +246,9 @@ def fit(
     >>> print(kempf.fit(trial, methods="output-error")["output-error"].K_per_s)
     0.10010 [0.09991, 0.10028]
     """
-    native = _kempf.fit(natives(records), natives(validate), strings(methods), whole("seed", seed))
+    native = _kempf.fit(
+        natives(records), natives(validate), strings(methods), natives_of(own), whole("seed", seed)
+    )
     warn(native.warnings)
     return _result(native)
 
@@ -242,6 +258,10 @@ def _result(native: _kempf.Fit) -> FitResult:
     return FitResult(
         methods=tuple(Method._of(entry) for entry in document["methods"]),
         records=tuple(RecordEntry._of(entry) for entry in document["trials"]),
+        warnings=(
+            *document.get("warnings", ()),
+            *(f"{one['method']}: {said}" for one in document["methods"] for said in one["warnings"]),
+        ),
         _text=native.text,
         _native=native,
     )

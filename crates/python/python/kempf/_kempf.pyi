@@ -7,6 +7,9 @@ import numpy.typing as npt
 
 _Array = npt.NDArray[np.float64]
 _Curve = tuple[_Array, _Array, _Array]
+#: A label and a function of records: K (1/s), T (s), δ_r (rad) and their covariance, where there is one.
+_Answer = tuple[float, float, float, Optional[list[list[float]]]]
+_Own = list[tuple[str, Callable[[list["Record"]], _Answer]]]
 _Scene = dict[str, Optional[str]]
 
 __all__ = [
@@ -19,7 +22,9 @@ __all__ = [
     "Trace",
     "read",
     "record_of",
+    "find",
     "fit",
+    "bench",
     "trace",
     "predict",
     "toml_of",
@@ -74,7 +79,17 @@ class Trace:
 
 def read(path: str, words: list[str]) -> list[Record]: ...
 def record_of(name: str, columns: list[tuple[str, Union[_Array, list[str]]]], words: list[str]) -> Record: ...
-def fit(records: list[Record], validate: list[Record], methods: list[str], seed: Optional[int]) -> Fit: ...
+def find(logs: list[str], words: list[str]) -> tuple[str, list[str]]: ...
+def fit(
+    records: list[Record], validate: list[Record], methods: list[str], own: _Own, seed: Optional[int]
+) -> Fit: ...
+def bench(
+    definition: Optional[str],
+    words: list[str],
+    own: _Own,
+    seed: Optional[int],
+    progress: Optional[Callable[[int, int], object]],
+) -> tuple[str, list[str]]: ...
 def trace(records: list[Record], validate: list[Record], words: list[str]) -> Trace: ...
 def predict(
     models: list[tuple[str, Optional[str]]], replay: list[Record], words: list[str]

@@ -108,6 +108,8 @@ class PredictResult(Result):
     replays: tuple[Replay, ...]
     #: Criteria of IMO, where length and speed of the ship are known.
     imo: tuple[Criterion, ...]
+    #: What a person should know.
+    warnings: tuple[str, ...]
     _text: str = field(repr=False)
 
     def __getitem__(self, kind: str) -> Manoeuvre:
@@ -219,6 +221,7 @@ def predict(
             for one in document["replays"]
         ),
         imo=tuple(Criterion(**{name: one[name] for name in criteria}) for one in document["imo"]),
+        warnings=tuple(warnings),
         _text=text,
     )
 

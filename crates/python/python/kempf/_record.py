@@ -163,7 +163,8 @@ class Record:
     ) -> Record:
         """A record from a table of pandas or polars, or anything with ``columns`` and ``table[name]``.
 
-        Columns are called as in files: ``t_s``, ``heading_deg``, ``rudder_deg``, ... The rest is as in
+        Columns are called as in files: ``t_s``, ``heading_deg``, ``rudder_deg``, ... The dates of a ``DatetimeIndex`` of
+        pandas are the time where no column is one, as the clock of its zone shows them. The rest is as in
         :meth:`from_arrays`.
 
         Raises :class:`kempf.KempfError` where the columns make no record.
@@ -176,7 +177,7 @@ class Record:
             speed_m_s=ship_speed_m_s,
             speed_kn=ship_speed_kn,
         )
-        return cls._of_columns({str(key): frame[key] for key in frame.columns}, name, asked, 4)
+        return cls._of_columns(_columns(frame), name, asked, 4)
 
     @classmethod
     def _of_columns(cls, columns: Mapping[str, Any], name: str, asked: list[str], stacklevel: int) -> Record:
@@ -267,6 +268,19 @@ class Record:
         return _plot.record(self)
 
 
+#: Names of columns that are the time of a table.
+TIMES = ("t", "t_s", "t_ms", "t_min", "time", "timestamp", "datetime", "utc", "date")
+
+
+def _columns(frame: Any) -> dict[str, Any]:
+    """The columns of a table, the dates of its index before them."""
+    columns = {str(key): frame[key] for key in frame.columns}
+    index: Any = getattr(frame, "index", None)
+    if hasattr(index, "tz_localize") and not any(name.lower() in TIMES for name in columns):
+        return {"time": index.tz_localize(None), **columns}
+    return columns
+
+
 def _cells(name: str, values: Any) -> Any:
     """A column as numbers, or as words where it holds none, such as stamps of time."""
     import numpy as np
@@ -345,7 +359,7 @@ def natives(records: Any) -> list[_kempf.Record]:
         if isinstance(one, Record):
             found.append(one._native)
         elif hasattr(one, "columns"):
-            found.append(Record._of_columns({str(key): one[key] for key in one.columns}, "record", [], 5)._native)
+            found.append(Record._of_columns(_columns(one), "record", [], 5)._native)
         elif _is_path(one):
             read = _kempf.read(os.fspath(one), [])
             warn([warning for record in read for warning in record.warnings], 4)

@@ -14,6 +14,8 @@ from ._record import PathLike
 class Result:
     """A result. ``document`` is what the program writes for other programs; everything else is read from it."""
 
+    #: What a person should know; the same was said as :class:`kempf.KempfWarning`.
+    warnings: tuple[str, ...]
     _text: str
 
     @cached_property

@@ -39,6 +39,8 @@ class StudyResult(Result):
     summary: tuple[Mapping[str, Any], ...]
     #: What was noted on the way, as that an earlier run was continued.
     notes: tuple[str, ...]
+    #: What a person should know.
+    warnings: tuple[str, ...]
     _text: str = field(repr=False)
 
     @property
@@ -92,7 +94,7 @@ def run(
     :class:`kempf.WorkError` where it cannot be written. Ctrl-C stops between two trials and raises
     ``KeyboardInterrupt``; the rows are kept, and the same call goes on from there.
     """
-    show = _shown if progress is True else progress or None
+    show = shown("trials") if progress is True else progress or None
     text, notes, warnings = _kempf.run(
         scene(scenario),
         None if out is None else os.fspath(out),
@@ -110,10 +112,16 @@ def run(
         manifest=document["manifest"],
         summary=tuple(document["summary"]),
         notes=tuple(notes),
+        warnings=tuple(warnings),
         _text=text,
     )
 
 
-def _shown(done: int, most: int) -> None:
-    sys.stderr.write(f"\r{done} of {most} trials")
-    sys.stderr.flush()
+def shown(what: str) -> Callable[[int, int], object]:
+    """Shows on standard error how much of something is done."""
+
+    def show(done: int, most: int) -> None:
+        sys.stderr.write(f"\r{done} of {most} {what}")
+        sys.stderr.flush()
+
+    return show

@@ -118,6 +118,8 @@ class TraceResult(Result):
     errors: tuple[Errors, ...]
     #: The manoeuvre that would tell most.
     next_trial: Optional[str]
+    #: What a person should know.
+    warnings: tuple[str, ...]
     _text: str = field(repr=False)
     _native: _kempf.Trace = field(repr=False)
 
@@ -239,6 +241,7 @@ def _result(native: _kempf.Trace) -> TraceResult:
         structures=tuple(structure(entry) for entry in document["structures"]),
         errors=(*errors("identification"), *errors("validation")),
         next_trial=document["next_trial"],
+        warnings=tuple(native.warnings),
         _text=native.text,
         _native=native,
     )

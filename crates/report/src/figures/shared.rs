@@ -74,7 +74,7 @@ pub(super) fn asides(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
 
 /// A value that results are held against, such as the 95 % an interval promises, with the band in which chance leaves
 /// them.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Reference95 {
     /// The value.
     pub value: f64,

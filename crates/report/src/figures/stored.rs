@@ -10,7 +10,7 @@ use crate::number::{self, MISSING};
 use crate::palette::{CurveOrigin, HEADING, INK, RECORD};
 
 /// A curve fitted to a heading: how well a Fourier series (or any other) carries the record.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CurveFit {
     /// Title above the figure.
     pub title: Option<String>,
@@ -53,7 +53,7 @@ impl CurveFit {
 }
 
 /// One source of heading, yaw rate and yaw acceleration; an empty curve is not drawn.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MotionCurves {
     /// Where the curves come from; decides how they look.
     pub origin: CurveOrigin,
@@ -68,7 +68,7 @@ pub struct MotionCurves {
 }
 
 /// Headings and their derivatives.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct DerivativeCurves {
     /// Title above the figure.
     pub title: Option<String>,
@@ -97,7 +97,7 @@ impl DerivativeCurves {
 }
 
 /// The heading a method's model gives for the recorded rudder.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ReplayCurves {
     /// The method; decides how its replay looks.
     pub origin: CurveOrigin,
@@ -110,7 +110,7 @@ pub struct ReplayCurves {
 }
 
 /// A record and its replays.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Replays {
     /// Title above the figure.
     pub title: Option<String>,
@@ -164,7 +164,7 @@ impl Replays {
 }
 
 /// A value and, where the method gives one, its interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PointEstimate {
     /// The value.
     pub value: f64,
@@ -173,7 +173,7 @@ pub struct PointEstimate {
 }
 
 /// What one method found; `None` where it found nothing.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodEstimate {
     /// The method; decides how its row looks.
     pub origin: CurveOrigin,
@@ -184,7 +184,7 @@ pub struct MethodEstimate {
 }
 
 /// A pair of values to compare with.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Reference {
     /// Gain, 1/s.
     pub k_per_s: f64,
@@ -193,7 +193,7 @@ pub struct Reference {
 }
 
 /// Estimates of K and T with their 95 % intervals, against the truth and the published value.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Intervals {
     /// Title above the figure.
     pub title: Option<String>,

@@ -21,7 +21,7 @@ use crate::theme::Theme;
 use crate::ticks::TickSteps;
 
 /// A point of the heading curve.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ZigZagMark {
     /// Time, s.
     pub t_s: f64,
@@ -30,7 +30,7 @@ pub struct ZigZagMark {
 }
 
 /// A stretch of time.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TimeSpan {
     /// Begin, s.
     pub from_s: f64,
@@ -45,7 +45,7 @@ impl TimeSpan {
 }
 
 /// How far the heading runs on after the rudder is reversed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct OvershootMark {
     /// Where the counter rudder is ordered.
     pub execute: ZigZagMark,
@@ -56,7 +56,7 @@ pub struct OvershootMark {
 }
 
 /// What [`super::Plot::ZigZag`] draws.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ZigzagTrial {
     /// Title above the figure.
     pub title: Option<String>,

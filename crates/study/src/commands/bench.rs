@@ -5,14 +5,18 @@ use std::env;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use campaign::Observer;
+use campaign::benchmark::run::STOPPED;
 use campaign::benchmark::{BenchDocument, BenchMethod, BenchTask, Definition, RecordStore};
 use campaign::folder::ResultFolder;
 use campaign::outside::keep_log;
 use clap::Args;
+use clap::builder::StringValueParser;
 use report::Theme;
 use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
 
+use crate::completed::{self, completed};
 use crate::interrupt;
 use crate::options::{Common, FigureOptions};
 use crate::outside::{self, NamedCommand};
@@ -33,6 +37,9 @@ const LEADERBOARD: &str = "leaderboard.csv";
 /// Folder with a page for every method.
 const METHODS: &str = "methods";
 
+/// Folder inside that of the results for those of a run that was stopped.
+const UNFINISHED: &str = "unfinished";
+
 /// Names the folder of measured records where the command line does not.
 const DATA: &str = "KEMPF_DATA";
 
@@ -46,13 +53,21 @@ pub struct BenchRequest {
     #[arg(long, value_name = "DIR")]
     pub data: Vec<PathBuf>,
     /// Methods that take part [default: all]
-    #[arg(long = "method", value_name = "ID")]
+    #[arg(
+        long = "method", value_name = "ID",
+        value_parser = completed(StringValueParser::new(), completed::competitors),
+        hide_possible_values = true
+    )]
     pub methods: Vec<String>,
     /// An outside estimator that takes part as well: what it is called, and the command that starts it
     #[arg(long, value_name = "LABEL=COMMAND")]
     pub external: Vec<NamedCommand>,
     /// Tasks that are set [default: all]
-    #[arg(long = "task", value_name = "ID", value_parser = task)]
+    #[arg(
+        long = "task", value_name = "ID",
+        value_parser = completed(task, completed::tasks),
+        hide_possible_values = true
+    )]
     pub tasks: Vec<BenchTask>,
     /// Sets of records that are used [default: all]
     #[arg(long = "set", value_name = "NAME")]
@@ -69,34 +84,55 @@ fn task(name: &str) -> Result<BenchTask, String> {
     })
 }
 
-/// Runs a benchmark, prints the leaderboards, writes `bench.json`, tables, pages and figures.
+/// Has all methods of a request answer, and those of the caller's `own`. `begin` gets the name of the definition and the
+/// methods before the first answer.
 ///
 /// Fails when the definition is at fault, when a folder of records cannot be listed, and when nothing can be asked.
-pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
-    let theme = request.style.theme()?;
+pub fn measure(
+    request: &BenchRequest,
+    seed: Option<u64>,
+    own: Vec<BenchMethod>,
+    observer: &dyn Observer,
+    begin: impl FnOnce(&str, &[BenchMethod]) -> Result<(), Failure>,
+) -> Result<BenchDocument, Failure> {
     let definition = match &request.definition {
-        Some(path) => Definition::read(path, common.seed)?,
-        None => Definition::published(common.seed)?,
+        Some(path) => Definition::read(path, seed)?,
+        None => Definition::published(seed)?,
     };
     let definition = definition.only(&request.sets, &request.tasks)?;
-    let methods = methods(request)?;
+    let mut methods = methods(request)?;
+    methods.extend(own);
     let store = RecordStore::search(&folders(&request.data), &definition)?;
-    let default =
-        || PathBuf::from("results").join(if request.definition.is_none() { "bench" } else { &definition.name });
+    let begin = || begin(&definition.name, &methods);
+    let results = campaign::benchmark::run(&definition, &store, &methods, observer, begin)?;
+    if results.cases.is_empty() {
+        let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
+        return Err(Failure::input(format!("there is nothing to ask:\n  {}", reasons.join("\n  "))));
+    }
+    Ok(results)
+}
+
+/// Runs a benchmark, prints the leaderboards, writes `bench.json`, tables, pages and figures.
+///
+/// Fails as [`measure`] does, and when the results cannot be written.
+pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
+    let theme = request.style.theme()?;
     let mut held = None;
-    let begin = || {
+    let begin = |name: &str, methods: &[BenchMethod]| {
+        let default = || PathBuf::from("results").join(if request.definition.is_none() { "bench" } else { name });
         let folder = held.insert(ResultFolder::hold(&common.out.clone().unwrap_or_else(default))?);
-        for method in &methods {
+        for method in methods {
             method.outside().into_iter().for_each(|outside| keep_log(outside, method.label(), folder));
         }
         Ok(())
     };
-    let results = campaign::benchmark::run(&definition, &store, &methods, &Terminal::new(common.quiet), begin)?;
-    let Some(folder) = held.filter(|_| !results.cases.is_empty()) else {
-        let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
-        return Err(Failure::input(format!("there is nothing to ask:\n  {}", reasons.join("\n  "))));
-    };
-    publish(&results, &folder, &theme)?;
+    let results = measure(request, common.seed, Vec::new(), &Terminal::new("fits", common.quiet), begin)?;
+    let folder = held.expect("its place was seen to before the first answer");
+    // What a person did not wait for must not take the place of a whole result.
+    let is_stopped = results.skipped.iter().any(|one| one.reason == STOPPED);
+    let aside = is_stopped.then(|| folder.inside(UNFINISHED)).transpose()?;
+    let folder = aside.as_ref().unwrap_or(&folder);
+    publish(&results, folder, &theme)?;
 
     let notes: String = results.skipped.iter().map(|one| format!("skipped: {}\n", skipped(one))).collect();
     let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
@@ -111,7 +147,11 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
         notes: &notes,
         document: &results.json().on("describe", &folder.path().join(BENCH))?,
     };
-    screen::tell(common, &output, &[])
+    screen::tell(common, &output, &[])?;
+    match is_stopped {
+        true => Err(Failure::work(format!("{STOPPED}; what they all have is in {}", folder.path().display()))),
+        false => Ok(()),
+    }
 }
 
 /// Who takes part: the methods of the project, or those of them that are named, and outside estimators behind them.
@@ -141,7 +181,8 @@ fn folders(named: &[PathBuf]) -> Vec<PathBuf> {
     }
 }
 
-fn skipped(one: &campaign::benchmark::results::Skipped) -> String {
+/// A record that was not used, in a line.
+pub fn skipped(one: &campaign::benchmark::results::Skipped) -> String {
     format!("{}, {}: {}", one.set, one.record, one.reason)
 }
 
@@ -157,5 +198,5 @@ fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Res
     for method in &results.methods {
         pages.write(&format!("{method}.md"), bench_page::of_method(results, method).to_markdown())?;
     }
-    write_page(folder, &bench_page::page(results), theme)
+    write_page(folder, bench_page::page(results), Some(theme))
 }

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::documents;
+use crate::documents::answers::{CheckAnswer, CheckedScenario};
 use crate::options::{Common, Format};
 use crate::screen;
 use campaign::outside;
 use scenario::Scenario;
-use scenario::failure::{Blame, Failure};
-use serde_json::{Value, json};
+use scenario::failure::Failure;
 use simulate::Assumption;
 
 /// What `study check` is asked to do.
@@ -31,7 +31,7 @@ pub fn run(request: &CheckRequest, common: &Common) -> Result<(), Failure> {
     let (mut wrong, mut right) = (Vec::new(), Vec::new());
     for path in &request.scenarios {
         match Scenario::read(path, common.seed) {
-            Ok(_) if common.quiet => {}
+            Ok(_) if common.is_silent() => {}
             Ok(scenario) if common.format == Format::Json => right.push(entry(path, &scenario, resolved)),
             Ok(scenario) if resolved => {
                 let summary: String = summary(path, &scenario).lines().map(|line| format!("# {line}\n")).collect();
@@ -41,24 +41,29 @@ pub fn run(request: &CheckRequest, common: &Common) -> Result<(), Failure> {
             Err(failure) => wrong.push(failure),
         }
     }
-    if common.format == Format::Json && !common.quiet {
-        documents::say("check/1", json!({ "scenarios": right, "wrong": wrong.len() }))?;
+    if common.format == Format::Json {
+        documents::say(&CheckAnswer { scenarios: right, wrong: wrong.len() })?;
     }
-    let Some(first) = wrong.first() else { return Ok(()) };
-    let others: String = wrong[1..].iter().map(|failure| format!("\n\n{failure}")).collect();
-    Err(Failure { blame: Blame::Input, message: first.message.clone() + &others })
+    let mut wrong = wrong.into_iter();
+    let Some(first) = wrong.next() else { return Ok(()) };
+    let others: String = wrong.map(|failure| format!("\n\n{failure}")).collect();
+    Err(Failure { message: format!("{}{others}", first.message), ..first })
 }
 
 /// A scenario that is right, for a program.
-fn entry(path: &Path, scenario: &Scenario, resolved: bool) -> Value {
-    let assumptions: Vec<String> = scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect();
-    let whole = resolved.then(|| scenario.resolved().parse::<toml::Table>().expect("it has been resolved"));
-    json!({
-        "file": path.display().to_string(), "name": scenario.name, "question": scenario.words.question.trim(),
-        "seed": scenario.seed, "design_sha256": scenario.design_sha256, "replicates": scenario.replicates,
-        "cells": scenario.cells.iter().map(|cell| cell.labels.clone()).collect::<Vec<_>>(),
-        "methods": scenario.method_names(), "assumptions": assumptions, "resolved": whole,
-    })
+fn entry(path: &Path, scenario: &Scenario, resolved: bool) -> CheckedScenario {
+    CheckedScenario {
+        file: path.display().to_string(),
+        name: scenario.name.clone(),
+        question: scenario.words.question.trim().to_owned(),
+        seed: scenario.seed,
+        design_sha256: scenario.design_sha256.clone(),
+        replicates: scenario.replicates,
+        cells: scenario.cells.iter().map(|cell| cell.labels.clone()).collect(),
+        methods: scenario.method_names(),
+        assumptions: scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect(),
+        resolved: resolved.then(|| scenario.resolved().parse().expect("it has been resolved")),
+    }
 }
 
 /// The size of a scenario, and below it the programs that a run starts, and a note on a rudder that moves instantly,

@@ -7,9 +7,9 @@ use campaign::folder::ResultFolder;
 use campaign::manifest;
 use report::Table;
 use scenario::failure::Failure;
-use serde_json::json;
 
 use super::reply;
+use crate::documents::answers::DoctorAnswer;
 use crate::options::Common;
 use crate::{screen, threads};
 
@@ -44,9 +44,8 @@ pub fn run(common: &Common) -> Result<(), Failure> {
     ];
     let mut table = Table::headed("what | found");
     found.iter().for_each(|(name, value)| table.push([name, value.as_str()]));
-    let document = found.iter().map(|(name, value)| (name.replace(' ', "_"), json!(value)));
-    let document = document.collect::<serde_json::Map<_, _>>().into();
-    reply(common, "doctor/1", document, common.format.render(&table).trim_end())?;
+    let found = found.into_iter().map(|(name, value)| (name.replace(' ', "_"), value)).collect();
+    reply(common, &DoctorAnswer { found }, common.format.render(&table).trim_end())?;
     written
 }
 

@@ -1,37 +1,59 @@
 //! `study find`: the manoeuvres inside long logs.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use report::Table;
 use report::number::{MISSING, fixed, optional};
-use serde_json::{Value, json};
 use ship::angle::to_deg;
 use trial::Log;
 use trial::file::called;
 use trial::find::FoundManoeuvre;
 
 use crate::documents;
+use crate::documents::find::{FindAnswer, LogEntry};
 use crate::options::{Common, FindRequest, Format};
 use crate::records::{expand, manoeuvres, open};
 use crate::screen;
 use scenario::failure::Failure;
 
-/// Prints the manoeuvres of every log.
+/// The logs of a request.
 ///
-/// Fails when a log cannot be read.
-pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
+/// Fails when a folder of them cannot be listed, and when a file is to be joined with several.
+fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
     let files = expand(&request.logs)?;
     if files.len() > 1 && !request.with_columns.is_empty() {
         return Err(Failure::input(format!("--with-columns is for one log, {} are given; give one", files.len())));
     }
+    Ok(files)
+}
+
+/// The manoeuvres of every log, for other programs.
+///
+/// Fails when a log cannot be read.
+pub fn found(request: &FindRequest, warnings: &mut Vec<String>) -> Result<FindAnswer, Failure> {
+    let one = |file: PathBuf| {
+        let log = open(&file, request.columns.as_deref(), &request.with_columns, warnings)?;
+        Ok(LogEntry::of(called(&file), &log, &manoeuvres(&log)))
+    };
+    Ok(FindAnswer { logs: files(request)?.into_iter().map(one).collect::<Result<_, Failure>>()? })
+}
+
+/// Prints the manoeuvres of every log.
+///
+/// Fails when a log cannot be read.
+pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
     let mut warnings = Vec::new();
-    let mut logs = Vec::new();
+    if common.format == Format::Json {
+        documents::say(&found(request, &mut warnings)?)?;
+        screen::warn_of(common, &warnings);
+        return Ok(());
+    }
+    let files = files(request)?;
     for file in &files {
         let log = open(file, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
         let file = called(file);
         let found = manoeuvres(&log);
-        if common.format == Format::Json {
-            logs.push(entry(file, &log, &found));
+        if common.is_silent() {
             continue;
         }
         let table = common.format.render(&table(&log, &found));
@@ -53,31 +75,8 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         let remarks: String = remarks.collect();
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
-    if common.format == Format::Json {
-        documents::say("find/1", json!({ "logs": logs }))?;
-    }
-    screen::warn_of(&warnings);
+    screen::warn_of(common, &warnings);
     Ok(())
-}
-
-/// A log with its manoeuvres for a program.
-fn entry(file: &Path, log: &Log, found: &[FoundManoeuvre]) -> Value {
-    let clock = |time: f64| log.clock().map(|clock| clock.at(time).to_string());
-    let manoeuvre = |(number, one): (usize, &FoundManoeuvre)| {
-        let [rudder, heading] = one.angles().map(|angle| angle.map(to_deg));
-        json!({
-            "trial": number, "kind": one.name(), "from_s": one.from, "until_s": one.until,
-            "clock": clock(one.from).zip(clock(one.until)), "executes": one.executes,
-            "rudder_deg": rudder, "heading_deg": heading, "remarks": one.quality.remarks(),
-        })
-    };
-    let manoeuvres: Vec<Value> = (1..).zip(found).map(manoeuvre).collect();
-    let (first, last) = (log.time()[0], log.time()[log.time().len() - 1]);
-    let date = log.clock().and_then(|clock| clock.date_at(first)).map(|day| day.to_string());
-    json!({
-        "file": file.display().to_string(), "rows": log.time().len(), "duration_s": last - first, "date": date,
-        "manoeuvres": manoeuvres,
-    })
 }
 
 fn table(log: &Log, found: &[FoundManoeuvre]) -> Table {

@@ -13,7 +13,7 @@ use crate::documents::{self, CURVES, read_json};
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, CommandOutput};
-use crate::views::page_files::write_page;
+use crate::views::page_files::{REPORT, write_page};
 use crate::views::{curve_tables, fit_page};
 use crate::work::fit::{fit, methods};
 
@@ -37,21 +37,32 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let fit = fit(&trials, &others, &methods, common.quiet, &mut warnings)?;
     let folder = early.map_or_else(hold, Ok)?;
     documents::keep_with_curves(&folder, FIT, &fit.document, &fit.curves())?;
-    show(&folder, folder.path(), &theme, common)
+    show(&folder, folder.path(), theme.as_ref(), common)
 }
 
 /// Draws a fit from the `fit.json` and the curves of a folder, into `into`, and tells what it says.
 ///
 /// Fails when a file is missing or was not written by this program.
-pub fn show(into: &ResultFolder, from: &Path, theme: &Theme, common: &Common) -> Result<(), Failure> {
+pub fn show(into: &ResultFolder, from: &Path, theme: Option<&Theme>, common: &Common) -> Result<(), Failure> {
     let (document, text): (FitDocument, String) = read_json(&from.join(FIT), "fit")?;
     let (curves, _): (FitCurves, String) = read_json(&from.join(CURVES), "fit")?;
     curve_tables::write_replays(&curves, into)?;
-    write_page(into, &fit_page::page(&document, &curves), theme)?;
+    write_page(into, fit_page::page(&document, &curves), theme)?;
     let rest = format!("{}\nresults: {}", fit_page::rest(&document, &curves), into.path().join(FIT).display());
     let verdict = fit_page::verdict(&document).map_or_else(String::new, |words| format!("{words}\n\n"));
     let head = format!("{verdict}{}\n", fit_page::headline(&document, &curves));
     let table = fit_page::answers(&document, &curves);
     let output = CommandOutput { words: [&head, ""], table: &table, notes: &rest, document: &text };
-    screen::tell(common, &output, &document.all_warnings())
+    screen::tell(common, &output, &shortened(document.ranked_warnings()))
+}
+
+/// Warnings that stand on the screen.
+const ON_SCREEN: usize = 3;
+
+/// The first warnings, and how many there are beside them.
+fn shortened(mut warnings: Vec<String>) -> Vec<String> {
+    let more = warnings.len().saturating_sub(ON_SCREEN);
+    warnings.truncate(ON_SCREEN);
+    warnings.extend((more > 0).then(|| format!("{more} more in {REPORT}")));
+    warnings
 }

@@ -4,11 +4,10 @@ use clap::{Args, ValueEnum};
 use identify::{IdentifierSettings, external, registry};
 use report::Table;
 use report::number::MISSING;
-use serde_json::json;
 use ship::angle::KNOT;
 use ship::{effects, ships};
 
-use crate::documents;
+use crate::documents::{self, answers::ListAnswer};
 use crate::options::{Common, Format, Listed};
 use crate::screen;
 use trial::Channel;
@@ -40,7 +39,7 @@ pub fn run(&ListRequest { what }: &ListRequest, common: &Common) -> Result<(), F
     };
     if common.format == Format::Json {
         let name = what.to_possible_value().map(|value| value.get_name().to_owned());
-        return documents::say("list/1", json!({ "what": name, "entries": table.to_records() }));
+        return documents::say(&ListAnswer { what: name.unwrap_or_default(), entries: table.to_records() });
     }
     // What stands before a list in Markdown, which is a page of the documentation.
     let head = match what {

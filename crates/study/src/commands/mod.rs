@@ -20,18 +20,18 @@ pub mod simulate;
 pub mod trace;
 
 use scenario::failure::Failure;
-use serde_json::Value;
 
+use crate::documents::answers::Answer;
 use crate::options::{Common, Format};
 use crate::{documents, screen};
 
 /// Answers in a line, or as a document where a program reads; not at all where nothing is to be said.
 ///
 /// Fails as [`screen::say`] does.
-fn reply(common: &Common, schema: &str, document: Value, line: &str) -> Result<(), Failure> {
+fn reply(common: &Common, answer: &impl Answer, line: &str) -> Result<(), Failure> {
     match common.format {
+        Format::Json => documents::say(answer),
         _ if common.quiet => Ok(()),
-        Format::Json => documents::say(schema, document),
         _ => screen::say(line),
     }
 }

@@ -6,10 +6,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use report::markdown;
-use serde::Serialize;
-use serde_json::json;
 
 use super::reply;
+use crate::documents::answers::{OverviewAnswer, PublishedStudy};
 use crate::options::Common;
 use crate::views::study_figures::KEY_FIGURE;
 use campaign::disk;
@@ -27,15 +26,6 @@ const MARK: &str = "<!-- Made by `study overview`, which writes it anew. -->\n";
 
 /// Largest page that is looked at, bytes.
 const LARGEST: u64 = 1 << 26;
-
-/// One published study.
-#[derive(Serialize)]
-struct Study {
-    name: String,
-    question: String,
-    finding: String,
-    figure: Option<String>,
-}
 
 /// What `study overview` is asked to do.
 #[derive(Debug, Clone, Args)]
@@ -57,17 +47,17 @@ pub fn run(OverviewRequest { folder }: &OverviewRequest, common: &Common) -> Res
         ));
     }
     target.write(PAGE, MARK.to_owned() + &markdown::prose(&page(&studies)))?;
-    let document = json!({ "page": path.display().to_string(), "studies": studies });
-    reply(common, "overview/1", document, &format!("{} studies: {}", studies.len(), path.display()))
+    let answer = OverviewAnswer { page: path.display().to_string(), studies: &studies };
+    reply(common, &answer, &format!("{} studies: {}", studies.len(), path.display()))
 }
 
 /// The studies of a folder in the order of their names.
-fn studies(folder: &Path) -> Result<Vec<Study>, Failure> {
+fn studies(folder: &Path) -> Result<Vec<PublishedStudy>, Failure> {
     let names = disk::names(folder).map_err(|error| {
         Failure::about(folder, format!("{error}; give the folder that holds the folders of studies"))
     })?;
     let folders = names.iter().map(|name| folder.join(name)).filter(|own| own.join(files::MANIFEST).is_file());
-    let studies: Vec<Study> = folders.map(|folder| study(&folder)).collect::<Result<_, _>>()?;
+    let studies: Vec<PublishedStudy> = folders.map(|folder| study(&folder)).collect::<Result<_, _>>()?;
     if studies.is_empty() {
         let problem = format!("no folder in it holds a {}", files::MANIFEST);
         return Err(Failure::about(folder, format!("{problem}; run a scenario first")));
@@ -75,7 +65,7 @@ fn studies(folder: &Path) -> Result<Vec<Study>, Failure> {
     Ok(studies)
 }
 
-fn study(folder: &Path) -> Result<Study, Failure> {
+fn study(folder: &Path) -> Result<PublishedStudy, Failure> {
     let path = folder.join(files::MANIFEST);
     let missing = || Failure::about(&path, "there is no such file any more");
     let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
@@ -87,7 +77,12 @@ fn study(folder: &Path) -> Result<Study, Failure> {
     };
     // A link needs the name of the folder, which --out may have made another than that of the scenario.
     let name = folder.file_name().map_or_else(|| manifest.name.clone(), |name| name.to_string_lossy().into_owned());
-    Ok(Study { name, question: words.question.trim().to_owned(), finding: words.finding.trim().to_owned(), figure })
+    Ok(PublishedStudy {
+        name,
+        question: words.question.trim().to_owned(),
+        finding: words.finding.trim().to_owned(),
+        figure,
+    })
 }
 
 /// File of the figure that a scenario names.
@@ -108,13 +103,13 @@ fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
     ))
 }
 
-fn page(studies: &[Study]) -> String {
+fn page(studies: &[PublishedStudy]) -> String {
     let mut page = String::from(
         "# Results\n\nOne study a section: its question, what came out, and the figure that shows it. Each folder holds the \
          whole report,\nevery figure with its 95 % interval as CSV, Markdown and LaTeX, and a manifest from which \
          `study NAME/manifest.toml --out DIR`\nruns it again; a study that starts other programs is run from its scenario.\n",
     );
-    for Study { name, question, finding, figure } in studies {
+    for PublishedStudy { name, question, finding, figure } in studies {
         write!(page, "\n## [{name}]({name}/report.md)\n\n**{question}**\n").expect("writing to a string does not fail");
         if !finding.is_empty() {
             write!(page, "\n{finding}\n").expect("writing to a string does not fail");
@@ -132,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_study_without_a_figure_is_listed_too() {
-        let study = |figure: Option<&str>| Study {
+        let study = |figure: Option<&str>| PublishedStudy {
             name: "noise".into(),
             question: "How much?".into(),
             finding: "Little.".into(),

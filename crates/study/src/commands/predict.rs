@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use predict::PredictDocument;
 use predict::turn::{self, Current};
 use report::Theme;
+use trial::file::called;
 use trial::{Sidecar, Trial};
 
 use crate::documents::{self, CURVES, read_json};
@@ -56,7 +57,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
-    show(&folder, folder.path(), &theme, common, &warnings)
+    show(&folder, folder.path(), theme.as_ref(), common, &warnings)
 }
 
 /// Draws a prediction from the `predict.json` and the curves of a folder, into `into`, and tells what it says.
@@ -65,7 +66,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
 pub fn show(
     into: &ResultFolder,
     from: &Path,
-    theme: &Theme,
+    theme: Option<&Theme>,
     common: &Common,
     warnings: &[String],
 ) -> Result<(), Failure> {
@@ -74,7 +75,7 @@ pub fn show(
     for (stem, table) in predict_curves::curves(predicted) {
         into.write(&format!("{stem}.csv"), table)?;
     }
-    write_page(into, &predict_page::page(predicted), theme)?;
+    write_page(into, predict_page::page(predicted), theme)?;
     let mut notes = format!("\nresults: {}", into.path().join(PREDICT).display());
     if let (Some(form), Some(remarks)) = (&predicted.form, &predicted.form_remarks) {
         into.write(FORM, predict_form::page(form, remarks).to_markdown())?;
@@ -92,6 +93,7 @@ pub fn show(
 
 /// Where the results go unless a folder is named: after the folder of the model, which has the name of its record.
 fn default_folder(model: &Path) -> PathBuf {
+    let model = called(model);
     let named = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let own =
         model.parent().and_then(named).or_else(|| model.file_stem().map(|stem| stem.to_string_lossy().into_owned()));

@@ -40,9 +40,9 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     let theme = || style.style.theme();
     let has = |name: &str| stored.join(name).is_file();
     match () {
-        () if has(TRACE) => trace::show(&held()?, stored, &theme()?, common, &[])?,
-        () if has(FIT) => fit::show(&held()?, stored, &theme()?, common)?,
-        () if has(PREDICT) => predict::show(&held()?, stored, &theme()?, common, &[])?,
+        () if has(TRACE) => trace::show(&held()?, stored, Some(&theme()?), common, &[])?,
+        () if has(FIT) => fit::show(&held()?, stored, Some(&theme()?), common)?,
+        () if has(PREDICT) => predict::show(&held()?, stored, Some(&theme()?), common, &[])?,
         () => rebuild(stored, style, common)?,
     }
     if *open { show(&folder.join(BROWSER)) } else { Ok(()) }

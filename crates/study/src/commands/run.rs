@@ -7,9 +7,9 @@ use campaign::folder::ResultFolder;
 use campaign::task::{Shard, default_folder};
 use scenario::Scenario;
 use scenario::failure::Failure;
-use serde_json::json;
 
 use super::reply;
+use crate::documents::answers::ShardAnswer;
 use crate::options::{Common, RunRequest};
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
@@ -20,11 +20,11 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
     let shard = request.shard.unwrap_or(Shard::WHOLE);
     let theme = request.style.style.theme()?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&scenario.name, shard)))?;
-    let stored = collect(&scenario, shard, &folder, request.restart, &Terminal::new(common.quiet))?;
+    let stored = collect(&scenario, shard, &folder, request.restart, &Terminal::new("trials", common.quiet))?;
     if shard == Shard::WHOLE {
         return publish(&stored, &folder, (&theme, request.style.figures), common);
     }
     let place = folder.path().display().to_string();
     let line = format!("shard {shard} of {} is in {place}; `study merge` joins all {}", scenario.name, shard.of);
-    reply(common, "shard/1", json!({ "folder": place, "manifest": stored.manifest }), &line)
+    reply(common, &ShardAnswer { folder: place, manifest: &stored.manifest }, &line)
 }

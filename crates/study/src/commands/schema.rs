@@ -1,16 +1,29 @@
 //! `study schema`: the JSON schema of a file that people or programs write or read.
 
+use campaign::answers::Trials;
+use campaign::benchmark::{BenchDocument, DefinitionWire};
+use campaign::design::Design;
 use campaign::manifest::Manifest;
+use campaign::showcase::Showcase;
 use clap::Args;
 use predict::PredictDocument;
+use report::Style;
 use scenario::failure::{Failure, OnPath};
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
+use serde_json::Value;
 use std::path::Path;
 
 use crate::documents;
-use crate::documents::fit::FitDocument;
+use crate::documents::answers::{
+    Answer, CheckAnswer, CompletionsAnswer, DoctorAnswer, ListAnswer, ManAnswer, OverviewAnswer, ShardAnswer,
+    SidecarAnswer, SimulateAnswer, StudyAnswer, Versioned,
+};
+use crate::documents::error::ErrorDocument;
+use crate::documents::find::FindAnswer;
+use crate::documents::fit::{FitCurves, FitDocument};
 use crate::documents::trace::TraceDocument;
+use crate::documents::truth::TruthDocument;
 use crate::options::{Common, Described};
 use crate::screen;
 
@@ -22,9 +35,9 @@ pub struct SchemaRequest {
 }
 
 /// Prints the schema.
-pub fn run(&SchemaRequest { what }: &SchemaRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(&SchemaRequest { what }: &SchemaRequest, _: &Common) -> Result<(), Failure> {
     let text = documents::text(&schema(what)).on("describe", Path::new("a schema"))?;
-    if common.quiet { Ok(()) } else { screen::say_document(&text) }
+    screen::say_document(&text)
 }
 
 /// The schema of a file, in draft 7, which editors of TOML understand as well.
@@ -36,7 +49,41 @@ pub fn schema(what: Described) -> Schema {
         Described::Trace => of::<TraceDocument>(),
         Described::Predict => of::<PredictDocument>(),
         Described::Manifest => of::<Manifest>(),
+        Described::Bench => of::<BenchDocument>(),
+        Described::BenchDefinition => read::<DefinitionWire>(),
+        Described::FitCurves => of::<FitCurves>(),
+        Described::Cells => of::<Design>(),
+        Described::Showcase => of::<Vec<Showcase>>(),
+        Described::Style => read::<Style>(),
+        Described::Trials => of::<Trials>(),
+        Described::Truth => of::<TruthDocument>(),
+        Described::Study => answer::<StudyAnswer>(),
+        Described::Shard => answer::<ShardAnswer>(),
+        Described::Find => answer::<FindAnswer>(),
+        Described::Check => answer::<CheckAnswer>(),
+        Described::List => answer::<ListAnswer>(),
+        Described::Simulate => answer::<SimulateAnswer>(),
+        Described::SidecarAnswer => answer::<SidecarAnswer>(),
+        Described::Overview => answer::<OverviewAnswer>(),
+        Described::Doctor => answer::<DoctorAnswer>(),
+        Described::Completions => answer::<CompletionsAnswer>(),
+        Described::Man => answer::<ManAnswer>(),
+        Described::Error => of::<ErrorDocument>(),
     }
+}
+
+/// The schema of what the program reads.
+fn read<T: JsonSchema>() -> Schema {
+    SchemaSettings::draft07().for_deserialize().into_generator().into_root_schema_for::<T>()
+}
+
+/// The schema of an answer with its version.
+fn answer<A: Answer>() -> Schema {
+    let mut schema = of::<Versioned<A>>();
+    if let Some(version) = schema.pointer_mut("/properties/schema").and_then(Value::as_object_mut) {
+        version.insert("const".into(), A::SCHEMA.into());
+    }
+    schema
 }
 
 /// The schema of what the program writes.

@@ -46,7 +46,7 @@ const LIST: Kind = Kind { name: "a description of trials", largest: 1 << 22 };
 pub fn run(request: &ScoreRequest, common: &Common) -> Result<(), Failure> {
     let scenario = scenario_of(request, common)?;
     let theme = request.style.style.theme()?;
-    let terminal = Terminal::new(common.quiet);
+    let terminal = Terminal::new("trials", common.quiet);
     let label = request.label.clone().map_or_else(|| name::of_file(&request.answers), Ok)?;
     let answers = answers::read(&request.answers, &scenario, &terminal)?;
     let place = default_folder(&format!("{}-score", scenario.name), Shard::WHOLE);

@@ -6,9 +6,9 @@ use campaign::folder::ResultFolder;
 use clap::{Args, Command};
 use clap_complete::Shell;
 use scenario::failure::{Failure, OnPath};
-use serde_json::json;
 
 use super::reply;
+use crate::documents::answers::{CompletionsAnswer, ManAnswer};
 use crate::options::{Common, Format};
 use crate::screen;
 
@@ -37,11 +37,11 @@ pub fn completions(
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command, &name, &mut script);
     let script = String::from_utf8_lossy(&script).into_owned();
-    if common.format != Format::Json && !common.quiet {
+    if common.format != Format::Json {
         // A script is not shown but read.
         return screen::say_document(&script);
     }
-    reply(common, "completions/1", json!({ "shell": shell.to_string(), "script": script }), "")
+    reply(common, &CompletionsAnswer { shell: shell.to_string(), script }, "")
 }
 
 /// Writes a page for the program and one for each of its commands.
@@ -65,5 +65,5 @@ pub fn man(ManRequest { folder }: &ManRequest, mut command: Command, common: &Co
         files.push(path.display().to_string());
     }
     let line = format!("{} pages in {}; read one with `man {}`", files.len(), folder.display(), files[0]);
-    reply(common, "man/1", json!({ "files": files }), &line)
+    reply(common, &ManAnswer { files }, &line)
 }

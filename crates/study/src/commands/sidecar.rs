@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use campaign::disk;
 use campaign::folder::ResultFolder;
 use clap::Args;
-use serde_json::json;
 use trial::file::STDIN;
 use trial::{Sidecar, reader};
 
 use super::reply;
+use crate::documents::answers::SidecarAnswer;
 use crate::options::Common;
 use scenario::failure::{Failure, OnPath};
 
@@ -55,5 +55,5 @@ fn tell(text: &str, written: Option<(&Path, &Path)>, common: &Common) -> Result<
             format!("{}: check every line, then run `study fit {}`", path.display(), log.display())
         }
     };
-    reply(common, "sidecar/1", json!({ "file": file, "sidecar": described }), &line)
+    reply(common, &SidecarAnswer { file, sidecar: described }, &line)
 }

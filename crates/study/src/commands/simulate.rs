@@ -11,9 +11,9 @@ use rayon::prelude::*;
 use report::Table;
 use scenario::Scenario;
 use scenario::failure::{Failure, OnPath};
-use serde_json::json;
 
 use super::reply;
+use crate::documents::answers::SimulateAnswer;
 use crate::options::{Common, SimulateRequest};
 use crate::progress;
 use crate::views::page_files::first_failure;
@@ -57,7 +57,7 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
         _ => format!("{count} records in {}", folder.path().display()),
     };
     let files: Vec<String> = names.iter().map(file).collect();
-    reply(common, "simulate/1", json!({ "records": count, "files": files }), &line)
+    reply(common, &SimulateAnswer { records: count, files }, &line)
 }
 
 /// Writes which record is of which trial, and what it takes to make the trials again.

@@ -10,13 +10,14 @@ use scenario::failure::Failure;
 use crate::documents::curves::TraceCurves;
 use crate::documents::read_json;
 use crate::documents::trace::{TRACE, TraceDocument};
+use crate::interrupt;
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::trace_page;
 use crate::work::steady;
-use crate::work::trace::{settings, trace, without};
+use crate::work::trace::{STOPPED, settings, trace, without};
 
 /// Analyses the records, prints what was found, writes `trace.json`, the curves, `report.md`, `report.html` and
 /// figures.
@@ -31,7 +32,8 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let traced = trace(&trials, &others, &settings(request), common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
     traced.write(&folder)?;
-    show(&folder, folder.path(), &theme, common, &warnings)
+    show(&folder, folder.path(), theme.as_ref(), common, &warnings)?;
+    if interrupt::is_asked() { Err(Failure::work(STOPPED)) } else { Ok(()) }
 }
 
 /// Draws a trace from the `trace.json` and the curves of a folder, into `into`, and tells what it says.
@@ -40,13 +42,13 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
 pub fn show(
     into: &ResultFolder,
     from: &Path,
-    theme: &Theme,
+    theme: Option<&Theme>,
     common: &Common,
     warnings: &[String],
 ) -> Result<(), Failure> {
     let (document, text): (TraceDocument, String) = read_json(&from.join(TRACE), "trace")?;
     let curves = TraceCurves::of(&document, from)?;
-    write_page(into, &trace_page::page(&document, &curves, steady::of_ship(&document.ship).as_ref()), theme)?;
+    write_page(into, trace_page::page(&document, &curves, steady::of_ship(&document.ship).as_ref()), theme)?;
     let notes = format!("\nresults: {}", into.path().join(TRACE).display());
     let [before, behind] = trace_page::words(&document);
     let table = trace_page::all_errors(&document);

@@ -119,14 +119,49 @@ impl FitDocument {
         answered().find(|method| *method == SHOWN).or_else(|| answered().next()).map(String::as_str)
     }
 
-    /// Everything that a reader should know: of the records and of the answers.
-    pub fn all_warnings(&self) -> Vec<String> {
-        let of = |entry: &MethodEntry| {
-            entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)).collect::<Vec<String>>()
-        };
-        self.warnings.iter().cloned().chain(self.methods.iter().flat_map(of)).collect()
+    /// Everything that a reader should know of the answer to take, what costs most first: doubts about the records, what
+    /// the method says of itself, and what was mended or chosen when the records were read.
+    pub fn ranked_warnings(&self) -> Vec<String> {
+        let is_mended = |warning: &&String| MENDED.iter().any(|words| warning.contains(words));
+        let doubts = self.warnings.iter().filter(|warning| !is_mended(warning)).cloned();
+        let mended = self.warnings.iter().filter(is_mended).cloned();
+        doubts.chain(self.of_methods(true)).chain(mended).collect()
+    }
+
+    /// What methods say of answers that are not to be taken: some say it of nearly every record.
+    pub fn notes(&self) -> Vec<String> {
+        self.of_methods(false).collect()
+    }
+
+    /// Warnings of the method whose answer is to be taken, or of all others.
+    pub fn of_methods(&self, taken: bool) -> impl Iterator<Item = String> {
+        let is_taken = |entry: &MethodEntry| self.verdict.as_ref().is_some_and(|own| own.method == entry.method);
+        let entries = self.methods.iter().filter(move |entry| is_taken(entry) == taken);
+        entries.flat_map(|entry| entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)))
     }
 }
+
+/// Words of warnings that cost nothing in K and T: a fault was mended, a choice was made, or only a track suffers. What
+/// has none of them is a doubt.
+const MENDED: [&str; 17] = [
+    "left out",
+    "taken as missing",
+    "taken as positive",
+    "taken from",
+    "understood by their names",
+    "columns without a unit",
+    "is read as",
+    "decimal comma",
+    "passed over",
+    "runs straight",
+    "is the mean of",
+    "are over ground",
+    "is magnetic",
+    "the time is that of",
+    "no checksum",
+    "can be predicted",
+    "loses no speed",
+];
 
 /// Every zig-zag of some records alone: whether K and T of a first-order response depend on the amplitude.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -153,7 +188,7 @@ pub struct SingleRecord {
 }
 
 /// `curves.json`: what the figures of a fit show, so that they can be drawn again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FitCurves {
     /// The records, first the fitted ones.
     pub records: Vec<FitRecord>,
@@ -162,7 +197,7 @@ pub struct FitCurves {
 }
 
 /// A record with its replays, in degrees.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FitRecord {
     /// A name that no other record has.
     pub name: String,

@@ -1,8 +1,11 @@
 //! What commands leave for other programs: the types of their JSON files and of the tables beside them, from which
 //! pages and figures are made. The text of a file is also what `--format json` writes to standard output.
 
+pub mod answers;
 pub mod columns;
 pub mod curves;
+pub mod error;
+pub mod find;
 pub mod fit;
 pub mod missing_moment;
 pub mod scales;
@@ -18,9 +21,9 @@ use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde_json::Value;
 
 use crate::screen;
+use answers::{Answer, Versioned};
 
 /// Name of the file with the curves of the figures of a fit or a prediction.
 pub const CURVES: &str = "curves.json";
@@ -65,19 +68,16 @@ fn read_text(path: &Path) -> Result<String, Failure> {
     String::from_utf8(bytes.on("read", path)?).on("read", path)
 }
 
-/// The document of a command without a file of its own: an object, with the name of what it holds first.
+/// The document of a command without a file of its own, with the version of what it holds first.
 ///
 /// Fails where it cannot be written as JSON.
-pub fn of(schema: &str, body: Value) -> Result<String, Failure> {
-    let mut document = serde_json::Map::new();
-    document.insert("schema".into(), schema.into());
-    document.extend(body.as_object().cloned().unwrap_or_default());
-    text(&document).map_err(Failure::work)
+pub fn of<A: Answer>(body: &A) -> Result<String, Failure> {
+    text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::work)
 }
 
 /// Writes such a document to standard output.
 ///
 /// Fails as [`of`] and [`screen::say`] do.
-pub fn say(schema: &str, body: Value) -> Result<(), Failure> {
-    screen::say_document(&of(schema, body)?)
+pub fn say(body: &impl Answer) -> Result<(), Failure> {
+    screen::say_document(&of(body)?)
 }

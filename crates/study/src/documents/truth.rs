@@ -6,32 +6,97 @@ use campaign::curves::degrees;
 use campaign::engine::{self, Truths};
 use campaign::task::Task;
 use scenario::Scenario;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 use ship::FirstOrder;
 use ship::angle::to_deg;
 use simulate::Simulated;
 
-/// The truth of one record of a trial: `nearest` is the first-order response nearest to the ship, the ship itself where
-/// it is first order; `own` its base, where it has effects beside it; `missing` what a first-order base lacks; `drawn`
-/// values are in the units of their keys; `executes_s` are the times of the orders, and `motion` is without the errors
-/// of any instrument.
+/// The truth of one record of a trial.
+#[derive(Serialize, JsonSchema)]
+pub struct TruthDocument {
+    /// `truth/1`.
+    #[schemars(extend("const" = "truth/1"))]
+    pub schema: &'static str,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Seed of the study.
+    pub seed: u64,
+    /// Labels of the cell.
+    pub cell: String,
+    /// Number of the trial in its cell, from 0.
+    pub replicate: u64,
+    /// The first-order response nearest to the ship; the ship itself where it is first order.
+    pub nearest: Option<TrueIndices>,
+    /// The base of a ship that has effects beside it.
+    pub own: Option<TrueIndices>,
+    /// What a first-order base lacks.
+    pub missing: Vec<String>,
+    /// Drawn values in the units of their keys.
+    pub drawn: BTreeMap<String, f64>,
+    /// Times of the orders, s.
+    pub executes_s: Vec<f64>,
+    /// The motion without the errors of any instrument.
+    pub motion: TrueMotion,
+}
+
+/// K, T and δ_r of a ship.
+#[derive(Serialize, JsonSchema)]
+#[expect(non_snake_case, reason = "K and T are the symbols of the field")]
+pub struct TrueIndices {
+    /// K, 1/s.
+    pub K_per_s: f64,
+    /// T, s.
+    pub T_s: f64,
+    /// δ_r, deg.
+    pub delta_r_deg: f64,
+}
+
+/// The motion of a ship.
+#[derive(Serialize, JsonSchema)]
+pub struct TrueMotion {
+    /// Time, s.
+    pub t_s: Vec<f64>,
+    /// Heading, deg.
+    pub heading_deg: Vec<f64>,
+    /// Yaw rate, deg/s.
+    pub yaw_rate_deg_s: Vec<f64>,
+    /// Rudder angle, deg.
+    pub rudder_deg: Vec<f64>,
+    /// Speed, m/s, where the ship has one.
+    pub speed_m_s: Option<Vec<f64>>,
+}
+
+impl TrueIndices {
+    fn of(own: FirstOrder) -> Self {
+        Self { K_per_s: own.K(), T_s: own.T(), delta_r_deg: to_deg(own.rudder_bias) }
+    }
+}
+
+/// The truth of one record of a trial.
 ///
 /// Fails when the drawn values of the trial make no ship.
-pub fn truth(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Truths) -> Result<Value, String> {
+pub fn truth(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Truths) -> Result<TruthDocument, String> {
     let cell = &scenario.cells[task.cell];
     let specimen = cell.specimen(&engine::key(scenario, task)).map_err(|refusal| refusal.to_string())?;
     let truth = &simulated.truth;
-    let indices =
-        |own: FirstOrder| json!({ "K_per_s": own.K(), "T_s": own.T(), "delta_r_deg": to_deg(own.rudder_bias) });
-    Ok(json!({
-        "schema": "truth/1", "scenario": scenario.name, "seed": scenario.seed, "cell": cell.title(),
-        "replicate": task.replicate, "nearest": truths.nearest.map(indices), "own": truths.own.map(indices),
-        "missing": specimen.specification.missing,
-        "drawn": scenario.draws.iter().zip(specimen.drawn.iter()).collect::<BTreeMap<_, _>>(),
-        "executes_s": truth.executes.iter().map(|execute| execute.time).collect::<Vec<f64>>(),
-        "motion": {
-            "t_s": truth.time, "heading_deg": degrees(&truth.heading), "yaw_rate_deg_s": degrees(&truth.yaw_rate),
-            "rudder_deg": degrees(&truth.rudder), "speed_m_s": truth.speed,
+    Ok(TruthDocument {
+        schema: "truth/1",
+        scenario: scenario.name.clone(),
+        seed: scenario.seed,
+        cell: cell.title(),
+        replicate: task.replicate,
+        nearest: truths.nearest.map(TrueIndices::of),
+        own: truths.own.map(TrueIndices::of),
+        missing: specimen.specification.missing.clone(),
+        drawn: scenario.draws.iter().cloned().zip(specimen.drawn.iter().copied()).collect(),
+        executes_s: truth.executes.iter().map(|execute| execute.time).collect(),
+        motion: TrueMotion {
+            t_s: truth.time.clone(),
+            heading_deg: degrees(&truth.heading),
+            yaw_rate_deg_s: degrees(&truth.yaw_rate),
+            rudder_deg: degrees(&truth.rudder),
+            speed_m_s: truth.speed.clone(),
         },
-    }))
+    })
 }

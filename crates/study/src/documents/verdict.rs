@@ -29,7 +29,8 @@ pub struct VerdictEntry {
     pub rudder_delay_s: Option<f64>,
     /// Methods whose replays are more than ten times worse than the best.
     pub set_apart: Vec<String>,
-    /// A method whose 95 % interval of K or T lies wholly outside that of the answer to take.
+    /// Output error or maximum likelihood, where its 95 % interval of K or T lies wholly outside that of the answer to
+    /// take, or its replay is set apart.
     pub contradicted_by: Option<String>,
 }
 
@@ -43,12 +44,11 @@ impl VerdictEntry {
         let taken = answered().find(is_own);
         let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);
         let taken = taken.unwrap_or(nearest);
-        let far = answered().filter(|entry| rms(entry) > FAR_WORSE * rms(&nearest) && entry.method != taken.method);
-        let degrees = |of: fn(&LackOfFit) -> f64| {
-            recommendation.lack.as_ref().map(|lack| to_deg(of(lack)))
-        };
+        let is_far = |entry: &&MethodEntry| rms(entry) > FAR_WORSE * rms(&nearest) && entry.method != taken.method;
+        let degrees = |of: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(of(lack)));
         let usual = ["output-error", "maximum-likelihood"];
-        let contradicts = |entry: &&MethodEntry| usual.contains(&entry.method.as_str()) && are_apart(taken, entry);
+        let contradicts =
+            |entry: &&MethodEntry| usual.contains(&entry.id()) && (are_apart(taken, entry) || is_far(entry));
         Some(Self {
             method: taken.method.clone(),
             reason,
@@ -56,16 +56,11 @@ impl VerdictEntry {
             residual_deg: degrees(|lack| lack.residual),
             with_ship_terms_deg: degrees(|lack| lack.with_ship_terms),
             noise_deg: degrees(|lack| lack.noise),
-            rudder_delay_s: recommendation.lack.filter(explains_most).map(|lack| lack.delay),
-            set_apart: far.map(|entry| entry.method.clone()).collect(),
+            rudder_delay_s: recommendation.lack.and_then(|lack| lack.rudder_delay()),
+            set_apart: answered().filter(is_far).map(|entry| entry.method.clone()).collect(),
             contradicted_by: answered().find(contradicts).map(|entry| entry.method.clone()),
         })
     }
-}
-
-/// Whether a rudder that acts at another time leaves less than half of the residual.
-fn explains_most(lack: &LackOfFit) -> bool {
-    lack.unexplained_by_delay().is_some_and(|share| share < 0.5)
 }
 
 /// Whether the intervals of K or of T have nothing in common.
@@ -74,4 +69,37 @@ fn are_apart(one: &MethodEntry, other: &MethodEntry) -> bool {
     [(one.k_per_s, other.k_per_s), (one.t_s, other.t_s)]
         .into_iter()
         .any(|(one, other)| one.ci95.zip(other.ci95).is_some_and(|([low, high], [from, to])| high < from || to < low))
+}
+
+#[cfg(test)]
+mod tests {
+    use campaign::answer::{IndexEstimates, Status};
+    use trial::Quantity;
+
+    use super::*;
+
+    /// A method without an interval contradicts by its replay.
+    #[test]
+    fn a_replay_far_off_contradicts_the_answer() {
+        let entry = |method: &str, t: f64, rms: f64| MethodEntry {
+            method: method.into(),
+            status: Status::Ok,
+            parameters: Some(IndexEstimates {
+                k_per_s: Quantity::bare(0.1),
+                t_s: Quantity::bare(t),
+                delta_r_deg: Quantity::bare(0.0),
+            }),
+            heading_rmse_deg: Some(rms),
+            ..MethodEntry::default()
+        };
+        let taken = Recommendation { reason: Reason::NearestReplay, lack: None };
+        let contradicted = |rms: f64| {
+            let far = [entry("output-error", 9.0, 1.9), entry("least-squares", 28.0, rms)];
+            let all = [&far[..], &[entry("maximum-likelihood", 41.0, rms)]].concat();
+            let verdict = VerdictEntry::of(&taken, &all).expect("an answer");
+            (verdict.contradicted_by, verdict.set_apart.len())
+        };
+        assert_eq!(contradicted(38.0), (Some("maximum-likelihood".into()), 2));
+        assert_eq!(contradicted(18.0), (None, 0));
+    }
 }

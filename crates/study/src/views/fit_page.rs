@@ -1,7 +1,7 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
 use campaign::answer::MethodEntry;
-use identify::recommended::{Reason, ResidualKind};
+use identify::recommended::{MOMENTS, Reason, ResidualKind};
 use report::markdown::text;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, Table};
@@ -9,6 +9,7 @@ use trial::Quantity;
 
 use super::{fit_figures, method_table, scale_tables};
 use crate::documents::fit::{FitCurves, FitDocument, ZigZagEntry};
+use crate::documents::verdict::VerdictEntry;
 use crate::scales::scale_name;
 use crate::work::every_scale::PREFERRED_METHODS;
 
@@ -31,6 +32,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     page.part("Methods");
     page.table(answers(document, curves));
     page.say(MODEL);
+    page.say(FILES);
     let notes = notes(document, curves);
     if !notes.trim().is_empty() {
         page.part("Records");
@@ -49,14 +51,14 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
             table.into_iter().for_each(|table| page.table(table));
         }
     }
-    let warnings = document.all_warnings();
-    if !warnings.is_empty() {
-        page.part("Warnings");
-        page.list(warnings.iter().map(|warning| text(warning)));
+    for (title, entries) in [("Warnings", document.ranked_warnings()), ("Notes", document.notes())] {
+        if !entries.is_empty() {
+            page.part(title);
+            page.list(entries.iter().map(|entry| text(entry)));
+        }
     }
     page.part("Figures");
     page.figures(fit_figures::figures(document, curves));
-    page.say(FILES);
     page
 }
 
@@ -114,15 +116,29 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
             ),
         };
     }
-    if let Some(other) = &verdict.contradicted_by {
-        words += &format!(
-            "\nThe intervals of {other} exclude this answer: a random moment explains a part of the manoeuvre in one of the two."
-        );
-    }
+    words += &contradiction(document, verdict);
     if !verdict.set_apart.is_empty() {
         words += &format!("\nMore than ten times as far from the headings are: {}.", verdict.set_apart.join(", "));
     }
     Some(words)
+}
+
+/// Why the other one of output error and maximum likelihood has another answer.
+fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
+    let other = verdict.contradicted_by.as_ref();
+    let Some(other) = document.methods.iter().find(|entry| Some(&entry.method) == other) else { return String::new() };
+    let name = &other.method;
+    let has_moment = other.diagnostics.keys().any(|key| MOMENTS.contains(&key.as_str()));
+    match verdict.reason {
+        Reason::NearestReplay if has_moment => format!(
+            "\nRandom moments explain part of the manoeuvre in {name}: its K and T are those of small, fast motions."
+        ),
+        Reason::NearestReplay => format!("\n{name} contradicts this answer: look at both replays."),
+        Reason::RandomMoment => {
+            format!("\n{name} contradicts this answer: it takes the work of the random moment for that of the rudder.")
+        }
+        Reason::RudderNoise => format!("\n{name} contradicts this answer: it counts no noise of the rudder."),
+    }
 }
 
 /// What was read.

@@ -12,11 +12,25 @@ pub const REPORT: &str = "report.md";
 /// The same page for a browser, in one file.
 pub const BROWSER: &str = "report.html";
 
-/// Draws the figures of a page and writes it in both forms.
+/// Draws the figures of a page and writes it in both forms; without a theme it is a page of words and tables.
 ///
 /// Fails when the style has limits for an axis that is in none of the figures, and when a file cannot be written, with
 /// the first failure in the order of the page.
-pub fn write_page(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure> {
+pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> Result<(), Failure> {
+    let page = match theme {
+        Some(theme) => {
+            draw(folder, &page, theme)?;
+            page
+        }
+        None => page.without_figures(),
+    };
+    let markdown = page.to_markdown();
+    let browser = html::page(&markdown, &|stem| Images::written(folder.path(), stem));
+    folder.write(REPORT, markdown)?;
+    folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
+}
+
+fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure> {
     let figures: Vec<&PageFigure> = page.drawings().collect();
     let mut titles: Vec<String> = figures.iter().flat_map(|figure| figure.plot.axis_titles()).collect();
     titles.sort_unstable();
@@ -32,11 +46,7 @@ pub fn write_page(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(
         let figure = plot.draw(theme);
         folder.write(&format!("{stem}.svg"), figure.svg())?;
         folder.write(&format!("{stem}.png"), figure.png().on("draw the figure", &folder.path().join(stem))?)
-    }))?;
-    let markdown = page.to_markdown();
-    let browser = html::page(&markdown, &|stem| Images::written(folder.path(), stem));
-    folder.write(REPORT, markdown)?;
-    folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
+    }))
 }
 
 /// Does all of it in parallel and fails with the first failure in order, whichever came first in time.

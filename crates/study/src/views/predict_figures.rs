@@ -70,7 +70,7 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
         let ways = vec![(String::from("most probable ship"), CurveOrigin::After, way)];
         figures.push(PageFigure::new(format!("{stem}-phase"), caption, phase_plane(kind.clone(), None, false, ways)));
     }
-    if passage.is_some_and(|passage| passage.way.is_some()) {
+    if passage.is_some_and(|passage| passage.track().is_some()) {
         let caption =
             format!("{kind}: track of the most probable ship; thin: {} drawn ships.", prediction.curves.tracks.len());
         figures.push(PageFigure::new(format!("{stem}-track"), caption, track(prediction)));
@@ -108,7 +108,7 @@ fn track(prediction: &Prediction) -> Panels {
         PlotCurve::new(east, north)
     };
     let passage = prediction.curves.most_probable.as_ref();
-    let own = passage.and_then(|passage| Some(passage.way.as_ref()?.track.as_slice())).unwrap_or_default();
+    let own = passage.and_then(|passage| passage.track()).unwrap_or_default();
     let step = (own.len() / HEADINGS).max(1);
     let (mut places, mut headings) = (PlotCurve::default(), Vec::new());
     for row in (0..own.len()).step_by(step) {

@@ -28,8 +28,8 @@ pub fn words(document: &PredictDocument) -> String {
         );
     }
     let turns = document.manoeuvres.iter().filter(|one| matches!(one.kind, Manoeuvre::TurningCircle { .. }));
-    if turns.filter_map(|one| one.curves.most_probable.as_ref()).any(|passage| passage.way.is_none()) {
-        words += "no track: the length of the ship is not known, or its records do not tell speed loss and drift\n";
+    if turns.filter_map(|one| one.curves.most_probable.as_ref()).any(|passage| passage.track().is_none()) {
+        words += "no track: the length of the ship is not known, or its records do not tell drift\n";
     }
     if !document.ballast.is_empty() {
         words += &format!(

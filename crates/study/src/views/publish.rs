@@ -10,13 +10,12 @@ use campaign::summary::{Summary, Tally};
 use rayon::prelude::*;
 use report::{Table, Theme};
 use scenario::failure::{Failure, OnPath};
-use serde_json::json;
 
 use super::page_files::{REPORT, write_page};
 use super::study_figures::{self, FigurePlace, KEY_FIGURE};
 use super::study_page::{on_screen, page};
 use super::{coverage_table, curve_tables, tables, tracing_table};
-use crate::documents;
+use crate::documents::{self, answers::StudyAnswer};
 use crate::options::{Common, FigureChoice, Format};
 use crate::screen;
 
@@ -30,7 +29,7 @@ pub fn publish(
     let summary = put(stored, folder, style)?;
     let design = &stored.design;
     match common.format {
-        _ if common.quiet => Ok(()),
+        _ if common.is_silent() => Ok(()),
         Format::Text => {
             let page = folder.path().join(REPORT);
             screen::say(&format!("{}\nreport: {}", on_screen(stored, &summary), page.display()))
@@ -44,13 +43,12 @@ pub fn publish(
 
 /// What was published, for other programs. Fails where it cannot be written as JSON.
 pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) -> Result<String, Failure> {
-    let body = json!({
-        "folder": folder.path().display().to_string(),
-        "manifest": stored.manifest,
-        "summary": tables::summary(&summary.methods, &stored.design).to_records(),
-        "failures": tables::failures(summary, &stored.design),
-    });
-    documents::of("study/1", body)
+    documents::of(&StudyAnswer {
+        folder: folder.path().display().to_string(),
+        manifest: &stored.manifest,
+        summary: tables::summary(&summary.methods, &stored.design).to_records(),
+        failures: tables::failures(summary, &stored.design),
+    })
 }
 
 /// Makes the tables, the figures and `report.md` and `report.html` in a folder; returns what they are made from.
@@ -94,7 +92,7 @@ pub fn put(
         }
     }
     curve_tables::write_showcases(stored, &figures, folder)?;
-    write_page(folder, &page(stored, &summary, brief, figures), theme)?;
+    write_page(folder, page(stored, &summary, brief, figures), Some(theme))?;
     Ok(summary)
 }
 

@@ -1,9 +1,10 @@
-//! An identification: every method on the records together, its answer held against other records, and what is known of
+//! An identification: all methods asked for on the records together, its answer held against other records, and what is known of
 //! the ship.
 
 use identify::estimate::Uncertainty;
 use identify::recommended::Recommendation;
 use identify::replay::replay;
+use identify::suspicion::suspicion;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
@@ -115,7 +116,20 @@ pub fn fit(
     if entries.iter().all(|entry| entry.parameters.is_none()) {
         return Err(unusable(&records[0], &entries, warnings));
     }
-    let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &ZigZag::of(trial))).collect();
+    let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|own| own.K().sd.is_some());
+    warnings.extend(surest.and_then(|estimate| suspicion(estimate, ship, records)));
+    let of_record = |trial: &Trial| {
+        let zigzag = ZigZag::of(trial);
+        if zigzag.as_ref().is_ok_and(|zigzag| zigzag.begins_at_reversal) {
+            warnings.push(format!(
+                "{}: the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier, \
+                 with --from",
+                file_of(trial).0
+            ));
+        }
+        trial_entry(trial, &zigzag)
+    };
+    let records: Vec<TrialEntry> = records.iter().map(of_record).collect();
     let shown = RecordFacts::of(trials).with_motion();
     warn_of_no_track(&shown, warnings);
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
@@ -151,22 +165,31 @@ fn verdict(
     VerdictEntry::of(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries)
 }
 
-/// The named methods of the project with their default settings, all for no name, and outside estimators behind them;
-/// those that draw at random with this seed.
+/// Stands for every method where methods are named.
+const ALL: &str = "all";
+
+/// The named methods of the project with their default settings, the best first, the usual ones for no name, and
+/// outside estimators behind them; those that draw at random with this seed.
 ///
 /// Fails for a name that no method has, and for a command that cannot be one.
 pub fn methods(names: &[String], external: &[NamedCommand], seed: Option<u64>) -> Result<Vec<Named>, Failure> {
     let all = registry::defaults().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
-    let all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
+    let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
+    let place = |id: &str| registry::USUAL.iter().position(|usual| *usual == id);
+    all.sort_by_key(|method| place(method.id()).unwrap_or(usize::MAX));
     let known: Vec<&str> = all.iter().map(|method| method.id()).collect();
-    if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
-        return Err(Failure::input(format!("--method {unknown}: no such method; use one of {}", known.join(", "))));
+    if let Some(unknown) = names.iter().find(|name| *name != ALL && !known.contains(&name.as_str())) {
+        let known = known.join(", ");
+        return Err(Failure::input(format!("--method {unknown}: no such method; use {ALL}, or one of {known}")));
     }
     let outside = outside::methods(external, &known)?;
     if !outside.is_empty() {
         interrupt::install();
     }
-    let is_named = |id: &str| names.is_empty() || names.iter().any(|name| name == id);
+    let is_named = |id: &str| match names {
+        [] => place(id).is_some(),
+        names => names.iter().any(|name| name == id || name == ALL),
+    };
     let own = all.into_iter().filter(|method| is_named(method.id())).map(|method| {
         let method = seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method);
         (method.id().to_owned(), method)

@@ -18,8 +18,8 @@ use ship::Particulars;
 use trial::{Conditions, Manoeuvre, Trial, file};
 
 use crate::options::{PredictRequest, ReadingOptions};
-use crate::progress;
-use crate::records::file_of;
+use crate::progress::Steps;
+use crate::records::{file_of, rudder_logged_late};
 
 /// Methods of fit.json in the order in which they are asked; those that are not named come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
@@ -51,7 +51,7 @@ impl StoredModel {
     ///
     /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Self, Failure> {
-        let shown = path.display().to_string();
+        let shown = file::called(path).display().to_string();
         name::of_file(path)?;
         let text =
             file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))?;
@@ -99,6 +99,9 @@ impl StoredModel {
                  of such models held less often than others, so trace again with --without-effect sway_coupling_measured"
             ));
         }
+        if let Some(late) = known.rudder_logged_late() {
+            warnings.push(format!("{shown}: {}; she is steered without it", rudder_logged_late(late)));
+        }
         let known = if calm { known.in_calm() } else { Ok(known) };
         Ok(Self { known: known.map_err(|error| refuse(error.to_string()))?, file: shown.to_owned(), method })
     }
@@ -141,15 +144,27 @@ fn asked_scale(options: &ReadingOptions) -> Option<Particulars> {
 /// The manoeuvres that drawn ships come to the end of, and why the last of the others is lost; `file` is what messages
 /// call the model.
 fn predictions(
-    request: &PredictRequest,
+    (kinds, draws): (&[Manoeuvre], usize),
     mixture: &ShipMixture,
     file: &str,
+    steps: &Steps,
     warnings: &mut Vec<String>,
 ) -> Result<(Vec<Prediction>, Option<PredictError>), Failure> {
     let (mut predictions, mut lost) = (Vec::new(), None);
-    for kind in &manoeuvres(request) {
-        match mixture.predict(kind, request.draws as usize, true) {
-            Ok(prediction) => predictions.push(prediction),
+    for kind in kinds {
+        let prediction = mixture.predict(kind, draws, true);
+        steps.advance();
+        match prediction {
+            Ok(prediction) => {
+                warnings.extend(prediction.undetermined.iter().map(|(name, interval)| {
+                    let [low, high] = interval.ci90.map(|end| fixed(end, interval.decimals()));
+                    format!(
+                        "{file}: {kind}: {name} is left out: nine tenths of the drawn ships lie from {low} to {high}, so \
+                         the records do not tell it; fit records with positions (north_m, east_m) or sway_m_s"
+                    )
+                }));
+                predictions.push(prediction);
+            }
             // One manoeuvre that the model cannot make says nothing of the others.
             Err(error @ PredictError::Lost { .. }) => {
                 warnings.push(format!("{file}: {error}; it is left out"));
@@ -178,8 +193,9 @@ pub fn predict(
     let first = models[0].file.clone();
     let refused = |error: PredictError| Failure::about(&first, error);
     let mixture = mixture_of(models, scale).map_err(refused)?;
-    let busy = progress::busy("predicting", quiet);
-    let (predictions, lost) = predictions(request, &mixture, &first, warnings)?;
+    let kinds = manoeuvres(request);
+    let steps = Steps::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
+    let (predictions, lost) = predictions((&kinds, draws), &mixture, &first, &steps, warnings)?;
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
         return Err(refused(error));
     }
@@ -188,8 +204,9 @@ pub fn predict(
         let (replayed, correction) = held_against((record, *current), [models, ballast], (scale, draws), warnings)?;
         replays.push(replayed);
         corrections.push(correction);
+        steps.advance();
     }
-    busy.finish_and_clear();
+    steps.finish();
     let particulars = mixture.particulars();
     let files = |models: &[StoredModel]| -> Vec<String> { models.iter().map(|model| model.file.clone()).collect() };
     let held = records.iter().zip(&corrections).map(|((trial, current), correction)| FormRecord {

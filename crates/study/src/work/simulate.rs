@@ -82,7 +82,8 @@ pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<Record
     let files = |(number, simulated): (usize, &Simulated)| {
         let mut table = Vec::new();
         trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
-        let truth = format!("{}\n", truth(scenario, task, simulated, truths)?);
+        let truth = truth(scenario, task, simulated, truths)?;
+        let truth = serde_json::to_string(&truth).map_err(|error| error.to_string())? + "\n";
         let sidecar = |Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n");
         let sidecar = simulated.trial.particulars().map(sidecar);
         Ok(RecordFiles { name: part_name(name, number), table, sidecar, truth })

@@ -1,9 +1,13 @@
 //! A trace: the analysis of the crate [`trace`](mod@::trace), what is known of the ship beside it, and the files that
 //! everything shown is made from.
 
-use ::trace::{Analysis, Settings, TraceError};
+use std::sync::OnceLock;
+
+use ::trace::{Analysis, Settings, TraceError, Watcher};
 use campaign::folder::ResultFolder;
 use campaign::known::{self, RecordFacts};
+use identify::suspicion::suspicion;
+use indicatif::ProgressBar;
 use scenario::failure::Failure;
 use trial::{Channel, Trial};
 
@@ -11,9 +15,10 @@ use super::planned;
 use crate::documents::curves::{self, TraceCurves};
 use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
 use crate::documents::{self, missing_moment};
+use crate::interrupt;
 use crate::options::{TraceRequest, Withheld};
-use crate::progress;
-use crate::records::{file_of, names, warn_of_no_track};
+use crate::progress::{self, Steps};
+use crate::records::{file_of, names, rudder_logged_late, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
 
 /// A trace before it is written: its document, and the tables of its curves under the names of their files.
@@ -39,6 +44,41 @@ impl TraceResult {
     }
 }
 
+/// The person who waits for a trace. The search has no known length; the checks after it have, and can be done without.
+struct TraceWatch {
+    quiet: bool,
+    busy: ProgressBar,
+    steps: OnceLock<Steps>,
+}
+
+impl TraceWatch {
+    fn end(&self) {
+        self.busy.finish_and_clear();
+        self.steps.get().iter().for_each(|steps| steps.finish());
+        interrupt::listen(false);
+    }
+}
+
+impl Watcher for TraceWatch {
+    fn begin_folds(&self, count: usize) {
+        self.busy.finish_and_clear();
+        let threads = rayon::current_num_threads();
+        self.steps.get_or_init(|| Steps::new("records as if held out", count as u64, 0, threads, self.quiet));
+        interrupt::listen(true);
+    }
+
+    fn end_fold(&self) {
+        self.steps.get().iter().for_each(|steps| steps.advance());
+    }
+
+    fn is_asked_to_stop(&self) -> bool {
+        interrupt::is_asked()
+    }
+}
+
+/// What is said where a person did not wait for the checks.
+pub const STOPPED: &str = "stopped before every record was looked at as if it had been held out; all else is there";
+
 /// Analyses the records together; `others` are held out.
 ///
 /// Fails when the records cannot be brought to one scale, when the base cannot be fitted, and when what is asked for
@@ -51,14 +91,16 @@ pub fn trace(
     warnings: &mut Vec<String>,
 ) -> Result<TraceResult, Failure> {
     let together = scales::together(records, others)?;
-    let busy = progress::busy("tracing", quiet);
-    let analysis = ::trace::trace(&together.trials, &together.others, settings);
-    busy.finish_and_clear();
+    let watch =
+        TraceWatch { quiet, busy: progress::busy("searching for what the model lacks", quiet), steps: OnceLock::new() };
+    let analysis = ::trace::watched(&together.trials, &together.others, settings, &watch);
+    watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let scales = together.sentence();
     let RescaledRecords { trials, others: held_out, .. } = together;
     let shown = RecordFacts::of(&trials).with_motion();
     warn_of_no_track(&shown, warnings);
+    warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
     let all = records.iter().chain(others);
     let names = names(trials.iter().chain(&held_out).map(Trial::name));
     let entry = |((number, own), name): ((usize, &Trial), &String)| RecordEntry {
@@ -86,8 +128,10 @@ pub fn trace(
         tables.push((entry.curves.clone(), missing_moment::over_channels(missing)));
         moments.push(entry);
     }
+    let ship = known::of_analysis(&analysis, &shown);
+    warnings.extend(ship.rudder_logged_late().map(rudder_logged_late));
     let document = TraceDocument {
-        ship: known::of_analysis(&analysis, &shown),
+        ship,
         records: entries,
         missing_moment: moments,
         scales,

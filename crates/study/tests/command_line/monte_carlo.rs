@@ -85,7 +85,7 @@ fn a_damaged_part_is_run_again() {
     let part = "damaged/unfinished/00000001.parquet";
     let bytes = desk.bytes(part);
     desk.file(part, &bytes[..bytes.len() / 2]);
-    let run = desk.run(&["study.toml", "--out", "damaged", "--quiet"]);
+    let run = desk.run(&["study.toml", "--out", "damaged"]);
     run.is_done();
     assert!(run.err.contains("00000001.parquet") && run.err.contains("run again"), "{}", run.err);
     assert!(whole == desk.bytes("damaged/rows.parquet"));

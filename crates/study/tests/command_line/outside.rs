@@ -54,6 +54,63 @@ fn ctrl_c_leaves_no_program_behind() {
     wait(&mut || !kill("-0", &pid));
 }
 
+/// Sixty trials of half a second each would be half a minute.
+#[cfg(unix)]
+#[test]
+fn a_program_that_hangs_costs_three_trials_and_one_line() {
+    let desk = Desk::new();
+    let hangs = "method.external = { command = [\"sleep\", \"3600\"], timeout-s = 0.5 }";
+    let good = GOOD.replace("replicates = 2", "replicates = 60");
+    desk.file("hangs.toml", format!("{good}\n[[identifier]]\nlabel = \"mine\"\n{hangs}\n"));
+    let start = std::time::Instant::now();
+    let run = desk.run(&["hangs.toml", "--threads", "1", "--out", "out"]);
+    assert!(start.elapsed().as_secs() < 15, "{:?}", start.elapsed());
+    assert_eq!(run.is_done().err.matches("given up").count(), 1, "{}", run.err);
+    assert!(run.err.contains("warning: mine: `sleep 3600` gave no answer within 0.5 s"), "{}", run.err);
+    let found = rows(&desk, "out");
+    let own: Vec<_> = found.iter().filter(|row| row.method == 2).collect();
+    assert!(own.len() == 60 && own.iter().all(|row| row.failure == own[0].failure && row.failure.is_some()));
+    // The same rows whatever the threads, and when it is looked at again.
+    desk.run(&["hangs.toml", "--threads", "2", "--out", "two"]).is_done();
+    assert_eq!(found, rows(&desk, "two"));
+    desk.run(&["hangs.toml", "--out", "out"]).is_done();
+}
+
+/// A manifest has the scripts beside it, be they beside the scenario or elsewhere, and shards hand them on.
+#[cfg(unix)]
+#[test]
+fn a_manifest_runs_its_scripts_where_it_lies() {
+    let desk = Desk::new();
+    let answer =
+        r#"while IFS= read -r line; do n=${line#*:}; echo "{\"trial\":${n%%,*},\"K_per_s\":0.1,\"T_s\":16}"; done"#;
+    desk.file("here/deep/mine.sh", answer);
+    desk.file("tools/theirs.sh", answer.replace("16", "17"));
+    let method = |label: &str, script: &str| {
+        format!("[[identifier]]\nlabel = {label:?}\nmethod.external = {{ command = [\"sh\", {script:?}] }}\n")
+    };
+    let text = format!("{GOOD}\n{}{}", method("mine", "deep/mine.sh"), method("theirs", "../tools/theirs.sh"));
+    desk.file("here/own.toml", text);
+    desk.run(&["here/own.toml", "--out", "out"]).is_done();
+    desk.run(&["here/own.toml", "--out", "one", "--shard", "1/2"]).is_done();
+    desk.run(&["here/own.toml", "--out", "two", "--shard", "2/2"]).is_done();
+    for folder in ["here", "tools"] {
+        std::fs::remove_dir_all(desk.path(folder)).expect("they were there");
+    }
+    desk.run(&["merge", "one", "two", "--out", "joined"]).is_done();
+    let first = rows(&desk, "out");
+    assert!(first.iter().filter(|row| row.method >= 2).all(|row| row.failure.is_none()));
+    for (manifest, out) in
+        [("out/manifest.toml", "again"), ("joined/manifest.toml", "third"), ("out/manifest.toml", "out")]
+    {
+        desk.run(&[manifest, "--out", out]).is_done();
+        assert_eq!(first, rows(&desk, out), "{manifest}");
+    }
+    // A script that was changed there is another study.
+    desk.file("out/sources/up/deep/mine.sh", answer.replace("16", "15"));
+    let changed = desk.run(&["out/manifest.toml", "--out", "again"]);
+    assert!(changed.code == Some(2) && changed.err.contains("a file that a command in it names"), "{}", changed.err);
+}
+
 #[test]
 fn wrong_settings_of_a_command_are_shown_where_they_stand() {
     let desk = Desk::new();

@@ -3,10 +3,12 @@
 use serde_json::Value;
 
 use crate::desk::{Desk, of_repository, zig_zag_csv};
+use crate::schemas;
 
-/// The one document on standard output.
+/// The one document on standard output, which `--quiet` does not silence.
 fn document(desk: &Desk, arguments: &[&str]) -> Value {
-    let run = desk.run(&[arguments, &["--format", "json"]].concat());
+    let run = desk.run(&[arguments, &["--format", "json", "--quiet"]].concat());
+    assert_eq!(run.is_done().err, "", "{arguments:?}");
     serde_json::from_str(&run.is_done().out).unwrap_or_else(|error| panic!("{arguments:?}: {error}\n{}", run.out))
 }
 
@@ -59,7 +61,10 @@ method.integral-least-squares = {}
         (&["completions", "bash"], "completions/1"),
         (&["man", "pages"], "man/1"),
     ] {
-        assert_eq!(document(&desk, arguments)["schema"], schema, "{arguments:?}");
+        let document = document(&desk, arguments);
+        assert_eq!(document["schema"], schema, "{arguments:?}");
+        let (name, _) = schema.split_once('/').expect("a version");
+        schemas::hold(if name == "sidecar" { "sidecar-answer" } else { name }, &desk.path(name), &document);
     }
     assert!(document(&desk, &["schema", "fit"])["properties"].is_object());
     let study = document(&desk, &["report", "s/small"]);
@@ -77,12 +82,75 @@ method.integral-least-squares = {}
     );
 }
 
-/// What is wrong is said as always: nothing on standard output, one message, the exit code.
+/// The one object on standard error.
+fn error(desk: &Desk, arguments: &[&str]) -> Value {
+    let run = desk.run(&[arguments, &["--format", "json", "--quiet"]].concat());
+    let document: Value = serde_json::from_str(&run.err).unwrap_or_else(|fault| panic!("{fault}: {}", run.err));
+    schemas::hold("error", &desk.path("error"), &document);
+    assert_eq!(document["exit_code"].as_i64(), run.code.map(i64::from), "{document}");
+    document["error"].clone()
+}
+
 #[test]
-fn an_error_is_no_document() {
+fn what_goes_wrong_is_an_object_for_programs() {
     let desk = Desk::new();
-    desk.run(&["fit", "none.csv", "--format", "json"]).is_refused(2, &["none.csv"]);
-    desk.run(&["check", desk.file("bad.toml", "seed = 1\n"), "--format", "text"]).is_refused(2, &["question"]);
+    desk.file("bad.csv", "t_s,heading_deg\n0,1\n");
+    desk.file("bad.toml", "question = \"Why?\"\nseed = -1\n");
+    let missing = error(&desk, &["fit", "none.csv"]);
+    assert!(missing["file"] == "none.csv" && missing["blame"] == "input", "{missing}");
+    assert!(!missing["problem"].as_str().expect("words").contains("none.csv"), "{missing}");
+    assert_eq!(error(&desk, &["fit", "bad.csv"])["file"], "bad.csv");
+    let place = error(&desk, &["bad.toml"]);
+    assert_eq!((&place["file"], &place["line"], &place["column"]), (&"bad.toml".into(), &2.into(), &8.into()));
+    assert!(place["expected"].is_string() && place["help"].is_string(), "{place}");
+    desk.file("bad.trial.toml", "[table]\nheadr = false\n");
+    let sidecar = error(&desk, &["fit", "bad.csv"]);
+    assert_eq!((&sidecar["file"], &sidecar["line"]), (&"bad.trial.toml".into(), &2.into()), "{sidecar}");
+    let full = error(&desk, &["doctor", "--out", "bad.csv"]);
+    assert!(full["message"].as_str().expect("words").contains("bad.csv"), "{full}");
+    // Options, too: what is wrong without how the command is used.
+    let option = error(&desk, &["fit", "bad.csv", "--draws", "1"]);
+    assert!(option["problem"].as_str().expect("words").contains("--draws"), "{option}");
+    assert!(!option["message"].as_str().expect("words").contains("Usage"), "{option}");
+    let command = error(&desk, &["fti"]);
+    assert!(command["problem"].as_str().expect("words").contains("no command `fti`"), "{command}");
+    // In words it stays what it was.
+    desk.run(&["fit", "none.csv"]).is_refused(2, &["none.csv"]);
+    desk.run(&["check", "bad.toml", "--format", "text"]).is_refused(2, &["seed"]);
+    desk.run(&["fit", "bad.csv", "--draws", "1"]).is_refused(2, &["--draws", "Usage: study fit"]);
+}
+
+/// Quiet is about people: notes and warnings go, and so does the table, unless a form of it was asked for.
+#[test]
+fn quiet_silences_all_but_what_was_asked_for() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv());
+    let fit = ["fit", "run.csv", "--validate", "run.csv", "--method", "output-error", "--quiet"];
+    let said = |format: &str| {
+        let run = desk.run(&[&fit[..], &["--format", format]].concat());
+        assert_eq!(run.is_done().err, "", "{format}: the record validates nothing, and nobody is told");
+        run.out
+    };
+    assert_eq!(said("text"), "");
+    assert!(said("csv").starts_with("method,K [1/s]") && said("markdown").starts_with("| method"));
+    let stored = desk.text("run-fit/fit.json");
+    assert_eq!(said("json"), stored);
+    let piped = desk.run_with_input(&["fit", "-", "--format", "json", "--quiet"], zig_zag_csv());
+    assert_eq!(piped.is_done().out, desk.text("stdin-fit/fit.json"));
+    assert!(desk.run(&fit[..6]).err.contains("validates nothing"), "without it all are told");
+    assert_eq!(desk.run(&["find", "run.csv", "--quiet"]).is_done().out, "");
+}
+
+#[test]
+fn a_model_on_standard_input_is_predicted_into_a_folder_of_that_name() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv());
+    desk.run(&["fit", "run.csv", "--method", "output-error", "--out", "f", "--quiet"]).is_done();
+    let predict = ["predict", "-", "--draws", "50", "--manoeuvre", "zig-zag:10/10", "--format", "json"];
+    let run = desk.run_with_input(&predict, desk.bytes("f/fit.json"));
+    assert_eq!(run.is_done().out, desk.text("stdin-predict/predict.json"));
+    assert!(run.out.contains("\"file\": \"stdin\""), "{}", run.out);
+    desk.run_with_input(&["predict", "-"], "{").is_refused(2, &["stdin: this is no JSON"]);
 }
 
 #[test]
@@ -138,6 +206,10 @@ fn shells_and_manuals_know_every_command() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let script = desk.run(&["completions", shell]).is_done().out.clone();
         commands.iter().for_each(|name| assert!(script.contains(name), "{shell}: {name}"));
+        // Values of options that name a method, an effect, a task.
+        let values = ["maximum-likelihood", "nonlinear_damping", "other-amplitude", "straight-on", "posterior"];
+        let wanted = values.iter().filter(|_| ["bash", "zsh", "fish"].contains(&shell));
+        wanted.for_each(|value| assert!(script.contains(value), "{shell}: {value}"));
     }
     for name in &commands {
         let page = desk.text(&format!("pages/study-{name}.1"));

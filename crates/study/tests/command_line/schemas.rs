@@ -3,26 +3,24 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
+use clap::ValueEnum;
 use serde_json::Value;
 use study::commands::schema::schema;
 use study::options::Described;
 
 use crate::desk::{Desk, of_repository};
 
-const ALL: [(&str, Described); 6] = [
-    ("scenario", Described::Scenario),
-    ("sidecar", Described::Sidecar),
-    ("fit", Described::Fit),
-    ("trace", Described::Trace),
-    ("predict", Described::Predict),
-    ("manifest", Described::Manifest),
-];
+/// Every schema by its name.
+fn all() -> Vec<(String, Described)> {
+    let named = |what: &Described| what.to_possible_value().map(|value| (value.get_name().to_owned(), *what));
+    Described::value_variants().iter().filter_map(named).collect()
+}
 
 /// What is wrong with a document by a schema.
 fn faults(name: &str, document: &Value) -> Vec<String> {
-    static SCHEMAS: LazyLock<Vec<(&str, Value)>> =
-        LazyLock::new(|| ALL.map(|(name, what)| (name, schema(what).as_value().clone())).into());
-    let (_, root) = SCHEMAS.iter().find(|(known, _)| *known == name).expect("a schema of that name");
+    static SCHEMAS: LazyLock<Vec<(String, Value)>> =
+        LazyLock::new(|| all().into_iter().map(|(name, what)| (name, schema(what).as_value().clone())).collect());
+    let (_, root) = SCHEMAS.iter().find(|(known, _)| known == name).expect("a schema of that name");
     check(root, root, document).err().into_iter().collect()
 }
 
@@ -67,7 +65,11 @@ fn check(root: &Value, part: &Value, value: &Value) -> Result<(), String> {
             }
             "items" => {
                 let mut items = value.as_array().into_iter().flatten().enumerate();
-                items.try_for_each(|(place, item)| within(&place, check(root, limit, item)))?;
+                // One schema for all, or one for each place.
+                let of = |place: usize| limit.as_array().map_or(Some(limit), |limits| limits.get(place));
+                items.try_for_each(|(place, item)| {
+                    of(place).map_or(Ok(()), |own| within(&place, check(root, own, item)))
+                })?;
                 true
             }
             "properties" | "additionalProperties" => {
@@ -103,7 +105,8 @@ fn is_of_type(value: &Value, kind: &Value) -> bool {
     }
 }
 
-fn hold(name: &str, file: &Path, document: &Value) {
+/// Holds a document to the schema of a name.
+pub fn hold(name: &str, file: &Path, document: &Value) {
     let faults = faults(name, document);
     assert!(faults.is_empty(), "{} and the schema of {name}: {}", file.display(), faults.join("; "));
 }
@@ -127,10 +130,19 @@ pub fn hold_below(folder: &Path) {
         let path = entry.path();
         let name = entry.file_name().to_string_lossy().into_owned();
         match name.as_str() {
-            "fit.json" | "trace.json" | "predict.json" => {
+            "fit.json" | "trace.json" | "predict.json" | "bench.json" => {
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
                 let Ok(document) = serde_json::from_str(&text) else { continue };
                 hold(name.trim_end_matches(".json"), &path, &document);
+            }
+            "cells.json" | "showcase.json" => {
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                serde_json::from_str(&text).iter().for_each(|own| hold(name.trim_end_matches(".json"), &path, own));
+            }
+            // That of a prediction has no schema.
+            "curves.json" if folder.join("fit.json").is_file() => {
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                serde_json::from_str(&text).iter().for_each(|own| hold("fit-curves", &path, own));
             }
             "manifest.toml" => {
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
@@ -138,6 +150,14 @@ pub fn hold_below(folder: &Path) {
                 hold("manifest", &path, &manifest);
                 let scenario = manifest["scenario"].as_str().and_then(of_toml);
                 scenario.iter().for_each(|scenario| hold("scenario", &path, scenario));
+            }
+            "trials.toml" => {
+                let trials = std::fs::read_to_string(&path).ok().as_deref().and_then(of_toml);
+                trials.iter().for_each(|trials| hold("trials", &path, trials));
+            }
+            truth if truth.ends_with(".truth.json") => {
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                serde_json::from_str(&text).iter().for_each(|truth| hold("truth", &path, truth));
             }
             _ if path.is_dir() => hold_below(&path),
             _ => {}
@@ -148,9 +168,9 @@ pub fn hold_below(folder: &Path) {
 #[test]
 fn the_published_schemas_are_those_of_the_program() {
     let desk = Desk::new();
-    for (name, _) in ALL {
-        let page = std::fs::read_to_string(of_repository(&format!("docs/schemas/{name}.json"))).expect("it is there");
-        let run = desk.run(&["schema", name]);
+    for (name, _) in all() {
+        let page = std::fs::read_to_string(of_repository(&format!("docs/schemas/{name}.json"))).unwrap_or_default();
+        let run = desk.run(&["schema", &name]);
         assert!(run.is_done().out == page, "run `study schema {name} > docs/schemas/{name}.json` again");
     }
 }
@@ -170,8 +190,11 @@ fn files_of_the_repository_hold_to_their_schemas() {
             }
             let name = entry.file_name().to_string_lossy().into_owned();
             let which = match () {
-                // The definition of the benchmark, which names its records and tasks.
-                () if name == "zigzag-bench.toml" => continue,
+                () if name == "zigzag-bench.toml" => {
+                    let text = std::fs::read_to_string(&path).expect("a file");
+                    hold("bench-definition", &path, &of_toml(&text).expect("TOML"));
+                    continue;
+                }
                 () if name.ends_with(".trial.toml") => "sidecar",
                 () if name.ends_with(".toml") => "scenario",
                 () => continue,
@@ -192,6 +215,16 @@ fn files_of_the_repository_hold_to_their_schemas() {
         }
     }
     assert!(seen[0] >= 20 && seen[1] > 10, "{seen:?}");
+}
+
+#[test]
+fn the_sample_of_a_style_and_the_published_benchmark_hold_to_theirs() {
+    let style = of_repository("docs/src/reference/style.toml");
+    hold("style", &style, &of_toml(&std::fs::read_to_string(&style).expect("a file")).expect("TOML"));
+    assert!(!faults("style", &serde_json::json!({ "colour": 1 })).is_empty(), "a key that there is not");
+    let bench = of_repository("results/bench/bench.json");
+    let document = serde_json::from_str(&std::fs::read_to_string(&bench).expect("a file")).expect("JSON");
+    hold("bench", &bench, &document);
 }
 
 /// What a schema is for: a wrong key, a wrong kind of value and a missing key are seen before the program runs.

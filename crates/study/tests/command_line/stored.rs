@@ -118,7 +118,7 @@ fn a_part_that_cannot_be_read_costs_no_other() {
 
     // A part that is gone takes those after it along, and that is said.
     fs::remove_file(&part).expect("it was there");
-    let message = killed(desk.start_until(&["long.toml", "--out", "cut", "--quiet"], || part.exists()));
+    let message = killed(desk.start_until(&["long.toml", "--out", "cut"], || part.exists()));
     assert!(message.contains("00000000.parquet is missing") && message.contains("run again"), "{message}");
 }
 

@@ -160,6 +160,30 @@ fn a_complete_base_is_clean_and_the_exit_code_does_not_judge() {
     assert_eq!((json["verdict"].as_str(), json["effects"].as_array().map(Vec::len)), (Some("clean"), Some(0)));
 }
 
+/// In gusts a noise is found, and the band that is made from it holds little more than half of the headings: then the
+/// noise does not describe the record, and nobody calls it clean.
+#[test]
+fn a_record_beside_its_own_band_is_not_clean() {
+    let desk = Desk::new();
+    desk.file(
+        "gusts.toml",
+        "question = \"?\"\nseed = 11\nreplicates = 26\nship.first-order = { K-per-s = 0.1, T-s = 16.3 }\n\
+         manoeuvre.zig-zag = { rudder-deg = 10.0, heading-deg = 10.0 }\nsteering-gear.rate-deg-s = 2.5\n\
+         recording = { sampling-s = 1.0, duration-s = 300.0 }\nsensor.heading-noise-deg = 0.1\n\
+         disturbance.gusts = { sd-deg = 0.5, correlation-s = 20.0 }\nidentifier = [{ method.output-error = {} }]\n",
+    );
+    desk.run(&["simulate", "gusts.toml", "--replicate", "25", "--out", "run.csv", "--quiet"]).is_done();
+    let run = desk.run(&["trace", "run.csv", "--out", "here", "--figures", "none"]);
+    run.is_done();
+    let json = desk.json("here/trace.json");
+    let coverage = json["error"]["identification"][0]["after"]["band_coverage_95"].as_f64().expect("a band");
+    assert!(coverage < 0.7, "{coverage}");
+    let noise = &json["noise"][0]["describes_what_is_left"];
+    assert_eq!((json["verdict"].as_str(), noise.as_bool()), (Some("unexplained"), Some(false)));
+    let said = "the 95 % band holds 175 of 301 headings of run, 58 % [";
+    assert!(run.out.contains(said) && desk.text("here/report.md").contains(said), "{}", run.out);
+}
+
 #[test]
 fn a_record_that_cannot_be_traced_is_refused() {
     let desk = Desk::new();

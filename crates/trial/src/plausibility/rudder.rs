@@ -39,7 +39,19 @@ pub(super) fn rudder_movements(trial: &Trial, warnings: &mut Vec<String>) {
             "the rudder is held at {held_deg:.0}°, rudders stop at 35 to 45°: it may be in per cent; then K is wrong by the factor \
              between the two, give the angle in degrees"
         ));
+    } else if let Some(order_deg) = in_per_cent(held_deg) {
+        warnings.push(format!(
+            "the rudder is held at {held_deg:.2}°, which is {order_deg}° in per cent of 35°: if it is in per cent, K is 0.35 of what it \
+             should be; give the angle in degrees"
+        ));
     }
+}
+
+/// The order, deg, that an angle is in per cent of the usual stop at 35°: orders are multiples of 5°.
+fn in_per_cent(held_deg: f64) -> Option<f64> {
+    let order_deg = 0.35 * held_deg;
+    let usual_deg = 5.0 * (order_deg / 5.0).round();
+    (usual_deg > 0.0 && (order_deg - usual_deg).abs() < 0.04).then_some(usual_deg)
 }
 
 /// A movement of the rudder to one side that a steering gear makes: way, deg, time it took, s, and in how many rows.
@@ -156,5 +168,6 @@ mod tests {
         assert!(told(2.5, 1.0, 0.85, true).contains("comes to 0.85 of its order"));
         assert_eq!(told(2.5, 1.0, 1.02, true), "");
         assert!(told(7.0, 1.0, 57.0 / 20.0, false).contains("per cent"));
+        assert!(told(7.0, 1.0, 0.5 / 0.35, false).contains("10° in per cent of 35°"));
     }
 }

@@ -73,6 +73,16 @@ const WRONG: [(Channel, f64, &[&str]); 9] = [
     (Channel::Heading, 1.0 / PER_DEGREE, &["HeadingInDegrees", "YawRateUnit"]),
 ];
 
+/// Nobody is told to give a column the name that it has.
+#[test]
+fn a_column_that_is_named_so_already_is_thought_of() {
+    for (channel, factor) in [(Channel::Rudder, 20.0), (Channel::Rudder, 0.01), (Channel::Heading, 60.0)] {
+        let message =
+            verdict(scaled(zig_zag(10.0, 10.0, 0.1, 16.3), channel, factor)).expect_err("refused").to_string();
+        assert!(message.contains("if it is named so already, its numbers are of another scale"), "{message}");
+    }
+}
+
 #[test]
 fn zig_zags_of_ships_of_every_size_pass_and_every_wrong_unit_and_sign_is_named() {
     for (gain, lag) in [(0.1, 16.3), (0.357, 23.3), (0.05, 140.0), (0.5, 1.5)] {
@@ -135,17 +145,13 @@ fn headings_that_wrap_at_two_pi_under_a_degree_name_are_named() {
 }
 
 #[test]
-fn gaps_and_odd_particulars_are_remarked() {
+fn gaps_are_remarked() {
     let mut columns = zig_zag(10.0, 10.0, 0.1, 16.0);
     for values in std::iter::once(&mut columns.time).chain(columns.channels.values_mut()) {
         values.drain(500..560);
     }
     let warnings = verdict(columns).expect("a gap is no fault");
     assert!(warnings[0].starts_with("1 gap ") && warnings[0].contains("6.1 s, begins at 49.9 s"), "{warnings:?}");
-    let origin = Origin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
-    let trial = Trial::new("record", origin, zig_zag(10.0, 10.0, 0.1, 16.0)).expect("complete");
-    let trial = trial.with_particulars(ship::Particulars { length: 10_500.0, speed: 8.6 });
-    assert!(check(&trial).expect("particulars are no fault")[0].contains("K'/T'"));
 }
 
 proptest! {

@@ -9,7 +9,7 @@ use crate::file::FileError;
 use crate::plausibility::Implausible;
 use crate::record::TrialError;
 use crate::sidecar::SidecarError;
-use crate::words::listed;
+use crate::words::{instant, listed};
 
 /// Why a file did not become a record.
 #[derive(Debug, Error)]
@@ -97,7 +97,8 @@ pub enum Problem {
     /// Rudder and heading of different times.
     #[error(
         "rudder and heading have no time in common: the rudder was read from {} s to {} s, the heading from {} s to {} s; check \
-         that both belong to one trial and count time from the same moment", rudder_s[0], rudder_s[1], heading_s[0], heading_s[1]
+         that both belong to one trial and count time from the same moment", instant(rudder_s[0]), instant(rudder_s[1]),
+        instant(heading_s[0]), instant(heading_s[1])
     )]
     NoOverlap { rudder_s: [f64; 2], heading_s: [f64; 2] },
     /// Two files that count time in different ways.
@@ -184,8 +185,8 @@ pub enum Problem {
     AllMissing { column: String, quantity: &'static str },
     /// The part of the record asked for holds nothing.
     #[error(
-        "no row lies between {from_s} s and {until_s} s, the rows lie between {first_s} s and {last_s} s; correct `from-s` and \
-         `until-s` under [part] in the sidecar"
+        "no row lies between {from_s} s and {until_s} s, the rows lie between {} s and {} s; correct `from-s` and \
+         `until-s` under [part] in the sidecar", instant(*first_s), instant(*last_s)
     )]
     EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
     /// Too few usable rows.

@@ -18,7 +18,8 @@ use crate::encoding::Encoding;
 use crate::file::called;
 use crate::plausibility;
 use crate::record::{Columns, Origin, RejectedReading, Trial, TrialError};
-use crate::sidecar::{Sidecar, SidecarProblem};
+use crate::sidecar::{Sidecar, SidecarError, SidecarProblem};
+use crate::sidecar_keys::RudderKeys;
 use ship::Particulars;
 
 /// A record that was read, and what the reader had to decide or found remarkable.
@@ -45,7 +46,7 @@ impl Log {
         }
         if !others.is_empty() {
             check(&log.columns).map_err(|problem| log.fault(problem))?;
-            log.complete();
+            log.complete()?;
         }
         Ok(log)
     }
@@ -96,7 +97,7 @@ impl Log {
         let sha256 = on_disk.map_or(log.sha256, lines::Hash::finish);
         let mut log = Self { path: path.to_path_buf(), sidecar, sha256, ..log };
         if whole {
-            log.complete();
+            log.complete()?;
         }
         Ok(log)
     }
@@ -132,11 +133,28 @@ impl Log {
         Ok(())
     }
 
-    /// Adds what was not recorded and can be told.
-    fn complete(&mut self) {
-        self.warnings.extend(rudder::describe(&mut self.columns, &self.sidecar.rudder));
+    /// Adds what was not recorded and can be told, and does with the rudder what the sidecar says.
+    ///
+    /// Fails where the rudder is moved by more than the length of the log.
+    fn complete(&mut self) -> Result<(), ReadError> {
+        let RudderKeys { late_s, order_rate_deg_s } = self.sidecar.rudder;
+        if let Some(late) = late_s {
+            self.columns = rudder::earlier(std::mem::take(&mut self.columns), late);
+            if check(&self.columns).is_err() {
+                let expected = "less than the log lasts: rudder and heading have no time in common so";
+                let problem = SidecarProblem::Value { key: "late-s".into(), found: late.to_string(), expected };
+                return Err(SidecarError { file: self.sidecar.file.clone(), line: None, problem }.into());
+            }
+            let of_rudder = self.rejected.iter_mut().filter(|reading| reading.channel == Channel::Rudder);
+            of_rudder.for_each(|reading| reading.time -= late);
+            self.warnings.push(format!("the rudder is taken {late} s earlier than it was read, as the sidecar says"));
+        }
+        if let Some(rate) = order_rate_deg_s.filter(|rate| rudder::follow_order(&mut self.columns, *rate)) {
+            self.warnings.push(format!("the rudder follows its order at {rate}°/s, as the sidecar says"));
+        }
         self.warnings.extend(complete(&mut self.columns));
         self.warnings.extend(straight_rudder(&mut self.columns));
+        Ok(())
     }
 
     /// What the clock shows at time 0, where the files have stamps.

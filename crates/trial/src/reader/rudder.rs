@@ -1,42 +1,28 @@
 //! What a sidecar says of the rudder: that it is read late, or that its column is the order.
 
-use ship::Polyline;
 use ship::angle::from_deg;
 
+use super::assemble;
 use crate::channel::Channel;
 use crate::record::Columns;
-use crate::sidecar_keys::RudderKeys;
 
-/// Moves the readings of the rudder in time, and makes an angle of an order; a sentence for what was done.
-pub(super) fn describe(columns: &mut Columns, keys: &RudderKeys) -> Vec<String> {
-    let mut told = Vec::new();
-    let Columns { time, channels, .. } = columns;
-    if let Some(late) = keys.late_s {
-        for channel in [Channel::Rudder, Channel::RudderOrder] {
-            if let Some(values) = channels.get_mut(&channel) {
-                *values = earlier(time, values, late);
-            }
-        }
-        told.push(format!("the rudder is taken {late} s earlier than it was read, as the sidecar says"));
+/// The columns if every reading of the rudder was made `late` seconds before: rows are the instants of all readings.
+pub(super) fn earlier(columns: Columns, late: f64) -> Columns {
+    let mut all = assemble::series(columns, 0.0);
+    for own in all.iter_mut().filter(|own| matches!(own.channel, Channel::Rudder | Channel::RudderOrder)) {
+        own.time.iter_mut().for_each(|time| *time -= late);
     }
-    if let Some(rate) = keys.order_rate_deg_s {
-        let order = channels.get(&Channel::RudderOrder).or_else(|| channels.get(&Channel::Rudder)).cloned();
-        if let Some(order) = order {
-            channels.insert(Channel::Rudder, following(time, &order, from_deg(rate)));
-            channels.entry(Channel::RudderOrder).or_insert(order);
-            told.push(format!("the rudder follows its order at {rate}°/s, as the sidecar says"));
-        }
-    }
-    told
+    assemble::columns(all)
 }
 
-/// The values at the same rows if every reading was made `late` seconds before; missing beyond the ends.
-fn earlier(time: &[f64], values: &[f64], late: f64) -> Vec<f64> {
-    let read = time.iter().copied().zip(values.iter().copied()).filter(|(_, value)| value.is_finite());
-    let (times, values): (Vec<f64>, Vec<f64>) = read.unzip();
-    let Ok(signal) = Polyline::new(times, values) else { return vec![f64::NAN; time.len()] };
-    let ends = signal.times()[0]..=signal.times()[signal.times().len() - 1];
-    time.iter().map(|t| t + late).map(|t| if ends.contains(&t) { signal.at(t) } else { f64::NAN }).collect()
+/// Makes an angle of an order that the gear follows at a rate, deg/s; whether there is an order.
+pub(super) fn follow_order(columns: &mut Columns, rate: f64) -> bool {
+    let Columns { time, channels, .. } = columns;
+    let order = channels.get(&Channel::RudderOrder).or_else(|| channels.get(&Channel::Rudder)).cloned();
+    let Some(order) = order else { return false };
+    channels.insert(Channel::Rudder, following(time, &order, from_deg(rate)));
+    channels.entry(Channel::RudderOrder).or_insert(order);
+    true
 }
 
 /// The angle of a gear that follows an order at one rate (rad/s); an order that changes between two rows changes
@@ -62,14 +48,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_late_rudder_is_taken_earlier() {
-        let time: Vec<f64> = (0..10).map(f64::from).collect();
-        let values: Vec<f64> = time.iter().map(|t| (t - 2.5).max(0.0)).collect();
-        let moved = earlier(&time, &values, 2.5);
-        assert_eq!(moved[..3], [0.25, 1.0, 2.0]);
-        assert!(moved[6] == 6.0 && moved[7].is_nan(), "{moved:?}");
-        let back = earlier(&time, &values, -2.0);
-        assert!(back[1].is_nan() && back[2] == 0.0 && back[9] == 4.5, "{back:?}");
+    fn a_late_rudder_is_taken_earlier_and_nothing_is_made_up_over_its_gaps() {
+        let time: Vec<f64> = (0..40).map(f64::from).collect();
+        let read = |t: &f64| if (10.0..30.0).contains(t) { f64::NAN } else { 2.0 * (t - 2.5) };
+        let rudder = time.iter().map(read).collect();
+        let channels = [(Channel::Heading, time.clone()), (Channel::Rudder, rudder)].into();
+        let mut moved = earlier(Columns { time, channels, unknown: Vec::new() }, 2.5);
+        assemble::straight_rudder(&mut moved);
+        for (t, angle) in moved.time.iter().zip(&moved.channels[&Channel::Rudder]) {
+            assert!((angle - 2.0 * t).abs() < 1e-12, "{t} s: {angle}");
+            assert!(!(6.5 < *t && *t < 27.5), "{t} s lies in the gap");
+        }
+        // From the first heading to the last rudder, and the headings as they were.
+        assert_eq!((moved.time[0], moved.time[moved.time.len() - 1]), (-2.5, 36.5));
+        assert!(moved.time.iter().zip(&moved.channels[&Channel::Heading]).all(|(t, psi)| psi.is_nan() || psi == t));
     }
 
     #[test]

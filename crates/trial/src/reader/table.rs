@@ -22,7 +22,7 @@ use crate::clock::Stamps;
 use crate::encoding::Encoding;
 use crate::record::Columns;
 use crate::sidecar::Sidecar;
-use crate::words::{counted, listed, shortened};
+use crate::words::{counted, instant, listed, shortened};
 
 /// Reads a table; `whole` says whether it has to hold a whole record.
 pub(super) fn read(
@@ -167,7 +167,7 @@ impl Rows<'_> {
         count(counts.nothing, "with neither rudder nor heading nor yaw rate left out");
         count(counts.repeated, "left out as exact copies of the row before");
         count(counts.short, "with fewer cells than the header; the last columns were taken as missing there");
-        let first = counts.astray.first().copied().unwrap_or_default();
+        let first = instant(counts.astray.first().copied().unwrap_or_default());
         let astray = format!("left out because the time does not fit the rows around, the first has {first} s");
         count(counts.astray.len(), &astray);
         if counts.decimal_commas > 0 {

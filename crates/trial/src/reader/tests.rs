@@ -395,3 +395,18 @@ fn latitude_and_longitude_are_metres_from_the_first() {
     assert_abs_diff_eq!(trial.channel(Channel::North).expect("a position")[1], 111_131.779 / 60.0, epsilon = 0.001);
     assert_eq!(trial.channel(Channel::East).expect("a position")[1], 0.0);
 }
+
+/// A rudder cannot be later than the log is long.
+#[test]
+fn a_rudder_later_than_the_log_is_long_is_an_error_of_the_sidecar() {
+    let read = |late: f64| parse_with(simple(), &format!("[rudder]\nlate-s = {late}"));
+    let told = read(2.5).expect("a late rudder").warnings.join(" ");
+    assert!(told.contains("taken 2.5 s earlier"), "{told}");
+    for late in [1e4, -1e4] {
+        let message = read(late).expect_err("no time in common").to_string();
+        assert!(
+            message.starts_with("run.trial.toml: `late-s` is ") && message.contains("less than the log"),
+            "{message}"
+        );
+    }
+}

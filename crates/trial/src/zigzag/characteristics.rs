@@ -20,6 +20,9 @@ const STRAIGHT_RATE: f64 = 0.4;
 /// A first execute starts within this share of the execute heading from the middle course; at a peak it is beyond 1.
 const STRAIGHT_HEADING: f64 = 0.6;
 
+/// Rudder of the first row, as a share of that of the trial off amidships, with which the first execute had begun.
+const BEGUN: f64 = 0.1;
+
 /// Rudder movement within which an approach counts as steady, as a share of the rudder of the trial.
 const STEADY_RUDDER: f64 = 0.25;
 
@@ -67,7 +70,8 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     }
     let side = first.map(|_| executes[0].side());
     let overshoots = overshoots(&executes, usize::from(side.is_some()), end, &heading);
-    let since_first = |time: Option<Quantity>| Some(time?.minus(executes[0].time));
+    let begins_moving = first.is_some_and(|movement| begins_moving(&movement, &holds));
+    let since_first = |time: Option<Quantity>| Some(time?.minus(executes[0].time)).filter(|_| !begins_moving);
     let turned = side.zip(pair).and_then(|(side, pair)| {
         let level = base_course.heading.value + side.sign() * pair.heading - heading.origin;
         crossing(&heading, level, base_course.heading.sd, side, executes[0].time.value, end)
@@ -83,7 +87,10 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
         side,
         base_course,
         initial_turning_time: since_first(turned),
-        initial_turning_distance: turned.and_then(|turned| distance(trial, executes[0].time.value, turned.value)),
+        initial_turning_distance: turned
+            .filter(|_| !begins_moving)
+            .and_then(|turned| distance(trial, executes[0].time.value, turned.value)),
+        begins_at_reversal: side.is_none() && !shows_execute(&executes[0], &heading),
         overshoots,
         period: period(&executes[usize::from(from_first)..], from_first),
         reach: from_first.then(|| since_first(back_on_base(1))).flatten(),
@@ -162,6 +169,17 @@ fn starts_straight(
     rate.abs() <= STRAIGHT_RATE * largest.value && off_course.abs() <= STRAIGHT_HEADING * amplitude
 }
 
+/// Whether the record begins within the movement of the first execute.
+fn begins_moving(first: &Movement, holds: &[Hold]) -> bool {
+    let amidships = 0.5 * (holds[0].level + holds[1].level);
+    first.foot == 0 && (first.before - amidships).abs() > BEGUN * holds[0].level.abs()
+}
+
+/// Whether the record has half a fit of headings before an execute: a fit to one side misses the bend there.
+fn shows_execute(execute: &Execute, heading: &Heading) -> bool {
+    execute.time.value - heading.half_width() >= heading.time[0]
+}
+
 /// Heading (relative) and yaw rate at a time by a polynomial with `N` coefficients; `None` where the noise leaves the
 /// rate with more than the standard deviation `precise`.
 fn start_motion<const N: usize>(heading: &Heading, time: f64, precise: f64) -> Option<(f64, f64)> {
@@ -206,6 +224,9 @@ fn overshoots(executes: &[Execute], first_reversal: usize, end: f64, heading: &H
     (first_reversal..executes.len())
         .filter_map(|index| {
             let execute = &executes[index];
+            if !shows_execute(execute, heading) {
+                return None;
+            }
             let side = -execute.side().sign();
             let until = executes.get(index + 1).map_or(end, |next| next.time.value);
             let (peak_time, peak) = heading.peak(side, execute.time.value, until)?;

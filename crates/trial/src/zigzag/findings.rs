@@ -155,7 +155,8 @@ pub struct Overshoot {
 /// The characteristics of a zig-zag trial. Angles in rad, times in s; `None` and empty where a record does not show
 /// them.
 ///
-/// In a record that begins within the trial there is no first execute, and what counts from it is `None`.
+/// In a record that begins within the trial there is no first execute, and what counts from it is `None`; times from a
+/// first execute within whose movement the record begins are `None`, too.
 ///
 /// Source of the definitions: ITTC 7.5-04-02-01 (2017).
 #[derive(Debug, Clone, PartialEq)]
@@ -173,7 +174,9 @@ pub struct ZigZag {
     pub initial_turning_time: Option<Quantity>,
     /// Distance travelled in that time, m: integral of the recorded speed; `None` where the record has none.
     pub initial_turning_distance: Option<f64>,
-    /// Overshoots in the order of time, one for every reversal whose peak the record shows.
+    /// Whether the record begins so near to its first reversal that the heading there is not known.
+    pub begins_at_reversal: bool,
+    /// Overshoots in the order of time, one for every reversal whose beginning and peak the record shows.
     pub overshoots: Vec<Overshoot>,
     /// Period, s: mean time between executes to the same side. The cycle that begins with the second execute holds the
     /// transient of the start and counts only where there is no other.
@@ -193,7 +196,27 @@ pub struct ZigZag {
     pub heading_noise: Option<f64>,
 }
 
+/// Yaw rate at the first execute, as a share of the largest of the record, up to which the approach was straight.
+pub const STRAIGHT_APPROACH: f64 = 0.1;
+
+/// Standard deviations of a yaw rate by which it may be off for its readings alone.
+const READ: f64 = 3.0;
+
 impl ZigZag {
+    /// Yaw rate at the first execute, rad/s, where the ship goes straight: it is at most [`STRAIGHT_APPROACH`] of the
+    /// largest but for the error of its readings. `None` for a record that begins in a turn or within the trial.
+    pub fn straight_yaw_rate(&self) -> Option<Quantity> {
+        self.side?;
+        let (rate, largest) = (self.executes.first()?.yaw_rate?, self.largest_yaw_rate?);
+        let limit = STRAIGHT_APPROACH * largest.value + READ * rate.sd.unwrap_or(0.0);
+        (rate.value.abs() <= limit).then_some(rate)
+    }
+
+    /// The same where the record shows the approach before it.
+    pub fn approach_yaw_rate(&self) -> Option<Quantity> {
+        self.straight_yaw_rate().filter(|_| self.base_course.source == BaseCourseSource::Approach)
+    }
+
     /// Whether the record begins within the trial, so that its first execute is not known.
     pub fn begins_within_trial(&self) -> bool {
         self.side.is_none()

@@ -18,6 +18,8 @@ pub mod points;
 #[cfg(test)]
 mod tests;
 
-pub use findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
+pub use findings::{
+    BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, STRAIGHT_APPROACH, Side, ZigZag, ZigZagError,
+};
 pub use heading::noise_sd;
 pub use phase_plane::PhasePlane;

@@ -12,10 +12,12 @@ use std::sync::Arc;
 use trial::{Channel, Columns, Origin, Trial};
 
 use super::{changed, mirrored, sd};
+use crate::identified_ship::IdentifiedShip;
 use crate::motion::planar::pooled;
 use crate::motion::{
     COEFFICIENTS, MotionError, MotionOutput, Planar, PlanarCoefficients, PlanarShip, SYMBOLS, fit, track,
 };
+use crate::testing;
 
 const LENGTH: f64 = 7.0;
 const SPEED: f64 = 1.2;
@@ -140,6 +142,44 @@ fn speed_alone_beside_positions_is_enough() {
     assert_found(&planar, 0.3);
     assert!(rms(&planar, MotionOutput::Speed).is_some() && rms(&planar, MotionOutput::Position).is_some());
     assert!(planar.records.iter().all(|record| record.current.is_none()));
+}
+
+/// √(u² + v²) is the same with more surge and less sway.
+#[test]
+fn speed_alone_does_not_tell_drift() {
+    let only = |kept: &[Channel]| -> Planar {
+        let left_out: Vec<Channel> =
+            VELOCITIES.into_iter().chain(POSITIONS).filter(|channel| !kept.contains(channel)).collect();
+        let trials: Vec<Trial> = zig_zags(1.0).into_iter().map(|trial| trial.without(&left_out)).collect();
+        fit(&trials, LENGTH).expect("a fit")
+    };
+    let speed = only(&[Channel::Speed]);
+    assert!(!speed.tells_drift());
+    assert!(only(&POSITIONS).tells_drift() && only(&[Channel::Surge, Channel::Sway]).tells_drift());
+    let known = IdentifiedShip { motion: Some(speed), ..testing::known() };
+    let kind = "turning-circle:35".parse().expect("known");
+    let turn = testing::mixture(known).predict(&kind, 20, false).expect("a turn");
+    let names: Vec<&str> = turn.figures.keys().map(String::as_str).collect();
+    assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s", "speed_loss_share"]);
+    assert!(turn.curves.tracks.is_empty() && turn.curves.most_probable.expect("sails").track().is_none());
+}
+
+/// Coefficients that are hardly known: of the sizes of the circle those below zero are left out and named.
+#[test]
+fn a_size_whose_interval_reaches_below_zero_is_left_out() {
+    let mut doubtful = planar();
+    for (place, value) in TRUTH.into_iter().enumerate() {
+        doubtful.covariance[place][place] = (20.0 * value).powi(2);
+    }
+    let known = IdentifiedShip { motion: Some(doubtful), ..testing::known() };
+    let kind = "turning-circle:35".parse().expect("known");
+    let turn = testing::mixture(known).predict(&kind, 100, false).expect("a turn");
+    let [left_out, kept]: [Vec<&str>; 2] = [
+        turn.undetermined.iter().map(|(name, _)| name.as_str()).collect(),
+        turn.figures.keys().map(String::as_str).collect(),
+    ];
+    assert!(left_out.contains(&"transfer_m") && !kept.contains(&"transfer_m"), "{left_out:?} {kept:?}");
+    assert!(turn.undetermined.iter().all(|(_, interval)| interval.ci90[0] <= 0.0));
 }
 
 #[test]

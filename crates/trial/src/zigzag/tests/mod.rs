@@ -124,6 +124,42 @@ fn a_record_that_begins_within_the_trial() {
     }
 }
 
+/// Cut 1 s before to 1 s after the reversal at 38.30 s: a fit to one side would read the first overshoot as much as a
+/// degree wrong.
+#[test]
+fn a_record_that_begins_at_a_reversal_does_not_tell_its_overshoot() {
+    let plant = Plant::new(20.0, 20.0, 2.5);
+    let (time, heading, rudder) = plant.record(400.0, 0.1);
+    let reversal = plant.execute_times(400.0)[1];
+    let [_, second, ..] = of_plant(plant, 400.0, 0.1).overshoots[..] else { panic!("four peaks") };
+    for start in [-1.0, 0.0, 1.0] {
+        let mut gaussian = Gaussian::new(3);
+        let from = ((reversal + start) * 10.0).round() as usize;
+        let every_second = |values: &[f64]| values[from..].iter().step_by(10).copied().collect::<Vec<f64>>();
+        let noisy = every_second(&heading).into_iter().map(|psi| psi + from_deg(0.1 * gaussian.draw())).collect();
+        let zigzag = ZigZag::of(&trial(every_second(&time), noisy, every_second(&rudder))).expect("a zig-zag");
+        assert!(zigzag.begins_at_reversal && zigzag.begins_within_trial(), "{start} s");
+        assert_eq!(zigzag.swings().next(), Some(None), "{start} s");
+        let next = zigzag.overshoots[0].angle;
+        assert!((next.value - second.angle.value).abs() < 4.0 * next.sd.expect("noise"), "{start} s: {next:?}");
+    }
+}
+
+/// The rudder is at 2.5 to 7.5 of 10 degrees in the first row: nothing shows when it began to move.
+#[test]
+fn a_record_that_begins_within_the_first_movement_has_no_times_from_it() {
+    let whole = of_plant(Plant::default(), 300.0, 1.0);
+    for late in [1, 2, 3] {
+        let (time, heading, rudder) = Plant::default().record(300.0, 1.0);
+        let cut = |values: Vec<f64>| values[late..].to_vec();
+        let zigzag = ZigZag::of(&trial(cut(time), cut(heading), cut(rudder))).expect("a zig-zag");
+        assert_eq!((zigzag.initial_turning_time, zigzag.reach, zigzag.complete_cycle_time), (None, None, None));
+        assert_eq!(zigzag.side, Some(Side::Starboard));
+        let [own, of_whole] = [&zigzag, &whole].map(|zigzag| zigzag.nth_overshoot(1).expect("seen").angle.value);
+        assert_relative_eq!(own, of_whole, epsilon = 1e-3);
+    }
+}
+
 /// Whole-degree rudder and tenth-degree heading, as a bridge prints them.
 #[test]
 fn a_record_read_off_indicators() {

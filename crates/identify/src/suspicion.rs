@@ -1,0 +1,107 @@
+//! What a record cannot show by itself: whether the scale of the rudder, the clock, or the length and speed that were
+//! given are right. All of them move K′, T′ and the rate of the rudder, so numbers that ships hardly have are a reason
+//! to look. Within what ships have nothing is noticed: a rudder that is read a fifth too large is not.
+
+use ship::Particulars;
+use ship::angle::to_deg;
+use ship::particulars::{USUAL_K_OVER_T_PRIME, USUAL_K_PRIME, USUAL_T_PRIME, usual_rudder_rate_deg_s};
+use trial::{Quantity, Trial, ZigZag};
+
+use crate::estimate::{Estimate, Uncertainty};
+
+/// Standard deviations by which a value may be off for its own error.
+const ERRORS: f64 = 2.0;
+
+/// Share by which the rate of a rudder that is read off a record may be off.
+const READ: f64 = 0.05;
+
+/// What is unusual of an estimate and of the records it is from, in one sentence; `None` where nothing is.
+///
+/// The records have to be zig-zags: a turn alone hardly tells K′ = K L/U, T′ = T U/L and K′/T′. `ship` belongs to the
+/// clock of the estimate, `records` have their own.
+pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Trial]) -> Option<String> {
+    let zigzags: Option<Vec<ZigZag>> = records.iter().map(|record| ZigZag::of(record).ok()).collect();
+    let zigzags = zigzags?;
+    let indices = ship.map(|ship| unusual_indices(estimate, ship));
+    let rates = zigzags.iter().zip(records).filter_map(|(zigzag, record)| {
+        let rate_deg_s = to_deg(zigzag.rudder_rate?);
+        let [low, high] = usual_rudder_rate_deg_s(record.particulars()?.length);
+        (!(low * (1.0 - READ)..=high * (1.0 + READ)).contains(&rate_deg_s))
+            .then(|| format!("the rudder moves at {rate_deg_s:.1}°/s (usual {low:.0} to {high:.0} at this length)"))
+    });
+    let found: Vec<String> = indices.into_iter().flatten().chain(rates.take(1)).collect();
+    (!found.is_empty()).then(|| {
+        format!(
+            "{}: check the scale of the rudder, the clock, and the length and speed given; nothing else in the record \
+             shows them",
+            found.join(", ")
+        )
+    })
+}
+
+fn unusual_indices(estimate: &Estimate, ship: Particulars) -> Vec<String> {
+    let ratio_sd = match &estimate.uncertainty {
+        Uncertainty::Covariance(covariance) => Some(covariance.matrix[(1, 1)].max(0.0).sqrt()),
+        _ => None,
+    };
+    let [k, t] = [estimate.K().scaled(ship.prime([-1, 0])), estimate.T().scaled(ship.prime([1, 0]))];
+    let ratio = Quantity::new(estimate.response.K_over_T, ratio_sd).scaled(ship.prime([-2, 0]));
+    let told = |(name, quantity, [low, high]): (&str, Quantity, [f64; 2])| {
+        let doubt = ERRORS * quantity.sd.unwrap_or(0.0);
+        (quantity.value + doubt < low || quantity.value - doubt > high)
+            .then(|| format!("{name} is {:.2} (ships have {low} to {high})", quantity.value))
+    };
+    // A course-unstable ship has K and T below zero, and their ratio as any other.
+    let indices = [("K′", k, USUAL_K_PRIME), ("T′", t, USUAL_T_PRIME)];
+    let of_stable = indices.into_iter().filter(|_| !estimate.response.is_course_unstable());
+    of_stable.chain([("K′/T′", ratio, USUAL_K_OVER_T_PRIME)]).filter_map(told).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Case;
+    use crate::{Identifier, output_error};
+
+    const YUKUN: Particulars = Particulars { length: 105.0, speed: 8.59 };
+
+    /// What is said of a record of YUKUN (K′ = 1.22, T′ = 1.33, 2.5°/s) that is changed, and of its length and speed.
+    fn told(ship: Particulars, change: impl Fn(&mut Case)) -> Option<String> {
+        let mut case = Case { noise_deg: 0.1, ..Case::default() };
+        change(&mut case);
+        let record = case.trial().with_particulars(ship);
+        let method = output_error::Settings::default().build().expect("defaults");
+        let estimate = method.identify(std::slice::from_ref(&record)).expect("a fit");
+        suspicion(&estimate, Some(ship), &[record])
+    }
+
+    #[test]
+    fn what_ships_have_is_not_suspected() {
+        assert_eq!(told(YUKUN, |_| {}), None);
+        // A rudder that is read a fifth too large.
+        assert_eq!(told(YUKUN, |case| (case.K, case.rate_deg_s) = (0.1 / 1.2, 3.0)), None);
+        // A model of 1:20 by Froude: every time is shorter by √20.
+        let model = Particulars { length: 105.0 / 20.0, speed: 8.59 / 20.0_f64.sqrt() };
+        let quicker = 20.0_f64.sqrt();
+        let smaller = |case: &mut Case| {
+            (case.K, case.T, case.rate_deg_s) = (0.1 * quicker, 16.3 / quicker, 2.5 * quicker);
+            case.period_s = 1.0 / quicker;
+        };
+        assert_eq!(told(model, smaller), None);
+    }
+
+    #[test]
+    fn a_wrong_length_speed_scale_or_clock_is_suspected() {
+        let all = "check the scale of the rudder, the clock, and the length and speed given";
+        let knots = told(Particulars { speed: 16.7, ..YUKUN }, |_| {}).expect("K′/T′ is a quarter of what it was");
+        assert!(knots.contains("K′/T′ is 0.24 (ships have 0.25 to 2)") && knots.contains(all), "{knots}");
+        let long = told(Particulars { length: 1050.0, ..YUKUN }, |_| {}).expect("K′ is 12");
+        assert!(long.contains("K′ is 12.2") && long.contains("T′ is 0.13"), "{long}");
+        let slow = told(YUKUN, |case| {
+            (case.K, case.T, case.rate_deg_s, case.period_s) = (0.1 / 3.0, 48.9, 2.5 / 3.0, 3.0);
+        });
+        let slow = slow.expect("a clock that is three times too slow");
+        assert!(slow.contains("the rudder moves at 0.8°/s (usual 2 to 7 at this length)"), "{slow}");
+        assert!(told(YUKUN, |case| case.rate_deg_s = 9.0).expect("too fast").contains("moves at 9.0°/s"));
+    }
+}

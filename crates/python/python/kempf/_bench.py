@@ -1,0 +1,104 @@
+"""The benchmark: every method on records that are the same for everybody."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from dataclasses import dataclass, field
+from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Union
+
+from . import _kempf, _table
+from ._options import strings, warn, whole, words
+from ._own import Estimator, natives_of
+from ._quantity import number
+from ._record import PathLike
+from ._result import Result
+from ._study import shown
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A method on the records of one task."""
+
+    #: Such as ``"circle"``; what is scored depends on it.
+    task: str
+    #: ``"measured"``, or what the definition calls the simulated records.
+    field: str
+    method: str
+    #: Number of questions.
+    cases: int
+    #: Questions without an answer, which are worse than any.
+    failed: int
+    #: Median of the score: error of the heading, deg, or the larger error of K and T, %. ``None`` is worse than any.
+    median: Optional[float]
+    #: What the score does not exceed in nine of ten questions.
+    high: Optional[float]
+    #: Mean rank among all methods.
+    rank: float
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class BenchResult(Result):
+    """The leaderboards of a benchmark; ``document["cases"]`` has every answer."""
+
+    #: Task by task, the best method first.
+    standings: tuple[Standing, ...]
+    #: Records that were left out, and why.
+    warnings: tuple[str, ...]
+    _text: str = field(repr=False)
+
+    def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
+        header = ["task", "records", "method", "cases", "failed", "median", "90 %", "rank"]
+        rows = [
+            [one.task, one.field, one.method, str(one.cases), str(one.failed), number(one.median), number(one.high)]
+            + [number(one.rank, 1.0)]
+            for one in self.standings
+        ]
+        return f"Benchmark {self.document['definition']['name']}", header, rows, self.warnings
+
+    def to_frame(self, kind: str = "pandas") -> Any:
+        """One row for every task and method, as a table of ``"pandas"`` or ``"polars"``."""
+        return _table.frame_of([vars(one) for one in self.standings], kind)
+
+
+def bench(
+    definition: Optional[PathLike] = None,
+    *,
+    data: Union[PathLike, Iterable[PathLike]] = (),
+    methods: Union[str, Iterable[str], None] = None,
+    own: Optional[Mapping[str, Estimator]] = None,
+    tasks: Union[str, Iterable[str], None] = None,
+    sets: Union[str, Iterable[str], None] = None,
+    seed: Optional[int] = None,
+    progress: Union[bool, Callable[[int, int], object]] = False,
+) -> BenchResult:
+    """Runs a benchmark, as ``study bench`` does, and writes nothing.
+
+    :param definition: a definition of your own; that of the program where it is left out
+    :param data: folders with measured records; a set whose records are not there is left out, with a warning
+    :param methods: methods that take part; all where it is left out
+    :param own: functions that take part, as in :func:`kempf.fit`
+    :param tasks: tasks that are set, such as ``"circle"``; all where it is left out
+    :param sets: sets of records that are used; all where it is left out
+    :param seed: seed in place of those of the scenarios
+    :param progress: as in :func:`kempf.run`
+
+    Raises :class:`kempf.KempfError` for a definition that cannot be read, and where there is nothing to ask.
+    """
+    asked = words(data=data, method=strings(methods), task=strings(tasks), set=strings(sets))
+    show = shown("fits") if progress is True else progress or None
+    named = None if definition is None else os.fspath(definition)
+    text, warnings = _kempf.bench(named, asked, natives_of(own), whole("seed", seed), show)
+    if progress is True:
+        sys.stderr.write("\n")
+    warn(warnings)
+
+    def standing(board: Mapping[str, Any], entry: Mapping[str, Any]) -> Standing:
+        place = {name: board[name] for name in ("task", "field", "cases")}
+        own = {name: entry[name] for name in ("method", "failed", "rank")}
+        return Standing(**place, **own, median=entry["median"]["value"], high=entry["high"]["value"])
+
+    boards = json.loads(text)["boards"]
+    standings = tuple(standing(board, entry) for board in boards for entry in board["standings"])
+    return BenchResult(standings=standings, warnings=tuple(warnings), _text=text)

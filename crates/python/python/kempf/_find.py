@@ -1,0 +1,94 @@
+"""Finding: the manoeuvres inside long logs."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Iterable, Optional, Sequence, Union
+
+from . import _kempf, _table
+from ._options import warn, words
+from ._quantity import number
+from ._record import PathLike
+from ._result import Result
+
+
+@dataclass(frozen=True)
+class Found:
+    """A manoeuvre inside a log."""
+
+    #: The log.
+    file: str
+    #: Its number, which ``trial`` of :func:`kempf.read` takes.
+    trial: int
+    #: Such as ``"zig-zag 10/10"``.
+    kind: str
+    from_s: float
+    until_s: float
+    #: What the clock shows at both ends, where the log has one.
+    clock: Optional[tuple[str, str]]
+    #: How often the rudder is put over.
+    executes: int
+    rudder_deg: Optional[float]
+    #: Heading angle at which it is put over.
+    heading_deg: Optional[float]
+    #: What is odd about it.
+    remarks: tuple[str, ...]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class FindResult(Result):
+    """The manoeuvres of some logs."""
+
+    #: In the order of the logs, and of time.
+    manoeuvres: tuple[Found, ...]
+    #: What a person should know of the logs.
+    warnings: tuple[str, ...]
+    _text: str = field(repr=False)
+
+    def __len__(self) -> int:
+        return len(self.manoeuvres)
+
+    def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
+        rows = [
+            [Path(one.file).name, str(one.trial), one.kind, number(one.from_s, 1.0), number(one.until_s, 1.0)]
+            for one in self.manoeuvres
+        ]
+        notes = [f"{Path(one.file).name} {one.trial}: {remark}" for one in self.manoeuvres for remark in one.remarks]
+        return f"{len(rows)} manoeuvres", ["log", "trial", "manoeuvre", "from [s]", "until [s]"], rows, notes
+
+    def to_frame(self, kind: str = "pandas") -> Any:
+        """One row a manoeuvre, as a table of ``"pandas"`` or ``"polars"``."""
+        return _table.frame_of([vars(one) for one in self.manoeuvres], kind)
+
+
+def find(
+    logs: Union[PathLike, Iterable[PathLike]],
+    *,
+    columns: Optional[PathLike] = None,
+    with_columns: Union[PathLike, Iterable[PathLike]] = (),
+) -> FindResult:
+    """Lists the manoeuvres inside long logs, as ``study find`` does: zig-zags, turning circles, pull-outs, spirals,
+    straight pieces.
+
+    :param logs: files of logs; a folder stands for all its records
+    :param columns: a sidecar that describes the columns, or a folder of sidecars
+    :param with_columns: further files of the one log, such as one with the rudder, joined by time
+
+    Raises :class:`kempf.KempfError` where a log cannot be read.
+    """
+    several = [logs] if isinstance(logs, (str, os.PathLike)) else list(logs)
+    asked = words(columns=columns, with_columns=with_columns)
+    text, warnings = _kempf.find([os.fspath(log) for log in several], asked)
+    warn(warnings)
+
+    def found(file: str, entry: dict[str, Any]) -> Found:
+        clock = entry["clock"]
+        rest = {**entry, "clock": None if clock is None else tuple(clock), "remarks": tuple(entry["remarks"])}
+        return Found(file=file, **rest)
+
+    logs_found = json.loads(text)["logs"]
+    manoeuvres = tuple(found(log["file"], entry) for log in logs_found for entry in log["manoeuvres"])
+    return FindResult(manoeuvres=manoeuvres, warnings=tuple(warnings), _text=text)

@@ -1,0 +1,39 @@
+//! `bench`: the benchmark on measured and simulated trials.
+
+use std::sync::Arc;
+
+use campaign::benchmark::BenchMethod;
+use pyo3::prelude::*;
+use scenario::failure::OnPath;
+use study::commands::bench::{BenchRequest, measure, skipped};
+
+use crate::asked::request;
+use crate::own::{OwnMethods, PyIdentifier};
+use crate::run::{Watch, watched};
+
+/// The document of the benchmark, and what was left out; `words` are options of the command line. `progress` is called
+/// with the fits that are done and that there are.
+#[pyfunction]
+pub fn bench(
+    py: Python<'_>,
+    definition: Option<String>,
+    words: Vec<String>,
+    own: OwnMethods,
+    seed: Option<u64>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(String, Vec<String>)> {
+    let watch = Arc::new(Watch::default());
+    let observer = Arc::clone(&watch);
+    let work = move || {
+        let words = words.into_iter().chain([String::from("--")]).chain(definition);
+        let asked: BenchRequest = request(words.collect())?;
+        let method = |(label, function): (String, _)| BenchMethod::new(label, Arc::new(PyIdentifier(function)));
+        let own = own.into_iter().map(method).collect();
+        let results = measure(&asked, seed, own, observer.as_ref(), |_, _| Ok(()))?;
+        let text = results.json().on("describe", "bench.json".as_ref())?;
+        Ok((text, results.skipped.iter().map(skipped).collect::<Vec<String>>()))
+    };
+    let (text, skipped) = watched(py, &watch, progress.as_ref(), work)?;
+    let [_, warnings] = watch.told();
+    Ok((text, skipped.into_iter().chain(warnings).collect()))
+}

@@ -1,0 +1,20 @@
+//! `find`: the manoeuvres inside long logs.
+
+use pyo3::prelude::*;
+use study::commands::find::found;
+use study::documents as document;
+use study::options::FindRequest;
+
+use crate::asked::request;
+use crate::wait::patiently;
+
+/// The document of the manoeuvres, and the warnings; `words` are options of the command line.
+#[pyfunction]
+pub fn find(py: Python<'_>, logs: Vec<String>, words: Vec<String>) -> PyResult<(String, Vec<String>)> {
+    patiently(py, move || {
+        let asked: FindRequest = request(words.into_iter().chain([String::from("--")]).chain(logs).collect())?;
+        let mut warnings = Vec::new();
+        let found = found(&asked, &mut warnings)?;
+        Ok((document::of(&found)?, warnings))
+    })
+}

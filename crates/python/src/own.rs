@@ -1,0 +1,39 @@
+//! A function of Python as a method beside those of the project.
+#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
+
+use identify::external::{Answer, Errors};
+use identify::{Estimate, Identifier, IdentifyError};
+use nalgebra::Matrix3;
+use pyo3::prelude::*;
+use trial::Trial;
+
+use crate::record::PyRecord;
+
+/// Functions with their labels. Each takes a list of records and returns K (1/s), T (s), δ_r (rad) and the covariance of
+/// the three, row by row, where it has one.
+pub type OwnMethods = Vec<(String, Py<PyAny>)>;
+
+/// A function that is asked for K, T and δ_r.
+pub struct PyIdentifier(pub Py<PyAny>);
+
+impl Identifier for PyIdentifier {
+    fn id(&self) -> &'static str {
+        "python"
+    }
+
+    fn summary(&self) -> &'static str {
+        "a function of Python, called with the records"
+    }
+
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
+        let ask = |py: Python<'_>| -> PyResult<(f64, f64, f64, Option<[[f64; 3]; 3]>)> {
+            let records: Vec<PyRecord> = trials.iter().cloned().map(PyRecord::plain).collect();
+            self.0.bind(py).call1((records,))?.extract()
+        };
+        let (K, T, rudder_bias, covariance) =
+            Python::attach(|py| ask(py).map_err(|raised| IdentifyError::outside(&raised.to_string())))?;
+        let errors =
+            covariance.map_or(Errors::Unknown, |rows| Errors::Covariance(Matrix3::from_row_slice(&rows.concat())));
+        Answer { K, T, rudder_bias, errors }.estimate()
+    }
+}

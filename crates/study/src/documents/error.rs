@@ -1,0 +1,37 @@
+//! What a failure is for programs: the message and its parts, as `--format json` writes them to standard error.
+
+use scenario::failure::{Blame, Failure, FailureParts};
+use serde::Serialize;
+
+use crate::screen;
+
+/// A command that failed.
+#[derive(Serialize, schemars::JsonSchema)]
+pub struct ErrorDocument<'a> {
+    /// Version of the document.
+    pub schema: &'static str,
+    /// What went wrong.
+    pub error: ErrorEntry<'a>,
+    /// Exit code of the program: 1 where the work could not be done, 2 where the input is wrong.
+    pub exit_code: u8,
+}
+
+/// What went wrong.
+#[derive(Serialize, schemars::JsonSchema)]
+pub struct ErrorEntry<'a> {
+    /// Whether the input is wrong or the work could not be done.
+    pub blame: Blame,
+    /// The whole message, as a person reads it.
+    pub message: &'a str,
+    /// The same in parts.
+    #[serde(flatten)]
+    pub parts: &'a FailureParts,
+}
+
+/// The document of a failure in one line. Fails where it cannot be written as JSON.
+pub fn text(failure: &Failure) -> Result<String, serde_json::Error> {
+    let Failure { blame, message, parts } = failure;
+    let exit_code = screen::exit_code(*blame);
+    let document = ErrorDocument { schema: "error/1", error: ErrorEntry { blame: *blame, message, parts }, exit_code };
+    serde_json::to_string(&document)
+}
