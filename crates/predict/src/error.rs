@@ -40,6 +40,15 @@ pub enum PredictError {
     /// A ship of unknown length or speed cannot be scaled.
     #[error("length and speed of the identified ship are not known, so it cannot be scaled; give them to fit or trace")]
     NoParticulars,
+    /// A constant of a formula has no unit that could be scaled.
+    #[error(
+        "the unit of the constants of the effect {effect} is not known, so the ship cannot be scaled; write the formula over rp, \
+         vp, delta and psi, which have no dimension"
+    )]
+    NoUnit {
+        /// The effect.
+        effect: &'static str,
+    },
     /// The model asks for a channel that nobody predicts.
     #[error(
         "the model uses the measured {channel}, which a trial that was not made does not have; give --length-m to fit or \

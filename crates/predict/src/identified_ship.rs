@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::motion::{IdentifiedHull, Planar};
 use serde::{Deserialize, Serialize};
 use ship::ResponseModel;
-use ship::effects::{self, Effect, SteeringLag};
+use ship::effects::{self, Effect, Parameter, SteeringLag};
 pub use trial::noise_model::Moment;
 
 use crate::error::PredictError;
@@ -169,6 +169,9 @@ impl IdentifiedShip {
         let mut scaled = self.clone();
         for member in &mut scaled.members {
             let model = member.model()?;
+            if let Some(own) = model.effects().iter().find(|own| own.parameters().iter().any(Parameter::has_no_unit)) {
+                return Err(PredictError::NoUnit { effect: own.id() });
+            }
             let factors: Vec<f64> = model.parameters().map(|parameter| factor(parameter.dimension())).collect();
             for (value, factor) in member.parameters.iter_mut().zip(&factors) {
                 *value *= factor;
@@ -179,11 +182,7 @@ impl IdentifiedShip {
                 }
             }
             for (effect, written) in model.effects().iter().zip(&mut member.effects) {
-                let by = match effect.needs() {
-                    Some(ship::Regressor::Speed) => metre / second,
-                    Some(ship::Regressor::Propeller) => 1.0 / second,
-                    _ => 1.0,
-                };
+                let by = factor(effect.dimension_of_constants());
                 written.constants.iter_mut().for_each(|constant| *constant *= by);
             }
         }

@@ -57,13 +57,18 @@ impl Particulars {
     }
 }
 
+/// Powers from the second on.
+const POWERS: [char; 8] = ['²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
 /// The dimension of a unit such as "rad s²/m²".
 pub fn dimension(unit: &str) -> Dimension {
     let mut exponents = [0; 2];
     let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
     for (part, sign) in [(above, 1), (below, -1)] {
         for symbol in part.split(' ') {
-            let (base, power) = symbol.strip_suffix('²').map_or((symbol, 1), |base| (base, 2));
+            let base = symbol.trim_end_matches(POWERS);
+            let power = symbol.chars().next_back().and_then(|last| POWERS.iter().position(|own| *own == last));
+            let power = power.map_or(1, |place| place as i32 + 2);
             match base {
                 "s" => exponents[0] += sign * power,
                 "m" => exponents[1] += sign * power,
@@ -74,10 +79,32 @@ pub fn dimension(unit: &str) -> Dimension {
     exponents
 }
 
+/// The unit of a dimension, angles left out: "s²/m".
+pub fn unit(dimension: Dimension) -> String {
+    let part = |sign: i32| {
+        let symbols = ["s", "m"].into_iter().zip(dimension).filter(|(_, power)| power * sign > 0);
+        let symbols = symbols.map(|(base, power)| match power.unsigned_abs() as usize {
+            1 => base.to_owned(),
+            power => format!("{base}{}", POWERS.get(power - 2).unwrap_or(&'?')),
+        });
+        symbols.collect::<Vec<_>>().join(" ")
+    };
+    match (part(1), part(-1)) {
+        (above, below) if below.is_empty() => {
+            if above.is_empty() {
+                String::from("1")
+            } else {
+                above
+            }
+        }
+        (above, below) => format!("{}/{below}", if above.is_empty() { "1" } else { &above }),
+    }
+}
+
 /// The unit of a prime value: what is left of a unit without seconds and metres, "1/rad²" of "s/rad²", "1" of "1/s".
 pub fn prime_unit(unit: &str) -> String {
     let angles = |part: &str| {
-        let kept = part.split(' ').filter(|symbol| !matches!(symbol.trim_end_matches('²'), "s" | "m" | "1"));
+        let kept = part.split(' ').filter(|symbol| !matches!(symbol.trim_end_matches(POWERS), "s" | "m" | "1"));
         kept.collect::<Vec<&str>>().join(" ")
     };
     let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
@@ -92,6 +119,16 @@ pub fn prime_unit(unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_unit_has_its_dimension_again() {
+        for (dimension, expected) in
+            [([2, -1], "s²/m"), ([0, 0], "1"), ([-1, 0], "1/s"), ([3, 1], "s³ m"), ([-2, -3], "1/s² m³")]
+        {
+            assert_eq!(unit(dimension), expected);
+            assert_eq!(super::dimension(expected), dimension);
+        }
+    }
 
     #[test]
     fn units_are_read() {

@@ -292,6 +292,8 @@ fn trace_files(
         with: Vec::new(),
         only: Vec::new(),
         without_effect: Vec::new(),
+        effect: Vec::new(),
+        effects: None,
         rule: Rule::default(),
         style: PageFigureOptions {
             style: FigureOptions { paper: None, dpi: 600.0, style: None },

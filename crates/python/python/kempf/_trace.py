@@ -177,6 +177,7 @@ def trace(
     only: Ids = (),
     without_effect: Ids = (),
     without: Ids = (),
+    effects: Mapping[str, str] = {},
     rule: str = "posterior",
 ) -> TraceResult:
     """Closes the loop on records, as ``study trace`` does: fits a first-order ship, weighs the structures of
@@ -188,6 +189,8 @@ def trace(
     :param only: exactly these effects and no search
     :param without_effect: effects that are no candidates
     :param without: columns to leave aside: ``"wind"``, ``"speed"``, ``"propeller"``, ``"sway"``
+    :param effects: effects of one's own by their names, each a moment as an angle of the rudder:
+        ``{"bank": "c * tanh(k * psi)"}``
     :param rule: how structures are weighed: ``"posterior"``, by their likelihood under the priors of the coefficients,
         or ``"bic"``
 
@@ -199,6 +202,7 @@ def trace(
         only=strings(only),
         without_effect=strings(without_effect),
         without=strings(without),
+        effect=[f"{name} = {formula}" for name, formula in effects.items()],
         rule=rule,
     )
     native = _kempf.trace(natives(records), natives(validate), asked)

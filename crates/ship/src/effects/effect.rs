@@ -31,6 +31,9 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// The unit of a parameter whose dimension is not known: it cannot be brought to another scale.
+    pub const NO_UNIT: &'static str = "SI";
+
     /// A parameter that stays the same when port and starboard are exchanged: key, symbol and unit; neutral and typical
     /// value; smallest and largest.
     pub const fn even(
@@ -44,6 +47,11 @@ impl Parameter {
     /// The same for one that changes its sign then.
     pub const fn odd(words: [&'static str; 3], sizes: [f64; 2], ends: [f64; 2]) -> Self {
         Self { odd: true, ..Self::even(words, sizes, ends) }
+    }
+
+    /// Whether its dimension is not known.
+    pub fn has_no_unit(&self) -> bool {
+        self.unit == Self::NO_UNIT
     }
 
     /// Exponents of second and metre in the unit; angles have none.
@@ -188,6 +196,15 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
     /// effect it is.
     fn constants(&self) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// Dimension of these numbers.
+    fn dimension_of_constants(&self) -> Dimension {
+        match self.needs() {
+            Some(Regressor::Speed) => [-1, 1],
+            Some(Regressor::Propeller) => [-1, 0],
+            _ => [0, 0],
+        }
     }
 
     /// Whether it is a moment that depends on time alone. It then belongs to one record and says nothing of another.

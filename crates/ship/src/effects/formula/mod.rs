@@ -12,6 +12,7 @@ use estimation::number::Real;
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::dynamics::Regressor;
+use crate::particulars::{self, Dimension};
 pub use parse::FormulaError;
 use program::{Program, Signal};
 
@@ -143,6 +144,8 @@ impl Formula {
         let shapes = self.shapes(&Scales::ones());
         let symmetries: Vec<Option<bool>> = (0..shapes.len()).map(|place| self.symmetry(place, &shapes)).collect();
         self.is_symmetric = symmetries.iter().all(Option::is_some);
+        let units = self.units(&shapes);
+        let units: Vec<&'static str> = units.into_iter().map(|unit| unit.map_or(Parameter::NO_UNIT, kept)).collect();
         let parameters = (0..self.expected.len()).map(|place| {
             let key = kept(self.program.constants()[place].clone());
             let [lowest, highest] = self.expected[place].ends.unwrap_or([-ANY, ANY]);
@@ -150,7 +153,7 @@ impl Formula {
             let neutral = if self.is_size[place] { 0.0 } else { typical };
             Parameter {
                 odd: symmetries[place] == Some(false),
-                ..Parameter::even([key, key, "SI"], [neutral, typical], [lowest, highest])
+                ..Parameter::even([key, key, units[place]], [neutral, typical], [lowest, highest])
             }
         });
         let parameters: Vec<Parameter> = parameters.collect();
@@ -189,6 +192,50 @@ impl Formula {
         }
     }
 
+    /// Units of the constants, where they follow from the signals: an angle has to come out. Of several shapes nothing is
+    /// known.
+    fn units(&self, shapes: &[f64]) -> Vec<Option<String>> {
+        const POWERS: std::ops::RangeInclusive<i32> = -3..=3;
+        let places = 0..shapes.len();
+        let shape: Vec<usize> = places.clone().filter(|&place| !self.is_size[place]).collect();
+        let of_shapes = POWERS.flat_map(|seconds| POWERS.map(move |metres| [seconds, metres]));
+        let tried: Vec<Dimension> = match shape.len() {
+            0 => vec![[0, 0]],
+            1 => of_shapes.collect(),
+            _ => Vec::new(),
+        };
+        let all = tried.into_iter().find_map(|own| {
+            let dimension = |place: usize| {
+                if self.is_size[place] { self.dimension_beside(place, shapes, own) } else { Some(own) }
+            };
+            places.clone().map(dimension).collect::<Option<Vec<Dimension>>>()
+        });
+        all.map_or_else(
+            || vec![None; shapes.len()],
+            |all| all.into_iter().map(|own| Some(particulars::unit(own))).collect(),
+        )
+    }
+
+    /// The dimension of a size, where shapes have this one; `None` where no power of second and metre is its factor.
+    fn dimension_beside(&self, place: usize, shapes: &[f64], of_shapes: Dimension) -> Option<Dimension> {
+        let power = |second: f64, metre: f64| {
+            let mut ratios = self.points(&Scales::ones()).filter_map(|point| {
+                let value = |point: &Point, grown: f64| {
+                    let size = |other: usize| f64::from(u8::from(other == place));
+                    let of = |other: usize| if self.is_size[other] { size(other) } else { shapes[other] * grown };
+                    self.moment(&(0..shapes.len()).map(of).collect::<Vec<f64>>(), point)
+                };
+                let grown = second.powi(of_shapes[0]) * metre.powi(of_shapes[1]);
+                let ratio = value(&Point { second, metre, ..point }, grown) / value(&point, 1.0);
+                ratio.is_finite().then(|| ratio.ln() / (second * metre).ln())
+            });
+            let first = ratios.next()?;
+            let is_one = ratios.all(|other| (other - first).abs() < 1e-9) && (first - first.round()).abs() < 1e-9;
+            is_one.then_some(-first.round() as i32)
+        };
+        Some([power(2.0, 1.0)?, power(1.0, 2.0)?])
+    }
+
     /// Whether it acts alike to port and to starboard, each constant with its sign or with the other.
     pub fn is_symmetric(&self) -> bool {
         self.is_symmetric
@@ -199,7 +246,7 @@ impl Formula {
     }
 
     /// Points all over the range of the signals, always the same.
-    fn points(&self, scales: &Scales) -> impl Iterator<Item = Point> {
+    fn points(&self, scales: &Scales) -> impl Iterator<Item = Point> + use<> {
         let scales = *scales;
         (1..=POINTS).map(move |number| Point::of_number(number, &scales))
     }
@@ -295,6 +342,9 @@ struct Point {
     signed: [f64; 5],
     /// From 0.5 to 1: speed, propeller, time, speed of the wind.
     positive: [f64; 4],
+    /// Numbers of units that go into a second and into a metre.
+    second: f64,
+    metre: f64,
 }
 
 impl Point {
@@ -306,6 +356,8 @@ impl Point {
             scales: *scales,
             signed: std::array::from_fn(|place| 2.0 * part(ROOTS[place]) - 1.0),
             positive: std::array::from_fn(|place| 0.5 + 0.5 * part(ROOTS[5 + place])),
+            second: 1.0,
+            metre: 1.0,
         }
     }
 
@@ -314,17 +366,18 @@ impl Point {
     }
 
     fn of(&self, signal: Signal) -> f64 {
-        let Self { scales, signed: [r, delta, psi, v, angle], positive: [speed, n, t, wind] } = *self;
+        let Self { scales, signed: [r, delta, psi, v, angle], positive: [speed, n, t, wind], second, metre } = *self;
+        let per_second = metre / second;
         match signal {
-            Signal::YawRate => r * scales.yaw_rate,
+            Signal::YawRate => r * scales.yaw_rate / second,
             Signal::Rudder => delta * scales.rudder,
             // A zig-zag turns about as far as its rudder goes.
             Signal::Heading => psi * scales.rudder,
-            Signal::Sway => 0.15 * v * scales.speed,
-            Signal::Surge | Signal::Speed => speed * scales.speed,
-            Signal::Propeller => n * scales.propeller,
-            Signal::Time => t * scales.duration,
-            Signal::WindSpeed => wind * scales.wind,
+            Signal::Sway => 0.15 * v * scales.speed * per_second,
+            Signal::Surge | Signal::Speed => speed * scales.speed * per_second,
+            Signal::Propeller => n * scales.propeller / second,
+            Signal::Time => t * scales.duration * second,
+            Signal::WindSpeed => wind * scales.wind * per_second,
             Signal::WindAngle => std::f64::consts::PI * angle,
             Signal::PrimeYawRate => r * scales.yaw_rate * scales.length / (speed * scales.speed),
             Signal::PrimeSway => 0.15 * v / speed,
@@ -387,6 +440,10 @@ impl Effect for Formula {
 
     fn constants(&self) -> Vec<f64> {
         vec![self.length]
+    }
+
+    fn dimension_of_constants(&self) -> Dimension {
+        [0, 1]
     }
 
     fn is_of_time(&self) -> bool {

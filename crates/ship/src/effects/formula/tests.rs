@@ -54,6 +54,17 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
     assert_eq!(even.parameters().iter().map(|own| own.odd).collect::<Vec<_>>(), [true, false]);
     assert!(!Formula::read("one_sided = c * max(r, 0)").expect("a formula").is_symmetric());
     assert!(Formula::read("trend = c * t").expect("a formula").is_of_time());
+    for (line, units) in [
+        ("cross = c * r * abs(v)", vec!["s²/m"]),
+        ("bank = c * tanh(k * psi)", vec!["1", "1"]),
+        ("fast = c * tanh(k * r)", vec!["1", "s"]),
+        ("two = a * r^3 + b * v", vec!["s³", "s/m"]),
+        ("prime = c * rp * vp", vec!["1"]),
+        ("fading = c * delta * U^1.6", vec![Parameter::NO_UNIT]),
+    ] {
+        let formula = Formula::read(line).expect("a formula");
+        assert_eq!(formula.parameters().iter().map(|own| own.unit).collect::<Vec<_>>(), units, "{line}");
+    }
 }
 
 #[test]
