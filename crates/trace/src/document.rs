@@ -253,6 +253,9 @@ pub struct UnexplainedEntry {
 pub struct EmpiricalEntry {
     /// The best, and those that the records cannot tell from it.
     pub terms: Vec<String>,
+    /// The best as an effect that a trace can be asked for, where it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effect: Option<String>,
     /// Coefficients of the best: the rudder angle that its root mean square is worth.
     pub parameters: Vec<ParameterEntry>,
     /// As that of an effect.

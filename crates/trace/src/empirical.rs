@@ -53,6 +53,20 @@ impl Powers {
         Self { of, magnitude, form, equation: format!("T r' + r = K (δ + δ_r + c {form})") }
     }
 
+    /// The monomial as a line for [`Formula::read`](ship::effects::Formula::read): "proposal = c * r^2 * delta".
+    pub fn line(&self) -> String {
+        let factor = |(place, name): (usize, &str)| match (self.of[place], self.magnitude[place]) {
+            (0, _) => String::new(),
+            (1, false) => format!(" * {name}"),
+            (1, true) => format!(" * abs({name})"),
+            (power, false) => format!(" * {name}^{power}"),
+            (2, true) => format!(" * {name} * abs({name})"),
+            (power, true) => format!(" * {name}^{} * abs({name})", power - 1),
+        };
+        let factors = ["r", "delta", "psi", "U"].into_iter().enumerate().map(factor);
+        format!("proposal = c{}", factors.collect::<String>())
+    }
+
     /// The monomial without magnitudes of r (rad/s), δ and ψ (rad).
     pub fn at(&self, factors: [f64; 3]) -> f64 {
         factors.iter().zip(self.of).map(|(factor, power)| factor.powi(power)).product()
@@ -171,6 +185,9 @@ mod tests {
             let found = Powers::read(form);
             assert_eq!((found.of, found.magnitude), (of, magnitude), "{form}");
         }
+        assert_eq!(Powers::read("r²δ").line(), "proposal = c * r^2 * delta");
+        assert_eq!(Powers::read("δ|δ||ψ|").line(), "proposal = c * delta * abs(delta) * abs(psi)");
+        assert!(all().iter().all(|own| ship::effects::Formula::read(&own.line()).is_ok()));
         assert_eq!((plain().len(), all().len()), (18, 59));
     }
 }

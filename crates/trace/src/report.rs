@@ -15,6 +15,7 @@ use crate::base::Base;
 use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME};
 use crate::comparison::RecordComparison;
 use crate::document::*;
+use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::model::{ModelParameter, Term, TermName};
@@ -338,12 +339,14 @@ impl TraceParts<'_> {
 
     fn empirical(&self) -> Option<EmpiricalEntry> {
         let own = self.remainder.empirical.as_ref()?;
+        let monomial = |form: &str| empirical::plain().iter().find(|own| own.form == form).map(empirical::Powers::line);
         let parameter = |&(value, sd): &(f64, f64)| {
             let quantity = Quantity { value, sd: Some(sd), ci95: Some([value - 1.96 * sd, value + 1.96 * sd]) };
-            self.number(&crate::empirical::COEFFICIENT, quantity, None, false)
+            self.number(&empirical::COEFFICIENT, quantity, None, false)
         };
         Some(EmpiricalEntry {
             terms: own.group.clone(),
+            effect: own.group.first().and_then(|best| monomial(best)),
             parameters: own.coefficients.iter().map(parameter).collect(),
             delta_bic: -2.0 * own.gain,
             heading_rmse_deg: to_deg(own.error),

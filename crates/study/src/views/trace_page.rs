@@ -165,6 +165,11 @@ fn what_is_left(page: &mut Page, document: &TraceDocument) {
             own.terms.join(" or "),
             values.join(", ")
         ));
+        page.say(
+            own.effect
+                .as_ref()
+                .map_or_else(String::new, |line| format!("To have it fitted and judged: `--effect \"{line}\"`.")),
+        );
     }
 }
 
