@@ -16,7 +16,7 @@ use identify::{Identifier, IdentifyError};
 use kempf_tests::outside::least_squares;
 use kempf_tests::records::Case;
 use scenario::Scenario;
-use study::options::{Common, FigureOptions, FitRequest, Format, ReadingOptions};
+use study::options::{Common, FigureOptions, FitRequest, Format, PageFigureOptions, PageFigures, ReadingOptions};
 use trial::Trial;
 
 const ESTIMATOR: &str = env!("CARGO_BIN_EXE_estimator");
@@ -360,7 +360,10 @@ fn a_fit_asks_other_programs_too() {
             speed_m_s: None,
             speed_kn: None,
         },
-        style: FigureOptions { paper: Some(60.0), dpi: 72.0, style: None },
+        style: PageFigureOptions {
+            style: FigureOptions { paper: None, dpi: 600.0, style: None },
+            figures: PageFigures::None,
+        },
     };
     let out = desk.path().join("fit");
     let common = Common { out: Some(out.clone()), threads: None, seed: None, quiet: true, format: Format::Text };

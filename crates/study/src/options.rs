@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use crate::outside::NamedCommand;
 use crate::style_options::within;
-pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, StudyFigureOptions};
+pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, PageFigures, StudyFigureOptions};
 use ::trace::{EffectId, Rule, Selection};
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};

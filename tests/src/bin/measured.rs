@@ -13,7 +13,9 @@ use kempf_tests::stability;
 use kempf_tests::wrapped::without_jumps;
 use report::number::{fixed, significant};
 use report::{Table, TableColumn};
-use study::options::{Common, FigureOptions, Format, ReadingOptions, TraceRequest, Withheld};
+use study::options::{
+    Common, FigureOptions, Format, PageFigureOptions, PageFigures, ReadingOptions, TraceRequest, Withheld,
+};
 use trace::document::{BeforeAfter, EffectEntry, ErrorsEntry, RecordNoiseEntry};
 use trace::{Document, Rule};
 
@@ -291,7 +293,10 @@ fn trace_files(
         only: Vec::new(),
         without_effect: Vec::new(),
         rule: Rule::default(),
-        style: FigureOptions { paper: None, dpi: 600.0, style: None },
+        style: PageFigureOptions {
+            style: FigureOptions { paper: None, dpi: 600.0, style: None },
+            figures: PageFigures::All,
+        },
     };
     let common = Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
     study::commands::trace::run(&request, &common).map_err(|failure| failure.to_string())?;
