@@ -20,6 +20,7 @@ mod draw;
 mod effect;
 pub mod failure;
 pub mod identity;
+mod key_words;
 pub mod keys;
 mod limits;
 mod locate;

@@ -28,6 +28,7 @@ use crate::report;
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
 use crate::structures::{self, Structures};
+use crate::watcher::{NoWatcher, Watcher};
 use crate::weights::NoiseLaw;
 
 /// The result: what is said of the records, and what it was said from.
@@ -109,25 +110,6 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     watched(trials, validation, settings, &NoWatcher)
 }
 
-/// Who waits for an analysis of several records, which goes on for long after its result is there.
-pub trait Watcher: Sync {
-    /// The result is there; every one of so many records is now looked at as if it had been held out.
-    fn begin_folds(&self, _count: usize) {}
-
-    /// One of them is done.
-    fn end_fold(&self) {}
-
-    /// Whether to do without; then no record is [left out](Analysis::left_out).
-    fn is_asked_to_stop(&self) -> bool {
-        false
-    }
-}
-
-/// Nobody waits.
-struct NoWatcher;
-
-impl Watcher for NoWatcher {}
-
 /// The same as [`trace`] while somebody watches.
 pub fn watched(
     trials: &[Trial],
@@ -156,13 +138,13 @@ pub fn watched(
     let unseen = AveragedModel { members: &members, law: &full.law, known: None, time };
     let judged: Vec<RecordComparison> =
         validation.par_iter().map(|trial| unseen.compared(trial, &response)).collect::<Result<_, _>>()?;
-    let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let left_out = if is_folded { leave_one_out(&trials, &problem, (&full, &structures), watcher) } else { Vec::new() };
+    let left_out = match settings.thorough && trials.len() > 1 && validation.is_empty() {
+        true => leave_one_out(&trials, &problem, (&full, &structures), watcher),
+        false => Vec::new(),
+    };
     let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
-    let whiteness = [
-        whiteness(identification.iter().map(|one| &one.before), &trials),
-        whiteness(identification.iter().map(|one| &one.after), &trials),
-    ];
+    let after = identification.iter().map(|one| &one.after);
+    let whiteness = [whiteness(identification.iter().map(|one| &one.before), &trials), whiteness(after, &trials)];
     let said = report::TraceParts {
         trials: &trials,
         settings,
