@@ -101,8 +101,8 @@ fn is_wrong(found: &Quantity, truth: f64) -> bool {
     error > 0.03 * truth && found.sd.is_none_or(|sd| error > 3.0 * sd)
 }
 
-/// Pairs of which nothing in the record tells: two delays that take each other away but for a second, and a jump no larger
-/// than twelve of the usual steps of a heading in whole degrees. K or T is wrong by 4 and by 11 %.
+/// Pairs of which nothing in the record tells: two delays that take each other away but for a second, and a jump no
+/// larger than twelve of the usual steps of a heading in whole degrees. K or T is wrong by 4 and by 11 %.
 const HIDDEN: [[&str; 2]; 2] = [
     ["compass damped over 4 s", "rudder 3 s late"],
     ["compass that jumps by 8 degrees", "whole degrees of the heading"],

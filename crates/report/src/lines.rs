@@ -20,7 +20,8 @@ pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String>
     lines
 }
 
-/// Adds a word to the lines, in several of them where it is too long for one. What has no room for a letter stays whole.
+/// Adds a word to the lines, in several of them where it is too long for one. What has no room for a letter stays
+/// whole.
 fn broken(word: &str, size: f64, bold: bool, width: f64, lines: &mut Vec<String>) {
     let mut rest = word;
     while text_width(rest, size, bold) > width {

@@ -66,6 +66,11 @@ fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
     (kept, readings)
 }
 
+/// Whiteness of the residuals before and after.
+fn whiteness_of(records: &[RecordComparison], trials: &[Trial]) -> [Whiteness; 2] {
+    [whiteness(records.iter().map(|one| &one.before), trials), whiteness(records.iter().map(|one| &one.after), trials)]
+}
+
 /// Why an effect that was asked for cannot be in the model.
 fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(), TraceError> {
     let is_there = |id: &&EffectId| candidates.iter().any(|one| one.effect.id() == id.as_str());
@@ -136,15 +141,12 @@ pub fn watched(
     let mut identification = fitted(&trials, &base, &full, &members, settings.thorough, time)?;
     let no_nearer = keep_nearest(&mut identification);
     let unseen = AveragedModel { members: &members, law: &full.law, known: None, time };
-    let judged: Vec<RecordComparison> =
-        validation.par_iter().map(|trial| unseen.compared(trial, &response)).collect::<Result<_, _>>()?;
-    let left_out = match settings.thorough && trials.len() > 1 && validation.is_empty() {
-        true => leave_one_out(&trials, &problem, (&full, &structures), watcher),
-        false => Vec::new(),
-    };
+    let judged = validation.par_iter().map(|trial| unseen.compared(trial, &response));
+    let judged: Vec<RecordComparison> = judged.collect::<Result<_, _>>()?;
+    let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
+    let folds = is_folded.then(|| leave_one_out(&trials, &problem, (&full, &structures), watcher));
+    let left_out = folds.unwrap_or_default();
     let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
-    let after = identification.iter().map(|one| &one.after);
-    let whiteness = [whiteness(identification.iter().map(|one| &one.before), &trials), whiteness(after, &trials)];
     let said = report::TraceParts {
         trials: &trials,
         settings,
@@ -156,14 +158,13 @@ pub fn watched(
         validation: (&validation, &judged),
         left_out: &left_out,
         remainder: &remainder,
-        whiteness,
+        whiteness: whiteness_of(&identification, &trials),
         outliers: &outliers,
         no_nearer,
         problem: &problem,
     };
-    let document = said.document();
     Ok(Analysis {
-        document,
+        document: said.document(),
         base: base.estimate,
         identification,
         validation: judged,
