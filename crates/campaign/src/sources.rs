@@ -1,5 +1,5 @@
-//! Scripts that a study starts, kept beside its manifest so that the manifest runs the study again where it lies. What a
-//! script loads by itself is not known here and not kept.
+//! Scripts that a study starts, kept beside its manifest so that the manifest runs the study again where it lies.
+//! What a script loads by itself is not known here and not kept.
 
 use std::fs;
 use std::io;

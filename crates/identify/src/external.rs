@@ -5,8 +5,8 @@
 //! A program works on one trial at a time, so there are never more processes of a command than threads that ask. An
 //! answer may depend on nothing but its question: then rows do not depend on the number of threads.
 //!
-//! A program that is silent three times in succession is given up. Questions after that fail at once, with the reason of
-//! those that were waited for: the rows of a program that always hangs are the same however many threads asked it.
+//! A program that is silent three times in succession is given up. Questions after that fail at once, with the reason
+//! of those that were waited for: the rows of a program that always hangs are the same however many threads asked it.
 
 use std::path::Path;
 use std::sync::Arc;

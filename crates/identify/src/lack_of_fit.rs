@@ -88,7 +88,8 @@ impl LackOfFit {
         let after = rms(&residual, basis.len() + initial);
         let lag1 = robust::lag1_autocorrelation(pieces.iter().map(Vec::as_slice));
         let is_white = !robust::is_coloured(lag1, residual.len());
-        // What the terms leave holds all of the noise; the local fits bend less than the heading where its digits are few.
+        // What the terms leave holds all of the noise; the local fits bend less than the heading where its digits are
+        // few.
         let (noise, delay) = ((noise / rows).sqrt().min(after), -size / response.K_over_T);
         let found = Self { residual: before, with_ship_terms: after, noise, is_white, delay, with_delay };
         (before.is_finite() && after.is_finite() && noise.is_finite()).then_some(found)

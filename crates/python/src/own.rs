@@ -9,8 +9,8 @@ use trial::Trial;
 
 use crate::record::PyRecord;
 
-/// Functions with their labels. Each takes a list of records and returns K (1/s), T (s), δ_r (rad) and the covariance of
-/// the three, row by row, where it has one.
+/// Functions with their labels. Each takes a list of records and returns K (1/s), T (s), δ_r (rad) and the covariance
+/// of the three, row by row, where it has one.
 pub type OwnMethods = Vec<(String, Py<PyAny>)>;
 
 /// A function that is asked for K, T and δ_r.

@@ -1,12 +1,13 @@
 //! Where things go on the page: title, legend, panels and notes from top to bottom, margins as wide as their labels.
 //! Panels of one column share the horizontal axis, panels of one row the vertical one; their frames, ticks and titles
-//! are drawn here, the data by the figures.
+//! are drawn here, the data by the figures. Longer than most: every part of a page moves the parts below it.
 
 use crate::axis::{PlotAxis, Ticks};
 use crate::clip::Rect;
 use crate::figure::Drawing;
 use crate::fonts::text_width;
 use crate::legend::{self, KeyEntry};
+use crate::lines::{LEADING, wrap};
 use crate::palette::{GRID, INK, PAPER};
 use crate::panel::Panel;
 use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
@@ -15,9 +16,6 @@ use crate::theme::Theme;
 
 /// Largest share of the page for the names of rows; longer ones are broken into lines.
 pub(crate) const NAMES: f64 = 0.42;
-
-/// Line spacing, in font sizes.
-pub(crate) const LEADING: f64 = 1.35;
 
 /// One side of a grid of panels: a column with its horizontal axis or a row with its vertical one.
 #[derive(Debug, Clone, PartialEq)]
@@ -393,35 +391,6 @@ fn label_width(ticks: &Ticks, theme: &Theme) -> f64 {
     ticks.major.iter().map(|(_, label)| TextLine::new(label.as_str(), theme.tick_font).width()).fold(0.0, f64::max)
 }
 
-/// Splits a text at (breaking) spaces into lines of at most `width` points; a longer word is broken, after a mark such
-/// as a dot where it has one.
-pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    // Not at every white space: a no-break space keeps a symbol and its value together.
-    for word in text.split(' ').filter(|word| !word.is_empty()) {
-        let longer = lines.last().map(|line| format!("{line} {word}"));
-        match longer.filter(|line| text_width(line, size, bold) <= width) {
-            Some(line) => *lines.last_mut().expect("a longer line extends one that is there") = line,
-            None => broken(word, size, bold, width, &mut lines),
-        }
-    }
-    lines
-}
-
-/// Adds a word to the lines, in several of them where it is too long for one. What has no room for a letter stays whole.
-fn broken(word: &str, size: f64, bold: bool, width: f64, lines: &mut Vec<String>) {
-    let mut rest = word;
-    while text_width(rest, size, bold) > width {
-        let ends = rest.char_indices().map(|(start, letter)| start + letter.len_utf8());
-        let fitting: Vec<usize> = ends.take_while(|end| text_width(&rest[..*end], size, bold) <= width).collect();
-        let after_mark = fitting.iter().rev().find(|end| rest[..**end].ends_with(['.', '-', '_', '/']));
-        let Some(end) = after_mark.or(fitting.last()) else { break };
-        lines.push(rest[..*end].to_owned());
-        rest = &rest[*end..];
-    }
-    lines.push(rest.to_owned());
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -459,14 +428,5 @@ mod tests {
             panels[0].rect.y
         };
         assert!(drawn("heading noise of the compass = 0.01 ") > drawn("a") + 3.0 * theme.small_font);
-    }
-
-    #[test]
-    fn text_wraps_at_spaces_and_long_words_are_broken() {
-        assert_eq!(wrap("one two three", 10.0, false, 45.0), ["one two", "three"]);
-        assert_eq!(wrap("indivisible", 10.0, false, 1.0), ["indivisible"]);
-        assert_eq!(wrap("a ship.first-order.T-s", 10.0, false, 60.0), ["a", "ship.first-", "order.T-s"]);
-        assert_eq!(wrap("mmmmmm", 10.0, false, 30.0), ["mmm", "mmm"]);
-        assert!(wrap("  ", 10.0, false, 5.0).is_empty());
     }
 }

@@ -1,7 +1,7 @@
 //! The key of a figure: samples with their names in aligned columns, always outside the data.
 
 use crate::clip::PagePoint;
-use crate::layout;
+use crate::lines::{self, LEADING};
 use crate::paint::Paint;
 use crate::palette::{CurveOrigin, Look};
 use crate::scene::{Canvas, Ink, Layer, Stroke, TextLine};
@@ -64,7 +64,7 @@ impl KeyEntry {
 
     /// The lines of its name in a place this wide, sample and all.
     pub(crate) fn lines(&self, room: f64, theme: &Theme) -> Vec<String> {
-        layout::wrap(&self.label, theme.small_font, false, room - self.sample_width(theme))
+        lines::wrap(&self.label, theme.small_font, false, room - self.sample_width(theme))
     }
 
     /// Draws the entry in a place this wide, with the base line of its first line at `place`.
@@ -90,7 +90,7 @@ impl KeyEntry {
             KeySample::Hull(colour) => scene.hull(Layer::Note, centre, (1.0, 0.0), 1.6 * theme.small_font, colour),
         }
         for (index, line) in self.lines(room, theme).into_iter().enumerate() {
-            let down = layout::LEADING * theme.small_font * index as f64;
+            let down = LEADING * theme.small_font * index as f64;
             scene.text(Layer::Note, (x + width, y + down), TextLine::new(line, theme.small_font));
         }
     }

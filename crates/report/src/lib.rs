@@ -50,6 +50,7 @@ mod dimension;
 mod fonts;
 mod layout;
 mod legend;
+mod lines;
 mod markup;
 mod panel;
 mod scene;

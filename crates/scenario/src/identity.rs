@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 use toml::{Table, Value};
@@ -12,7 +12,6 @@ use trial::reader::RECORD;
 
 use crate::failure::{Failure, OnPath};
 use crate::part::ScenarioPart;
-use crate::scenario::Script;
 
 /// The document without prose and presentation; comments and layout are gone by themselves.
 pub fn design_of(document: &Table) -> Table {
@@ -52,6 +51,15 @@ pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
 
 /// A script or program beside a scenario.
 const OF_A_COMMAND: Kind = Kind { name: "a file that a command names", largest: 1 << 30 };
+
+/// A file that a command of a scenario names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Script {
+    /// How it is named, from the folder of the scenario.
+    pub word: String,
+    /// Where it is.
+    pub path: PathBuf,
+}
 
 /// Those words of commands that are files in the folder of the scenario or named from there.
 pub fn scripts(words: &BTreeSet<&str>, folder: &Path) -> Vec<Script> {

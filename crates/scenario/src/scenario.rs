@@ -14,7 +14,7 @@ use trial::file::{self, FileError, Kind};
 use crate::answers::Answers;
 use crate::cell::{self, DesignCell};
 use crate::failure::Failure;
-use crate::identity::{self, hex};
+use crate::identity::{self, Script, hex};
 use crate::method::{Method, MethodName, Procedure, methods};
 use crate::part::ScenarioPart;
 use crate::predictions::Predictions;
@@ -55,15 +55,6 @@ pub struct Scenario {
     pub text: String,
     /// SHA-256 of the file, hexadecimal.
     pub sha256: String,
-}
-
-/// A file that a command of a scenario names.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Script {
-    /// How it is named, from the folder of the scenario.
-    pub word: String,
-    /// Where it is.
-    pub path: PathBuf,
 }
 
 /// What a manifest says of the scenario that was run; it may say more.

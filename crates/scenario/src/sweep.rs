@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
 use toml::{Table, Value};
 
-use crate::keys::in_words;
+use crate::key_words::in_words;
 use crate::limits;
 use crate::name;
 use crate::part::ScenarioPart;

@@ -9,8 +9,8 @@ pub struct Particulars {
     pub speed: f64,
 }
 
-/// K′ = K L/V that ships and models show in zig-zags. KVLCC2 has 0.75 (35/5) to 3.6 (10/10), Esso Osaka 1.2 to 1.5 (records
-/// of SIMMAN 2008; Wakita et al. 2022), the Mariner 0.8 to 2.4.
+/// K′ = K L/V that ships and models show in zig-zags. KVLCC2 has 0.75 (35/5) to 3.6 (10/10), Esso Osaka 1.2 to 1.5
+/// (records of SIMMAN 2008; Wakita et al. 2022), the Mariner 0.8 to 2.4.
 pub const USUAL_K_PRIME: [f64; 2] = [0.4, 5.0];
 
 /// T′ = T V/L, likewise: KVLCC2 1.3 to 8.3, Esso Osaka 0.4 to 1.4, the Mariner 1.1 to 2.8.

@@ -10,7 +10,7 @@ use crate::commands::{
     simulate, trace,
 };
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
-use crate::{screen, threads};
+use crate::{failures, screen, threads};
 use campaign::disk::unsupported;
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -110,11 +110,11 @@ fn warn_of_file_systems(common: &Common) {
 pub fn main() -> ExitCode {
     let words: Vec<OsString> = std::env::args_os().collect();
     if asks_for_json(&words) {
-        screen::tell_programs();
+        failures::tell_programs();
     }
     match parse(&words).and_then(answer) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => ExitCode::from(screen::fail(&failure)),
+        Err(failure) => ExitCode::from(failures::fail(&failure)),
     }
 }
 
@@ -138,7 +138,7 @@ fn parse(words: &[OsString]) -> Result<Cli, Failure> {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             usage.exit()
         }
-        _ if screen::is_for_programs() => misused(&usage),
+        _ if failures::is_for_programs() => misused(&usage),
         // By the same way as all other messages: an argument may hold anything.
         _ => Failure::input(usage.render().to_string().trim_end().trim_start_matches("error: ")),
     })

@@ -4,7 +4,7 @@
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::screen;
+use crate::failures;
 use scenario::failure::Failure;
 
 static LISTENING: AtomicBool = AtomicBool::new(false);
@@ -16,7 +16,7 @@ const INTERRUPTED: i32 = 1;
 
 /// Ends the program while work goes on that cannot be stopped, with the message of a failure.
 pub fn give_up(failure: &Failure) -> ! {
-    end(i32::from(screen::fail(failure)))
+    end(i32::from(failures::fail(failure)))
 }
 
 /// Ends the program, and the processes of outside estimators with it: a terminal does not tell them.

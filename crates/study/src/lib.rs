@@ -14,6 +14,7 @@ pub mod cli;
 pub mod commands;
 mod completed;
 pub mod documents;
+mod failures;
 #[cfg(test)]
 mod fault_tests;
 mod interrupt;

@@ -1,5 +1,5 @@
-//! How far work is, on standard error: a bar with the time that is left where that is a terminal, and elsewhere one line
-//! with the time to expect, where that is long.
+//! How far work is, on standard error: a bar with the time that is left where that is a terminal, and elsewhere one
+//! line with the time to expect, where that is long.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -42,7 +42,7 @@ const LONG: f64 = 10.0;
 const ENOUGH: Duration = Duration::from_secs(1);
 
 /// A known number of steps that take about the same time.
-pub struct Steps {
+pub struct ProgressSteps {
     bar: ProgressBar,
     what: &'static str,
     most: u64,
@@ -52,7 +52,7 @@ pub struct Steps {
     is_told: AtomicBool,
 }
 
-impl Steps {
+impl ProgressSteps {
     /// So many steps of which some are done already; `side_by_side` are worked on at a time.
     pub fn new(what: &'static str, most: u64, done: u64, side_by_side: usize, quiet: bool) -> Self {
         Self {

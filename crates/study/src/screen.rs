@@ -4,12 +4,10 @@
 
 use std::borrow::Cow;
 use std::io::{ErrorKind, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use report::Table;
 use report::printable::escaped;
 
-use crate::documents;
 use crate::options::{Common, Format};
 use scenario::failure::{Blame, Failure};
 
@@ -116,28 +114,6 @@ pub fn say_document(document: &str) -> Result<(), Failure> {
 /// The lines without anything but text in them, as they are written.
 pub fn shown(lines: &str) -> String {
     lines.split('\n').map(escaped).collect::<Vec<Cow<str>>>().join("\n")
-}
-
-/// Whether a program reads what went wrong.
-static FOR_PROGRAMS: AtomicBool = AtomicBool::new(false);
-
-/// Tells failures from now on as JSON, for programs.
-pub fn tell_programs() {
-    FOR_PROGRAMS.store(true, Ordering::Relaxed);
-}
-
-/// Whether failures are told as JSON.
-pub fn is_for_programs() -> bool {
-    FOR_PROGRAMS.load(Ordering::Relaxed)
-}
-
-/// Tells a failure on standard error, in words or as one line of JSON; returns the exit code of the program.
-pub fn fail(failure: &Failure) -> u8 {
-    match documents::error::text(failure) {
-        Ok(document) if is_for_programs() => drop(writeln!(std::io::stderr().lock(), "{document}")),
-        _ => warn(&failure.to_string()),
-    }
-    exit_code(failure.blame)
 }
 
 /// The exit code of the program after a failure.

@@ -5,14 +5,14 @@ use std::sync::OnceLock;
 use campaign::Observer;
 use scenario::failure::Failure;
 
-use crate::progress::Steps;
+use crate::progress::ProgressSteps;
 use crate::{interrupt, screen};
 
 /// The terminal of a person who waits.
 pub struct Terminal {
     quiet: bool,
     what: &'static str,
-    steps: OnceLock<Steps>,
+    steps: OnceLock<ProgressSteps>,
 }
 
 impl Terminal {
@@ -26,7 +26,7 @@ impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
         interrupt::listen(true);
         let threads = rayon::current_num_threads();
-        self.steps.get_or_init(|| Steps::new(self.what, most, done, threads, self.quiet));
+        self.steps.get_or_init(|| ProgressSteps::new(self.what, most, done, threads, self.quiet));
     }
 
     fn advance(&self) {

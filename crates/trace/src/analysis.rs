@@ -28,6 +28,7 @@ use crate::report;
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
 use crate::structures::{self, Structures};
+use crate::watcher::{NoWatcher, Watcher};
 use crate::weights::NoiseLaw;
 
 /// The result: what is said of the records, and what it was said from.
@@ -63,6 +64,11 @@ fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
         false => trials.iter().zip(&readings).map(|(trial, out)| trial.clone().without_readings(out)).collect(),
     };
     (kept, readings)
+}
+
+/// Whiteness of the residuals before and after.
+fn whiteness_of(records: &[RecordComparison], trials: &[Trial]) -> [Whiteness; 2] {
+    [whiteness(records.iter().map(|one| &one.before), trials), whiteness(records.iter().map(|one| &one.after), trials)]
 }
 
 /// Why an effect that was asked for cannot be in the model.
@@ -109,25 +115,6 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     watched(trials, validation, settings, &NoWatcher)
 }
 
-/// Who waits for an analysis of several records, which goes on for long after its result is there.
-pub trait Watcher: Sync {
-    /// The result is there; every one of so many records is now looked at as if it had been held out.
-    fn begin_folds(&self, _count: usize) {}
-
-    /// One of them is done.
-    fn end_fold(&self) {}
-
-    /// Whether to do without; then no record is [left out](Analysis::left_out).
-    fn is_asked_to_stop(&self) -> bool {
-        false
-    }
-}
-
-/// Nobody waits.
-struct NoWatcher;
-
-impl Watcher for NoWatcher {}
-
 /// The same as [`trace`] while somebody watches.
 pub fn watched(
     trials: &[Trial],
@@ -154,15 +141,12 @@ pub fn watched(
     let mut identification = fitted(&trials, &base, &full, &members, settings.thorough, time)?;
     let no_nearer = keep_nearest(&mut identification);
     let unseen = AveragedModel { members: &members, law: &full.law, known: None, time };
-    let judged: Vec<RecordComparison> =
-        validation.par_iter().map(|trial| unseen.compared(trial, &response)).collect::<Result<_, _>>()?;
+    let judged = validation.par_iter().map(|trial| unseen.compared(trial, &response));
+    let judged: Vec<RecordComparison> = judged.collect::<Result<_, _>>()?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let left_out = if is_folded { leave_one_out(&trials, &problem, (&full, &structures), watcher) } else { Vec::new() };
+    let folds = is_folded.then(|| leave_one_out(&trials, &problem, (&full, &structures), watcher));
+    let left_out = folds.unwrap_or_default();
     let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
-    let whiteness = [
-        whiteness(identification.iter().map(|one| &one.before), &trials),
-        whiteness(identification.iter().map(|one| &one.after), &trials),
-    ];
     let said = report::TraceParts {
         trials: &trials,
         settings,
@@ -174,14 +158,13 @@ pub fn watched(
         validation: (&validation, &judged),
         left_out: &left_out,
         remainder: &remainder,
-        whiteness,
+        whiteness: whiteness_of(&identification, &trials),
         outliers: &outliers,
         no_nearer,
         problem: &problem,
     };
-    let document = said.document();
     Ok(Analysis {
-        document,
+        document: said.document(),
         base: base.estimate,
         identification,
         validation: judged,

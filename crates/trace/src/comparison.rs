@@ -31,8 +31,9 @@ pub struct BandCoverage {
     pub inside: usize,
     /// Measured headings.
     pub of: usize,
-    /// Interval of the share inside, 99 % (Wilson 1927), for as many headings as tell something of their own: neighbours
-    /// are in or out together, and n of them count as n (1 − ρ)/(1 + ρ) with their autocorrelation ρ at lag 1.
+    /// Interval of the share inside, 99 % (Wilson 1927), for as many headings as tell something of their own:
+    /// neighbours are in or out together, and n of them count as n (1 − ρ)/(1 + ρ) with their autocorrelation ρ at
+    /// lag 1.
     pub interval: [f64; 2],
 }
 

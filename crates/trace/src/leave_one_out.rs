@@ -4,7 +4,6 @@
 use rayon::prelude::*;
 use trial::Trial;
 
-use crate::analysis::Watcher;
 use crate::average::AveragedModel;
 use crate::base::Base;
 use crate::comparison::RecordComparison;
@@ -12,6 +11,7 @@ use crate::fit::{Effort, FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::model::Structure;
 use crate::structures::{Structures, WeighedStructure};
+use crate::watcher::Watcher;
 use crate::weights::NoiseLaw;
 
 /// Structures that take part.

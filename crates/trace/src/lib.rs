@@ -29,14 +29,16 @@ mod shapes;
 mod signature;
 pub mod structures;
 pub mod transient;
+mod watcher;
 pub mod waves;
 pub mod weights;
 mod words;
 
-pub use analysis::{Analysis, Watcher, trace, watched};
+pub use analysis::{Analysis, trace, watched};
 pub use document::{Document, Verdict};
 pub use selection::{EffectId, Selection};
 pub use settings::{Rule, Settings, TraceError};
+pub use watcher::Watcher;
 
 #[cfg(test)]
 mod analysis_tests;

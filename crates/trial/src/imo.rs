@@ -109,8 +109,8 @@ pub fn turning_circle(advance: Option<f64>, tactical_diameter: Option<f64>, leng
 }
 
 /// The criteria a zig-zag can measure, with the values this one does: overshoots and initial turning of a 10/10, the
-/// first overshoot of a 20/20, nothing for other pairs or for a record that begins within the trial. Initial turning and
-/// first overshoot are those of a ship that goes straight until the first execute.
+/// first overshoot of a 20/20, nothing for other pairs or for a record that begins within the trial. Initial turning
+/// and first overshoot are those of a ship that goes straight until the first execute.
 ///
 /// The way of the initial turning is the integral of the recorded speed, or V t_a where the speed was not recorded;
 /// the latter is slightly long, because a ship loses speed as it begins to turn.

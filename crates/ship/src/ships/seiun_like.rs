@@ -1,12 +1,12 @@
 //! A training ship like SEIUN MARU, 105 m, as an MMG hull: contains estimates.
 //!
-//! No number is one that was measured on SEIUN MARU and seen in its publication. Of the twelve derivatives of sway force
-//! and yaw moment seven (Yvvr, Yvrr, Yrrr, Nv, Nvvv, Nvvr, Nvrr) equal, to the printed digits, what the regression of
-//! Yoshimura and Masumoto (2012) gives for L/B = 5.86, C_b = 0.508 and d/L: they are regression values, Nv = −2d/L for
-//! one. The other five (Yv, Yr, Yvvv, Nr, Nrrr) are none of that regression; the compiler of the set says that they were
-//! published for SEIUN MARU, which was not verified. Wake, thrust deduction, the linear thrust curve, added masses,
-//! resistance and several rudder coefficients are estimates or regressions of the compiler. The hull moves plausibly for
-//! a ship of its size; it is not SEIUN MARU.
+//! No number is one that was measured on SEIUN MARU and seen in its publication. Of the twelve derivatives of sway
+//! force and yaw moment seven (Yvvr, Yvrr, Yrrr, Nv, Nvvv, Nvvr, Nvrr) equal, to the printed digits, what the
+//! regression of Yoshimura and Masumoto (2012) gives for L/B = 5.86, C_b = 0.508 and d/L: they are regression values,
+//! Nv = −2d/L for one. The other five (Yv, Yr, Yvvv, Nr, Nrrr) are none of that regression; the compiler of the set
+//! says that they were published for SEIUN MARU, which was not verified. Wake, thrust deduction, the linear thrust
+//! curve, added masses, resistance and several rudder coefficients are estimates or regressions of the compiler. The
+//! hull moves plausibly for a ship of its size; it is not SEIUN MARU.
 
 use std::sync::Arc;
 

@@ -84,8 +84,8 @@ fn task(name: &str) -> Result<BenchTask, String> {
     })
 }
 
-/// Has all methods of a request answer, and those of the caller's `own`. `begin` gets the name of the definition and the
-/// methods before the first answer.
+/// Has all methods of a request answer, and those of the caller's `own`. `begin` gets the name of the definition and
+/// the methods before the first answer.
 ///
 /// Fails when the definition is at fault, when a folder of records cannot be listed, and when nothing can be asked.
 pub fn measure(

@@ -21,14 +21,14 @@ pub mod trace;
 
 use scenario::failure::Failure;
 
-use crate::documents::answers::Answer;
+use crate::documents::answers::CommandAnswer;
 use crate::options::{Common, Format};
 use crate::{documents, screen};
 
 /// Answers in a line, or as a document where a program reads; not at all where nothing is to be said.
 ///
 /// Fails as [`screen::say`] does.
-fn reply(common: &Common, answer: &impl Answer, line: &str) -> Result<(), Failure> {
+fn reply(common: &Common, answer: &impl CommandAnswer, line: &str) -> Result<(), Failure> {
     match common.format {
         Format::Json => documents::say(answer),
         _ if common.quiet => Ok(()),

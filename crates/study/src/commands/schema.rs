@@ -16,7 +16,7 @@ use std::path::Path;
 
 use crate::documents;
 use crate::documents::answers::{
-    Answer, CheckAnswer, CompletionsAnswer, DoctorAnswer, ListAnswer, ManAnswer, OverviewAnswer, ShardAnswer,
+    CheckAnswer, CommandAnswer, CompletionsAnswer, DoctorAnswer, ListAnswer, ManAnswer, OverviewAnswer, ShardAnswer,
     SidecarAnswer, SimulateAnswer, StudyAnswer, Versioned,
 };
 use crate::documents::error::ErrorDocument;
@@ -78,7 +78,7 @@ fn read<T: JsonSchema>() -> Schema {
 }
 
 /// The schema of an answer with its version.
-fn answer<A: Answer>() -> Schema {
+fn answer<A: CommandAnswer>() -> Schema {
     let mut schema = of::<Versioned<A>>();
     if let Some(version) = schema.pointer_mut("/properties/schema").and_then(Value::as_object_mut) {
         version.insert("const".into(), A::SCHEMA.into());

@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 /// A document without a file of its own.
-pub trait Answer: Serialize + JsonSchema {
+pub trait CommandAnswer: Serialize + JsonSchema {
     /// Its name and version, such as `list/1`.
     const SCHEMA: &'static str;
 }
@@ -157,7 +157,7 @@ pub struct DoctorAnswer {
 
 macro_rules! answers {
     ($($name:ty: $schema:literal),* $(,)?) => {
-        $(impl Answer for $name {
+        $(impl CommandAnswer for $name {
             const SCHEMA: &'static str = $schema;
         })*
     };

@@ -8,7 +8,7 @@ use ship::angle::to_deg;
 use trial::Log;
 use trial::find::FoundManoeuvre;
 
-use super::answers::Answer;
+use super::answers::CommandAnswer;
 
 /// The manoeuvres of some logs.
 #[derive(Serialize, JsonSchema)]
@@ -17,7 +17,7 @@ pub struct FindAnswer {
     pub logs: Vec<LogEntry>,
 }
 
-impl Answer for FindAnswer {
+impl CommandAnswer for FindAnswer {
     const SCHEMA: &'static str = "find/1";
 }
 

@@ -119,8 +119,8 @@ impl FitDocument {
         answered().find(|method| *method == SHOWN).or_else(|| answered().next()).map(String::as_str)
     }
 
-    /// Everything that a reader should know of the answer to take, what costs most first: doubts about the records, what
-    /// the method says of itself, and what was mended or chosen when the records were read.
+    /// Everything that a reader should know of the answer to take, what costs most first: doubts about the records,
+    /// what the method says of itself, and what was mended or chosen when the records were read.
     pub fn ranked_warnings(&self) -> Vec<String> {
         let is_mended = |warning: &&String| MENDED.iter().any(|words| warning.contains(words));
         let doubts = self.warnings.iter().filter(|warning| !is_mended(warning)).cloned();

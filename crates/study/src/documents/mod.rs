@@ -23,7 +23,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::screen;
-use answers::{Answer, Versioned};
+use answers::{CommandAnswer, Versioned};
 
 /// Name of the file with the curves of the figures of a fit or a prediction.
 pub const CURVES: &str = "curves.json";
@@ -71,13 +71,13 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 /// The document of a command without a file of its own, with the version of what it holds first.
 ///
 /// Fails where it cannot be written as JSON.
-pub fn of<A: Answer>(body: &A) -> Result<String, Failure> {
+pub fn of<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
     text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::work)
 }
 
 /// Writes such a document to standard output.
 ///
 /// Fails as [`of`] and [`screen::say`] do.
-pub fn say(body: &impl Answer) -> Result<(), Failure> {
+pub fn say(body: &impl CommandAnswer) -> Result<(), Failure> {
     screen::say_document(&of(body)?)
 }

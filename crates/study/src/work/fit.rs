@@ -1,5 +1,5 @@
-//! An identification: all methods asked for on the records together, its answer held against other records, and what is known of
-//! the ship.
+//! An identification: all methods asked for on the records together, its answer held against other records, and what is
+//! known of the ship.
 
 use identify::estimate::Uncertainty;
 use identify::recommended::Recommendation;

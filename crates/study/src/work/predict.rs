@@ -18,7 +18,7 @@ use ship::Particulars;
 use trial::{Conditions, Manoeuvre, Trial, file};
 
 use crate::options::{PredictRequest, ReadingOptions};
-use crate::progress::Steps;
+use crate::progress::ProgressSteps;
 use crate::records::{file_of, rudder_logged_late};
 
 /// Methods of fit.json in the order in which they are asked; those that are not named come last.
@@ -147,7 +147,7 @@ fn predictions(
     (kinds, draws): (&[Manoeuvre], usize),
     mixture: &ShipMixture,
     file: &str,
-    steps: &Steps,
+    steps: &ProgressSteps,
     warnings: &mut Vec<String>,
 ) -> Result<(Vec<Prediction>, Option<PredictError>), Failure> {
     let (mut predictions, mut lost) = (Vec::new(), None);
@@ -194,7 +194,7 @@ pub fn predict(
     let refused = |error: PredictError| Failure::about(&first, error);
     let mixture = mixture_of(models, scale).map_err(refused)?;
     let kinds = manoeuvres(request);
-    let steps = Steps::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
+    let steps = ProgressSteps::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
     let (predictions, lost) = predictions((&kinds, draws), &mixture, &first, &steps, warnings)?;
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
         return Err(refused(error));

@@ -17,7 +17,7 @@ use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
 use crate::documents::{self, missing_moment};
 use crate::interrupt;
 use crate::options::{TraceRequest, Withheld};
-use crate::progress::{self, Steps};
+use crate::progress::{self, ProgressSteps};
 use crate::records::{file_of, names, rudder_logged_late, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
 
@@ -48,7 +48,7 @@ impl TraceResult {
 struct TraceWatch {
     quiet: bool,
     busy: ProgressBar,
-    steps: OnceLock<Steps>,
+    steps: OnceLock<ProgressSteps>,
 }
 
 impl TraceWatch {
@@ -63,7 +63,7 @@ impl Watcher for TraceWatch {
     fn begin_folds(&self, count: usize) {
         self.busy.finish_and_clear();
         let threads = rayon::current_num_threads();
-        self.steps.get_or_init(|| Steps::new("records as if held out", count as u64, 0, threads, self.quiet));
+        self.steps.get_or_init(|| ProgressSteps::new("records as if held out", count as u64, 0, threads, self.quiet));
         interrupt::listen(true);
     }
 

@@ -1,6 +1,7 @@
 //! The command line as a user meets it: the built program on scenarios and records, good and bad. What is asserted is
 //! the exit code, the one message, and what lies on disk afterwards; what the numbers mean is tested elsewhere.
 
+mod answers;
 mod benchmark;
 mod book;
 mod commands;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-use identify::registry::{self, USUAL};
+use identify::registry::USUAL;
 
 use crate::desk::{Desk, measured, of_repository, with_column, zig_zag_csv, zig_zag_csv_of};
 
@@ -223,103 +223,6 @@ fn a_good_record_gives_a_table_figures_and_json() {
     let zigzag = &fit["zigzag"];
     assert!(["initial_turning_time_s", "period_s"].iter().all(|key| zigzag[*key].is_number()), "{zigzag}");
     assert!(zigzag["overshoots_deg"].as_array().is_some_and(|overshoots| overshoots.len() > 3), "{zigzag}");
-}
-
-/// Nobody has to read past a method that is known to be wrong, or one that repeats another; both are run when asked for.
-#[test]
-fn fit_asks_the_usual_methods_and_all_on_request() {
-    let desk = Desk::new();
-    desk.file("run.csv", zig_zag_csv());
-    let fitted = |options: &[&str], folder: &str| {
-        let own = ["fit", "run.csv", "--figures", "none", "--quiet", "--out", folder];
-        desk.run(&[&own, options].concat()).is_done();
-        let fit = desk.json(&format!("{folder}/fit.json"));
-        let ids = fit["methods"].as_array().into_iter().flatten().filter_map(|own| own["method"].as_str());
-        (ids.map(str::to_owned).collect::<Vec<String>>(), fit["verdict"].clone())
-    };
-    let (usual, verdict) = fitted(&[], "usual");
-    let (all, with_all) = fitted(&["--method", "all"], "all");
-    assert_eq!(usual, USUAL);
-    assert!(all.starts_with(&usual) && all.len() == registry::defaults().len(), "{all:?}");
-    assert!(["method", "reason", "residual", "residual_deg"].iter().all(|key| verdict[*key] == with_all[*key]));
-    let (asked, _) = fitted(&["--method", "srivc", "--method", "output-error"], "asked");
-    assert_eq!(asked, ["output-error", "srivc"]);
-    desk.run(&["fit", "run.csv", "--method", "al"]).is_refused(2, &["--method al", "use all, or one of output-error"]);
-}
-
-#[test]
-fn what_can_be_drawn_can_be_told_without_figures() {
-    let desk = Desk::new();
-    desk.file("run.csv", zig_zag_csv());
-    let fast = ["--figures", "none", "--quiet"];
-    for (command, document) in [
-        (&["fit", "run.csv", "--method", "output-error", "--out", "fit"][..], "fit/fit.json"),
-        (&["trace", "run.csv", "--only", "second_order", "--out", "trace"], "trace/trace.json"),
-        (
-            &["predict", "fit/fit.json", "--manoeuvre", "zig-zag:10/10", "--draws", "50", "--out", "predict"],
-            "predict/predict.json",
-        ),
-    ] {
-        desk.run(&[command, &fast].concat()).is_done();
-        let folder = document.split('/').next().expect("a folder");
-        let files = std::fs::read_dir(desk.path(folder)).expect("a folder").map(|entry| entry.expect("a file").path());
-        let drawn: Vec<_> =
-            files.filter(|file| file.extension().is_some_and(|own| own == "png" || own == "svg")).collect();
-        assert!(drawn.is_empty() && desk.path(document).is_file(), "{drawn:?}");
-        let report = desk.text(&format!("{folder}/report.md"));
-        assert!(desk.path(&format!("{folder}/report.html")).is_file() && !report.contains("!["), "{report}");
-        assert!(!report.contains("igures\n"), "a headline over nothing\n{report}");
-    }
-    let bytes = desk.bytes("fit/fit.json");
-    desk.run(&["fit", "run.csv", "--method", "output-error", "--out", "fit", "--quiet"]).is_done();
-    assert!(desk.path("fit/fit.png").is_file() && desk.bytes("fit/fit.json") == bytes);
-}
-
-/// What was mended or is doubtful in a record is known to whoever reads the answer, in `fit.json` and on the page.
-#[test]
-fn what_the_reader_noticed_is_in_the_document() {
-    let desk = Desk::new();
-    for (log, said) in [
-        ("frozen.csv", "the heading is frozen from"),
-        ("checksums.nmea", "checksum"),
-        ("spike.csv", "1 row with a rudder angle no rudder has"),
-        ("gaps.csv", "gaps longer than ten sampling periods"),
-    ] {
-        let path = of_repository("tests/logs").join(log).display().to_string();
-        let own = ["fit", &path, "--method", "least-squares", "--figures", "none", "--quiet", "--out", "fit"];
-        desk.run(&own).is_done();
-        let warnings = desk.json("fit/fit.json")["warnings"].clone();
-        let told = warnings.as_array().into_iter().flatten().filter_map(|own| own.as_str());
-        assert!(told.clone().any(|own| own.contains(said)), "{log}: {warnings}");
-        assert!(desk.text("fit/report.md").contains(said), "{log}");
-    }
-}
-
-/// What may make K and T wrong comes first, three warnings stand on the screen, and the page has all of them. What a
-/// method says of an answer that nobody is to take is a note.
-#[test]
-fn warnings_are_few_and_the_dearest_first() {
-    let desk = Desk::new();
-    let jumped = with_column(&zig_zag_csv(), "heading_deg", |row, psi| match row {
-        100 => "-999".into(),
-        250.. => (psi + 40.0).to_string(),
-        _ => psi.to_string(),
-    });
-    let wild =
-        with_column(&jumped, "rudder_deg", |row, delta| if row == 150 { "-327".into() } else { delta.to_string() });
-    desk.file("run.csv", format!("Motor vessel\nTrial 1\n{}", wild.replacen("heading_deg", "Heading [deg]", 1)));
-    let run = desk.run(&["fit", "run.csv", "--figures", "none"]);
-    let lines: Vec<&str> = run.is_done().err.lines().filter(|line| line.starts_with("warning: ")).collect();
-    let (report, fit) = (desk.text("run-fit/report.md"), desk.json("run-fit/fit.json"));
-    let noticed = fit["warnings"].as_array().map_or(0, Vec::len);
-    assert!(noticed > 3 && lines.len() == 4 && lines[0].contains("the heading jumps"), "{lines:?}");
-    let more = lines[3].strip_prefix("warning: ").and_then(|line| line.strip_suffix(" more in report.md"));
-    assert!(more.and_then(|more| more.parse::<usize>().ok()).is_some_and(|more| more + 3 >= noticed), "{lines:?}");
-    let part = |title: &str| report.split("\n## ").find(|part| part.starts_with(title)).unwrap_or_default();
-    for said in ["the heading jumps", "-999", "lines before the header", "no rudder has", "understood by their names"] {
-        assert!(part("Warnings").contains(said), "{said}\n{report}");
-    }
-    assert!(!run.err.contains("least-squares: ") && part("Notes").contains("least-squares: "), "{report}");
 }
 
 #[test]

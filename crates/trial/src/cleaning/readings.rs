@@ -65,9 +65,9 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
     upper_median(&mut sizes).filter(|_| sizes.len() > 2 * CLIPPED).map(|size| 1.4826 * size)
 }
 
-/// Takes single readings of one and the same value as missing where both neighbours are far from it and near each other:
-/// polls that were not answered, for which a logger writes zero, and a calibration behind it another number. A channel
-/// that passes through the value has neighbours on either side of it.
+/// Takes single readings of one and the same value as missing where both neighbours are far from it and near each
+/// other: polls that were not answered, for which a logger writes zero, and a calibration behind it another number. A
+/// channel that passes through the value has neighbours on either side of it.
 pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<String> {
     let time = &columns.time;
     let mut told = Vec::new();

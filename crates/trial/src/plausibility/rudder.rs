@@ -55,29 +55,29 @@ fn in_per_cent(held_deg: f64) -> Option<f64> {
 }
 
 /// A movement of the rudder to one side that a steering gear makes: way, deg, time it took, s, and in how many rows.
-struct Stroke {
+struct RudderStroke {
     way_deg: f64,
     took_s: f64,
     rows: usize,
 }
 
 /// The movements of the rudder over more than [`STROKE_DEG`].
-fn strokes(time: &[f64], rudder: &[f64]) -> Vec<Stroke> {
+fn strokes(time: &[f64], rudder: &[f64]) -> Vec<RudderStroke> {
     let changes: Vec<f64> = rudder.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut first = 0;
     let runs = changes.chunk_by(|one, next| one * next > 0.0).map(|run| {
         let from = first;
         first += run.len();
         let way_deg = to_deg((rudder[first] - rudder[from]).abs());
-        Stroke { way_deg, took_s: time[first] - time[from], rows: run.len() }
+        RudderStroke { way_deg, took_s: time[first] - time[from], rows: run.len() }
     });
     runs.filter(|stroke| stroke.way_deg >= STROKE_DEG).collect()
 }
 
 /// Steps in place of movements: an order under the name of the angle.
-fn steps(strokes: &[Stroke]) -> Option<String> {
-    let is_step = |stroke: &&Stroke| stroke.rows == 1 && stroke.way_deg > FASTEST_RUDDER_DEG_S * stroke.took_s;
-    let steps: Vec<&Stroke> = strokes.iter().filter(is_step).collect();
+fn steps(strokes: &[RudderStroke]) -> Option<String> {
+    let is_step = |stroke: &&RudderStroke| stroke.rows == 1 && stroke.way_deg > FASTEST_RUDDER_DEG_S * stroke.took_s;
+    let steps: Vec<&RudderStroke> = strokes.iter().filter(is_step).collect();
     let slowest_deg_s = steps.iter().map(|step| step.way_deg / step.took_s).fold(f64::INFINITY, f64::min);
     (steps.len() >= 2 && steps.len() as f64 >= STEPS_OF_AN_ORDER * strokes.len() as f64).then(|| {
         format!(
@@ -92,7 +92,7 @@ fn steps(strokes: &[Stroke]) -> Option<String> {
 }
 
 /// Movements that take several rows and are those of no steering gear: the unit of the time is wrong.
-fn clock_of_rudder(strokes: &[Stroke]) -> Option<String> {
+fn clock_of_rudder(strokes: &[RudderStroke]) -> Option<String> {
     let seen = strokes.iter().filter(|stroke| stroke.rows >= 3);
     let mut rates: Vec<f64> = seen.map(|stroke| stroke.way_deg / stroke.took_s).collect();
     let rate = median(&mut rates).filter(|_| rates.len() >= 2)?;

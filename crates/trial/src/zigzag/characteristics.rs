@@ -45,8 +45,8 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     let holds = holds::holds(trial.rudder())?;
     let rudder = RudderMovements::new(time, trial.rudder(), &holds, trial.noise().rudder);
     let movements: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
-    let rough_period =
-        2.0 * (movements[movements.len() - 1].start.value - movements[0].start.value) / (movements.len() - 1) as f64;
+    let (opening, closing) = (movements[0].start.value, movements[movements.len() - 1].start.value);
+    let rough_period = 2.0 * (closing - opening) / (movements.len() - 1) as f64;
     // A record has at least as many headings as a `Heading` needs.
     let heading = Heading::new(time, trial.heading(), rough_period, trial.noise().heading)
         .expect("a trial has at least 8 headings");
@@ -76,8 +76,8 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
         let level = base_course.heading.value + side.sign() * pair.heading - heading.origin;
         crossing(&heading, level, base_course.heading.sd, side, executes[0].time.value, end)
     });
-    let back_on_base = |execute: usize| {
-        let execute: &Execute = executes.get(execute)?;
+    let back_on_base = |number: usize| {
+        let execute: &Execute = executes.get(number)?;
         let level = base_course.heading.value - heading.origin;
         crossing(&heading, level, base_course.heading.sd, execute.side(), execute.time.value, time[time.len() - 1])
     };
@@ -87,8 +87,7 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
         side,
         base_course,
         initial_turning_time: since_first(turned),
-        initial_turning_distance: turned
-            .filter(|_| !begins_moving)
+        initial_turning_distance: (turned.filter(|_| !begins_moving))
             .and_then(|turned| distance(trial, executes[0].time.value, turned.value)),
         begins_at_reversal: side.is_none() && !shows_execute(&executes[0], &heading),
         overshoots,

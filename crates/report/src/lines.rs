@@ -1,0 +1,50 @@
+//! A text broken into lines of a width.
+
+use crate::fonts::text_width;
+
+/// Line spacing, in font sizes.
+pub(crate) const LEADING: f64 = 1.35;
+
+/// Splits a text at (breaking) spaces into lines of at most `width` points; a longer word is broken, after a mark such
+/// as a dot where it has one.
+pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    // Not at every white space: a no-break space keeps a symbol and its value together.
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match longer.filter(|line| text_width(line, size, bold) <= width) {
+            Some(line) => *lines.last_mut().expect("a longer line extends one that is there") = line,
+            None => broken(word, size, bold, width, &mut lines),
+        }
+    }
+    lines
+}
+
+/// Adds a word to the lines, in several of them where it is too long for one. What has no room for a letter stays
+/// whole.
+fn broken(word: &str, size: f64, bold: bool, width: f64, lines: &mut Vec<String>) {
+    let mut rest = word;
+    while text_width(rest, size, bold) > width {
+        let ends = rest.char_indices().map(|(start, letter)| start + letter.len_utf8());
+        let fitting: Vec<usize> = ends.take_while(|end| text_width(&rest[..*end], size, bold) <= width).collect();
+        let after_mark = fitting.iter().rev().find(|end| rest[..**end].ends_with(['.', '-', '_', '/']));
+        let Some(end) = after_mark.or(fitting.last()) else { break };
+        lines.push(rest[..*end].to_owned());
+        rest = &rest[*end..];
+    }
+    lines.push(rest.to_owned());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_wraps_at_spaces_and_long_words_are_broken() {
+        assert_eq!(wrap("one two three", 10.0, false, 45.0), ["one two", "three"]);
+        assert_eq!(wrap("indivisible", 10.0, false, 1.0), ["indivisible"]);
+        assert_eq!(wrap("a ship.first-order.T-s", 10.0, false, 60.0), ["a", "ship.first-", "order.T-s"]);
+        assert_eq!(wrap("mmmmmm", 10.0, false, 30.0), ["mmm", "mmm"]);
+        assert!(wrap("  ", 10.0, false, 5.0).is_empty());
+    }
+}

@@ -1,0 +1,52 @@
+//! The unit in the name of a key, and a key in words.
+
+/// Endings of keys and the units they stand for, the longest first.
+const UNITS: [(&str, &str); 20] = [
+    ("-deg-per-root-s", "deg/√s"),
+    ("-s2-per-deg2", "s²/deg²"),
+    ("-s-per-deg2", "s/deg²"),
+    ("-deg-per-s", "deg/s"),
+    ("-s-per-deg", "s/deg"),
+    ("-per-deg2", "1/deg²"),
+    ("-per-s", "1/s"),
+    ("-deg-s", "deg/s"),
+    ("-rad-s", "rad/s"),
+    ("-m-s", "m/s"),
+    ("-deg", "deg"),
+    ("-kn", "kn"),
+    ("-m", "m"),
+    ("-s", "s"),
+    ("-rows", "rows"),
+    ("-percent", "%"),
+    ("-minutes", "min"),
+    ("-hours", "h"),
+    ("-mm", "mm"),
+    ("-rps", "1/s"),
+];
+
+/// The unit that is in the name of a key.
+pub(crate) fn unit_of(key: &str) -> &'static str {
+    UNITS.iter().find(|(ending, _)| key.ends_with(ending)).map_or("1", |(_, unit)| unit)
+}
+
+/// A dotted key in words, as the title of an axis: `sensor.heading-noise-deg` is "heading noise [°]".
+pub fn in_words(key: &str) -> String {
+    let last = key.rsplit('.').next().unwrap_or(key);
+    let (name, unit) = match UNITS.iter().find(|(ending, _)| last.len() > ending.len() && last.ends_with(ending)) {
+        Some((ending, unit)) => (last.trim_end_matches(ending), format!(" [{}]", unit.replace("deg", "°"))),
+        None => (last, String::new()),
+    };
+    format!("{}{unit}", name.replace('-', " "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_in_words_has_its_unit() {
+        assert_eq!(in_words("sensor.heading-noise-deg"), "heading noise [°]");
+        assert_eq!(in_words("ship.first-order.T-s"), "T [s]");
+        assert_eq!(in_words("replicates"), "replicates");
+    }
+}
