@@ -35,6 +35,9 @@ struct Expectation {
     ends: Option<[f64; 2]>,
 }
 
+/// Formulas by name and text.
+type KnownFormulas = BTreeMap<(String, String), Arc<Formula>>;
+
 /// A yaw moment as a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
@@ -70,7 +73,7 @@ impl Formula {
     /// Fails as [`read`](Self::read) does.
     pub fn named(name: &str, text: &str) -> Result<Arc<Self>, FormulaError> {
         // Descriptions last as long as the program, so each text is described once.
-        static KNOWN: LazyLock<Mutex<BTreeMap<(String, String), Arc<Formula>>>> = LazyLock::new(Mutex::default);
+        static KNOWN: LazyLock<Mutex<KnownFormulas>> = LazyLock::new(Mutex::default);
         let key = (name.to_owned(), text.to_owned());
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known.get(&key) {
