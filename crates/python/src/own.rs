@@ -13,6 +13,9 @@ use crate::record::PyRecord;
 /// of the three, row by row, where it has one.
 pub type OwnMethods = Vec<(String, Py<PyAny>)>;
 
+/// What a function returns: K, T, δ_r and their covariance.
+type Returned = (f64, f64, f64, Option<[[f64; 3]; 3]>);
+
 /// A function that is asked for K, T and δ_r.
 pub struct PyIdentifier(pub Py<PyAny>);
 
@@ -26,7 +29,7 @@ impl Identifier for PyIdentifier {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        let ask = |py: Python<'_>| -> PyResult<(f64, f64, f64, Option<[[f64; 3]; 3]>)> {
+        let ask = |py: Python<'_>| -> PyResult<Returned> {
             let records: Vec<PyRecord> = trials.iter().cloned().map(PyRecord::plain).collect();
             self.0.bind(py).call1((records,))?.extract()
         };
