@@ -7,7 +7,7 @@ import matplotlib.figure
 import pandas
 import polars
 import pytest
-from conftest import ZIGZAG
+from conftest import RECORDS, ZIGZAG
 
 
 @pytest.fixture(scope="module")
@@ -123,3 +123,11 @@ def test_a_record_is_drawn(first_order):
     figure = kempf.read(first_order).plot()
     assert len(figure.axes) == 2
     matplotlib.pyplot.close(figure)
+
+
+def test_an_effect_of_ones_own_is_weighed_with_the_others():
+    record = kempf.read(RECORDS / "undeclared-damping.csv")
+    trace = kempf.trace(record, effects={"cubic": "c * r^3"})
+    assert any(one.id == "cubic" for one in trace.candidates)
+    with pytest.raises(kempf.KempfError, match="did you mean `delta`"):
+        kempf.trace(record, effects={"cubic": "c * dleta"})

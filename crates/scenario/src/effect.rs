@@ -155,7 +155,7 @@ fn line_of(entry: &NamedNumbers) -> Option<&String> {
 /// An effect that is written as a formula, and a value for every constant of it.
 fn formula(entry: &NamedNumbers, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), KeyFault> {
     let (line, key, numbers) = number_table::only(entry, place, &[])?;
-    let formula = Formula::read(line).map_err(|error| {
+    let formula = ship::effects::formula(line).map_err(|error| {
         let advice = "write `\"name = formula\" = { constant = value }`; docs/src/howto/own-effect.md has the names";
         KeyFault::name(key.clone(), error.to_string(), "this is no formula", advice)
     })?;

@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use ::ship::effects::Formula;
 use ::trace::{EffectId, Rule, Selection, empirical};
 use identify::settings::SettingsError;
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError, Outside, external};
@@ -186,7 +185,7 @@ fn tracing(wire: &TraceWire) -> Result<::trace::Settings, SettingsError> {
     let TraceWire { rule, probability, ref menu, monomials, ref formulas } = *wire;
     let mut selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), among)?;
     let read = |line: &String| {
-        Formula::read(line)
+        ship::effects::formula(line)
             .map_err(|error| SettingsError::new("formulas", error, "formulas as `bank = c * tanh(k * psi)`"))
     };
     selection.formulas = formulas.iter().map(read).collect::<Result<_, _>>()?;

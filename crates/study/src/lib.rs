@@ -17,6 +17,7 @@ pub mod documents;
 mod failures;
 #[cfg(test)]
 mod fault_tests;
+pub mod formula_options;
 mod interrupt;
 pub mod options;
 pub mod outside;

@@ -1,10 +1,11 @@
-//! What a user may ask of a command: options and arguments, each declared once. Commands read them, nothing here acts.
+//! What a user may ask of a command. Longer than most: options and arguments are declared once. Nothing here acts.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
 use crate::completed::{self, completed};
+use crate::formula_options::{Formulas, formula, formulas};
 use crate::outside::NamedCommand;
 use crate::style_options::within;
 pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, PageFigures, StudyFigureOptions};
@@ -18,7 +19,6 @@ use ship::angle::KNOT;
 use ship::effects::Formula;
 use trial::Manoeuvre;
 use trial::clock::Stamp;
-use trial::file::{Kind, read_text};
 
 /// How a scenario is run.
 #[derive(Debug, Clone, Args)]
@@ -267,11 +267,11 @@ pub struct TraceRequest {
         hide_possible_values = true
     )]
     pub without_effect: Vec<EffectId>,
-    /// An effect of one's own, a candidate like those of the list: a moment as an angle of the rudder, `bank = c * tanh(k *
-    /// psi)`; can be given several times
+    /// An effect of one's own, a candidate like those of the list: a moment as an angle of the rudder, `bank = c *
+    /// tanh(k * psi)`; can be given several times
     #[arg(long, value_name = "NAME = FORMULA", value_parser = formula)]
     pub effect: Vec<Arc<Formula>>,
-    /// The same from a file with a line `effects = ["bank = c * tanh(k * psi)"]`
+    /// The same from a file, `effects = ["…"]`
     #[arg(long, value_name = "FILE.toml", value_parser = formulas)]
     pub effects: Option<Formulas>,
     /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
@@ -289,36 +289,15 @@ pub struct TraceRequest {
 impl TraceRequest {
     /// What is asked for and what excluded.
     pub fn selection(&self) -> Selection {
-        let of_file = self.effects.iter().flat_map(|own| &own.0);
+        let of_file = self.effects.iter().flat_map(|own| own.all());
         let formulas: Vec<Arc<Formula>> = self.effect.iter().chain(of_file).cloned().collect();
         if self.only.is_empty() {
             return Selection { with: self.with.clone(), without: self.without_effect.clone(), search: true, formulas };
         }
         let own = formulas.iter().map(|formula| EffectId::of(formula));
-        Selection { formulas: formulas.clone(), ..Selection::only(self.only.iter().copied().chain(own).collect()) }
+        let with = self.only.iter().copied().chain(own).collect();
+        Selection { formulas, ..Selection::only(with) }
     }
-}
-
-/// The effects of a file.
-#[derive(Debug, Clone)]
-pub struct Formulas(Vec<Arc<Formula>>);
-
-fn formula(line: &str) -> Result<Arc<Formula>, String> {
-    Formula::read(line).map_err(|error| error.to_string())
-}
-
-fn formulas(path: &str) -> Result<Formulas, String> {
-    const FILE: Kind = Kind { name: "a file of effects", largest: 1 << 20 };
-    let text = read_text(Path::new(path), FILE).map_err(|error| error.to_string())?;
-    let file: EffectFile = toml::from_str(&text).map_err(|error| error.to_string().trim_end().to_owned())?;
-    file.effects.iter().map(|line| formula(line)).collect::<Result<_, _>>().map(Formulas)
-}
-
-/// What a file of effects holds.
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct EffectFile {
-    effects: Vec<String>,
 }
 
 fn rule(name: &str) -> Result<Rule, String> {

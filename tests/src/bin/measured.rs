@@ -1,4 +1,5 @@
-//! Traces the measured records, which are not part of the project, and writes what came out into `results/measured`.
+//! Traces the measured records and writes what came out. Longer than most: every table of the page is made here.
+//! The records are not part of the project; the page goes into `results/measured`.
 //!
 //! Run with the folder of the results as only argument; the records are looked for as [`kempf_tests::measured`] says.
 

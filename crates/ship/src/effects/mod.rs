@@ -74,6 +74,19 @@ pub fn all() -> Vec<Arc<dyn Effect>> {
     ]
 }
 
+/// The effect of a line `name = formula`, with `; k about 5` or `; k from 1 to 20` behind it for a constant of which
+/// something is known.
+///
+/// Fails with the place and what was expected there, and for the name of an effect of the list.
+pub fn formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
+    let formula = Formula::read(line)?;
+    if all().iter().any(|effect| effect.id() == formula.id()) {
+        let problem = format!("`{}` is on the list of effects; give the formula another name", formula.id());
+        return Err(FormulaError { text: line.to_owned(), at: 0, problem });
+    }
+    Ok(formula)
+}
+
 /// The effect with this identifier, form and constants ([`Effect::constants`]); `None` where there is none, or one that
 /// has other constants.
 ///

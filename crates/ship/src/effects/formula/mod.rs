@@ -2,7 +2,9 @@
 //! are fitted. The formula is the yaw moment as the rudder angle with that moment, rad:
 //! T r' + r = K (δ + δ_r + formula).
 
+mod expectation;
 mod parse;
+mod points;
 mod program;
 
 use std::collections::BTreeMap;
@@ -13,8 +15,10 @@ use estimation::number::Real;
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::dynamics::Regressor;
 use crate::particulars::{self, Dimension};
+use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
-use program::{Program, Signal};
+use points::{SignalPoint, SignalSizes};
+use program::{FormulaProgram, FormulaSignal};
 
 /// Ends of a constant that was given none.
 const ANY: f64 = 1e9;
@@ -28,20 +32,13 @@ const POINTS: usize = 64;
 /// Longest name of an effect, characters.
 const LONGEST_NAME: usize = 40;
 
-/// What is said of a constant: an expected size, and ends.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Expectation {
-    about: Option<f64>,
-    ends: Option<[f64; 2]>,
-}
-
 /// Formulas by name and text.
 type KnownFormulas = BTreeMap<(String, String), Arc<Formula>>;
 
 /// A yaw moment as a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
-    program: Program,
+    program: FormulaProgram,
     description: Description,
     expected: Vec<Expectation>,
     /// Whether the moment is proportional to a constant: it is absent where all these are zero. The others are shapes.
@@ -88,10 +85,9 @@ impl Formula {
         let error = |at: usize, problem: String| FormulaError { text: text.to_owned(), at, problem };
         let is_name = name.starts_with(|letter: char| letter.is_ascii_alphabetic())
             && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-        if !is_name || name.len() > LONGEST_NAME || super::all().iter().any(|effect| effect.id() == name) {
+        if !is_name || name.len() > LONGEST_NAME {
             let expected = format!(
-                "`{name}` cannot be the name of an effect: expected letters, digits and _, at most {LONGEST_NAME}, and none of \
-                 `study list effects`"
+                "`{name}` cannot be the name of an effect: expected letters, digits and _, at most {LONGEST_NAME}"
             );
             return Err(error(0, expected));
         }
@@ -111,10 +107,10 @@ impl Formula {
             expected,
         };
         own.is_size = own.sizes();
-        let sample = own.shapes(&Scales::ones());
+        let sample = own.shapes(&SignalSizes::ones());
         let absent: Vec<f64> =
             sample.iter().zip(&own.is_size).map(|(value, size)| if *size { 0.0 } else { *value }).collect();
-        let values: Vec<f64> = own.points(&Scales::ones()).map(|point| own.moment(&absent, &point)).collect();
+        let values: Vec<f64> = own.points(&SignalSizes::ones()).map(|point| own.moment(&absent, &point)).collect();
         if !own.is_size.contains(&true) || values.iter().any(|value| *value != 0.0) {
             let problem = "no value of the constants takes the effect away: multiply every term with a constant, as in `c * tanh(k * psi)`";
             return Err(error(0, problem.to_owned()));
@@ -128,12 +124,12 @@ impl Formula {
         let count = self.program.constants().len();
         (0..count)
             .map(|own| {
-                let value = |size: f64, point: &Point| {
+                let value = |size: f64, point: &SignalPoint| {
                     let mut constants: Vec<f64> = (0..count).map(|place| 0.7 + 0.3 * place as f64).collect();
                     constants[own] = size;
                     self.moment(&constants, point)
                 };
-                self.points(&Scales::ones()).all(|point| {
+                self.points(&SignalSizes::ones()).all(|point| {
                     let [zero, one, three] = [0.0, 1.0, 3.0].map(|size| value(size, &point));
                     let is_finite = [zero, one, three].iter().all(|value| value.is_finite());
                     is_finite && (three - zero - 3.0 * (one - zero)).abs() <= 1e-9 * (three.abs() + zero.abs() + 1e-12)
@@ -144,7 +140,7 @@ impl Formula {
 
     fn describe(&mut self, name: &str, text: &str) {
         let kept = |words: String| -> &'static str { words.leak() };
-        let shapes = self.shapes(&Scales::ones());
+        let shapes = self.shapes(&SignalSizes::ones());
         let symmetries: Vec<Option<bool>> = (0..shapes.len()).map(|place| self.symmetry(place, &shapes)).collect();
         self.is_symmetric = symmetries.iter().all(Option::is_some);
         let units = self.units(&shapes);
@@ -183,7 +179,7 @@ impl Formula {
         }
         constants[place] = 1.0;
         let agrees = |sign: f64| {
-            self.points(&Scales::ones()).all(|point| {
+            self.points(&SignalSizes::ones()).all(|point| {
                 let [one, other] = [&point, &point.mirrored()].map(|point| self.moment(&constants, point));
                 (other - sign * one).abs() <= 1e-9 * (one.abs() + other.abs() + 1e-12)
             })
@@ -195,8 +191,8 @@ impl Formula {
         }
     }
 
-    /// Units of the constants, where they follow from the signals: an angle has to come out. Of several shapes nothing is
-    /// known.
+    /// Units of the constants, where they follow from the signals: an angle has to come out. Of several shapes
+    /// nothing is known.
     fn units(&self, shapes: &[f64]) -> Vec<Option<String>> {
         const POWERS: std::ops::RangeInclusive<i32> = -3..=3;
         let places = 0..shapes.len();
@@ -222,14 +218,14 @@ impl Formula {
     /// The dimension of a size, where shapes have this one; `None` where no power of second and metre is its factor.
     fn dimension_beside(&self, place: usize, shapes: &[f64], of_shapes: Dimension) -> Option<Dimension> {
         let power = |second: f64, metre: f64| {
-            let mut ratios = self.points(&Scales::ones()).filter_map(|point| {
-                let value = |point: &Point, grown: f64| {
+            let mut ratios = self.points(&SignalSizes::ones()).filter_map(|point| {
+                let value = |point: &SignalPoint, grown: f64| {
                     let size = |other: usize| f64::from(u8::from(other == place));
                     let of = |other: usize| if self.is_size[other] { size(other) } else { shapes[other] * grown };
                     self.moment(&(0..shapes.len()).map(of).collect::<Vec<f64>>(), point)
                 };
                 let grown = second.powi(of_shapes[0]) * metre.powi(of_shapes[1]);
-                let ratio = value(&Point { second, metre, ..point }, grown) / value(&point, 1.0);
+                let ratio = value(&SignalPoint { second, metre, ..point }, grown) / value(&point, 1.0);
                 ratio.is_finite().then(|| ratio.ln() / (second * metre).ln())
             });
             let first = ratios.next()?;
@@ -244,19 +240,19 @@ impl Formula {
         self.is_symmetric
     }
 
-    fn moment(&self, constants: &[f64], point: &Point) -> f64 {
+    fn moment(&self, constants: &[f64], point: &SignalPoint) -> f64 {
         self.program.value(constants, |signal| Some(point.of(signal))).unwrap_or(f64::NAN)
     }
 
     /// Points all over the range of the signals, always the same.
-    fn points(&self, scales: &Scales) -> impl Iterator<Item = Point> + use<> {
+    fn points(&self, scales: &SignalSizes) -> impl Iterator<Item = SignalPoint> + use<> {
         let scales = *scales;
-        (1..=POINTS).map(move |number| Point::of_number(number, &scales))
+        (1..=POINTS).map(move |number| SignalPoint::of_number(number, &scales))
     }
 
     /// Values of the constants where a fit starts: of a shape the expected one, else the one at which the moment begins
     /// to bend.
-    fn shapes(&self, scales: &Scales) -> Vec<f64> {
+    fn shapes(&self, scales: &SignalSizes) -> Vec<f64> {
         let mut values: Vec<f64> = self.expected.iter().map(|own| own.about.unwrap_or(1.0)).collect();
         for place in 0..values.len() {
             if self.is_size[place] || self.expected[place].about.is_some() {
@@ -282,112 +278,6 @@ impl Formula {
     }
 }
 
-/// Reads `k about 5; c from 0 to 1`.
-fn expectations(said: &str, constants: &[String]) -> Result<Vec<Expectation>, String> {
-    let mut expected = vec![Expectation::default(); constants.len()];
-    for part in said.split(';').map(str::trim).filter(|part| !part.is_empty()) {
-        let words: Vec<&str> = part.split_whitespace().collect();
-        let number = |word: &str| word.parse().ok().filter(|number: &f64| number.is_finite());
-        let place = constants.iter().position(|known| words.first() == Some(&known.as_str()));
-        let place = place.ok_or_else(|| format!("`{part}`: expected one of the constants {}", constants.join(", ")))?;
-        let own = &mut expected[place];
-        let unread = || format!("`{part}`: expected `{0} about 5` or `{0} from 1 to 20`", constants[place]);
-        match words[1..] {
-            ["about", about] => own.about = Some(number(about).filter(|size| *size != 0.0).ok_or_else(unread)?),
-            ["from", lowest, "to", highest] => {
-                let ends = [number(lowest).ok_or_else(unread)?, number(highest).ok_or_else(unread)?];
-                own.ends = Some(ends).filter(|[low, high]| low < high);
-                own.ends.ok_or_else(unread)?;
-            }
-            _ => return Err(unread()),
-        }
-    }
-    Ok(expected)
-}
-
-/// Sizes of the signals in some records.
-#[derive(Debug, Clone, Copy)]
-struct Scales {
-    yaw_rate: f64,
-    rudder: f64,
-    speed: f64,
-    propeller: f64,
-    duration: f64,
-    wind: f64,
-    length: f64,
-}
-
-impl Scales {
-    fn ones() -> Self {
-        Self { yaw_rate: 1.0, rudder: 1.0, speed: 1.0, propeller: 1.0, duration: 1.0, wind: 1.0, length: 1.0 }
-    }
-
-    /// r L/U of a zig-zag is about 0.3.
-    fn of(about: &Manoeuvres) -> Self {
-        let speed = about.speed.or(about.sway).unwrap_or(1.0);
-        Self {
-            yaw_rate: 0.3 / about.time,
-            rudder: about.rudder,
-            speed,
-            propeller: about.propeller.unwrap_or(1.0),
-            duration: about.duration,
-            wind: about.wind_square.unwrap_or(1.0).sqrt(),
-            length: about.time * speed,
-        }
-    }
-}
-
-/// The signals at a point.
-#[derive(Debug, Clone, Copy)]
-struct Point {
-    scales: Scales,
-    /// From −1 to 1: yaw rate, rudder, heading, sway, direction of the wind.
-    signed: [f64; 5],
-    /// From 0.5 to 1: speed, propeller, time, speed of the wind.
-    positive: [f64; 4],
-    /// Numbers of units that go into a second and into a metre.
-    second: f64,
-    metre: f64,
-}
-
-impl Point {
-    /// The point of a number: parts of multiples of roots, which fill a box evenly (Weyl).
-    fn of_number(number: usize, scales: &Scales) -> Self {
-        const ROOTS: [f64; 9] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0];
-        let part = |root: f64| (number as f64 * root.sqrt()).fract();
-        Self {
-            scales: *scales,
-            signed: std::array::from_fn(|place| 2.0 * part(ROOTS[place]) - 1.0),
-            positive: std::array::from_fn(|place| 0.5 + 0.5 * part(ROOTS[5 + place])),
-            second: 1.0,
-            metre: 1.0,
-        }
-    }
-
-    fn mirrored(self) -> Self {
-        Self { signed: self.signed.map(|value| -value), ..self }
-    }
-
-    fn of(&self, signal: Signal) -> f64 {
-        let Self { scales, signed: [r, delta, psi, v, angle], positive: [speed, n, t, wind], second, metre } = *self;
-        let per_second = metre / second;
-        match signal {
-            Signal::YawRate => r * scales.yaw_rate / second,
-            Signal::Rudder => delta * scales.rudder,
-            // A zig-zag turns about as far as its rudder goes.
-            Signal::Heading => psi * scales.rudder,
-            Signal::Sway => 0.15 * v * scales.speed * per_second,
-            Signal::Surge | Signal::Speed => speed * scales.speed * per_second,
-            Signal::Propeller => n * scales.propeller / second,
-            Signal::Time => t * scales.duration * second,
-            Signal::WindSpeed => wind * scales.wind * per_second,
-            Signal::WindAngle => std::f64::consts::PI * angle,
-            Signal::PrimeYawRate => r * scales.yaw_rate * scales.length / (speed * scales.speed),
-            Signal::PrimeSway => 0.15 * v / speed,
-        }
-    }
-}
-
 impl Effect for Formula {
     fn description(&self) -> Description {
         self.description
@@ -405,7 +295,7 @@ impl Effect for Formula {
         if !self.channels().all(has) {
             return None;
         }
-        let scales = Scales::of(about);
+        let scales = SignalSizes::of(about);
         let own = Self { length: scales.length, ..self.clone() };
         let shapes = own.shapes(&scales);
         let priors = own.parameters().iter().enumerate().map(|(place, parameter)| {
@@ -450,11 +340,11 @@ impl Effect for Formula {
     }
 
     fn is_of_time(&self) -> bool {
-        self.program.signals().contains(&Signal::Time)
+        self.program.signals().contains(&FormulaSignal::Time)
     }
 
     fn sees_heading(&self) -> bool {
-        self.program.signals().contains(&Signal::Heading)
+        self.program.signals().contains(&FormulaSignal::Heading)
     }
 }
 
@@ -462,12 +352,20 @@ impl Formula {
     /// The measured channels it needs.
     fn channels(&self) -> impl Iterator<Item = Regressor> {
         let signals = self.program.signals();
-        let needs = move |any: &[Signal]| any.iter().any(|signal| signals.contains(signal));
+        let needs = move |any: &[FormulaSignal]| any.iter().any(|signal| signals.contains(signal));
         [
-            (Regressor::Sway, needs(&[Signal::Sway, Signal::Surge, Signal::PrimeSway])),
-            (Regressor::Speed, needs(&[Signal::Speed, Signal::Surge, Signal::PrimeSway, Signal::PrimeYawRate])),
-            (Regressor::Wind, needs(&[Signal::WindSpeed, Signal::WindAngle])),
-            (Regressor::Propeller, needs(&[Signal::Propeller])),
+            (Regressor::Sway, needs(&[FormulaSignal::Sway, FormulaSignal::Surge, FormulaSignal::PrimeSway])),
+            (
+                Regressor::Speed,
+                needs(&[
+                    FormulaSignal::Speed,
+                    FormulaSignal::Surge,
+                    FormulaSignal::PrimeSway,
+                    FormulaSignal::PrimeYawRate,
+                ]),
+            ),
+            (Regressor::Wind, needs(&[FormulaSignal::WindSpeed, FormulaSignal::WindAngle])),
+            (Regressor::Propeller, needs(&[FormulaSignal::Propeller])),
         ]
         .into_iter()
         .filter_map(|(channel, is_needed)| is_needed.then_some(channel))

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::program::{Function, Instruction, Operator, Program, STACK, Signal};
+use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, STACK};
 
 /// Longest text, characters.
 const LONGEST: usize = 400;
@@ -34,9 +34,14 @@ impl fmt::Display for FormulaError {
 /// Reads a formula.
 ///
 /// Fails where the text is no formula, is too long or too deep, or has too many constants.
-pub fn parse(text: &str) -> Result<Program, FormulaError> {
-    let mut parser =
-        Parser { letters: text.chars().collect(), at: 0, depth: 0, waiting: 0, program: Program::default() };
+pub fn parse(text: &str) -> Result<FormulaProgram, FormulaError> {
+    let mut parser = FormulaParser {
+        letters: text.chars().collect(),
+        at: 0,
+        depth: 0,
+        waiting: 0,
+        program: FormulaProgram::default(),
+    };
     let found = parser.letters.len();
     if found > LONGEST {
         return Err(parser.error(LONGEST, format!("{found} characters, expected at most {LONGEST}")));
@@ -52,16 +57,16 @@ pub fn parse(text: &str) -> Result<Program, FormulaError> {
     }
 }
 
-struct Parser {
+struct FormulaParser {
     letters: Vec<char>,
     at: usize,
     depth: usize,
     /// Values that wait for an operator.
     waiting: usize,
-    program: Program,
+    program: FormulaProgram,
 }
 
-impl Parser {
+impl FormulaParser {
     fn error(&self, at: usize, problem: String) -> FormulaError {
         FormulaError { text: self.letters.iter().collect(), at, problem }
     }
@@ -111,7 +116,11 @@ impl Parser {
         self.product()?;
         while let Some(sign) = self.take(&['+', '-', '−']) {
             self.product()?;
-            self.push(Instruction::Operate(if sign == '+' { Operator::Add } else { Operator::Subtract }))?;
+            self.push(Instruction::Operate(if sign == '+' {
+                FormulaOperator::Add
+            } else {
+                FormulaOperator::Subtract
+            }))?;
         }
         Ok(())
     }
@@ -120,7 +129,11 @@ impl Parser {
         self.deeper(Self::signed)?;
         while let Some(sign) = self.take(&['*', '/', '·']) {
             self.deeper(Self::signed)?;
-            self.push(Instruction::Operate(if sign == '/' { Operator::Divide } else { Operator::Multiply }))?;
+            self.push(Instruction::Operate(if sign == '/' {
+                FormulaOperator::Divide
+            } else {
+                FormulaOperator::Multiply
+            }))?;
         }
         Ok(())
     }
@@ -160,7 +173,7 @@ impl Parser {
                 self.waiting -= 1;
                 self.push(Instruction::WholePower(whole as i32))
             }
-            None => self.push(Instruction::Operate(Operator::Power)),
+            None => self.push(Instruction::Operate(FormulaOperator::Power)),
         }
     }
 
@@ -220,19 +233,19 @@ impl Parser {
         if self.peek() == Some('(') {
             return self.call(&name, from);
         }
-        if let Some((_, signal)) = Signal::NAMES.iter().find(|(known, _)| *known == name) {
+        if let Some((_, signal)) = FormulaSignal::NAMES.iter().find(|(known, _)| *known == name) {
             return self.push(Instruction::Signal(*signal));
         }
         if name == "pi" {
             return self.push(Instruction::Number(std::f64::consts::PI));
         }
-        if let Some(known) = misspelt(&name, from) {
+        if let Some(known) = misspelt(&name) {
             return Err(self.error(from, format!("`{name}` is no signal; did you mean `{known}`?")));
         }
         if !name.is_ascii() {
             return Err(self.error(from, format!("`{name}`: expected letters without accents, digits and _")));
         }
-        if Function::NAMES.iter().any(|(known, _)| *known == name) {
+        if FormulaFunction::NAMES.iter().any(|(known, _)| *known == name) {
             return Err(self.error(self.at, format!("expected `(` after the function `{name}`")));
         }
         let constants = &mut self.program.constants;
@@ -248,10 +261,11 @@ impl Parser {
     }
 
     fn call(&mut self, name: &str, from: usize) -> Result<(), FormulaError> {
-        let one = Function::NAMES.iter().find(|(known, _)| *known == name);
-        let two = Operator::NAMES.iter().find(|(known, _)| *known == name);
+        let one = FormulaFunction::NAMES.iter().find(|(known, _)| *known == name);
+        let two = FormulaOperator::NAMES.iter().find(|(known, _)| *known == name);
         if one.is_none() && two.is_none() {
-            let known: Vec<&str> = Function::NAMES.iter().map(|own| own.0).chain(["min", "max", "pow"]).collect();
+            let known: Vec<&str> =
+                FormulaFunction::NAMES.iter().map(|own| own.0).chain(["min", "max", "pow"]).collect();
             return Err(self.error(from, format!("`{name}` is no function; use one of {}", known.join(", "))));
         }
         let open = self.at;
@@ -263,7 +277,7 @@ impl Parser {
                 let second = self.program.instructions.len();
                 self.deeper(Self::sum)?;
                 self.close(open)?;
-                if *operator == Operator::Power {
+                if *operator == FormulaOperator::Power {
                     self.raise(second)
                 } else {
                     self.push(Instruction::Operate(*operator))
@@ -280,10 +294,10 @@ impl Parser {
 }
 
 /// A signal that a name is meant for: another spelling of it.
-fn misspelt(name: &str, _from: usize) -> Option<&'static str> {
+fn misspelt(name: &str) -> Option<&'static str> {
     const SPELLINGS: [(&str, &[&str]); 8] = [
-        ("delta", &["δ", "rudder", "dleta", "detla", "delt", "rudder_angle"]),
-        ("psi", &["ψ", "heading", "Psi", "phi_heading"]),
+        ("delta", &["δ", "rudder", "rudder_angle"]),
+        ("psi", &["ψ", "heading"]),
         ("r", &["R", "yaw_rate", "yawrate"]),
         ("v", &["V", "sway", "sway_velocity"]),
         ("U", &["speed", "Speed"]),
@@ -291,21 +305,9 @@ fn misspelt(name: &str, _from: usize) -> Option<&'static str> {
         ("wind_speed", &["windspeed", "Vw", "U_wind"]),
         ("wind_angle", &["winddir", "wind_direction", "wind_from", "windangle"]),
     ];
-    let is_near = |known: &str| known.len() > 2 && strsim_one(known, name);
+    let is_near = |known: &str| known.len() > 2 && strsim::damerau_levenshtein(known, name) == 1;
     let spelt = SPELLINGS.iter().find(|(known, others)| others.contains(&name) || is_near(known));
     spelt.map(|(known, _)| *known)
-}
-
-/// Whether two names differ by one letter that is wrong, missing or too many.
-fn strsim_one(one: &str, other: &str) -> bool {
-    let (long, short) = if one.len() >= other.len() { (one, other) } else { (other, one) };
-    let (long, short): (Vec<char>, Vec<char>) = (long.chars().collect(), short.chars().collect());
-    let same = long.iter().zip(&short).take_while(|(a, b)| a == b).count();
-    match long.len() - short.len() {
-        0 => same < long.len() && long[same + 1..] == short[same + 1..],
-        1 => long[same + 1..] == short[same..],
-        _ => false,
-    }
 }
 
 #[cfg(test)]
@@ -313,11 +315,11 @@ mod tests {
     use super::*;
 
     fn value(text: &str) -> f64 {
-        let signal = |signal: Signal| {
+        let signal = |signal: FormulaSignal| {
             Some(match signal {
-                Signal::YawRate => -0.5,
-                Signal::Rudder => 2.0,
-                Signal::Sway => -3.0,
+                FormulaSignal::YawRate => -0.5,
+                FormulaSignal::Rudder => 2.0,
+                FormulaSignal::Sway => -3.0,
                 _ => 1.5,
             })
         };
@@ -349,7 +351,7 @@ mod tests {
             assert!((value(text) - expected).abs() < 1e-12, "{text}: {} is not {expected}", value(text));
         }
         assert_eq!(parse("k*tanh(c*psi)*k").expect("a formula").constants(), ["k", "c"]);
-        assert_eq!(parse("c*r*abs(v)*r").expect("a formula").signals(), [Signal::YawRate, Signal::Sway]);
+        assert_eq!(parse("c*r*abs(v)*r").expect("a formula").signals(), [FormulaSignal::YawRate, FormulaSignal::Sway]);
     }
 
     #[test]

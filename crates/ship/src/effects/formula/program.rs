@@ -3,14 +3,14 @@
 
 use estimation::number::Real;
 
-use crate::effects::Now;
+use crate::effects::effect::Now;
 
 /// Most values that wait for an operator at once.
 pub(super) const STACK: usize = 16;
 
 /// A signal that a formula may name. Units and signs are those of NOTATION.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Signal {
+pub enum FormulaSignal {
     /// `r`, yaw rate, rad/s.
     YawRate,
     /// `delta`, rudder that acts, rad.
@@ -37,7 +37,7 @@ pub enum Signal {
     PrimeSway,
 }
 
-impl Signal {
+impl FormulaSignal {
     /// Every signal with its name.
     pub const NAMES: [(&'static str, Self); 12] = [
         ("r", Self::YawRate),
@@ -76,7 +76,7 @@ impl Signal {
 
 /// A function of one value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Function {
+pub enum FormulaFunction {
     /// Magnitude.
     Abs,
     /// −1, 0 or 1.
@@ -99,7 +99,7 @@ pub enum Function {
     Step,
 }
 
-impl Function {
+impl FormulaFunction {
     /// Every function of one value with its name.
     pub const NAMES: [(&'static str, Self); 10] = [
         ("abs", Self::Abs),
@@ -136,7 +136,7 @@ impl Function {
 
 /// An operator or a function of two values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Operator {
+pub enum FormulaOperator {
     /// Sum.
     Add,
     /// Difference.
@@ -155,7 +155,7 @@ pub enum Operator {
     SmoothStep,
 }
 
-impl Operator {
+impl FormulaOperator {
     /// Functions of two values with their names.
     pub const NAMES: [(&'static str, Self); 4] =
         [("min", Self::Min), ("max", Self::Max), ("pow", Self::Power), ("step", Self::SmoothStep)];
@@ -194,38 +194,38 @@ pub(super) enum Instruction {
     /// A constant that is fitted, by its place.
     Constant(usize),
     /// A signal.
-    Signal(Signal),
+    Signal(FormulaSignal),
     /// Minus.
     Negate,
     /// A whole power.
     WholePower(i32),
     /// A function of the last value.
-    Call(Function),
+    Call(FormulaFunction),
     /// An operator between the last two values.
-    Operate(Operator),
+    Operate(FormulaOperator),
 }
 
 /// A formula ready to be evaluated.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Program {
+pub struct FormulaProgram {
     pub(super) instructions: Vec<Instruction>,
     /// The constants in the order of their first use.
     pub(super) constants: Vec<String>,
 }
 
-impl Program {
+impl FormulaProgram {
     /// Names of the constants, in the order in which their values travel.
     pub fn constants(&self) -> &[String] {
         &self.constants
     }
 
     /// The signals it names, each once.
-    pub fn signals(&self) -> Vec<Signal> {
+    pub fn signals(&self) -> Vec<FormulaSignal> {
         let named = self.instructions.iter().filter_map(|step| match step {
             Instruction::Signal(signal) => Some(*signal),
             _ => None,
         });
-        let mut signals: Vec<Signal> = named.collect();
+        let mut signals: Vec<FormulaSignal> = named.collect();
         signals.sort_unstable();
         signals.dedup();
         signals
@@ -233,7 +233,7 @@ impl Program {
 
     /// Its value with these constants; `signal` gives the signals. `None` where one is missing.
     #[inline]
-    pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(Signal) -> Option<R>) -> Option<R> {
+    pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> Option<R>) -> Option<R> {
         let mut stack = [R::from(0.0); STACK];
         let mut top = 0;
         for step in &self.instructions {

@@ -1,0 +1,87 @@
+//! Points at which a formula is looked at: signals of the sizes of some records.
+
+use super::program::FormulaSignal;
+use crate::effects::effect::Manoeuvres;
+
+/// Sizes of the signals in some records.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SignalSizes {
+    yaw_rate: f64,
+    rudder: f64,
+    speed: f64,
+    propeller: f64,
+    duration: f64,
+    wind: f64,
+    pub(super) length: f64,
+}
+
+impl SignalSizes {
+    pub(super) fn ones() -> Self {
+        Self { yaw_rate: 1.0, rudder: 1.0, speed: 1.0, propeller: 1.0, duration: 1.0, wind: 1.0, length: 1.0 }
+    }
+
+    /// r L/U of a zig-zag is about 0.3.
+    pub(super) fn of(about: &Manoeuvres) -> Self {
+        let speed = about.speed.or(about.sway).unwrap_or(1.0);
+        Self {
+            yaw_rate: 0.3 / about.time,
+            rudder: about.rudder,
+            speed,
+            propeller: about.propeller.unwrap_or(1.0),
+            duration: about.duration,
+            wind: about.wind_square.unwrap_or(1.0).sqrt(),
+            length: about.time * speed,
+        }
+    }
+}
+
+/// The signals at a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SignalPoint {
+    pub(super) scales: SignalSizes,
+    /// From −1 to 1: yaw rate, rudder, heading, sway, direction of the wind.
+    pub(super) signed: [f64; 5],
+    /// From 0.5 to 1: speed, propeller, time, speed of the wind.
+    pub(super) positive: [f64; 4],
+    /// Numbers of units that go into a second and into a metre.
+    pub(super) second: f64,
+    pub(super) metre: f64,
+}
+
+impl SignalPoint {
+    /// The point of a number: parts of multiples of roots, which fill a box evenly (Weyl).
+    pub(super) fn of_number(number: usize, scales: &SignalSizes) -> Self {
+        const ROOTS: [f64; 9] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0];
+        let part = |root: f64| (number as f64 * root.sqrt()).fract();
+        Self {
+            scales: *scales,
+            signed: std::array::from_fn(|place| 2.0 * part(ROOTS[place]) - 1.0),
+            positive: std::array::from_fn(|place| 0.5 + 0.5 * part(ROOTS[5 + place])),
+            second: 1.0,
+            metre: 1.0,
+        }
+    }
+
+    pub(super) fn mirrored(self) -> Self {
+        Self { signed: self.signed.map(|value| -value), ..self }
+    }
+
+    pub(super) fn of(&self, signal: FormulaSignal) -> f64 {
+        let Self { scales, signed: [r, delta, psi, v, angle], positive: [speed, n, t, wind], second, metre } = *self;
+        let per_second = metre / second;
+        match signal {
+            FormulaSignal::YawRate => r * scales.yaw_rate / second,
+            FormulaSignal::Rudder => delta * scales.rudder,
+            // A zig-zag turns about as far as its rudder goes.
+            FormulaSignal::Heading => psi * scales.rudder,
+            FormulaSignal::Sway => 0.15 * v * scales.speed * per_second,
+            FormulaSignal::Surge | FormulaSignal::Speed => speed * scales.speed * per_second,
+            FormulaSignal::Propeller => n * scales.propeller / second,
+            FormulaSignal::Time => t * scales.duration * second,
+            FormulaSignal::WindSpeed => wind * scales.wind * per_second,
+            FormulaSignal::WindAngle => std::f64::consts::PI * angle,
+            FormulaSignal::PrimeYawRate => r * scales.yaw_rate * scales.length / (speed * scales.speed),
+            FormulaSignal::PrimeSway => 0.15 * v / speed,
+        }
+    }
+}
