@@ -43,9 +43,13 @@ impl<'a> RunningEstimators<'a> {
 impl RunningEstimators<'_> {
     /// Tells of those that were given up since this was asked last.
     pub fn tell(&self, observer: &dyn Observer) {
-        let notices = self.0.iter().filter_map(|(method, outside)| Some((&method.label, outside.notice()?)));
-        notices.for_each(|(label, notice)| observer.warn(&format!("{label}: {notice}")));
+        self.0.iter().for_each(|(method, outside)| tell(&method.label, *outside, observer));
     }
+}
+
+/// Tells, once, that an estimator was given up.
+pub(crate) fn tell(label: &str, outside: &dyn Outside, observer: &dyn Observer) {
+    outside.notice().iter().for_each(|notice| observer.warn(&format!("{label}: {notice}")));
 }
 
 impl Drop for RunningEstimators<'_> {

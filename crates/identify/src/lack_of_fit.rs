@@ -74,16 +74,16 @@ impl LackOfFit {
         let rms = |values: &[f64], free: usize| (dot(values, values) / (rows - free as f64).max(1.0)).sqrt();
         let before = rms(&residual, 0);
         let mut basis = Vec::new();
-        let (own, of_ships) = terms.split_at(OWN_TERMS);
-        own.iter().for_each(|column| extend(&mut basis, column.clone()));
+        let mut terms = terms.into_iter();
+        terms.by_ref().take(OWN_TERMS).for_each(|column| extend(&mut basis, column));
         remove(&basis, &mut residual);
         // δ(t − τ) is δ − τ δ', so what δ' adds is −τ K/T of its column.
-        let mut turning = of_ships[0].clone();
+        let mut turning = terms.as_slice().first()?.clone();
         remove(&basis, &mut turning);
         let size = dot(&turning, &residual) / dot(&turning, &turning);
         let delayed: Vec<f64> = residual.iter().zip(&turning).map(|(rest, own)| rest - size * own).collect();
         let with_delay = rms(&delayed, basis.len() + 1 + initial);
-        of_ships.iter().for_each(|column| extend(&mut basis, column.clone()));
+        terms.for_each(|column| extend(&mut basis, column));
         remove(&basis, &mut residual);
         let after = rms(&residual, basis.len() + initial);
         let lag1 = robust::lag1_autocorrelation(pieces.iter().map(Vec::as_slice));

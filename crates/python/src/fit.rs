@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use scenario::failure::Failure;
 use scenario::name;
 use study::documents as document;
+use study::outside::SAME_LABEL;
 use study::records::warn_of_repetition;
 use study::work;
 use trial::Trial;
@@ -60,8 +61,7 @@ pub fn fit(
         for (label, function) in own {
             name::label(&label).map_err(|unfit| Failure::input(format!("own: a label is {label:?}; {unfit}")))?;
             if methods.iter().any(|(known, _)| *known == label) {
-                let advice = "there is another method with this label; give it one of its own";
-                return Err(Failure::input(format!("own: {label:?}: {advice}")));
+                return Err(Failure::input(format!("own: {label:?}: {SAME_LABEL}")));
             }
             methods.push((label, Box::new(PyIdentifier(function))));
         }

@@ -110,14 +110,14 @@ impl Sheet {
         let room = theme.width - left - margin;
         for row in entries.chunks(starts.len()) {
             self.y += LEADING * theme.small_font;
+            let mut most = 1;
             for (entry, start) in row.iter().zip(&starts) {
                 if let Some(ink) = entry.ink() {
                     self.scene.key(ink, &entry.label);
                 }
-                entry.draw(&mut self.scene, (left + start, self.y), room - start, &theme);
+                most = most.max(entry.draw(&mut self.scene, (left + start, self.y), room - start, &theme));
             }
-            let lines = row.iter().zip(&starts).map(|(entry, start)| entry.lines(room - start, &theme).len());
-            self.y += LEADING * theme.small_font * (lines.max().unwrap_or(1).max(1) - 1) as f64;
+            self.y += LEADING * theme.small_font * (most - 1) as f64;
         }
         self.y += 0.7 * theme.small_font;
     }

@@ -67,8 +67,9 @@ impl KeyEntry {
         lines::wrap(&self.label, theme.small_font, false, room - self.sample_width(theme))
     }
 
-    /// Draws the entry in a place this wide, with the base line of its first line at `place`.
-    pub(crate) fn draw(&self, scene: &mut Canvas, (x, y): PagePoint, room: f64, theme: &Theme) {
+    /// Draws the entry in a place this wide, with the base line of its first line at `place`; returns how many lines
+    /// its name takes.
+    pub(crate) fn draw(&self, scene: &mut Canvas, (x, y): PagePoint, room: f64, theme: &Theme) -> usize {
         let text = TextLine::new(self.label.as_str(), theme.small_font);
         let middle = y - text.centring();
         let width = self.sample_width(theme);
@@ -89,10 +90,13 @@ impl KeyEntry {
             }
             KeySample::Hull(colour) => scene.hull(Layer::Note, centre, (1.0, 0.0), 1.6 * theme.small_font, colour),
         }
-        for (index, line) in self.lines(room, theme).into_iter().enumerate() {
+        let lines = self.lines(room, theme);
+        let count = lines.len();
+        for (index, line) in lines.into_iter().enumerate() {
             let down = LEADING * theme.small_font * index as f64;
             scene.text(Layer::Note, (x + width, y + down), TextLine::new(line, theme.small_font));
         }
+        count
     }
 }
 

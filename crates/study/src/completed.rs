@@ -7,6 +7,9 @@ use clap::{Arg, Command, Error};
 use identify::registry;
 use std::ffi::OsStr;
 
+/// Stands for every method where methods are named.
+pub const ALL: &str = "all";
+
 /// A parser with words that it takes. Whether it takes others is for the parser to say, and how it refuses them.
 #[derive(Clone)]
 pub struct Completed<P> {
@@ -31,10 +34,15 @@ impl<P: TypedValueParser> TypedValueParser for Completed<P> {
     }
 }
 
-/// Methods of the project, and the word for all.
+/// Methods of the project.
 pub fn methods() -> Vec<String> {
     let built = registry::defaults().into_iter().filter_map(|settings| settings.build().ok());
-    built.map(|method| method.id().to_owned()).chain([String::from("all")]).collect()
+    built.map(|method| method.id().to_owned()).collect()
+}
+
+/// The same, and the word for all of them.
+pub fn methods_or_all() -> Vec<String> {
+    methods().into_iter().chain([String::from(ALL)]).collect()
 }
 
 /// Methods of the benchmark.

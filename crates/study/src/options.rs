@@ -181,7 +181,7 @@ pub struct FitRequest {
     /// Method to use, or `all`; can be given several times [default: all but fourier-published and srivc]
     #[arg(
         long = "method", value_name = "ID|all",
-        value_parser = completed(StringValueParser::new(), completed::methods),
+        value_parser = completed(StringValueParser::new(), completed::methods_or_all),
         hide_possible_values = true
     )]
     pub methods: Vec<String>,
@@ -353,7 +353,7 @@ pub struct PredictRequest {
     /// where a record of --replay is that trial
     #[arg(long)]
     pub form: bool,
-    /// Method whose answer in fit.json is used [default: maximum-likelihood, or the next that has a covariance]
+    /// Method whose answer in fit.json is used [default: the one to take, or the next that has a covariance]
     #[arg(
         long, value_name = "ID",
         value_parser = completed(StringValueParser::new(), completed::methods),

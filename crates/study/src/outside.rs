@@ -57,6 +57,9 @@ fn words(command: &str) -> Result<Vec<String>, String> {
 /// A method with what it is called.
 pub type Named = (String, Box<dyn Identifier>);
 
+/// What is said of a label that another method has.
+pub const SAME_LABEL: &str = "there is another method with this label; give it one of its own";
+
 /// The methods of these commands with their labels; programs run where this one does. Nothing is started yet.
 ///
 /// Fails when two methods have one label, those that are `known` included, when a command cannot be one, and when its
@@ -66,7 +69,7 @@ pub fn methods(commands: &[NamedCommand], known: &[&str]) -> Result<Vec<Named>, 
     for NamedCommand { label, command } in commands {
         let refuse = |problem: &dyn std::fmt::Display| Failure::input(format!("--external {label}=…: {problem}"));
         if known.contains(&label.as_str()) || methods.iter().any(|(other, _)| other == label) {
-            return Err(refuse(&"there is another method with this label; give it one of its own"));
+            return Err(refuse(&SAME_LABEL));
         }
         let method = Settings::new(command).build(Path::new("")).map_err(|error| refuse(&error))?;
         method.find().map_err(|problem| refuse(&problem))?;

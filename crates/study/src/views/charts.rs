@@ -8,7 +8,7 @@ use report::{CurveOrigin, PlotCurve};
 use scenario::TRACE;
 
 use campaign::curves;
-use campaign::design::Design;
+use campaign::design::{CellFacts, Design};
 use campaign::statistics::{Statistic, Z95, grouped};
 use campaign::summary::{Performance, Summary};
 
@@ -240,19 +240,18 @@ struct ChartGroup {
 }
 
 fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
-    let others = |cell: &usize| {
-        let labels = design.cells[*cell].labels.iter().enumerate().filter(|(axis, _)| *axis != x);
-        labels.map(|(_, label)| label.as_str()).collect::<Vec<_>>().join(", ")
+    let others = |label: &dyn Fn(usize) -> String| {
+        (0..design.axes.len()).filter(|axis| *axis != x).map(label).collect::<Vec<_>>().join(", ")
     };
+    let name = |cell: &usize| others(&|axis| design.cells[*cell].labels[axis].clone());
     let head = |cell: usize| {
-        let named = |(axis, label): (usize, &String)| match design.cells[cell].values[axis] {
-            Some(_) => format!("{} = {label}", design.axes[axis]),
-            None => label.clone(),
-        };
-        let labels = design.cells[cell].labels.iter().enumerate().filter(|(axis, _)| *axis != x);
-        labels.map(named).collect::<Vec<_>>().join(", ")
+        let CellFacts { labels, values, .. } = &design.cells[cell];
+        others(&|axis| match values[axis] {
+            Some(_) => format!("{} = {}", design.axes[axis], labels[axis]),
+            None => labels[axis].clone(),
+        })
     };
-    let groups = grouped(0..design.cells.len(), others).into_iter();
+    let groups = grouped(0..design.cells.len(), name).into_iter();
     groups.map(|(name, cells)| ChartGroup { name, head: head(cells[0]), cells }).collect()
 }
 

@@ -16,6 +16,7 @@ use trial::{Channel, Trial, ZigZag};
 
 use super::every_scale::{self, PREFERRED_METHODS};
 use super::single_records;
+use crate::completed::ALL;
 use crate::documents::fit::{FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
 use crate::documents::verdict::VerdictEntry;
 use crate::outside::{self, Named, NamedCommand};
@@ -164,9 +165,6 @@ fn verdict(
     };
     VerdictEntry::of(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries)
 }
-
-/// Stands for every method where methods are named.
-const ALL: &str = "all";
 
 /// The named methods of the project with their default settings, the best first, the usual ones for no name, and
 /// outside estimators behind them; those that draw at random with this seed.

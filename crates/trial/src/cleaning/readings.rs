@@ -1,6 +1,7 @@
 //! Single readings that are wrong: spikes and jumps of a heading, a yaw rate at the end of its scale. A spike is left
 //! out; a jump is told and left, for nobody can say which side of it is right.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use super::reject;
@@ -85,12 +86,13 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
         let last = rows.last_chunk::<3>().filter(|rows| is_alone(rows[2], [rows[1], rows[0]])).map(|rows| rows[2]);
         let alone: Vec<usize> = first.into_iter().chain(inner).chain(last).collect();
         // Whole turns of a heading are nothing.
-        let value = |row: &usize| match channel {
-            Channel::Heading => (values[*row].rem_euclid(TAU) * DIGITS).round().rem_euclid((TAU * DIGITS).round()),
-            _ => (values[*row] * DIGITS).round(),
+        let value = |row: usize| match channel {
+            Channel::Heading => (values[row].rem_euclid(TAU) * DIGITS).round().rem_euclid((TAU * DIGITS).round()),
+            _ => (values[row] * DIGITS).round(),
         };
-        let groups = grouped_by_value(&alone, value);
-        let Some((lost, written)) = groups.into_iter().max_by_key(|(rows, _)| rows.len()) else { continue };
+        let mut of_value: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
+        alone.iter().for_each(|&row| of_value.entry(value(row) as i64).or_default().push(row));
+        let Some((written, lost)) = of_value.into_iter().max_by_key(|(_, rows)| rows.len()) else { continue };
         let is_most = lost.len() as f64 >= OF_ONE_VALUE * alone.len() as f64;
         if lost.len() < LOST_POLLS.0 || lost.len() as f64 > LOST_POLLS.1 * rows.len() as f64 || !is_most {
             continue;
@@ -101,18 +103,10 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
         told.push(format!(
             "{} of exactly {} between others far from it taken as missing, as polls that were not answered, {times}",
             counted(lost.len(), channel.spoken()),
-            if written == 0.0 { "zero".to_owned() } else { format!("{:.2}°", (written / DIGITS).to_degrees()) },
+            if written == 0 { "zero".to_owned() } else { format!("{:.2}°", (written as f64 / DIGITS).to_degrees()) },
         ));
     }
     told
-}
-
-/// Rows with the same value, and the value.
-fn grouped_by_value(rows: &[usize], value: impl Fn(&usize) -> f64) -> Vec<(Vec<usize>, f64)> {
-    let mut sorted = rows.to_vec();
-    sorted.sort_by(|one, other| value(one).total_cmp(&value(other)));
-    let groups = sorted.chunk_by(|one, other| value(one) == value(other));
-    groups.map(|group| (group.to_vec(), value(&group[0]))).collect()
 }
 
 /// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.

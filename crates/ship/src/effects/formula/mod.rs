@@ -26,9 +26,6 @@ const ANY: f64 = 1e9;
 /// Expected moment over the largest angle of the rudder, where nothing is said of the size of a constant.
 const MODERATE: f64 = 0.2;
 
-/// Points at which a formula is looked at.
-const POINTS: usize = 64;
-
 /// Longest name of an effect, characters.
 const LONGEST_NAME: usize = 40;
 
@@ -107,15 +104,14 @@ impl Formula {
             expected,
         };
         own.is_size = own.sizes();
-        let sample = own.shapes(&SignalSizes::ones());
-        let absent: Vec<f64> =
-            sample.iter().zip(&own.is_size).map(|(value, size)| if *size { 0.0 } else { *value }).collect();
-        let values: Vec<f64> = own.points(&SignalSizes::ones()).map(|point| own.moment(&absent, &point)).collect();
-        if !own.is_size.contains(&true) || values.iter().any(|value| *value != 0.0) {
+        let shapes = own.shapes(&SignalSizes::ones());
+        let absent = own.with_size(None, &shapes);
+        let mut moments = SignalPoint::all(&SignalSizes::ones()).map(|point| own.moment(&absent, &point));
+        if !own.is_size.contains(&true) || moments.any(|moment| moment != 0.0) {
             let problem = "no value of the constants takes the effect away: multiply every term with a constant, as in `c * tanh(k * psi)`";
             return Err(error(0, problem.to_owned()));
         }
-        own.describe(name, text);
+        own.describe(name, text, &shapes);
         Ok(own)
     }
 
@@ -129,7 +125,7 @@ impl Formula {
                     constants[own] = size;
                     self.moment(&constants, point)
                 };
-                self.points(&SignalSizes::ones()).all(|point| {
+                SignalPoint::all(&SignalSizes::ones()).all(|point| {
                     let [zero, one, three] = [0.0, 1.0, 3.0].map(|size| value(size, &point));
                     let is_finite = [zero, one, three].iter().all(|value| value.is_finite());
                     is_finite && (three - zero - 3.0 * (one - zero)).abs() <= 1e-9 * (three.abs() + zero.abs() + 1e-12)
@@ -138,12 +134,20 @@ impl Formula {
             .collect()
     }
 
-    fn describe(&mut self, name: &str, text: &str) {
+    /// Constants that are these shapes, and of the sizes one or none.
+    fn with_size(&self, place: Option<usize>, shapes: &[f64]) -> Vec<f64> {
+        let of = |(own, shape): (usize, &f64)| match (self.is_size[own], place == Some(own)) {
+            (false, _) => *shape,
+            (true, is_it) => f64::from(u8::from(is_it)),
+        };
+        shapes.iter().enumerate().map(of).collect()
+    }
+
+    fn describe(&mut self, name: &str, text: &str, shapes: &[f64]) {
         let kept = |words: String| -> &'static str { words.leak() };
-        let shapes = self.shapes(&SignalSizes::ones());
-        let symmetries: Vec<Option<bool>> = (0..shapes.len()).map(|place| self.symmetry(place, &shapes)).collect();
+        let symmetries: Vec<Option<bool>> = (0..shapes.len()).map(|place| self.symmetry(place, shapes)).collect();
         self.is_symmetric = symmetries.iter().all(Option::is_some);
-        let units = self.units(&shapes);
+        let units = self.units(shapes);
         let units: Vec<&'static str> = units.into_iter().map(|unit| unit.map_or(Parameter::NO_UNIT, kept)).collect();
         let parameters = (0..self.expected.len()).map(|place| {
             let key = kept(self.program.constants()[place].clone());
@@ -168,18 +172,12 @@ impl Formula {
     /// Whether the part that belongs to a constant changes its sign where port and starboard are exchanged, as a moment
     /// does; `None` where it does neither.
     fn symmetry(&self, place: usize, shapes: &[f64]) -> Option<bool> {
-        let mut constants = shapes.to_vec();
-        constants.iter_mut().zip(&self.is_size).for_each(|(value, size)| {
-            if *size {
-                *value = 0.0
-            }
-        });
         if !self.is_size[place] {
             return Some(true);
         }
-        constants[place] = 1.0;
+        let constants = self.with_size(Some(place), shapes);
         let agrees = |sign: f64| {
-            self.points(&SignalSizes::ones()).all(|point| {
+            SignalPoint::all(&SignalSizes::ones()).all(|point| {
                 let [one, other] = [&point, &point.mirrored()].map(|point| self.moment(&constants, point));
                 (other - sign * one).abs() <= 1e-9 * (one.abs() + other.abs() + 1e-12)
             })
@@ -218,11 +216,10 @@ impl Formula {
     /// The dimension of a size, where shapes have this one; `None` where no power of second and metre is its factor.
     fn dimension_beside(&self, place: usize, shapes: &[f64], of_shapes: Dimension) -> Option<Dimension> {
         let power = |second: f64, metre: f64| {
-            let mut ratios = self.points(&SignalSizes::ones()).filter_map(|point| {
+            let mut ratios = SignalPoint::all(&SignalSizes::ones()).filter_map(|point| {
                 let value = |point: &SignalPoint, grown: f64| {
-                    let size = |other: usize| f64::from(u8::from(other == place));
-                    let of = |other: usize| if self.is_size[other] { size(other) } else { shapes[other] * grown };
-                    self.moment(&(0..shapes.len()).map(of).collect::<Vec<f64>>(), point)
+                    let grown: Vec<f64> = shapes.iter().map(|shape| shape * grown).collect();
+                    self.moment(&self.with_size(Some(place), &grown), point)
                 };
                 let grown = second.powi(of_shapes[0]) * metre.powi(of_shapes[1]);
                 let ratio = value(&SignalPoint { second, metre, ..point }, grown) / value(&point, 1.0);
@@ -244,12 +241,6 @@ impl Formula {
         self.program.value(constants, |signal| Some(point.of(signal))).unwrap_or(f64::NAN)
     }
 
-    /// Points all over the range of the signals, always the same.
-    fn points(&self, scales: &SignalSizes) -> impl Iterator<Item = SignalPoint> + use<> {
-        let scales = *scales;
-        (1..=POINTS).map(move |number| SignalPoint::of_number(number, &scales))
-    }
-
     /// Values of the constants where a fit starts: of a shape the expected one, else the one at which the moment begins
     /// to bend.
     fn shapes(&self, scales: &SignalSizes) -> Vec<f64> {
@@ -261,7 +252,7 @@ impl Formula {
             let spread = |value: f64| {
                 let mut constants = values.clone();
                 constants[place] = value;
-                let moments = self.points(scales).map(|point| self.moment(&constants, &point));
+                let moments = SignalPoint::all(scales).map(|point| self.moment(&constants, &point));
                 moments.map(|moment| moment * moment).sum::<f64>().sqrt()
             };
             // How the moment grows with the constant: as a power at first, less where it bends.
@@ -302,15 +293,9 @@ impl Effect for Formula {
             if !own.is_size[place] {
                 return Prior::normal(parameter, shapes[place], 0.5 * shapes[place].abs()).shape();
             }
-            let mut alone = shapes.clone();
-            alone.iter_mut().zip(&own.is_size).for_each(|(value, size)| {
-                if *size {
-                    *value = 0.0
-                }
-            });
-            alone[place] = 1.0;
-            let square = own.points(&scales).map(|point| own.moment(&alone, &point).powi(2)).sum::<f64>();
-            let usual = MODERATE * about.rudder / (square / POINTS as f64).sqrt();
+            let alone = own.with_size(Some(place), &shapes);
+            let square = SignalPoint::all(&scales).map(|point| own.moment(&alone, &point).powi(2)).sum::<f64>();
+            let usual = MODERATE * about.rudder / (square / SignalPoint::COUNT as f64).sqrt();
             let sd = own.expected[place].about.map_or(usual, f64::abs);
             Prior::normal(parameter, 0.0, sd)
         });

@@ -112,30 +112,31 @@ impl FormulaParser {
         Ok(())
     }
 
-    fn sum(&mut self) -> Result<(), FormulaError> {
-        self.product()?;
-        while let Some(sign) = self.take(&['+', '-', '−']) {
-            self.product()?;
-            self.push(Instruction::Operate(if sign == '+' {
-                FormulaOperator::Add
-            } else {
-                FormulaOperator::Subtract
-            }))?;
+    /// Parts with operators of one rank between them, from left to right.
+    fn chain(
+        &mut self,
+        operators: &[(char, FormulaOperator)],
+        part: fn(&mut Self) -> Result<(), FormulaError>,
+    ) -> Result<(), FormulaError> {
+        part(self)?;
+        while let Some(sign) = self.peek()
+            && let Some((_, operator)) = operators.iter().find(|(own, _)| *own == sign)
+        {
+            self.at += 1;
+            part(self)?;
+            self.push(Instruction::Operate(*operator))?;
         }
         Ok(())
     }
 
+    fn sum(&mut self) -> Result<(), FormulaError> {
+        use FormulaOperator::{Add, Subtract};
+        self.chain(&[('+', Add), ('-', Subtract), ('−', Subtract)], Self::product)
+    }
+
     fn product(&mut self) -> Result<(), FormulaError> {
-        self.deeper(Self::signed)?;
-        while let Some(sign) = self.take(&['*', '/', '·']) {
-            self.deeper(Self::signed)?;
-            self.push(Instruction::Operate(if sign == '/' {
-                FormulaOperator::Divide
-            } else {
-                FormulaOperator::Multiply
-            }))?;
-        }
-        Ok(())
+        use FormulaOperator::{Divide, Multiply};
+        self.chain(&[('*', Multiply), ('·', Multiply), ('/', Divide)], |parser| parser.deeper(Self::signed))
     }
 
     /// A sign before a power: −x² is −(x²).

@@ -49,8 +49,17 @@ pub(super) struct SignalPoint {
 }
 
 impl SignalPoint {
+    /// Points at which a formula is looked at.
+    pub(super) const COUNT: usize = 64;
+
+    /// Points all over the range of the signals, always the same.
+    pub(super) fn all(scales: &SignalSizes) -> impl Iterator<Item = Self> + use<> {
+        let scales = *scales;
+        (1..=Self::COUNT).map(move |number| Self::of_number(number, &scales))
+    }
+
     /// The point of a number: parts of multiples of roots, which fill a box evenly (Weyl).
-    pub(super) fn of_number(number: usize, scales: &SignalSizes) -> Self {
+    fn of_number(number: usize, scales: &SignalSizes) -> Self {
         const ROOTS: [f64; 9] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0];
         let part = |root: f64| (number as f64 * root.sqrt()).fract();
         Self {
