@@ -33,6 +33,12 @@ pub trait Real:
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
 
+    /// The angle of the point (x, y), of which this number is y.
+    fn atan2(self, x: Self) -> Self;
+
+    /// √(x² + y²), not zero.
+    fn hypot(self, other: Self) -> Self;
+
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
 
@@ -82,6 +88,16 @@ impl Real for f64 {
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         f64::sin_cos(self)
+    }
+
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
+    }
+
+    #[inline]
+    fn hypot(self, other: Self) -> Self {
+        f64::hypot(self, other)
     }
 
     #[inline]
@@ -258,6 +274,18 @@ impl<const N: usize> Real for Dual<N> {
         (self.chained(sin, cos), self.chained(cos, -sin))
     }
 
+    fn atan2(self, x: Self) -> Self {
+        let square = (self.value * self.value + x.value * x.value).max(f64::MIN_POSITIVE);
+        let (by_y, by_x) = (x.value / square, -self.value / square);
+        self.joined(x, self.value.atan2(x.value), |dy, dx| by_y * dy + by_x * dx)
+    }
+
+    fn hypot(self, other: Self) -> Self {
+        let root = self.value.hypot(other.value);
+        let (by_x, by_y) = (self.value / root, other.value / root);
+        self.joined(other, root, |x, y| by_x * x + by_y * y)
+    }
+
     fn tanh(self) -> Self {
         let tanh = self.value.tanh();
         self.chained(tanh, 1.0 - tanh * tanh)
@@ -302,7 +330,7 @@ mod tests {
     fn expression<R: Real>(x: R, y: R) -> R {
         let (sin, cos) = (x * y).sin_cos();
         let power = (x * x + 0.5).powf(y / 3.0) + (y - x).powi(3) * 2.0 + (x * x + 0.1).sqrt().ln() * (y * 0.3).exp();
-        power / (cos + 2.0) - (sin - y).tanh() + (-x).abs() * x.at_least(0.4).between(R::from(0.1), y + 5.0)
+        power / (cos + 2.0) - (sin - y).tanh() + (x * y).atan2(y - x) * x.hypot(y) + (-x).abs() * x.at_least(0.4).between(R::from(0.1), y + 5.0)
     }
 
     #[test]

@@ -25,6 +25,7 @@ pub mod fourier;
 pub mod fourier_projected;
 pub mod fourier_published;
 mod gaps;
+pub mod hull;
 pub mod identifier;
 pub mod integral_least_squares;
 pub mod lack_of_fit;

@@ -13,6 +13,8 @@ use std::sync::Arc;
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
 use crate::effects::{Effect, EffectReal, Now, Parameter, Places, Scale, SwayCoupling};
 use crate::first_order::FirstOrder;
+use crate::number::Tangent;
+use crate::replayable::{Pace, Replayable, ReplayedShip};
 
 /// Number of base parameters: a = 1/T, b = K/T, δ_r.
 pub const BASE_PARAMETERS: usize = 3;
@@ -118,21 +120,6 @@ impl ResponseModel {
     }
 }
 
-/// Time constants that steps have to resolve: one at all times, others within a span.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Pace {
-    always: f64,
-    spans: Vec<([f64; 2], f64)>,
-}
-
-impl Pace {
-    /// Shortest time constant, s, between two times, s.
-    pub fn shortest(&self, from: f64, to: f64) -> f64 {
-        let meets = |span: &[f64; 2]| span[0] < to && from < span[1];
-        self.spans.iter().filter(|(span, _)| meets(span)).fold(self.always, |least, (_, time)| least.min(*time))
-    }
-}
-
 /// A response model with its parameters: a ship that can be simulated or replayed.
 ///
 /// With parameters that carry derivatives, its motion carries them, too.
@@ -177,58 +164,9 @@ impl<R: EffectReal> Response<R> {
         &self.parameters
     }
 
-    /// Measured channels that effects of this response need.
-    pub fn needs(&self, channel: Regressor) -> bool {
-        self.model.effects.iter().any(|effect| effect.uses(channel))
-    }
-
     /// Shortest time constant of base and effects, s.
     pub fn shortest_time(&self) -> f64 {
         self.pace().shortest(f64::NEG_INFINITY, f64::INFINITY)
-    }
-
-    /// The time constants that steps have to resolve.
-    pub fn pace(&self) -> Pace {
-        let values: Vec<f64> = self.parameters.iter().map(|p| p.value()).collect();
-        let mut pace = Pace { always: values[0].abs().recip(), spans: Vec::new() };
-        for (effect, place) in self.model.effects.iter().zip(&self.model.places) {
-            let p = &values[place.parameters()];
-            let (time, span) = (effect.shortest_time(p), effect.fast_span(p));
-            if span == [f64::NEG_INFINITY, f64::INFINITY] {
-                pace.always = pace.always.min(time);
-            } else {
-                pace.spans.push((span, time));
-            }
-        }
-        pace
-    }
-
-    /// State of a record that begins with the given heading (rad), yaw rate (rad/s) and input: the memory of effects is
-    /// that of a rudder that has stood there.
-    pub fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
-        state.fill(R::from(0.0));
-        (state[0], state[1]) = (heading, yaw_rate);
-        let mut now = self.now(0.0, &[heading, yaw_rate], input.rudder, input);
-        for (effect, p, place) in self.effects() {
-            let z = &mut state[place.states()];
-            R::acts(effect).approach(p, &now, z);
-            now.rudder = R::acts(effect).rudder(p, z, now.rudder);
-        }
-        if let Some((coupling, s)) = self.coupling {
-            // Starts with the yaw acceleration of the first-order response, so that T₂ = T₃ is that response.
-            let lead = coupling.second_time - coupling.rudder_time;
-            state[s] = yaw_rate + self.parameters[1] * lead * (now.rudder + self.parameters[2]);
-        }
-    }
-
-    /// Puts heading (rad) and yaw rate (rad/s) of a state to other values and keeps the memory of all effects; the
-    /// state s of a second-order response follows so that the yaw acceleration stays what it is.
-    pub fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
-        let change = yaw_rate - state[1];
-        (state[0], state[1]) = (heading, yaw_rate);
-        if let Some((coupling, s)) = self.coupling {
-            state[s] = state[s] + (coupling.second_time * self.parameters[0] + 1.0) * change;
-        }
     }
 
     fn effects(&self) -> impl Iterator<Item = (&dyn Effect, &[R], Place)> {
@@ -289,6 +227,59 @@ impl<R: EffectReal> Response<R> {
             }
             None => (f, f),
         }
+    }
+}
+
+impl<R: EffectReal> Replayable<R> for Response<R> {
+    /// Measured channels that effects of this response need.
+    fn needs(&self, channel: Regressor) -> bool {
+        self.model.effects.iter().any(|effect| effect.uses(channel))
+    }
+
+    /// The time constants that steps have to resolve.
+    fn pace(&self) -> Pace {
+        let values: Vec<f64> = self.parameters.iter().map(|p| p.value()).collect();
+        let mut pace = Pace::always(values[0].abs().recip());
+        for (effect, place) in self.model.effects.iter().zip(&self.model.places) {
+            let p = &values[place.parameters()];
+            let (time, span) = (effect.shortest_time(p), effect.fast_span(p));
+            pace.add(span, time);
+        }
+        pace
+    }
+
+    /// State of a record that begins with the given heading (rad), yaw rate (rad/s) and input: the memory of effects is
+    /// that of a rudder that has stood there.
+    fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
+        state.fill(R::from(0.0));
+        (state[0], state[1]) = (heading, yaw_rate);
+        let mut now = self.now(0.0, &[heading, yaw_rate], input.rudder, input);
+        for (effect, p, place) in self.effects() {
+            let z = &mut state[place.states()];
+            R::acts(effect).approach(p, &now, z);
+            now.rudder = R::acts(effect).rudder(p, z, now.rudder);
+        }
+        if let Some((coupling, s)) = self.coupling {
+            // Starts with the yaw acceleration of the first-order response, so that T₂ = T₃ is that response.
+            let lead = coupling.second_time - coupling.rudder_time;
+            state[s] = yaw_rate + self.parameters[1] * lead * (now.rudder + self.parameters[2]);
+        }
+    }
+
+    /// Puts heading (rad) and yaw rate (rad/s) of a state to other values and keeps the memory of all effects; the
+    /// state s of a second-order response follows so that the yaw acceleration stays what it is.
+    fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
+        let change = yaw_rate - state[1];
+        (state[0], state[1]) = (heading, yaw_rate);
+        if let Some((coupling, s)) = self.coupling {
+            state[s] = state[s] + (coupling.second_time * self.parameters[0] + 1.0) * change;
+        }
+    }
+}
+
+impl ReplayedShip for Response {
+    fn tangent(&self) -> Box<dyn Replayable<Tangent>> {
+        Box::new(self.constant::<Tangent>())
     }
 }
 

@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use estimation::residuals::{self, GappedSeries, Whiteness};
+use identify::hull::HullEstimate;
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -20,6 +21,7 @@ use crate::document::Document;
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::{self, Full};
+use crate::hulls;
 use crate::leave_one_out::leave_one_out;
 use crate::model::Term;
 use crate::record::PreparedRecord;
@@ -49,6 +51,8 @@ pub struct Analysis {
     pub structures: Structures,
     /// The full model and the noise that it leaves.
     pub full: Full,
+    /// Hulls of three degrees of freedom that stand beside the structures.
+    pub hulls: Vec<HullEstimate>,
     pub(crate) problem: FittedRecords,
     pub(crate) candidates: Vec<Arc<Term>>,
 }
@@ -138,15 +142,22 @@ pub fn watched(
     let (full, structures) =
         structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square());
     let members = structures.members();
-    let mut identification = fitted(&trials, &base, &full, &members, settings.thorough, time)?;
+    let parts = (&full.law, &members[..]);
+    let mut identification = fitted(&trials, &base, parts, &[], settings.thorough, time)?;
+    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
+    // What is nothing but noise needs no hull.
+    let is_wanted = settings.hulls && !remainder.holds;
+    let hulls = if is_wanted { hulls::fit(&trials, &identification) } else { Vec::new() };
+    if !hulls.is_empty() {
+        identification = fitted(&trials, &base, parts, &hulls, settings.thorough, time)?;
+    }
     let no_nearer = keep_nearest(&mut identification);
-    let unseen = AveragedModel { members: &members, law: &full.law, known: None, time };
+    let unseen = AveragedModel { members: &members, hulls: &hulls, law: &full.law, known: None, time };
     let judged = validation.par_iter().map(|trial| unseen.compared(trial, &response));
     let judged: Vec<RecordComparison> = judged.collect::<Result<_, _>>()?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let folds = is_folded.then(|| leave_one_out(&trials, &problem, (&full, &structures), watcher));
+    let folds = is_folded.then(|| leave_one_out(&trials, &problem, (&full, &structures), &hulls, watcher));
     let left_out = folds.unwrap_or_default();
-    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
     let said = report::TraceParts {
         trials: &trials,
         settings,
@@ -171,6 +182,7 @@ pub fn watched(
         left_out,
         structures,
         full,
+        hulls,
         problem,
         candidates,
     })
@@ -180,8 +192,8 @@ pub fn watched(
 fn fitted(
     trials: &[Trial],
     base: &Base,
-    full: &Full,
-    members: &[(f64, &StructureFit)],
+    (law, members): (&NoiseLaw, &[(f64, &StructureFit)]),
+    hulls: &[HullEstimate],
     thorough: bool,
     time: f64,
 ) -> Result<Vec<RecordComparison>, TraceError> {
@@ -189,8 +201,8 @@ fn fitted(
     let of = |(number, trial): (usize, &Trial)| {
         let record = PreparedRecord::whole(trial);
         let before = before(trial, &record, response, thorough)?;
-        let is_base = members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
-        let after = AveragedModel { members, law: &full.law, known: Some(number), time };
+        let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
+        let after = AveragedModel { members, hulls, law, known: Some(number), time };
         let mut after = after.on(trial, &record, &starts(trial, response), thorough)?;
         if is_base {
             // Nothing is added: the base stays what it is.
@@ -254,10 +266,12 @@ impl Analysis {
 
     /// The ship of every member of the average, without what belongs to the weather of one record.
     pub fn average(&self) -> Average {
-        let members = self.structures.members();
-        Average {
-            members: members.iter().map(|(weight, fit)| (*weight, fit.structure.response(None, &fit.theta))).collect(),
-        }
+        self.unseen(&self.structures.members()).average()
+    }
+
+    /// The average on a record that was not fitted.
+    fn unseen<'a>(&'a self, members: &'a [(f64, &'a StructureFit)]) -> AveragedModel<'a> {
+        AveragedModel { members, hulls: &self.hulls, law: &self.full.law, known: None, time: self.problem.time }
     }
 
     /// The ship of the most probable structure.
@@ -274,7 +288,7 @@ impl Analysis {
     pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
-        let after = AveragedModel { members: &members, law: &calm, known: None, time: self.problem.time };
+        let after = AveragedModel { law: &calm, ..self.unseen(&members) };
         after.on(trial, &PreparedRecord::whole(trial), &[start], true).ok()
     }
 }

@@ -1,8 +1,9 @@
 //! Structures that the records cannot tell apart, as one prediction: the mean of their replays, or the median where one
 //! of them runs away.
 
+use identify::hull::HullEstimate;
 use identify::replay::Replay;
-use ship::Response;
+use ship::ReplayedShip;
 
 use crate::fit::StructureFit;
 use crate::record::PreparedRecord;
@@ -12,17 +13,19 @@ use crate::weights::NoiseLaw;
 /// A replay this many times as far from the record as the median of all runs away.
 const RUNS_AWAY: f64 = 3.0;
 
-/// Responses with their weights, replayed together.
-#[derive(Debug, Clone)]
+/// Ships with their weights, replayed together.
+#[derive(Debug)]
 pub struct Average {
-    /// Weights, which sum to one, and responses.
-    pub members: Vec<(f64, Response)>,
+    /// Weights, which sum to one, and ships.
+    pub members: Vec<(f64, Box<dyn ReplayedShip>)>,
 }
 
 /// Members of an average on a record, `known` being its number among those that were fitted.
 pub struct AveragedModel<'a> {
     /// Structures with their weights.
     pub members: &'a [(f64, &'a StructureFit)],
+    /// Hulls, each of which counts as much as all structures together.
+    pub hulls: &'a [HullEstimate],
     /// The noise.
     pub law: &'a NoiseLaw,
     /// Number of the record among the fitted ones.
@@ -42,13 +45,30 @@ pub struct AverageReplay {
     pub windows: [Option<Vec<f64>>; HORIZONS.len()],
 }
 
+impl AveragedModel<'_> {
+    /// Weight of one hull, and of all structures.
+    pub fn share(&self) -> f64 {
+        1.0 / (1 + self.hulls.len()) as f64
+    }
+
+    /// Its ships with their weights: structures first.
+    pub fn average(&self) -> Average {
+        let share = self.share();
+        let structure = |(weight, fit): &(f64, &StructureFit)| -> (f64, Box<dyn ReplayedShip>) {
+            (share * weight, Box::new(fit.structure.response(self.known, &fit.theta)))
+        };
+        let hull = |hull: &HullEstimate| -> (f64, Box<dyn ReplayedShip>) { (share, Box::new(hull.ship::<f64>())) };
+        Average { members: self.members.iter().map(structure).chain(self.hulls.iter().map(hull)).collect() }
+    }
+}
+
 impl Average {
     /// Replays every member from its best initial state near one of the `starts`. `None` when none is finite.
     pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], with_windows: bool) -> Option<AverageReplay> {
-        let found: Vec<(f64, &Response, Replay)> = self
+        let found: Vec<(f64, &dyn ReplayedShip, Replay)> = self
             .members
             .iter()
-            .filter_map(|(weight, response)| Some((*weight, response, full(response, record, starts)?)))
+            .filter_map(|(weight, ship)| Some((*weight, ship.as_ref(), full(ship.as_ref(), record, starts)?)))
             .collect();
         let weights: Vec<f64> = found.iter().map(|(weight, ..)| *weight).collect();
         let errors: Vec<f64> = found.iter().map(|(.., replay)| replay.rms()).collect();
@@ -63,10 +83,8 @@ impl Average {
             if !with_windows {
                 return None;
             }
-            let all: Option<Vec<Vec<f64>>> = found
-                .iter()
-                .map(|(_, response, replay)| restarted(response, record, replay.initial(), length))
-                .collect();
+            let all: Option<Vec<Vec<f64>>> =
+                found.iter().map(|(_, ship, replay)| restarted(*ship, record, replay.initial(), length)).collect();
             let all = all?;
             let columns: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
             let mean = combine(&columns);

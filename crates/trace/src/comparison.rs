@@ -111,7 +111,7 @@ pub fn before(
 ) -> Result<ReplayResult, TraceError> {
     let refuse = || TraceError::Replay { trial: trial.name().to_owned() };
     let replay = replay(trial, base).ok_or_else(refuse)?;
-    let average = Average { members: vec![(1.0, Response::first_order_ship(*base))] };
+    let average = Average { members: vec![(1.0, Box::new(Response::first_order_ship(*base)))] };
     let windows = match thorough {
         true => average.replay(record, &[replay.initial()], true).map(|replayed| replayed.windows),
         false => None,
@@ -139,14 +139,12 @@ impl AveragedModel<'_> {
         thorough: bool,
     ) -> Result<ReplayResult, TraceError> {
         let refuse = || TraceError::Replay { trial: trial.name().to_owned() };
-        let responses =
-            self.members.iter().map(|(weight, fit)| (*weight, fit.structure.response(self.known, &fit.theta)));
-        let average = Average { members: responses.collect() };
         let mut all = starts.to_vec();
         if let Some(number) = self.known {
             all.extend(self.members.iter().map(|(_, fit)| fit.initial[number]));
         }
-        let AverageReplay { replay, windows, members } = average.replay(record, &all, thorough).ok_or_else(refuse)?;
+        let AverageReplay { replay, windows, members } =
+            self.average().replay(record, &all, thorough).ok_or_else(refuse)?;
         let band = band::of(self, trial, &replay, &members);
         Ok(ReplayResult { band, ..result(trial, replay, windows, thorough) })
     }

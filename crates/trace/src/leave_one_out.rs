@@ -1,6 +1,7 @@
 //! Every one of several records as if it had been held out: base and structures are fitted to the others, weighed by
 //! them, and the one left out is replayed. Which structures are in the running, and the noise, are those of all.
 
+use identify::hull::HullEstimate;
 use rayon::prelude::*;
 use trial::Trial;
 
@@ -9,6 +10,7 @@ use crate::base::Base;
 use crate::comparison::RecordComparison;
 use crate::fit::{Effort, FittedRecords, StructureFit};
 use crate::full::Full;
+use crate::hulls;
 use crate::model::Structure;
 use crate::structures::{Structures, WeighedStructure};
 use crate::watcher::Watcher;
@@ -22,6 +24,7 @@ pub fn leave_one_out(
     trials: &[Trial],
     problem: &FittedRecords,
     (full, structures): (&Full, &Structures),
+    hulls: &[HullEstimate],
     watcher: &dyn Watcher,
 ) -> Vec<Option<RecordComparison>> {
     watcher.begin_folds(trials.len());
@@ -48,7 +51,8 @@ pub fn leave_one_out(
             .map(|(height, fit)| ((height - highest).exp() / total, fit))
             .filter(|(weight, _)| *weight > 0.02)
             .collect();
-        let unseen = AveragedModel { members: &members, law: &law, known: None, time: problem.time };
+        let hulls = hulls::refitted(hulls, &without(trials, left));
+        let unseen = AveragedModel { members: &members, hulls: &hulls, law: &law, known: None, time: problem.time };
         unseen.compared(&trials[left], &base.estimate.response).ok()
     };
     let watched = |left: usize| {

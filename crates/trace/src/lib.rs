@@ -10,6 +10,7 @@ pub mod document;
 pub mod empirical;
 pub mod fit;
 pub mod full;
+mod hulls;
 pub mod law;
 mod leave_one_out;
 pub mod linear;

@@ -11,7 +11,7 @@ use ship::dynamics::Dynamics;
 use ship::effects::{Effect, Parameter, Prior};
 use ship::replay::replay_states;
 use ship::response::{BASE, BASE_PARAMETERS};
-use ship::{EffectReal, Response, ResponseModel};
+use ship::{EffectReal, Real, Replayable, Response, ResponseModel};
 
 use crate::record::PreparedRecord;
 
@@ -252,10 +252,14 @@ impl Structure {
     }
 }
 
-/// Step of the solver for a response on rows `spacing` seconds apart, between two times: `steps` per shortest time
+/// Step of the solver for a ship on rows `spacing` seconds apart, between two times: `steps` per shortest time
 /// constant.
-pub fn step<R: EffectReal>(response: &Response<R>, spacing: f64, steps: f64) -> impl Fn(f64, f64) -> f64 {
-    let pace = response.pace();
+pub fn step<R: Real, S: Replayable<R> + ?Sized>(
+    ship: &S,
+    spacing: f64,
+    steps: f64,
+) -> impl Fn(f64, f64) -> f64 + use<R, S> {
+    let pace = ship.pace();
     move |from, to| (pace.shortest(from, to) / steps).max(spacing / MOST_STEPS)
 }
 

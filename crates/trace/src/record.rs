@@ -9,7 +9,7 @@
 use std::f64::consts::{PI, TAU};
 
 use ship::replay::Recorded;
-use ship::{EffectReal, Polyline, Regressor, Response};
+use ship::{Polyline, Real, Regressor, Replayable};
 use trial::{Channel, Trial};
 
 /// Rows that are kept at least, however dense they are.
@@ -143,9 +143,9 @@ impl PreparedRecord {
         }
     }
 
-    /// The signals that drive a replay of a response: those it needs.
-    pub fn recorded<R: EffectReal>(&self, response: &Response<R>) -> Recorded<'_> {
-        let needed = |channel| response.needs(channel);
+    /// The signals that drive a replay of a ship: those it needs.
+    pub fn recorded<R: Real>(&self, ship: &(impl Replayable<R> + ?Sized)) -> Recorded<'_> {
+        let needed = |channel| ship.needs(channel);
         Recorded {
             rudder: &self.rudder,
             speed: self.speed.as_ref().filter(|_| needed(Regressor::Speed)),

@@ -7,9 +7,8 @@ use std::ops::Range;
 use estimation::column::dot;
 use identify::replay::Replay;
 use nalgebra::{Matrix2, Vector2};
-use ship::dynamics::Dynamics;
 use ship::replay::replay_states;
-use ship::{EffectReal, Response, Tangent};
+use ship::{Real, Replayable, ReplayedShip, Tangent};
 use trial::zigzag::Overshoot;
 use trial::{Channel, Columns, Trial, ZigZag};
 
@@ -52,16 +51,16 @@ pub struct ReplayErrors {
 }
 
 /// Replays a record whole from the best initial state near one of the `starts`. `None` when no replay is finite.
-pub fn full(response: &Response, record: &PreparedRecord, starts: &[[f64; 2]]) -> Option<Replay> {
+pub fn full(ship: &dyn ReplayedShip, record: &PreparedRecord, starts: &[[f64; 2]]) -> Option<Replay> {
     let rows = 0..record.time.len();
     let mut found: Vec<(f64, [f64; 2])> = Vec::new();
     for &start in starts {
         let known: Vec<[f64; 2]> = found.iter().map(|(_, initial)| *initial).collect();
-        found.extend(settle(response, record, rows.clone(), start, None, &known));
+        found.extend(settle(ship, record, rows.clone(), start, None, &known));
     }
     let (_, start) = found.into_iter().min_by(|one, other| one.0.total_cmp(&other.0))?;
-    let mut state = vec![0.0; response.dimension()];
-    enter(response, record, 0, start, None, &mut state);
+    let mut state = vec![0.0; ship.dimension()];
+    enter(ship, record, 0, start, None, &mut state);
     let count = record.time.len();
     let mut replayed = Replay {
         time: record.time.clone(),
@@ -69,7 +68,7 @@ pub fn full(response: &Response, record: &PreparedRecord, starts: &[[f64; 2]]) -
         yaw_rate: vec![0.0; count],
         residual: vec![0.0; count],
     };
-    run(response, record, rows, &mut state, |row, heading, rate| {
+    run(ship, record, rows, &mut state, |row, heading, rate| {
         replayed.heading[row] = heading;
         replayed.yaw_rate[row] = rate;
         replayed.residual[row] = record.heading[row] - heading;
@@ -113,10 +112,10 @@ pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
 
 /// Headings (rad) of a replay that is restarted every `length` seconds from the best heading and yaw rate of the
 /// window; the memory of the effects goes on. `None` when a window holds too few headings.
-pub fn restarted(response: &Response, record: &PreparedRecord, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
+pub fn restarted(ship: &dyn ReplayedShip, record: &PreparedRecord, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
     let count = record.time.len();
-    let mut state = vec![0.0; response.dimension()];
-    enter(response, record, 0, initial, None, &mut state);
+    let mut state = vec![0.0; ship.dimension()];
+    enter(ship, record, 0, initial, None, &mut state);
     let mut headings = vec![0.0; count];
     let mut from = 0;
     while from < count {
@@ -133,9 +132,9 @@ pub fn restarted(response: &Response, record: &PreparedRecord, initial: [f64; 2]
         }
         let memory = state.clone();
         let start = [state[0], state[1]];
-        let (_, best) = settle(response, record, from..to, start, Some(&memory), &[])?;
-        enter(response, record, from, best, Some(&memory), &mut state);
-        run(response, record, from..until, &mut state, |row, heading, _| {
+        let (_, best) = settle(ship, record, from..to, start, Some(&memory), &[])?;
+        enter(ship, record, from, best, Some(&memory), &mut state);
+        run(ship, record, from..until, &mut state, |row, heading, _| {
             if row < to {
                 headings[row] = heading;
             }
@@ -149,8 +148,8 @@ pub fn restarted(response: &Response, record: &PreparedRecord, initial: [f64; 2]
 }
 
 /// The state at a row: at rest there but for heading and yaw rate, or with the `memory` that the effects have by then.
-fn enter<R: EffectReal>(
-    response: &Response<R>,
+fn enter<R: Real>(
+    ship: &(impl Replayable<R> + ?Sized),
     record: &PreparedRecord,
     row: usize,
     start: [R; 2],
@@ -160,26 +159,26 @@ fn enter<R: EffectReal>(
     match memory {
         Some(memory) => {
             state.iter_mut().zip(memory).for_each(|(x, &memory)| *x = R::from(memory));
-            response.restart(start[0], start[1], state);
+            ship.restart(start[0], start[1], state);
         }
         None => {
-            let input = record.recorded(response).input(record.time[row], response.dead_time());
-            response.enter(start[0], start[1], &input, state);
+            let input = record.recorded(ship).input(record.time[row], ship.dead_time());
+            ship.enter(start[0], start[1], &input, state);
         }
     }
 }
 
 /// Replays some rows of a record and visits heading and yaw rate at each of them.
-fn run<R: EffectReal>(
-    response: &Response<R>,
+fn run<R: Real>(
+    ship: &(impl Replayable<R> + ?Sized),
     record: &PreparedRecord,
     rows: Range<usize>,
     state: &mut [R],
     mut visit: impl FnMut(usize, R, R),
 ) {
-    let step = step(response, record.spacing, SOLVER_STEPS);
+    let step = step(ship, record.spacing, SOLVER_STEPS);
     let times = &record.time[rows.clone()];
-    replay_states(response, &record.recorded(response), times, step, state, |row, state, _| {
+    replay_states(ship, &record.recorded(ship), times, step, state, |row, state, _| {
         visit(rows.start + row, state[0], state[1]);
     });
 }
@@ -196,21 +195,22 @@ struct InitialStateFit {
 /// Heading and yaw rate at the first of some rows that bring the replay nearest to them (Gauss–Newton with halving),
 /// and the sum of squares they leave; `None` when it is not finite, or when the way leads to one that is `known`.
 fn settle(
-    response: &Response,
+    ship: &dyn ReplayedShip,
     record: &PreparedRecord,
     rows: Range<usize>,
     start: [f64; 2],
     memory: Option<&[f64]>,
     known: &[[f64; 2]],
 ) -> Option<(f64, [f64; 2])> {
-    let response = response.constant::<Tangent>();
+    let ship = ship.tangent();
+    let ship = ship.as_ref();
     let span = (record.time[rows.end - 1] - record.time[rows.start]).max(record.spacing);
-    let mut state = vec![Tangent::default(); response.dimension()];
+    let mut state = vec![Tangent::default(); ship.dimension()];
     let mut at = |initial: [f64; 2]| {
         let variables = [Tangent::variable(initial[0], 0, 1.0), Tangent::variable(initial[1], 1, 1.0)];
-        enter(&response, record, rows.start, variables, memory, &mut state);
+        enter(ship, record, rows.start, variables, memory, &mut state);
         let (mut residual, mut by) = (Vec::with_capacity(rows.len()), [(); 2].map(|()| Vec::with_capacity(rows.len())));
-        run(&response, record, rows.clone(), &mut state, |row, heading, _| {
+        run(ship, record, rows.clone(), &mut state, |row, heading, _| {
             if record.heading[row].is_finite() {
                 residual.push(record.heading[row] - heading.value);
                 by[0].push(heading.by[0]);

@@ -45,11 +45,20 @@ pub struct Settings {
     /// Whether errors of restarted replays, bands and records left out in turn are computed; a benchmark may do
     /// without.
     pub thorough: bool,
+    /// Whether hulls of three degrees of freedom are fitted where the structures leave more than noise.
+    pub hulls: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { probability: 0.95, rule: Rule::default(), monomials: 0, selection: Selection::default(), thorough: true }
+        Self {
+            probability: 0.95,
+            rule: Rule::default(),
+            monomials: 0,
+            selection: Selection::default(),
+            thorough: true,
+            hulls: false,
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use ship::Replayable;
 use ship::dynamics::Dynamics;
 use ship::first_order::{State, Transition};
 use ship::replay::replay_states;

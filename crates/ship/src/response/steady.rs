@@ -2,6 +2,7 @@
 
 use super::Response;
 use crate::dynamics::{Dynamics, Input};
+use crate::replayable::Replayable;
 
 /// Largest rudder that is looked at, rad.
 const LARGEST_RUDDER: f64 = 1.0;

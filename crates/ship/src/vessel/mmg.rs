@@ -17,6 +17,7 @@ mod parameters;
 
 use std::f64::consts::PI;
 
+use estimation::number::Real;
 use thiserror::Error;
 
 pub use self::parameters::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
@@ -53,47 +54,47 @@ pub enum MmgError {
 
 /// An MMG hull at constant propeller revolutions, with its steady straight approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mmg {
-    parameters: Parameters,
+pub struct Mmg<R = f64> {
+    parameters: Parameters<R>,
     /// m' = ∇/(½L²d).
-    mass: f64,
+    mass: R,
     /// x_G' m'.
-    moment_of_mass: f64,
+    moment_of_mass: R,
     /// Prime mass matrix of sway and yaw: m11, m12 = m21, m22.
-    inertia: [f64; 3],
+    inertia: [R; 3],
     /// A_R/(Ld).
-    rudder_area: f64,
+    rudder_area: R,
     /// 2 D_P⁴/(Ld), m²: thrust over ½ρLd is this times n² K_T.
-    thrust: f64,
-    revolutions: f64,
+    thrust: R,
+    revolutions: R,
     approach_speed: f64,
     /// dN/dδ amidships at approach speed over ½ρL²d, m²/s².
-    rudder_moment: f64,
+    rudder_moment: R,
 }
 
-impl Mmg {
+impl<R: Real> Mmg<R> {
     /// The hull whose straight approach at `speed` (m/s) is steady; the revolutions follow from that.
     ///
     /// Fails for parameters that are not positive where they have to be, or whose thrust cannot balance the resistance.
-    pub fn at_speed(parameters: Parameters, speed: f64) -> Result<Self, MmgError> {
+    pub fn at_speed(parameters: Parameters<R>, speed: f64) -> Result<Self, MmgError> {
         positive("approach speed", speed)?;
         let speed_per_revolution = speed_per_revolution(&parameters)?;
-        Self::new(parameters, speed, speed / speed_per_revolution)
+        Self::new(parameters, speed, R::from(speed) / speed_per_revolution)
     }
 
-    fn new(parameters: Parameters, approach_speed: f64, revolutions: f64) -> Result<Self, MmgError> {
+    fn new(parameters: Parameters<R>, approach_speed: f64, revolutions: R) -> Result<Self, MmgError> {
         let p = &parameters;
         let (L, d) = (p.Lpp, p.d);
         for (symbol, value) in
             [("displaced volume", p.volume), ("kzz", p.kzz), ("AR", p.rudder.AR), ("f_alpha", p.rudder.f_alpha)]
         {
-            positive(symbol, value)?;
+            positive(symbol, value.value())?;
         }
-        let mass = p.volume / (0.5 * L * L * d);
+        let mass = p.volume / (L * 0.5 * L * d);
         let xG = p.xG / L;
         let inertia = [mass + p.hull.my, xG * mass, (p.kzz * p.kzz + xG * xG) * mass + p.hull.Jz];
-        let det = inertia[0] * inertia[2] - inertia[1] * inertia[1];
-        if !(det > 0.0 && inertia[0] > 0.0 && mass + p.hull.mx > 0.0) {
+        let det = (inertia[0] * inertia[2] - inertia[1] * inertia[1]).value();
+        if !(det > 0.0 && inertia[0].value() > 0.0 && (mass + p.hull.mx).value() > 0.0) {
             return Err(MmgError::Inertia { det });
         }
         let mut hull = Self {
@@ -102,38 +103,113 @@ impl Mmg {
             moment_of_mass: xG * mass,
             inertia,
             rudder_area: p.rudder.AR / (L * d),
-            thrust: 2.0 * p.propeller.DP.powi(4) / (L * d),
+            thrust: p.propeller.DP.powi(4) * 2.0 / (L * d),
             revolutions,
             approach_speed,
-            rudder_moment: 0.0,
+            rudder_moment: R::from(0.0),
         };
         hull.rudder_moment = hull.rudder_slopes()[1] * approach_speed * approach_speed;
         Ok(hull)
     }
 
     /// The parameters.
-    pub fn parameters(&self) -> &Parameters {
+    pub fn parameters(&self) -> &Parameters<R> {
         &self.parameters
     }
 
     /// Propeller revolutions n, 1/s.
-    pub fn revolutions(&self) -> f64 {
+    pub fn revolutions(&self) -> R {
         self.revolutions
     }
 
     /// Longitudinal inflow to the rudder on the straight approach, over U.
-    fn approach_inflow(&self) -> f64 {
-        let uP = self.approach_speed * (1.0 - self.parameters.propeller.wP0);
-        self.rudder_inflow(uP, self.thrust_coefficient(uP)) / self.approach_speed
+    fn approach_inflow(&self) -> R {
+        let uP = (-self.parameters.propeller.wP0 + 1.0) * self.approach_speed;
+        self.rudder_inflow(uP, self.revolutions) / self.approach_speed
     }
 
     /// dY'/dδ and dN'/dδ at δ = 0 on the straight approach.
-    fn rudder_slopes(&self) -> [f64; 2] {
+    fn rudder_slopes(&self) -> [R; 2] {
         let rudder = &self.parameters.rudder;
         let slope = self.rudder_area * self.approach_inflow().powi(2) * rudder.f_alpha;
-        [-(1.0 + rudder.aH) * slope, -(rudder.xR + rudder.aH * rudder.xH) * slope]
+        [-(rudder.aH + 1.0) * slope, -(rudder.xR + rudder.aH * rudder.xH) * slope]
     }
 
+    /// K_T at the advance speed `uP` (m/s) and `revolutions` (1/s).
+    fn thrust_coefficient(&self, uP: R, revolutions: R) -> R {
+        let propeller = &self.parameters.propeller;
+        let J = uP / (revolutions * propeller.DP);
+        let [k0, k1, k2] = propeller.k;
+        k0 + J * (k1 + J * k2)
+    }
+
+    /// u_R, m/s: ε u_P √(η {1 + κ [√(1 + 8 K_T/(π J²)) − 1]}² + 1 − η), written so that J = 0 is regular.
+    fn rudder_inflow(&self, uP: R, revolutions: R) -> R {
+        let rudder = &self.parameters.rudder;
+        let nD = revolutions * self.parameters.propeller.DP;
+        // A windmilling propeller (K_T < 0) can slow the stream to rest, not turn it round.
+        let thrust = self.thrust_coefficient(uP, revolutions) * 8.0 * nD * nD / PI;
+        let stream = (uP * uP + thrust).at_least(f64::MIN_POSITIVE).sqrt();
+        let behind = uP + rudder.kappa * (stream - uP);
+        rudder.epsilon * (rudder.eta * behind * behind + (-rudder.eta + 1.0) * uP * uP).sqrt()
+    }
+
+    /// Wake fraction w_P at the inflow angle β_P.
+    fn wake(&self, betaP: R) -> R {
+        let propeller = &self.parameters.propeller;
+        match propeller.wake {
+            Wake::Exponential { C1, C2 } => {
+                let fading = -(-C1 * betaP.abs()).exp() + 1.0;
+                let gain = fading * (C2.at(betaP) - 1.0) + 1.0;
+                -(-propeller.wP0 + 1.0) * gain + 1.0
+            }
+            Wake::Gaussian => propeller.wP0 * (betaP * -4.0 * betaP).exp(),
+        }
+    }
+
+    /// (u', v', r') in m/s² and rad/s² at surge u and sway v (m/s), yaw rate (rad/s) and rudder (rad); `turning` is the
+    /// rate of the propeller over that of the approach, and the disturbance (rad) adds the yaw moment (dN/dδ) δ of the
+    /// straight approach.
+    pub fn accelerations(&self, [u, v, r]: [R; 3], rudder_angle: R, turning: f64, disturbance: f64) -> [R; 3] {
+        let Parameters { Lpp: L, hull, propeller, rudder, .. } = self.parameters;
+        let revolutions = self.revolutions * turning;
+        let rL = r * L;
+        let U = u.hypot(v).at_least(SLOWEST * self.approach_speed);
+        let (v_, r_) = (v / U, rL / U);
+        let beta = (-v).atan2(u);
+        let U2 = U * U;
+
+        let (vv, vr, rr) = (v_ * v_, v_ * r_, r_ * r_);
+        let XH = U2 * (-hull.R0 + hull.Xvv * vv + hull.Xvr * vr + hull.Xrr * rr + hull.Xvvvv * vv * vv);
+        let YH =
+            U2 * (v_ * (hull.Yv + hull.Yvvv * vv + hull.Yvvr * vr + hull.Yvrr * rr) + r_ * (hull.Yr + hull.Yrrr * rr));
+        let NH =
+            U2 * (v_ * (hull.Nv + hull.Nvvv * vv + hull.Nvvr * vr + hull.Nvrr * rr) + r_ * (hull.Nr + hull.Nrrr * rr));
+
+        let uP = u * (-self.wake(beta - propeller.xP * r_) + 1.0);
+        let KT = self.thrust_coefficient(uP, revolutions);
+        let XP = (-propeller.tP + 1.0) * self.thrust * revolutions * revolutions * KT;
+
+        let betaR = beta - rudder.lR * r_;
+        let uR = self.rudder_inflow(uP, revolutions);
+        let vR = U * rudder.gammaR.at(betaR) * betaR;
+        let alphaR = rudder_angle - vR.atan2(uR);
+        let FN = self.rudder_area * (uR * uR + vR * vR) * rudder.f_alpha * alphaR.sin_cos().0;
+        let (sin, cos) = rudder_angle.sin_cos();
+        let XR = -(-rudder.tR + 1.0) * FN * sin;
+        let YR = -(rudder.aH + 1.0) * FN * cos;
+        let NR = -(rudder.xR + rudder.aH * rudder.xH) * FN * cos;
+
+        let X = XH + XP + XR + (self.mass + hull.my) * v * rL + self.moment_of_mass * rL * rL;
+        let Y = YH + YR - (self.mass + hull.mx) * u * rL;
+        let N = NH + NR + self.rudder_moment * disturbance - self.moment_of_mass * u * rL;
+        let [m11, m12, m22] = self.inertia;
+        let det = m11 * m22 - m12 * m12;
+        [X / ((self.mass + hull.mx) * L), (m22 * Y - m12 * N) / (det * L), (m11 * N - m12 * Y) / (det * L * L)]
+    }
+}
+
+impl Mmg {
     /// The linear part of sway and yaw about the straight approach.
     ///
     /// Flow straightening has two slopes at zero angle; the mean of both is taken. The result describes neither side.
@@ -154,36 +230,6 @@ impl Mmg {
             b,
         }
     }
-
-    /// K_T at the advance speed `uP` (m/s).
-    fn thrust_coefficient(&self, uP: f64) -> f64 {
-        let propeller = &self.parameters.propeller;
-        let J = uP / (self.revolutions * propeller.DP);
-        let [k0, k1, k2] = propeller.k;
-        k0 + J * (k1 + J * k2)
-    }
-
-    /// u_R, m/s: ε u_P √(η {1 + κ [√(1 + 8 K_T/(π J²)) − 1]}² + 1 − η), written so that J = 0 is regular.
-    fn rudder_inflow(&self, uP: f64, KT: f64) -> f64 {
-        let rudder = &self.parameters.rudder;
-        let nD = self.revolutions * self.parameters.propeller.DP;
-        // A windmilling propeller (K_T < 0) can slow the stream to rest, not turn it round.
-        let stream = (uP * uP + 8.0 * KT * nD * nD / PI).max(0.0).sqrt();
-        let behind = uP + rudder.kappa * (stream - uP);
-        rudder.epsilon * (rudder.eta * behind * behind + (1.0 - rudder.eta) * uP * uP).sqrt()
-    }
-
-    /// Wake fraction w_P at the inflow angle β_P.
-    fn wake(&self, betaP: f64) -> f64 {
-        let propeller = &self.parameters.propeller;
-        match propeller.wake {
-            Wake::Exponential { C1, C2 } => {
-                let gain = 1.0 + (1.0 - (-C1 * betaP.abs()).exp()) * (C2.at(betaP) - 1.0);
-                1.0 - (1.0 - propeller.wP0) * gain
-            }
-            Wake::Gaussian => propeller.wP0 * (-4.0 * betaP * betaP).exp(),
-        }
-    }
 }
 
 fn positive(symbol: &'static str, value: f64) -> Result<(), MmgError> {
@@ -194,25 +240,27 @@ fn positive(symbol: &'static str, value: f64) -> Result<(), MmgError> {
 ///
 /// R0' (J D/(1 − w))² = (1 − t_P) 2 D⁴/(Ld) (k0 + k1 J + k2 J²), a quadratic in J whose left side grows from zero, so
 /// for falling thrust there is one positive root.
-fn speed_per_revolution(p: &Parameters) -> Result<f64, MmgError> {
+fn speed_per_revolution<R: Real>(p: &Parameters<R>) -> Result<R, MmgError> {
     let propeller = &p.propeller;
+    let [past_wake, past_hull] = [-propeller.wP0 + 1.0, -propeller.tP + 1.0];
     for (symbol, value) in [
         ("Lpp", p.Lpp),
         ("d", p.d),
         ("DP", propeller.DP),
         ("R0'", p.hull.R0),
-        ("1 - wP0", 1.0 - propeller.wP0),
-        ("1 - tP", 1.0 - propeller.tP),
+        ("1 - wP0", past_wake),
+        ("1 - tP", past_hull),
     ] {
-        positive(symbol, value)?;
+        positive(symbol, value.value())?;
     }
     let [k0, k1, k2] = propeller.k;
-    let pitch = propeller.DP / (1.0 - propeller.wP0);
-    let resistance = p.hull.R0 * pitch * pitch * p.Lpp * p.d / (2.0 * (1.0 - propeller.tP) * propeller.DP.powi(4));
+    let pitch = propeller.DP / past_wake;
+    let resistance = p.hull.R0 * pitch * pitch * p.Lpp * p.d / (past_hull * 2.0 * propeller.DP.powi(4));
     // (resistance − k2) J² − k1 J − k0 = 0 in the form that does not cancel for k1 < 0.
-    let quarter = k1 * k1 + 4.0 * (resistance - k2) * k0;
-    let J = 2.0 * k0 / (quarter.sqrt() - k1);
-    if J > 0.0 && J.is_finite() { Ok(J * pitch) } else { Err(MmgError::NoBalance { k0, R0: p.hull.R0 }) }
+    let quarter = k1 * k1 + (resistance - k2) * 4.0 * k0;
+    let J = k0 * 2.0 / (quarter.sqrt() - k1);
+    let balances = J.value() > 0.0 && J.value().is_finite();
+    if balances { Ok(J * pitch) } else { Err(MmgError::NoBalance { k0: k0.value(), R0: p.hull.R0.value() }) }
 }
 
 impl Hull for Mmg {
@@ -226,45 +274,9 @@ impl Hull for Mmg {
 
     /// The equations of the module; the disturbance adds the yaw moment (dN/dδ) δ of the straight approach.
     fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration {
-        let Parameters { Lpp: L, hull, propeller, rudder, .. } = &self.parameters;
-        let Velocity { surge: u, sway: v, .. } = velocity;
-        let rL = velocity.yaw * L;
-        let U = u.hypot(v).max(SLOWEST * self.approach_speed);
-        let (v_, r_) = (v / U, rL / U);
-        let beta = (-v).atan2(u);
-        let U2 = U * U;
-
-        let (vv, vr, rr) = (v_ * v_, v_ * r_, r_ * r_);
-        let XH = U2 * (-hull.R0 + hull.Xvv * vv + hull.Xvr * vr + hull.Xrr * rr + hull.Xvvvv * vv * vv);
-        let YH =
-            U2 * (v_ * (hull.Yv + hull.Yvvv * vv + hull.Yvvr * vr + hull.Yvrr * rr) + r_ * (hull.Yr + hull.Yrrr * rr));
-        let NH =
-            U2 * (v_ * (hull.Nv + hull.Nvvv * vv + hull.Nvvr * vr + hull.Nvrr * rr) + r_ * (hull.Nr + hull.Nrrr * rr));
-
-        let uP = u * (1.0 - self.wake(beta - propeller.xP * r_));
-        let KT = self.thrust_coefficient(uP);
-        let XP = (1.0 - propeller.tP) * self.thrust * self.revolutions * self.revolutions * KT;
-
-        let betaR = beta - rudder.lR * r_;
-        let uR = self.rudder_inflow(uP, KT);
-        let vR = U * rudder.gammaR.at(betaR) * betaR;
-        let alphaR = input.rudder - vR.atan2(uR);
-        let FN = self.rudder_area * (uR * uR + vR * vR) * rudder.f_alpha * alphaR.sin();
-        let (sin, cos) = input.rudder.sin_cos();
-        let XR = -(1.0 - rudder.tR) * FN * sin;
-        let YR = -(1.0 + rudder.aH) * FN * cos;
-        let NR = -(rudder.xR + rudder.aH * rudder.xH) * FN * cos;
-
-        let X = XH + XP + XR + (self.mass + hull.my) * v * rL + self.moment_of_mass * rL * rL;
-        let Y = YH + YR - (self.mass + hull.mx) * u * rL;
-        let N = NH + NR + self.rudder_moment * input.disturbance - self.moment_of_mass * u * rL;
-        let [m11, m12, m22] = self.inertia;
-        let det = m11 * m22 - m12 * m12;
-        Acceleration {
-            surge: X / ((self.mass + hull.mx) * L),
-            sway: (m22 * Y - m12 * N) / (det * L),
-            yaw: (m11 * N - m12 * Y) / (det * L * L),
-        }
+        let Velocity { surge, sway, yaw } = velocity;
+        let [surge, sway, yaw] = self.accelerations([surge, sway, yaw], input.rudder, 1.0, input.disturbance);
+        Acceleration { surge, sway, yaw }
     }
 }
 
@@ -281,11 +293,11 @@ mod tests {
         let (propeller, rudder) = (&FULL_SCALE.propeller, &FULL_SCALE.rudder);
         for uP in [1.0, 3.0, 5.2] {
             let J = uP / (hull.revolutions() * propeller.DP);
-            let KT = hull.thrust_coefficient(uP);
+            let KT = hull.thrust_coefficient(uP, hull.revolutions());
             assert_relative_eq!(KT, 0.2931 - 0.2753 * J - 0.1385 * J * J, max_relative = 1e-14);
             let gain = 1.0 + rudder.kappa * ((1.0 + 8.0 * KT / (PI * J * J)).sqrt() - 1.0);
             let textbook = rudder.epsilon * uP * (rudder.eta * gain * gain + 1.0 - rudder.eta).sqrt();
-            assert_relative_eq!(hull.rudder_inflow(uP, KT), textbook, max_relative = 1e-12);
+            assert_relative_eq!(hull.rudder_inflow(uP, hull.revolutions()), textbook, max_relative = 1e-12);
         }
     }
 

@@ -9,6 +9,8 @@
 
 pub mod abkowitz;
 pub mod mmg;
+pub mod prime;
+pub mod scaled;
 
 use crate::dynamics::{Dynamics, Input, Motion};
 

@@ -2,24 +2,26 @@
 //! [`crate::ships`].
 #![expect(non_snake_case, reason = "Yv is a derivative of the force Y, AR an area; names are those of the literature")]
 
+use estimation::number::Real;
+
 /// A quantity that takes one of two values by the sign of an angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BySign {
+pub struct BySign<R = f64> {
     /// Value for a positive angle.
-    pub positive: f64,
+    pub positive: R,
     /// Value for a negative angle.
-    pub negative: f64,
+    pub negative: R,
 }
 
-impl BySign {
+impl<R: Real> BySign<R> {
     /// The value that holds at this angle.
-    pub fn at(&self, angle: f64) -> f64 {
-        if angle < 0.0 { self.negative } else { self.positive }
+    pub fn at(&self, angle: R) -> R {
+        if angle.value() < 0.0 { self.negative } else { self.positive }
     }
 
     /// Mean of the two.
-    pub fn mean(&self) -> f64 {
-        0.5 * (self.positive + self.negative)
+    pub fn mean(&self) -> R {
+        (self.positive + self.negative) * 0.5
     }
 }
 
@@ -28,42 +30,42 @@ impl BySign {
 /// X' = −R0 + Xvv v'² + Xvr v'r' + Xrr r'² + Xvvvv v'⁴; Y' and N' are the third-order polynomials of their indices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "each name is the symbol of a derivative: Yvvr multiplies v'² r' in Y'")]
-pub struct HullDerivatives {
+pub struct HullDerivatives<R = f64> {
     /// Added mass in surge m_x'.
-    pub mx: f64,
+    pub mx: R,
     /// Added mass in sway m_y'.
-    pub my: f64,
+    pub my: R,
     /// Added moment of inertia J_z'.
-    pub Jz: f64,
+    pub Jz: R,
     /// Resistance in straight motion R₀'.
-    pub R0: f64,
-    pub Xvv: f64,
-    pub Xvr: f64,
-    pub Xrr: f64,
-    pub Xvvvv: f64,
-    pub Yv: f64,
-    pub Yr: f64,
-    pub Yvvv: f64,
-    pub Yvvr: f64,
-    pub Yvrr: f64,
-    pub Yrrr: f64,
-    pub Nv: f64,
-    pub Nr: f64,
-    pub Nvvv: f64,
-    pub Nvvr: f64,
-    pub Nvrr: f64,
-    pub Nrrr: f64,
+    pub R0: R,
+    pub Xvv: R,
+    pub Xvr: R,
+    pub Xrr: R,
+    pub Xvvvv: R,
+    pub Yv: R,
+    pub Yr: R,
+    pub Yvvv: R,
+    pub Yvvr: R,
+    pub Yvrr: R,
+    pub Yrrr: R,
+    pub Nv: R,
+    pub Nr: R,
+    pub Nvvv: R,
+    pub Nvvr: R,
+    pub Nvrr: R,
+    pub Nrrr: R,
 }
 
 /// How the wake at the propeller fades with the inflow angle β_P = β − x_P' r'.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Wake {
+pub enum Wake<R = f64> {
     /// 1 − w_P = (1 − w_P0) {1 + [1 − exp(−C1 |β_P|)] (C2 − 1)}, C2 by the sign of β_P (Yasukawa and Yoshimura 2015).
     Exponential {
         /// C1.
-        C1: f64,
+        C1: R,
         /// C2.
-        C2: BySign,
+        C2: BySign<R>,
     },
     /// w_P = w_P0 exp(−4 β_P²).
     Gaussian,
@@ -71,46 +73,46 @@ pub enum Wake {
 
 /// Propeller at constant revolutions.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Propeller {
+pub struct Propeller<R = f64> {
     /// Diameter D_P, m.
-    pub DP: f64,
+    pub DP: R,
     /// Wake fraction in straight motion w_P0.
-    pub wP0: f64,
+    pub wP0: R,
     /// Its change in manoeuvring.
-    pub wake: Wake,
+    pub wake: Wake<R>,
     /// Thrust deduction t_P.
-    pub tP: f64,
+    pub tP: R,
     /// Longitudinal position x_P' = x_P/L, forward of midship.
-    pub xP: f64,
+    pub xP: R,
     /// Open-water thrust K_T = k0 + k1 J + k2 J².
-    pub k: [f64; 3],
+    pub k: [R; 3],
 }
 
 /// Rudder behind the propeller, and its interaction with the hull.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rudder {
+pub struct Rudder<R = f64> {
     /// Area of the movable part A_R, m².
-    pub AR: f64,
+    pub AR: R,
     /// Share of the rudder height in the propeller stream, η = D_P/H_R.
-    pub eta: f64,
+    pub eta: R,
     /// Slope of the normal force f_α, 1/rad.
-    pub f_alpha: f64,
+    pub f_alpha: R,
     /// Wake ratio ε = (1 − w_R)/(1 − w_P).
-    pub epsilon: f64,
+    pub epsilon: R,
     /// Propeller acceleration factor κ.
-    pub kappa: f64,
+    pub kappa: R,
     /// Steering resistance deduction t_R.
-    pub tR: f64,
+    pub tR: R,
     /// Rudder force increase a_H.
-    pub aH: f64,
+    pub aH: R,
     /// Point of application of the additional force x_H' = x_H/L.
-    pub xH: f64,
+    pub xH: R,
     /// Longitudinal position x_R' = x_R/L.
-    pub xR: f64,
+    pub xR: R,
     /// Effective position for the inflow ℓ_R' in β_R = β − ℓ_R' r'.
-    pub lR: f64,
+    pub lR: R,
     /// Flow straightening γ_R by the sign of β_R.
-    pub gammaR: BySign,
+    pub gammaR: BySign<R>,
 }
 
 /// Everything an MMG hull is made of.
@@ -118,21 +120,120 @@ pub struct Rudder {
 /// The density of the water is not among it: mass is given by the displaced volume, and every force is proportional to
 /// the density.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parameters {
+pub struct Parameters<R = f64> {
     /// Length between perpendiculars, m.
-    pub Lpp: f64,
+    pub Lpp: R,
     /// Draught d, m.
-    pub d: f64,
+    pub d: R,
     /// Displaced volume ∇, m³.
-    pub volume: f64,
+    pub volume: R,
     /// Centre of gravity x_G forward of midship, m.
-    pub xG: f64,
+    pub xG: R,
     /// Radius of gyration about the vertical through the centre of gravity, over L (0.25 where nothing is published).
-    pub kzz: f64,
+    pub kzz: R,
     /// Hull.
-    pub hull: HullDerivatives,
+    pub hull: HullDerivatives<R>,
     /// Propeller.
-    pub propeller: Propeller,
+    pub propeller: Propeller<R>,
     /// Rudder.
-    pub rudder: Rudder,
+    pub rudder: Rudder<R>,
+}
+
+/// The same numbers without derivatives, in another kind of number.
+macro_rules! constants {
+    ($name:ident { $($field:ident),* }) => {
+        impl $name {
+            /// The same without derivatives, as yet.
+            pub fn constant<R: Real>(&self) -> $name<R> {
+                $name { $($field: R::from(self.$field)),* }
+            }
+        }
+    };
+    ($name:ident { $($field:ident),* } with $($part:ident = $made:expr),*) => {
+        impl $name {
+            /// The same without derivatives, as yet.
+            pub fn constant<R: Real>(&self) -> $name<R> {
+                $name { $($field: R::from(self.$field),)* $($part: $made(&self.$part)),* }
+            }
+        }
+    };
+}
+
+constants!(BySign { positive, negative });
+constants!(HullDerivatives {
+    mx,
+    my,
+    Jz,
+    R0,
+    Xvv,
+    Xvr,
+    Xrr,
+    Xvvvv,
+    Yv,
+    Yr,
+    Yvvv,
+    Yvvr,
+    Yvrr,
+    Yrrr,
+    Nv,
+    Nr,
+    Nvvv,
+    Nvvr,
+    Nvrr,
+    Nrrr
+});
+constants!(Propeller { DP, wP0, tP, xP } with wake = Wake::constant, k = |k: &[f64; 3]| k.map(R::from));
+constants!(Rudder { AR, eta, f_alpha, epsilon, kappa, tR, aH, xH, xR, lR } with gammaR = BySign::constant);
+constants!(Parameters { Lpp, d, volume, xG, kzz } with
+    hull = HullDerivatives::constant, propeller = Propeller::constant, rudder = Rudder::constant);
+
+impl Wake {
+    fn constant<R: Real>(&self) -> Wake<R> {
+        match self {
+            Self::Exponential { C1, C2 } => Wake::Exponential { C1: R::from(*C1), C2: C2.constant() },
+            Self::Gaussian => Wake::Gaussian,
+        }
+    }
+}
+
+impl<R> Parameters<R> {
+    /// The parameter of this name, where it is one that a record can tell something of; `None` of any other.
+    pub fn named(&mut self, name: &str) -> Option<&mut R> {
+        let Self { hull, propeller, rudder, kzz, .. } = self;
+        Some(match name {
+            "mx" => &mut hull.mx,
+            "my" => &mut hull.my,
+            "Jz" => &mut hull.Jz,
+            "R0" => &mut hull.R0,
+            "Xvv" => &mut hull.Xvv,
+            "Xvr" => &mut hull.Xvr,
+            "Xrr" => &mut hull.Xrr,
+            "Xvvvv" => &mut hull.Xvvvv,
+            "Yv" => &mut hull.Yv,
+            "Yr" => &mut hull.Yr,
+            "Yvvv" => &mut hull.Yvvv,
+            "Yvvr" => &mut hull.Yvvr,
+            "Yvrr" => &mut hull.Yvrr,
+            "Yrrr" => &mut hull.Yrrr,
+            "Nv" => &mut hull.Nv,
+            "Nr" => &mut hull.Nr,
+            "Nvvv" => &mut hull.Nvvv,
+            "Nvvr" => &mut hull.Nvvr,
+            "Nvrr" => &mut hull.Nvrr,
+            "Nrrr" => &mut hull.Nrrr,
+            "kzz" => kzz,
+            "wP0" => &mut propeller.wP0,
+            "tP" => &mut propeller.tP,
+            "f_alpha" => &mut rudder.f_alpha,
+            "epsilon" => &mut rudder.epsilon,
+            "kappa" => &mut rudder.kappa,
+            "tR" => &mut rudder.tR,
+            "aH" => &mut rudder.aH,
+            "xH" => &mut rudder.xH,
+            "lR" => &mut rudder.lR,
+            "gammaR_positive" => &mut rudder.gammaR.positive,
+            "gammaR_negative" => &mut rudder.gammaR.negative,
+            _ => return None,
+        })
+    }
 }

@@ -1,0 +1,147 @@
+//! A hull of three degrees of freedom fitted to records of heading and rudder, about what is expected of it.
+//!
+//! The rudder that was recorded is replayed through the hull ([`ship::vessel::prime`]), over the whole record and over
+//! windows of 3.5 L/U₀; heading and yaw rate at the start are fitted, speed and sway begin as measured (or at approach
+//! speed) and run on. Minimised is
+//!
+//! J = Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of speed and sway where recorded]
+//!   + Σ ((θ − μ)/s)²
+//!
+//! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
+//! or twenty numbers is the ship. The covariance is the inverse of the second derivatives of J/2, so it holds the error
+//! of the form as far as that is another in every ship length. Firm priors are what lets one record tell so many
+//! coefficients; without them the fitted hull is unstable as often as not.
+
+mod objective;
+mod track;
+
+use estimation::levenberg_marquardt::{End, Rules, minimise};
+use estimation::number::Real;
+use nalgebra::{Cholesky, DMatrix, DVector};
+use ship::vessel::prime::{HullCoefficient, HullForm};
+use ship::vessel::scaled::ScaledHull;
+use thiserror::Error;
+use trial::Trial;
+
+pub use objective::HullDeviations;
+use objective::HullObjective;
+pub use track::HullReference;
+use track::{FEWEST, HullTrack};
+
+/// Why no hull is fitted.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum HullError {
+    /// Length or speed are not declared.
+    #[error("length and approach speed of the ship are not known")]
+    Particulars,
+    /// A record is too short.
+    #[error("{trial} has fewer than {FEWEST} headings")]
+    Short {
+        /// Name of the record.
+        trial: String,
+    },
+    /// No values near the expected ones can be replayed.
+    #[error("no hull near the expected one can be replayed")]
+    NoReplay,
+}
+
+/// How a search proceeds.
+const RULES: Rules = Rules {
+    steps: 40,
+    damping: 1e-2,
+    shrink: 0.2,
+    trusted: 0.25,
+    grow: 4.0,
+    least: [1e-9, 1e-4],
+    tries: 14,
+    promise: 1e-3,
+    enough: [1e-3, 1e-5],
+    in_a_row: 2,
+};
+
+/// Starts beside the expected values, in standard deviations, of the first coefficients with alternating signs.
+const STARTS: [f64; 3] = [0.0, 0.7, -0.7];
+const STARTED: usize = 5;
+
+/// What is left of one record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HullResidual {
+    /// Name of the record.
+    pub name: String,
+    /// Root mean square heading error of the whole replay, rad.
+    pub whole: f64,
+    /// The same in windows of 3.5 L/U₀, rad.
+    pub window: f64,
+}
+
+/// A hull with what is known of its coefficients.
+#[derive(Debug, Clone)]
+pub struct HullEstimate {
+    /// The form.
+    pub form: HullForm,
+    /// What was expected.
+    pub expected: Vec<HullCoefficient>,
+    /// Length, speed and propeller that it is measured with.
+    pub reference: HullReference,
+    /// The coefficients.
+    pub values: DVector<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// J at the end.
+    pub objective: f64,
+    /// Its records.
+    pub records: Vec<HullResidual>,
+}
+
+/// Fits a hull of a form about what is expected of its coefficients to records of one ship.
+///
+/// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings, and where no
+/// values near the expected ones can be replayed.
+pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> Result<HullEstimate, HullError> {
+    let reference = trials.iter().find_map(HullReference::of).ok_or(HullError::Particulars)?;
+    let track = |trial: &Trial| {
+        HullTrack::of(trial, &reference).ok_or_else(|| HullError::Short { trial: trial.name().to_owned() })
+    };
+    let tracks = trials.iter().map(track).collect::<Result<Vec<HullTrack>, _>>()?;
+    let search = |shift: f64| {
+        let start = expected.iter().enumerate().map(|(place, own)| {
+            let sign = if place % 2 == 0 { 1.0 } else { -1.0 };
+            let shift = if place < STARTED { sign * shift * own.sd } else { 0.0 };
+            (own.mean + shift).clamp(own.ends[0], own.ends[1])
+        });
+        let mut problem = HullObjective::new(form, expected.to_vec(), &tracks);
+        let found = minimise(&mut problem, DVector::from_iterator(expected.len(), start), &RULES);
+        (found.end != End::NotFinite).then_some((found, problem))
+    };
+    let best = STARTS.into_iter().filter_map(search).min_by(|one, other| one.0.value.total_cmp(&other.0.value));
+    let (found, mut problem) = best.ok_or(HullError::NoReplay)?;
+    let covariance = Cholesky::new(found.normal.matrix.clone()).map(|factor| factor.inverse());
+    let covariance = covariance.ok_or(HullError::NoReplay)?;
+    let left = problem.left(found.at.as_slice()).unwrap_or_default();
+    let residual = |(trial, left): (&Trial, objective::Left)| HullResidual {
+        name: trial.name().to_owned(),
+        whole: left.whole.sqrt(),
+        window: left.window.sqrt(),
+    };
+    let records = trials.iter().zip(left).map(residual).collect();
+    let (values, objective) = (found.at, found.value);
+    Ok(HullEstimate {
+        form: form.clone(),
+        expected: expected.to_vec(),
+        reference,
+        values,
+        covariance,
+        objective,
+        records,
+    })
+}
+
+impl HullEstimate {
+    /// The hull, ready to be replayed.
+    pub fn ship<R: Real>(&self) -> ScaledHull<R> {
+        let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
+        let HullReference { length, speed, propeller } = self.reference;
+        let hull = self.form.with(&values).expect("it was replayed");
+        ScaledHull { hull, length, speed, propeller }
+    }
+}

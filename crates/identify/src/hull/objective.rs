@@ -1,0 +1,333 @@
+//! How far a hull is from records: replays of the rudder over whole records and over windows, in which heading and yaw
+//! rate at the start are fitted while speed and sway run on; speed and sway where they were recorded.
+
+use estimation::levenberg_marquardt::{Normal, Objective};
+use estimation::number::{Dual, Real};
+use nalgebra::DMatrix;
+use ship::vessel::prime::{HullCoefficient, HullForm, PrimeHull};
+
+use super::track::HullTrack;
+
+/// Most coefficients, and the yaw rate at the start.
+const DIRECTIONS: usize = 32;
+
+/// Steps of the search for a yaw rate at the start, and shares of them that are tried.
+const STEPS: usize = 3;
+const SHARES: [f64; 4] = [1.0, 0.4, 0.16, 0.06];
+
+/// A gain of less than this share ends that search.
+const NEGLIGIBLE: f64 = 1e-6;
+
+/// Longest step of the solver, in L/U₀.
+const LONGEST: f64 = 0.08;
+
+/// States beyond this, in units of L and U₀, are those of no ship.
+const FASTEST: f64 = 5.0;
+
+/// Standard deviations of what a hull of the right form leaves, because no form is right: they say how far each kind of
+/// reading is believed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HullDeviations {
+    /// Heading of a whole replay, rad.
+    pub whole: f64,
+    /// Heading in a window, rad.
+    pub window: f64,
+    /// Speed over U₀.
+    pub speed: f64,
+    /// Sway over U₀.
+    pub sway: f64,
+}
+
+/// Mean squares of what a hull leaves on one record.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Left {
+    pub whole: f64,
+    pub window: f64,
+    pub speed: f64,
+    pub sway: f64,
+}
+
+/// The yaw rates at the start of a record and of its windows, kept from one evaluation to the next.
+#[derive(Debug, Clone)]
+struct Starts {
+    whole: [f64; 1],
+    windows: Vec<f64>,
+}
+
+/// Records, a form and its priors.
+pub(super) struct HullObjective<'a> {
+    form: &'a HullForm,
+    coefficients: Vec<HullCoefficient>,
+    tracks: &'a [HullTrack],
+    deviations: HullDeviations,
+    starts: Vec<Starts>,
+    /// Whether the starts were found once.
+    is_begun: bool,
+}
+
+/// A window replayed: rows of states, each (ψ, u, v).
+struct Replayed<R> {
+    rows: Vec<[R; 3]>,
+    end: [R; 3],
+}
+
+/// Steps a hull through rows `from..to` from (u, v, r), with a heading of zero at the first of them (Heun).
+fn replayed<R: Real>(hull: &PrimeHull<R>, track: &HullTrack, [from, to]: [usize; 2], start: [R; 3]) -> Replayed<R> {
+    let mut state = start;
+    let mut heading = R::from(0.0);
+    let mut rows = Vec::with_capacity(to - from);
+    rows.push([heading, state[0], state[1]]);
+    let last = to.min(track.time.len() - 1);
+    for row in from + 1..=last {
+        let span = track.time[row] - track.time[row - 1];
+        let pieces = (span / LONGEST).ceil().max(1.0);
+        let step = span / pieces;
+        let between = |values: &[f64], share: f64| values[row - 1] + share * (values[row] - values[row - 1]);
+        for piece in 0..pieces as usize {
+            let rates = |state: [R; 3], piece: usize| {
+                let share = piece as f64 / pieces;
+                let rudder = R::from(between(&track.rudder, share));
+                hull.accelerations(state, rudder, between(&track.turning, share), 0.0)
+            };
+            let first = rates(state, piece);
+            let ahead: [R; 3] = std::array::from_fn(|i| state[i] + first[i] * step);
+            let second = rates(ahead, piece + 1);
+            heading = heading + (state[2] + ahead[2]) * (0.5 * step);
+            state = std::array::from_fn(|i| bounded(state[i] + (first[i] + second[i]) * (0.5 * step)));
+        }
+        if row < to {
+            rows.push([heading, state[0], state[1]]);
+        }
+    }
+    Replayed { rows, end: state }
+}
+
+/// A runaway is stopped: the ship is far off, and stays a number.
+fn bounded<R: Real>(value: R) -> R {
+    if value.value().abs() < FASTEST { value } else { R::from(value.value().clamp(-FASTEST, FASTEST)) }
+}
+
+/// What is left of the headings of a window, and how it grows with the yaw rate at its start.
+struct WindowFit {
+    square: f64,
+    step: f64,
+    end: [f64; 3],
+    rows: Vec<[f64; 3]>,
+    read: usize,
+}
+
+fn window(hull: &PrimeHull<Dual<1>>, track: &HullTrack, ends: [usize; 2], [u, v]: [f64; 2], rate: f64) -> WindowFit {
+    let start = [Dual::from(u), Dual::from(v), Dual::variable(rate, 0, 1.0)];
+    let Replayed { rows, end } = replayed(hull, track, ends, start);
+    let pairs = || {
+        let measured = &track.heading[ends[0]..ends[1]];
+        measured.iter().zip(&rows).filter(|(measured, _)| measured.is_finite())
+    };
+    let read = pairs().count();
+    let mean = |of: fn((&f64, &[Dual<1>; 3])) -> f64| pairs().map(of).sum::<f64>() / read.max(1) as f64;
+    let [left, slope] = [mean(|(measured, row)| measured - row[0].value), mean(|(_, row)| row[0].by[0])];
+    let (mut square, mut cross, mut own) = (0.0, 0.0, 0.0);
+    for (measured, row) in pairs() {
+        let (error, by) = (measured - row[0].value - left, row[0].by[0] - slope);
+        square += error * error;
+        cross += error * by;
+        own += by * by;
+    }
+    let values = |state: [Dual<1>; 3]| state.map(|one| one.value);
+    let step = if own > 0.0 { cross / own } else { 0.0 };
+    WindowFit { square, step, end: values(end), rows: rows.into_iter().map(values).collect(), read }
+}
+
+/// The same from the best yaw rate, which is left in `rate`.
+fn settled(
+    hull: &PrimeHull<Dual<1>>,
+    track: &HullTrack,
+    ends: [usize; 2],
+    start: [f64; 2],
+    rate: &mut f64,
+) -> WindowFit {
+    let mut now = window(hull, track, ends, start, *rate);
+    for _ in 0..STEPS {
+        let tried = SHARES.iter().find_map(|share| {
+            let ahead = *rate + share * now.step;
+            let next = window(hull, track, ends, start, ahead);
+            (next.square < now.square).then_some((ahead, next))
+        });
+        let Some((ahead, next)) = tried else { break };
+        let is_enough = now.square - next.square < NEGLIGIBLE * now.square;
+        (*rate, now) = (ahead, next);
+        if is_enough {
+            break;
+        }
+    }
+    now
+}
+
+/// Replays all windows of a record, each from its best yaw rate; calls `visit` with what each leaves.
+fn through(
+    hull: &PrimeHull<Dual<1>>,
+    track: &HullTrack,
+    cuts: &[usize],
+    rates: &mut [f64],
+    is_begun: bool,
+    mut visit: impl FnMut(&WindowFit),
+) {
+    let mut start = track.start;
+    let mut before = rates[0];
+    for (ends, rate) in cuts.windows(2).zip(rates) {
+        if !is_begun {
+            *rate = before;
+        }
+        let found = settled(hull, track, [ends[0], ends[1]], start, rate);
+        start = [found.end[0], found.end[1]];
+        before = found.end[2];
+        visit(&found);
+    }
+}
+
+impl<'a> HullObjective<'a> {
+    pub fn new(form: &'a HullForm, coefficients: Vec<HullCoefficient>, tracks: &'a [HullTrack]) -> Self {
+        assert!(coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
+        let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
+        let starts = tracks.iter().map(starts).collect();
+        Self { form, coefficients, tracks, deviations: DEVIATIONS, starts, is_begun: false }
+    }
+
+    /// Mean squares of what is left on every record; `None` where the values make no ship.
+    pub fn left(&mut self, at: &[f64]) -> Option<Vec<Left>> {
+        let values: Vec<Dual<1>> = at.iter().map(|&value| Dual::from(value)).collect();
+        let hull = self.form.with(&values)?;
+        let is_begun = std::mem::replace(&mut self.is_begun, true);
+        let of = |(track, starts): (&HullTrack, &mut Starts)| {
+            let mut left = Left::default();
+            through(&hull, track, &track.whole, &mut starts.whole, is_begun, |found| {
+                left.whole = found.square / found.read.max(1) as f64;
+                let rows = found.rows.len() as f64;
+                let mean = |measured: &Option<Vec<f64>>, own: fn(&[f64; 3]) -> f64| {
+                    let pairs = measured.iter().flatten().zip(&found.rows);
+                    pairs.map(|(measured, row)| (measured - own(row)).powi(2)).sum::<f64>() / rows
+                };
+                left.speed = mean(&track.speed, |row| row[1].hypot(row[2]));
+                left.sway = mean(&track.sway, |row| row[2]);
+            });
+            let (mut square, mut read) = (0.0, 0);
+            through(&hull, track, &track.cuts, &mut starts.windows, is_begun, |found| {
+                (square, read) = (square + found.square, read + found.read);
+            });
+            left.window = square / read.max(1) as f64;
+            left
+        };
+        Some(self.tracks.iter().zip(&mut self.starts).map(of).collect())
+    }
+
+    fn of_priors(&self, at: &[f64]) -> f64 {
+        self.coefficients.iter().zip(at).map(|(own, value)| ((value - own.mean) / own.sd).powi(2)).sum()
+    }
+}
+
+impl Objective for HullObjective<'_> {
+    fn bounds(&self, unknown: usize) -> [f64; 2] {
+        self.coefficients[unknown].ends
+    }
+
+    /// Σ over records of their length in L/U₀ times mean squares over variances, and the priors: as if the error of the
+    /// form were another in every ship length that is sailed.
+    fn value(&mut self, at: &[f64]) -> f64 {
+        let HullDeviations { whole, window, speed, sway } = self.deviations;
+        let Some(left) = self.left(at) else { return f64::INFINITY };
+        let of = |(track, left): (&HullTrack, Left)| {
+            let share = |square: f64, deviation: f64| square / (deviation * deviation);
+            let headings = share(left.whole, whole) + share(left.window, window);
+            track.duration() * (headings + share(left.speed, speed) + share(left.sway, sway))
+        };
+        self.of_priors(at) + self.tracks.iter().zip(left).map(of).sum::<f64>()
+    }
+
+    fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64 {
+        let value = self.value(at);
+        *normal = Normal::zeros(at.len());
+        for (place, own) in self.coefficients.iter().enumerate() {
+            let inverse = own.sd.powi(-2);
+            normal.matrix[(place, place)] = inverse;
+            normal.gradient[place] = (own.mean - at[place]) * inverse;
+        }
+        let values: Vec<Dual<DIRECTIONS>> =
+            at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
+        let Some(hull) = self.form.with(&values) else { return f64::INFINITY };
+        let HullDeviations { whole, window, speed, sway } = self.deviations;
+        for (track, starts) in self.tracks.iter().zip(&self.starts) {
+            let lengths = track.duration();
+            let read = track.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
+            let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);
+            let rows = track.time.len() as f64;
+            let of_others = Some([weight(speed, rows), weight(sway, rows)]);
+            add(normal, &hull, track, (&track.whole, &starts.whole), weight(whole, read), of_others);
+            add(normal, &hull, track, (&track.cuts, &starts.windows), weight(window, read), None);
+        }
+        value
+    }
+}
+
+/// Adds the normal equations of the windows of a record; `of_others` are the weights of speed and sway.
+fn add(
+    normal: &mut Normal,
+    hull: &PrimeHull<Dual<DIRECTIONS>>,
+    track: &HullTrack,
+    (cuts, rates): (&[usize], &[f64]),
+    weight: f64,
+    of_others: Option<[f64; 2]>,
+) {
+    let unknowns = normal.gradient.len();
+    let mut start = track.start.map(Dual::from);
+    for (ends, &rate) in cuts.windows(2).zip(rates) {
+        // What runs on does not depend on the yaw rate at this start.
+        start.iter_mut().for_each(|one| one.by[unknowns] = 0.0);
+        let variable = Dual::variable(rate, unknowns, 1.0);
+        let Replayed { rows, end } = replayed(hull, track, [ends[0], ends[1]], [start[0], start[1], variable]);
+        start = [end[0], end[1]];
+        let read: Vec<usize> = (0..rows.len()).filter(|&row| track.heading[ends[0] + row].is_finite()).collect();
+        let heading = |i: usize, j: usize| {
+            let own = &rows[read[i]][0];
+            if j > unknowns { track.heading[ends[0] + read[i]] - own.value } else { own.by[j] }
+        };
+        let mut columns = DMatrix::from_fn(read.len(), unknowns + 2, heading);
+        for mut column in columns.column_iter_mut() {
+            let mean = column.mean();
+            column.add_scalar_mut(-mean);
+        }
+        // How the best yaw rate at the start follows the coefficients.
+        let by_rate = columns.column(unknowns).clone_owned();
+        let own = by_rate.norm_squared();
+        let follows: Vec<f64> =
+            columns.column_iter().map(|column| if own > 0.0 { column.dot(&by_rate) / own } else { 0.0 }).collect();
+        for (place, share) in follows.iter().enumerate().filter(|(place, _)| *place != unknowns) {
+            columns.column_mut(place).axpy(-share, &by_rate, 1.0);
+        }
+        add_squares(normal, &columns, unknowns + 1, weight);
+        let Some(weights) = of_others else { continue };
+        let outputs = [(&track.speed, weights[0]), (&track.sway, weights[1])];
+        for (output, (measured, weight)) in outputs.into_iter().enumerate() {
+            let Some(measured) = measured else { continue };
+            let of_row = |row: &[Dual<DIRECTIONS>; 3]| if output == 0 { row[1].hypot(row[2]) } else { row[2] };
+            let columns = DMatrix::from_fn(rows.len(), unknowns + 2, |i, j| {
+                let own = of_row(&rows[i]);
+                match j {
+                    _ if j > unknowns => measured[ends[0] + i] - own.value,
+                    _ if j == unknowns => 0.0,
+                    _ => own.by[j] - follows[j] * own.by[unknowns],
+                }
+            });
+            add_squares(normal, &columns, unknowns + 1, weight);
+        }
+    }
+}
+
+/// XᵀX and Xᵀe of the first columns and the error, which is the last.
+fn add_squares(normal: &mut Normal, columns: &DMatrix<f64>, error: usize, weight: f64) {
+    let of_unknowns = columns.columns(0, error - 1);
+    normal.matrix.gemm_tr(weight, &of_unknowns, &of_unknowns, 1.0);
+    normal.gradient.gemv_tr(weight, &of_unknowns, &columns.column(error), 1.0);
+}
+
+/// What hulls of these forms leave on records of other hulls.
+const DEVIATIONS: HullDeviations = HullDeviations { whole: 0.0175, window: 0.0035, speed: 0.02, sway: 0.02 };

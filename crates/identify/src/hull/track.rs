@@ -1,0 +1,141 @@
+//! A record without dimension, as a hull is fitted to it.
+
+use trial::{Channel, Trial};
+
+/// Time between two rows that is fine enough, in L/U₀.
+const SPACING: f64 = 0.05;
+
+/// Length of the windows after which a replay is restarted, in L/U₀: about half a period of a zig-zag.
+const WINDOW: f64 = 3.5;
+
+/// Fewest headings that a record has to hold.
+pub(super) const FEWEST: usize = 20;
+
+/// What a hull is measured with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HullReference {
+    /// Length L, m.
+    pub length: f64,
+    /// Approach speed U₀, m/s.
+    pub speed: f64,
+    /// Rate of the propeller at that speed, 1/s, where it was recorded.
+    pub propeller: Option<f64>,
+}
+
+impl HullReference {
+    /// That of a trial; `None` where its length or speed is not known.
+    pub fn of(trial: &Trial) -> Option<Self> {
+        let own = trial.particulars()?;
+        let propeller = trial.channel(Channel::PropellerRate).and_then(median).filter(|rate| *rate > 0.0);
+        Some(Self { length: own.length, speed: own.speed, propeller })
+    }
+
+    /// L/U₀, s.
+    pub fn time(&self) -> f64 {
+        self.length / self.speed
+    }
+}
+
+/// A record in units of L and U₀.
+#[derive(Debug, Clone)]
+pub(super) struct HullTrack {
+    pub time: Vec<f64>,
+    /// rad; NaN where it was not recorded.
+    pub heading: Vec<f64>,
+    /// rad.
+    pub rudder: Vec<f64>,
+    /// Rate of the propeller over that of the approach.
+    pub turning: Vec<f64>,
+    /// Speed, where it was recorded.
+    pub speed: Option<Vec<f64>>,
+    /// Sway, where it was recorded.
+    pub sway: Option<Vec<f64>>,
+    /// Surge and sway in the first row.
+    pub start: [f64; 2],
+    /// First rows of the windows, and the number of rows.
+    pub cuts: Vec<usize>,
+    /// The number of rows, as the end of the one window that is the record.
+    pub whole: [usize; 2],
+}
+
+impl HullTrack {
+    /// `None` for a record with too few headings.
+    pub fn of(trial: &Trial, reference: &HullReference) -> Option<Self> {
+        let rows: Vec<usize> = trial.observed_rows().collect();
+        let (first, last) = (*rows.first()?, *rows.last()?);
+        let own = HullReference::of(trial).unwrap_or(*reference);
+        // Without a rate of the propeller a record is measured with its own speed.
+        let known = reference.propeller.zip(own.propeller).map(|(reference, _)| reference);
+        let speed_unit = if known.is_some() { reference.speed } else { own.speed };
+        let second = reference.length / speed_unit;
+        let group = ((SPACING * second / trial.sampling_period()) as usize).max(1);
+        let take = |values: &[f64]| -> Vec<f64> { values[first..=last].chunks(group).map(mean_of_read).collect() };
+        let channel = |channel: Channel, unit: f64| {
+            let values = filled(take(trial.channel(channel)?))?;
+            Some(values.into_iter().map(|value| value / unit).collect::<Vec<f64>>())
+        };
+        let sway = channel(Channel::Sway, speed_unit);
+        let speed = channel(Channel::Speed, speed_unit).or_else(|| {
+            let surge = channel(Channel::Surge, speed_unit)?;
+            Some(surge.iter().zip(sway.as_ref()?).map(|(u, v)| u.hypot(*v)).collect())
+        });
+        let time: Vec<f64> = take(trial.time()).into_iter().map(|t| t / second).collect();
+        let drift = sway.as_ref().map_or(0.0, |sway| sway[0]);
+        let surge = speed.as_ref().map_or(1.0, |speed| (speed[0] * speed[0] - drift * drift).max(0.0).sqrt());
+        let turning = known.and_then(|reference| channel(Channel::PropellerRate, reference));
+        let count = time.len();
+        (rows.len() >= FEWEST).then(|| Self {
+            heading: take(trial.heading()),
+            rudder: take(trial.rudder()),
+            turning: turning.unwrap_or_else(|| vec![1.0; count]),
+            cuts: cuts(&time),
+            whole: [0, count],
+            start: [surge, drift],
+            time,
+            speed,
+            sway,
+        })
+    }
+
+    /// Length in L/U₀.
+    pub fn duration(&self) -> f64 {
+        self.time[self.time.len() - 1] - self.time[0]
+    }
+}
+
+/// First rows of windows that follow one another, and the number of rows; what is less than half a window belongs to
+/// the one before.
+fn cuts(time: &[f64]) -> Vec<usize> {
+    let mut cuts = vec![0];
+    let mut from = 0;
+    while time[time.len() - 1] >= time[from] + 1.5 * WINDOW {
+        from = time.partition_point(|t| *t < time[from] + WINDOW);
+        cuts.push(from);
+    }
+    cuts.push(time.len());
+    cuts
+}
+
+/// Mean of the values that were read; NaN without any.
+fn mean_of_read(values: &[f64]) -> f64 {
+    let read = || values.iter().filter(|value| value.is_finite());
+    read().sum::<f64>() / read().count() as f64
+}
+
+/// Gaps filled with the value before, or after at the start; `None` where nothing was read.
+fn filled(mut values: Vec<f64>) -> Option<Vec<f64>> {
+    let mut last = *values.iter().find(|value| value.is_finite())?;
+    for value in &mut values {
+        if value.is_finite() {
+            last = *value;
+        }
+        *value = last;
+    }
+    Some(values)
+}
+
+fn median(values: &[f64]) -> Option<f64> {
+    let mut read: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    read.sort_by(f64::total_cmp);
+    read.get(read.len() / 2).copied()
+}
