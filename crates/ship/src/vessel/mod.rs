@@ -9,6 +9,7 @@
 
 pub mod abkowitz;
 pub mod mmg;
+pub mod prior;
 
 use crate::dynamics::{Dynamics, Input, Motion};
 

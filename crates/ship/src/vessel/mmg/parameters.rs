@@ -3,7 +3,7 @@
 #![expect(non_snake_case, reason = "Yv is a derivative of the force Y, AR an area; names are those of the literature")]
 
 /// A quantity that takes one of two values by the sign of an angle.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BySign {
     /// Value for a positive angle.
     pub positive: f64,
@@ -26,7 +26,7 @@ impl BySign {
 /// Hull force derivatives in the prime system ½ρLdU² (moment ½ρL²dU²), added masses in ½ρL²d (inertia ½ρL⁴d).
 ///
 /// X' = −R0 + Xvv v'² + Xvr v'r' + Xrr r'² + Xvvvv v'⁴; Y' and N' are the third-order polynomials of their indices.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[expect(missing_docs, reason = "each name is the symbol of a derivative: Yvvr multiplies v'² r' in Y'")]
 pub struct HullDerivatives {
     /// Added mass in surge m_x'.
@@ -87,7 +87,7 @@ pub struct Propeller {
 }
 
 /// Rudder behind the propeller, and its interaction with the hull.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Rudder {
     /// Area of the movable part A_R, m².
     pub AR: f64,
