@@ -60,7 +60,7 @@ const RULES: Rules = Rules {
 };
 
 /// Starts beside the expected values, in standard deviations, of the first coefficients with alternating signs.
-const STARTS: [f64; 3] = [0.0, 0.7, -0.7];
+const STARTS: [f64; 1] = [0.0];
 const STARTED: usize = 5;
 
 /// What is left of one record.
@@ -98,7 +98,7 @@ pub struct HullEstimate {
 /// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings, and where no
 /// values near the expected ones can be replayed.
 pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> Result<HullEstimate, HullError> {
-    let reference = trials.iter().find_map(HullReference::of).ok_or(HullError::Particulars)?;
+    let reference = trials.iter().find_map(HullReference::of).ok_or(HullError::Particulars)?.with_speed_of(trials);
     let track = |trial: &Trial| {
         HullTrack::of(trial, &reference).ok_or_else(|| HullError::Short { trial: trial.name().to_owned() })
     };
@@ -115,6 +115,11 @@ pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> R
     };
     let best = STARTS.into_iter().filter_map(search).min_by(|one, other| one.0.value.total_cmp(&other.0.value));
     let (found, mut problem) = best.ok_or(HullError::NoReplay)?;
+    let mut found = found;
+    for _ in 0..std::env::var("RW").ok().and_then(|x| x.parse().ok()).unwrap_or(3) {
+        problem.reweigh(found.at.as_slice());
+        found = minimise(&mut problem, found.at, &RULES);
+    }
     let covariance = Cholesky::new(found.normal.matrix.clone()).map(|factor| factor.inverse());
     let covariance = covariance.ok_or(HullError::NoReplay)?;
     let left = problem.left(found.at.as_slice()).unwrap_or_default();
@@ -140,8 +145,8 @@ impl HullEstimate {
     /// The hull, ready to be replayed.
     pub fn ship<R: Real>(&self) -> ScaledHull<R> {
         let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
-        let HullReference { length, speed, propeller } = self.reference;
+        let HullReference { length, speed, propeller, driven } = self.reference;
         let hull = self.form.with(&values).expect("it was replayed");
-        ScaledHull { hull, length, speed, propeller }
+        ScaledHull { hull, length, speed, propeller, driven }
     }
 }

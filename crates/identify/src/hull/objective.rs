@@ -9,7 +9,7 @@ use ship::vessel::prime::{HullCoefficient, HullForm, PrimeHull};
 use super::track::HullTrack;
 
 /// Most coefficients, and the yaw rate at the start.
-const DIRECTIONS: usize = 32;
+const DIRECTIONS: usize = 26;
 
 /// Steps of the search for a yaw rate at the start, and shares of them that are tried.
 const STEPS: usize = 3;
@@ -20,9 +20,6 @@ const NEGLIGIBLE: f64 = 1e-6;
 
 /// Longest step of the solver, in L/U₀.
 const LONGEST: f64 = 0.08;
-
-/// States beyond this, in units of L and U₀, are those of no ship.
-const FASTEST: f64 = 5.0;
 
 /// Standard deviations of what a hull of the right form leaves, because no form is right: they say how far each kind of
 /// reading is believed.
@@ -59,7 +56,7 @@ pub(super) struct HullObjective<'a> {
     form: &'a HullForm,
     coefficients: Vec<HullCoefficient>,
     tracks: &'a [HullTrack],
-    deviations: HullDeviations,
+    deviations: Vec<HullDeviations>,
     starts: Vec<Starts>,
     /// Whether the starts were found once.
     is_begun: bool,
@@ -84,8 +81,11 @@ fn replayed<R: Real>(hull: &PrimeHull<R>, track: &HullTrack, [from, to]: [usize;
         let step = span / pieces;
         let between = |values: &[f64], share: f64| values[row - 1] + share * (values[row] - values[row - 1]);
         for piece in 0..pieces as usize {
-            let rates = |state: [R; 3], piece: usize| {
+            let rates = |mut state: [R; 3], piece: usize| {
                 let share = piece as f64 / pieces;
+                if let Some(surge) = &track.driven {
+                    state[0] = R::from(between(surge, share));
+                }
                 let rudder = R::from(between(&track.rudder, share));
                 hull.accelerations(state, rudder, between(&track.turning, share), 0.0)
             };
@@ -93,18 +93,13 @@ fn replayed<R: Real>(hull: &PrimeHull<R>, track: &HullTrack, [from, to]: [usize;
             let ahead: [R; 3] = std::array::from_fn(|i| state[i] + first[i] * step);
             let second = rates(ahead, piece + 1);
             heading = heading + (state[2] + ahead[2]) * (0.5 * step);
-            state = std::array::from_fn(|i| bounded(state[i] + (first[i] + second[i]) * (0.5 * step)));
+            state = std::array::from_fn(|i| state[i] + (first[i] + second[i]) * (0.5 * step));
         }
         if row < to {
             rows.push([heading, state[0], state[1]]);
         }
     }
     Replayed { rows, end: state }
-}
-
-/// A runaway is stopped: the ship is far off, and stays a number.
-fn bounded<R: Real>(value: R) -> R {
-    if value.value().abs() < FASTEST { value } else { R::from(value.value().clamp(-FASTEST, FASTEST)) }
 }
 
 /// What is left of the headings of a window, and how it grows with the yaw rate at its start.
@@ -190,7 +185,9 @@ impl<'a> HullObjective<'a> {
         assert!(coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
         let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
-        Self { form, coefficients, tracks, deviations: DEVIATIONS, starts, is_begun: false }
+        let loose = HullDeviations { whole: 3_f64.to_radians(), window: 1_f64.to_radians(), speed: 0.2, sway: 0.2 };
+        let deviations = vec![loose; tracks.len()];
+        Self { form, coefficients, tracks, deviations, starts, is_begun: false }
     }
 
     /// Mean squares of what is left on every record; `None` where the values make no ship.
@@ -220,6 +217,20 @@ impl<'a> HullObjective<'a> {
         Some(self.tracks.iter().zip(&mut self.starts).map(of).collect())
     }
 
+    /// Believes every record as far as what is left of it, and no further than a hull of the right form.
+    pub fn reweigh(&mut self, at: &[f64]) {
+        let all = self.left(at).unwrap_or_default();
+        for (believed, left) in self.deviations.iter_mut().zip(all) {
+            let least = deviations();
+            *believed = HullDeviations {
+                whole: least.whole.max(left.whole.sqrt()),
+                window: least.window.max(left.window.sqrt()),
+                speed: least.speed.max(left.speed.sqrt()),
+                sway: least.sway.max(left.sway.sqrt()),
+            };
+        }
+    }
+
     fn of_priors(&self, at: &[f64]) -> f64 {
         self.coefficients.iter().zip(at).map(|(own, value)| ((value - own.mean) / own.sd).powi(2)).sum()
     }
@@ -233,14 +244,14 @@ impl Objective for HullObjective<'_> {
     /// Σ over records of their length in L/U₀ times mean squares over variances, and the priors: as if the error of the
     /// form were another in every ship length that is sailed.
     fn value(&mut self, at: &[f64]) -> f64 {
-        let HullDeviations { whole, window, speed, sway } = self.deviations;
         let Some(left) = self.left(at) else { return f64::INFINITY };
-        let of = |(track, left): (&HullTrack, Left)| {
+        let of = |((track, left), believed): ((&HullTrack, Left), &HullDeviations)| {
+            let HullDeviations { whole, window, speed, sway } = *believed;
             let share = |square: f64, deviation: f64| square / (deviation * deviation);
             let headings = share(left.whole, whole) + share(left.window, window);
             track.duration() * (headings + share(left.speed, speed) + share(left.sway, sway))
         };
-        self.of_priors(at) + self.tracks.iter().zip(left).map(of).sum::<f64>()
+        self.of_priors(at) + self.tracks.iter().zip(left).zip(&self.deviations).map(of).sum::<f64>()
     }
 
     fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64 {
@@ -254,8 +265,8 @@ impl Objective for HullObjective<'_> {
         let values: Vec<Dual<DIRECTIONS>> =
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
         let Some(hull) = self.form.with(&values) else { return f64::INFINITY };
-        let HullDeviations { whole, window, speed, sway } = self.deviations;
-        for (track, starts) in self.tracks.iter().zip(&self.starts) {
+        for ((track, starts), believed) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
+            let HullDeviations { whole, window, speed, sway } = *believed;
             let lengths = track.duration();
             let read = track.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
             let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);
@@ -330,4 +341,12 @@ fn add_squares(normal: &mut Normal, columns: &DMatrix<f64>, error: usize, weight
 }
 
 /// What hulls of these forms leave on records of other hulls.
-const DEVIATIONS: HullDeviations = HullDeviations { whole: 0.0175, window: 0.0035, speed: 0.02, sway: 0.02 };
+fn deviations() -> HullDeviations {
+    let e = |n: &str, d: f64| std::env::var(n).ok().and_then(|x| x.parse().ok()).unwrap_or(d);
+    HullDeviations {
+        whole: e("S0", 1.0_f64).to_radians(),
+        window: e("S1", 0.2_f64).to_radians(),
+        speed: e("S2", 9.0),
+        sway: e("S3", 9.0),
+    }
+}

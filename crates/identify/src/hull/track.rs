@@ -8,6 +8,9 @@ const SPACING: f64 = 0.05;
 /// Length of the windows after which a replay is restarted, in L/U₀: about half a period of a zig-zag.
 const WINDOW: f64 = 3.5;
 
+/// Share of the approach speed below which a ship gathers way.
+const SLOW: f64 = 0.7;
+
 /// Fewest headings that a record has to hold.
 pub(super) const FEWEST: usize = 20;
 
@@ -20,6 +23,9 @@ pub struct HullReference {
     pub speed: f64,
     /// Rate of the propeller at that speed, 1/s, where it was recorded.
     pub propeller: Option<f64>,
+    /// Whether the measured speed takes the place of the surge equation: where a ship gathers way or changes the rate
+    /// of its propeller, the speed is not that of the manoeuvre.
+    pub driven: bool,
 }
 
 impl HullReference {
@@ -27,7 +33,16 @@ impl HullReference {
     pub fn of(trial: &Trial) -> Option<Self> {
         let own = trial.particulars()?;
         let propeller = trial.channel(Channel::PropellerRate).and_then(median).filter(|rate| *rate > 0.0);
-        Some(Self { length: own.length, speed: own.speed, propeller })
+        Some(Self { length: own.length, speed: own.speed, propeller, driven: false })
+    }
+
+    /// The same for records of which some begin at another speed than that of the approach, and all have their speed.
+    pub fn with_speed_of(self, trials: &[Trial]) -> Self {
+        let speed =
+            |trial: &Trial| trial.channel(Channel::Speed).and_then(|all| all.iter().copied().find(|x| x.is_finite()));
+        let first: Option<Vec<f64>> = trials.iter().map(speed).collect();
+        let is_slow = |first: &f64| *first < SLOW * self.speed;
+        Self { driven: first.is_some_and(|first| first.iter().any(is_slow)), ..self }
     }
 
     /// L/U₀, s.
@@ -50,6 +65,8 @@ pub(super) struct HullTrack {
     pub speed: Option<Vec<f64>>,
     /// Sway, where it was recorded.
     pub sway: Option<Vec<f64>>,
+    /// Speed that takes the place of the surge equation, in a record whose speed is not that of the approach at first.
+    pub driven: Option<Vec<f64>>,
     /// Surge and sway in the first row.
     pub start: [f64; 2],
     /// First rows of the windows, and the number of rows.
@@ -92,6 +109,7 @@ impl HullTrack {
             whole: [0, count],
             start: [surge, drift],
             time,
+            driven: speed.clone().filter(|_| reference.driven),
             speed,
             sway,
         })

@@ -3,9 +3,10 @@
 //! No number is one that was measured on SEIUN MARU and seen in its publication. Of the twelve derivatives of sway
 //! force and yaw moment seven (Yvvr, Yvrr, Yrrr, Nv, Nvvv, Nvvr, Nvrr) equal, to the printed digits, what the
 //! regression of Yoshimura and Masumoto (2012) gives for L/B = 5.86, C_b = 0.508 and d/L: they are regression values,
-//! Nv = −2d/L for one. The other five (Yv, Yr, Yvvv, Nr, Nrrr) are none of that regression; the compiler of the set
-//! says that they were published for SEIUN MARU, which was not verified. Wake, thrust deduction, the linear thrust
-//! curve, added masses, resistance and several rudder coefficients are estimates or regressions of the compiler. The
+//! Nv = −2d/L for one. So are Xvv and Xvr; m_y' is the regression of Zhou (1983), and w_P0 = 0.5 C_b − 0.05. The other
+//! five (Yv, Yr, Yvvv, Nr, Nrrr) are none of that regression; the compiler of the set says that they were published for
+//! SEIUN MARU, which was not verified. Thrust deduction, the linear thrust curve, resistance and several rudder
+//! coefficients are estimates or regressions of the compiler. The formulas are those of [`crate::vessel::prior`]. The
 //! hull moves plausibly for a ship of its size; it is not SEIUN MARU.
 
 use std::sync::Arc;

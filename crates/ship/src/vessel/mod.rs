@@ -10,6 +10,7 @@
 pub mod abkowitz;
 pub mod mmg;
 pub mod prime;
+pub mod prior;
 pub mod scaled;
 
 use crate::dynamics::{Dynamics, Input, Motion};

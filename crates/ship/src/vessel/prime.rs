@@ -15,9 +15,13 @@
 use estimation::number::Real;
 
 use super::mmg::{Mmg, Parameters};
+use super::prior::HullPrior;
 
 /// Least surge, in U₀, at which the equations are evaluated: below, the ship has all but stopped.
 const LEAST_SURGE: f64 = 0.15;
+
+/// Largest speed or yaw rate, in U₀ and U₀/L: no ship is as fast, and what runs away stays finite.
+const FASTEST: f64 = 2.0;
 
 /// Least inflow to the rudder, in U₀.
 const LEAST_INFLOW: f64 = 0.05;
@@ -86,6 +90,46 @@ const CUBIC: [HullCoefficient; 7] = [
     normal("Yvrr", "Y_vrr", -0.8, 0.8),
 ];
 
+/// Coefficients of the MMG model that records of rudder and heading can tell something of; the others stay as expected.
+const FREE: [&str; 23] = [
+    "Nv",
+    "Nr",
+    "Yv",
+    "Yr",
+    "epsilon",
+    "my",
+    "Jz",
+    "R0",
+    "Xvr",
+    "Xrr",
+    "Yvvv",
+    "Yvvr",
+    "Yvrr",
+    "Yrrr",
+    "Nvvv",
+    "Nvvr",
+    "Nvrr",
+    "Nrrr",
+    "wP0",
+    "aH",
+    "lR",
+    "gammaR-starboard",
+    "gammaR-port",
+];
+
+/// Ends of those that make no ship beyond, in their order in files.
+fn ends_of(key: &str) -> [f64; 2] {
+    match key {
+        "R0" => [0.002, 0.2],
+        "wP0" => [0.0, 0.8],
+        "epsilon" => [0.3, 3.0],
+        "my" | "Jz" => [0.0, 2.0],
+        "gammaR-starboard" | "gammaR-port" => [0.0, 1.5],
+        "Yvvv" | "Nrrr" => [-20.0, 0.02],
+        _ => [f64::NEG_INFINITY, f64::INFINITY],
+    }
+}
+
 /// What a hull is made of.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HullForm {
@@ -99,6 +143,19 @@ pub enum HullForm {
 }
 
 impl HullForm {
+    /// The MMG model about what the particulars of a ship say.
+    pub fn mmg(prior: &HullPrior) -> Self {
+        let of = |key: &&str| prior.coefficients.iter().find(|own| own.key() == *key);
+        let free = FREE.iter().filter_map(of).map(|own| HullCoefficient {
+            key: own.key(),
+            symbol: own.symbol(),
+            mean: own.mean,
+            sd: own.sd,
+            ends: ends_of(own.key()),
+        });
+        Self::Mmg(Box::new(prior.parameters.of_length_one()), free.collect())
+    }
+
     /// Its coefficients, in the order in which their values travel.
     pub fn coefficients(&self) -> Vec<HullCoefficient> {
         match self {
@@ -149,7 +206,7 @@ impl<R: Real> PrimeHull<R> {
     /// yaw moment as rudder angle at approach speed (rad).
     #[inline]
     pub fn accelerations(&self, [u, v, r]: [R; 3], rudder: R, turning: f64, disturbance: f64) -> [R; 3] {
-        let u = u.at_least(LEAST_SURGE);
+        let [u, v, r] = [of_ship(u, LEAST_SURGE), of_ship(v, -FASTEST), of_ship(r, -FASTEST)];
         match self {
             Self::Mmg(hull, bias) => hull.accelerations([u, v, r], rudder + *bias, turning, disturbance),
             Self::Quadratic(p) => {
@@ -168,6 +225,12 @@ impl<R: Real> PrimeHull<R> {
             }
         }
     }
+}
+
+/// A speed or yaw rate of a ship.
+#[inline]
+fn of_ship<R: Real>(value: R, least: f64) -> R {
+    value.between(R::from(least), R::from(FASTEST))
 }
 
 /// What both polynomials have, with their coefficients in the order of [`COMMON`].

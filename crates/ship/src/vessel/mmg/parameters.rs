@@ -5,7 +5,7 @@
 use estimation::number::Real;
 
 /// A quantity that takes one of two values by the sign of an angle.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BySign<R = f64> {
     /// Value for a positive angle.
     pub positive: R,
@@ -28,7 +28,7 @@ impl<R: Real> BySign<R> {
 /// Hull force derivatives in the prime system ½ρLdU² (moment ½ρL²dU²), added masses in ½ρL²d (inertia ½ρL⁴d).
 ///
 /// X' = −R0 + Xvv v'² + Xvr v'r' + Xrr r'² + Xvvvv v'⁴; Y' and N' are the third-order polynomials of their indices.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[expect(missing_docs, reason = "each name is the symbol of a derivative: Yvvr multiplies v'² r' in Y'")]
 pub struct HullDerivatives<R = f64> {
     /// Added mass in surge m_x'.
@@ -89,7 +89,7 @@ pub struct Propeller<R = f64> {
 }
 
 /// Rudder behind the propeller, and its interaction with the hull.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Rudder<R = f64> {
     /// Area of the movable part A_R, m².
     pub AR: R,
@@ -196,6 +196,23 @@ impl Wake {
     }
 }
 
+impl Parameters {
+    /// The same hull of length 1: what has a dimension is measured with its length.
+    #[must_use]
+    pub fn of_length_one(&self) -> Self {
+        let L = self.Lpp;
+        Self {
+            Lpp: 1.0,
+            d: self.d / L,
+            volume: self.volume / L.powi(3),
+            xG: self.xG / L,
+            propeller: Propeller { DP: self.propeller.DP / L, ..self.propeller },
+            rudder: Rudder { AR: self.rudder.AR / (L * L), ..self.rudder },
+            ..*self
+        }
+    }
+}
+
 impl<R> Parameters<R> {
     /// The parameter of this name, where it is one that a record can tell something of; `None` of any other.
     pub fn named(&mut self, name: &str) -> Option<&mut R> {
@@ -231,8 +248,8 @@ impl<R> Parameters<R> {
             "aH" => &mut rudder.aH,
             "xH" => &mut rudder.xH,
             "lR" => &mut rudder.lR,
-            "gammaR_positive" => &mut rudder.gammaR.positive,
-            "gammaR_negative" => &mut rudder.gammaR.negative,
+            "gammaR-starboard" => &mut rudder.gammaR.positive,
+            "gammaR-port" => &mut rudder.gammaR.negative,
             _ => return None,
         })
     }

@@ -1,0 +1,151 @@
+//! What the particulars of a ship say about the coefficients of her MMG hull before she is steered: a mean and a
+//! standard deviation of each, from published formulas and typical values.
+//!
+//! A particular that is missing is filled in by the ratio that is typical of ships, and the spread of that ratio widens
+//! the prior: every formula is evaluated at the ratio a standard deviation higher and lower, half of the difference is
+//! added in quadrature.
+
+mod formulas;
+mod particulars;
+
+pub use self::particulars::{HullParticulars, PARTICULARS, Particular, ParticularsError};
+
+use self::formulas::{FORMULAS, Formula, Spread};
+use self::particulars::{Form, RATIOS};
+use super::mmg::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
+
+/// The prior of one coefficient.
+#[derive(Debug, Clone, Copy)]
+pub struct Coefficient {
+    formula: &'static Formula,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub sd: f64,
+}
+
+impl Coefficient {
+    /// Its name in files: "Nvvr", "gammaR-port".
+    pub fn key(&self) -> &'static str {
+        self.formula.key
+    }
+
+    /// Its symbol, for people.
+    pub fn symbol(&self) -> &'static str {
+        self.formula.symbol
+    }
+
+    /// Where the mean comes from: an equation in L, B, d, C_b and what else is known, or a number.
+    pub fn formula(&self) -> &'static str {
+        self.formula.text
+    }
+
+    /// Author and year of the formula.
+    pub fn source(&self) -> &'static str {
+        self.formula.source
+    }
+
+    /// Its value in these parameters; NaN where they have no such coefficient (another law of the wake).
+    pub fn of(&self, parameters: &Parameters) -> f64 {
+        (self.formula.place.get)(parameters)
+    }
+
+    /// Puts a value in its place.
+    pub fn set(&self, parameters: &mut Parameters, value: f64) {
+        (self.formula.place.set)(parameters, value);
+    }
+}
+
+/// A particular that was not given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Assumed {
+    /// Which one.
+    pub key: &'static str,
+    /// What stands for it, in the unit of the key.
+    pub value: f64,
+    /// Standard deviation of that.
+    pub sd: f64,
+    /// The ratio it follows from.
+    pub formula: &'static str,
+}
+
+/// The prior of a hull.
+#[derive(Debug, Clone)]
+pub struct HullPrior {
+    /// The hull with the mean of every coefficient; [`super::mmg::Mmg::at_speed`] makes it sail.
+    pub parameters: Parameters,
+    /// The prior of every coefficient.
+    pub coefficients: Vec<Coefficient>,
+    /// What was filled in.
+    pub assumed: Vec<Assumed>,
+}
+
+/// The prior of the hull with these particulars.
+///
+/// Fails for particulars that no ship has, or that contradict each other.
+pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
+    let typical = RATIOS.map(|ratio| ratio.mean);
+    let form = given.form(&typical);
+    given.check(&form)?;
+    let shifted: Vec<[Form; 2]> = RATIOS
+        .iter()
+        .enumerate()
+        .map(|(place, ratio)| {
+            [ratio.sd, -ratio.sd].map(|shift| {
+                let mut ratios = typical;
+                ratios[place] += shift;
+                given.form(&ratios)
+            })
+        })
+        .collect();
+    let spread = |of: &dyn Fn(&Form) -> f64| -> f64 {
+        shifted.iter().map(|[above, below]| (0.5 * (of(above) - of(below))).powi(2)).sum()
+    };
+    let mut parameters = blank(&form);
+    let coefficients: Vec<Coefficient> = FORMULAS
+        .iter()
+        .map(|formula| {
+            let mean = (formula.of)(&form);
+            let own = match formula.spread {
+                Spread::Share(share) => share * mean,
+                Spread::Absolute(sd) => sd,
+            };
+            Coefficient { formula, mean, sd: (own * own + spread(&formula.of)).sqrt() }
+        })
+        .collect();
+    for coefficient in &coefficients {
+        coefficient.set(&mut parameters, coefficient.mean);
+    }
+    let assumed = PARTICULARS.iter().filter_map(|particular| {
+        let of = |form: &Form| particular.of_form.map_or(f64::NAN, |of| of(form));
+        let formula = RATIOS.iter().find(|ratio| ratio.fills == particular.key)?.text;
+        let missing = particular.get(given).is_none() && particular.of_form.is_some();
+        missing.then(|| Assumed { key: particular.key, value: of(&form), sd: spread(&of).sqrt(), formula })
+    });
+    Ok(HullPrior { parameters, assumed: assumed.collect(), coefficients })
+}
+
+/// The dimensions of a hull; its coefficients are still to be set.
+fn blank(form: &Form) -> Parameters {
+    Parameters {
+        Lpp: form.L,
+        d: form.d,
+        volume: form.Cb * form.L * form.B * form.d,
+        xG: form.xG,
+        kzz: 0.0,
+        hull: HullDerivatives::default(),
+        propeller: Propeller {
+            DP: form.DP,
+            wP0: 0.0,
+            wake: Wake::Exponential { C1: 0.0, C2: BySign::default() },
+            tP: 0.0,
+            xP: 0.0,
+            k: [0.0; 3],
+        },
+        // A propeller that is higher than the rudder covers all of it.
+        rudder: Rudder { AR: form.AR, eta: (form.DP / form.HR).min(1.0), ..Rudder::default() },
+    }
+}
+
+#[cfg(test)]
+mod tests;

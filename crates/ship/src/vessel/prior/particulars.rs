@@ -1,0 +1,394 @@
+//! Particulars of a ship: what they are called, which are possible, and what stands for those that are missing.
+#![expect(non_snake_case, reason = "L, B, AR and the like are the symbols of naval architecture")]
+
+use thiserror::Error;
+
+use crate::short_number::ShortNumber;
+
+/// Particulars of a ship, SI; only length and speed are needed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct HullParticulars {
+    /// Length between perpendiculars L, m.
+    pub length: f64,
+    /// Approach speed U, m/s.
+    pub speed: f64,
+    /// Beam B, m.
+    pub beam: Option<f64>,
+    /// Mean draught d, m.
+    pub draught: Option<f64>,
+    /// Block coefficient C_b.
+    pub block_coefficient: Option<f64>,
+    /// Area of the movable part of the rudder A_R, m².
+    pub rudder_area: Option<f64>,
+    /// Height of the rudder H_R, m.
+    pub rudder_height: Option<f64>,
+    /// Diameter of the propeller D_P, m.
+    pub propeller_diameter: Option<f64>,
+    /// Revolutions of the propeller at the approach speed n, 1/s.
+    pub propeller_rate: Option<f64>,
+    /// Mass of the displaced water, kg.
+    pub displacement: Option<f64>,
+    /// Centre of gravity x_G forward of midship, m.
+    pub x_g: Option<f64>,
+}
+
+/// Kilograms in a tonne.
+const TONNE: f64 = 1000.0;
+
+/// A particular, declared once for options, sidecars and scenarios.
+#[derive(Debug, Clone, Copy)]
+pub struct Particular {
+    /// Its name with its unit.
+    pub key: &'static str,
+    /// Its symbol.
+    pub symbol: &'static str,
+    /// Its unit, "1" where it has none.
+    pub unit: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// Smallest and largest value that is understood, in its unit.
+    pub range: [f64; 2],
+    get: fn(&HullParticulars) -> Option<f64>,
+    set: fn(&mut HullParticulars, f64),
+    /// The same of a hull with nothing missing.
+    pub(super) of_form: Option<fn(&Form) -> f64>,
+}
+
+impl Particular {
+    /// The one that is called so.
+    pub fn named(key: &str) -> Option<&'static Self> {
+        PARTICULARS.iter().find(|particular| particular.key == key)
+    }
+
+    /// Its value in its unit, where it is given.
+    pub fn get(&self, of: &HullParticulars) -> Option<f64> {
+        (self.get)(of)
+    }
+
+    /// Puts a value in its unit.
+    pub fn set(&self, of: &mut HullParticulars, value: f64) {
+        (self.set)(of, value);
+    }
+}
+
+/// Every particular.
+pub const PARTICULARS: [Particular; 11] = [
+    Particular {
+        key: "length-m",
+        symbol: "L",
+        unit: "m",
+        meaning: "Length between perpendiculars",
+        range: [0.1, 1000.0],
+        get: |own| (own.length != 0.0).then_some(own.length),
+        set: |own, value| own.length = value,
+        of_form: None,
+    },
+    Particular {
+        key: "beam-m",
+        symbol: "B",
+        unit: "m",
+        meaning: "Beam",
+        range: [0.01, 200.0],
+        get: |own| own.beam,
+        set: |own, value| own.beam = Some(value),
+        of_form: Some(|form| form.B),
+    },
+    Particular {
+        key: "draught-m",
+        symbol: "d",
+        unit: "m",
+        meaning: "Mean draught",
+        range: [0.005, 50.0],
+        get: |own| own.draught,
+        set: |own, value| own.draught = Some(value),
+        of_form: Some(|form| form.d),
+    },
+    Particular {
+        key: "block-coefficient",
+        symbol: "C_b",
+        unit: "1",
+        meaning: "Block coefficient",
+        range: [0.3, 1.0],
+        get: |own| own.block_coefficient,
+        set: |own, value| own.block_coefficient = Some(value),
+        of_form: Some(|form| form.Cb),
+    },
+    Particular {
+        key: "speed-m-s",
+        symbol: "U",
+        unit: "m/s",
+        meaning: "Approach speed",
+        range: [0.01, 100.0],
+        get: |own| (own.speed != 0.0).then_some(own.speed),
+        set: |own, value| own.speed = value,
+        of_form: None,
+    },
+    Particular {
+        key: "rudder-area-m2",
+        symbol: "A_R",
+        unit: "m²",
+        meaning: "Area of the rudder, of all rudders together",
+        range: [1e-5, 500.0],
+        get: |own| own.rudder_area,
+        set: |own, value| own.rudder_area = Some(value),
+        of_form: Some(|form| form.AR),
+    },
+    Particular {
+        key: "rudder-height-m",
+        symbol: "H_R",
+        unit: "m",
+        meaning: "Height of the rudder",
+        range: [0.005, 50.0],
+        get: |own| own.rudder_height,
+        set: |own, value| own.rudder_height = Some(value),
+        of_form: Some(|form| form.HR),
+    },
+    Particular {
+        key: "propeller-diameter-m",
+        symbol: "D_P",
+        unit: "m",
+        meaning: "Diameter of the propeller",
+        range: [0.005, 15.0],
+        get: |own| own.propeller_diameter,
+        set: |own, value| own.propeller_diameter = Some(value),
+        of_form: Some(|form| form.DP),
+    },
+    Particular {
+        key: "propeller-rps",
+        symbol: "n",
+        unit: "1/s",
+        meaning: "Revolutions of the propeller at the approach speed",
+        range: [0.05, 100.0],
+        get: |own| own.propeller_rate,
+        set: |own, value| own.propeller_rate = Some(value),
+        of_form: None,
+    },
+    Particular {
+        key: "displacement-t",
+        symbol: "Δ",
+        unit: "t",
+        meaning: "Displacement",
+        range: [1e-4, 1e6],
+        get: |own| own.displacement.map(|mass| mass / TONNE),
+        set: |own, value| own.displacement = Some(value * TONNE),
+        of_form: None,
+    },
+    Particular {
+        key: "x-g-m",
+        symbol: "x_G",
+        unit: "m",
+        meaning: "Centre of gravity, forward of midship",
+        range: [-100.0, 100.0],
+        get: |own| own.x_g,
+        set: |own, value| own.x_g = Some(value),
+        of_form: Some(|form| form.xG),
+    },
+];
+
+/// A ratio that ships have, with the particular that it stands in for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ratio {
+    pub name: &'static str,
+    pub fills: &'static str,
+    pub mean: f64,
+    pub sd: f64,
+    /// What no ship goes beyond.
+    range: [f64; 2],
+    of: fn(&Form) -> f64,
+    pub text: &'static str,
+}
+
+/// Mean and standard deviation over KVLCC2, KCS, ONRT, Esso Osaka and SEIUN MARU, those of rudder and propeller
+/// without ONRT, which has two of either. Sources: particulars of SIMMAN 2014, of the 3 m model of Esso Osaka (Osaka
+/// University, mmg-1p1r-simulator) and of SEIUN MARU (mmgdynamics).
+pub(super) const RATIOS: [Ratio; 7] = [
+    Ratio {
+        name: "L/B",
+        fills: "beam-m",
+        mean: 6.6,
+        sd: 1.1,
+        range: [2.0, 12.0],
+        of: |form| form.L / form.B,
+        text: "L/B = 6.6 ± 1.1",
+    },
+    Ratio {
+        name: "B/d",
+        fills: "draught-m",
+        mean: 2.9,
+        sd: 0.35,
+        range: [1.2, 8.0],
+        of: |form| form.B / form.d,
+        text: "B/d = 2.9 ± 0.35",
+    },
+    Ratio {
+        name: "C_b",
+        fills: "block-coefficient",
+        mean: 0.67,
+        sd: 0.15,
+        range: [0.3, 1.0],
+        of: |form| form.Cb,
+        text: "C_b = 0.67 ± 0.15",
+    },
+    Ratio {
+        name: "A_R/(L d)",
+        fills: "rudder-area-m2",
+        mean: 0.019,
+        sd: 0.003,
+        range: [0.005, 0.1],
+        of: |form| form.AR / (form.L * form.d),
+        text: "A_R/(L d) = 0.019 ± 0.003",
+    },
+    Ratio {
+        name: "H_R/d",
+        fills: "rudder-height-m",
+        mean: 0.78,
+        sd: 0.12,
+        range: [0.2, 1.5],
+        of: |form| form.HR / form.d,
+        text: "H_R/d = 0.78 ± 0.12",
+    },
+    Ratio {
+        name: "D_P/d",
+        fills: "propeller-diameter-m",
+        mean: 0.6,
+        sd: 0.18,
+        range: [0.15, 1.3],
+        of: |form| form.DP / form.d,
+        text: "D_P/d = 0.6 ± 0.18",
+    },
+    Ratio {
+        name: "x_G/L",
+        fills: "x-g-m",
+        mean: 0.0,
+        sd: 0.02,
+        range: [-0.1, 0.1],
+        of: |form| form.xG / form.L,
+        text: "x_G/L = 0 ± 0.02",
+    },
+];
+
+/// Froude numbers of displacement ships that are steered. A model that is declared with the length of her ship, or a
+/// ship with that of her model, has another.
+const FROUDE: [f64; 2] = [0.025, 0.6];
+/// Advance ratios of propellers that drive a ship ahead.
+const ADVANCE: [f64; 2] = [0.1, 1.3];
+/// How far displacement and C_b L B d may differ, as a share.
+const DISPLACEMENT_TOLERANCE: f64 = 0.05;
+
+const GRAVITY: f64 = 9.81;
+const SEA_WATER: f64 = 1025.0;
+const FRESH_WATER: f64 = 1000.0;
+/// What is shorter is a model and floats in fresh water, m.
+const SHORTEST_SHIP: f64 = 30.0;
+
+/// A hull with no particular missing but the revolutions of the propeller.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Form {
+    pub L: f64,
+    pub U: f64,
+    pub B: f64,
+    pub d: f64,
+    pub Cb: f64,
+    pub AR: f64,
+    pub HR: f64,
+    pub DP: f64,
+    pub xG: f64,
+    pub n: Option<f64>,
+}
+
+/// Why particulars describe no ship.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{what} is {}{}, expected {} to {}{}; {cure}", ShortNumber::rounded(*.value, 4), in_unit(.unit),
+    ShortNumber::rounded(.range[0], 4), ShortNumber::rounded(.range[1], 4), in_unit(.unit))]
+pub struct ParticularsError {
+    /// The key at fault, or the last of those that contradict each other.
+    pub key: &'static str,
+    /// What is wrong, with the keys it is made of.
+    pub what: String,
+    /// Its value.
+    pub value: f64,
+    /// What ships have.
+    pub range: [f64; 2],
+    /// Unit of both.
+    pub unit: &'static str,
+    /// What to do.
+    pub cure: &'static str,
+}
+
+fn in_unit(unit: &str) -> String {
+    if unit == "1" { String::new() } else { format!(" {unit}") }
+}
+
+impl HullParticulars {
+    /// Volume of the displaced water, m³.
+    fn volume(&self) -> Option<f64> {
+        let density = if self.length < SHORTEST_SHIP { FRESH_WATER } else { SEA_WATER };
+        self.displacement.map(|mass| mass / density)
+    }
+
+    /// The hull, with these values of [`RATIOS`] where something is missing; the displacement goes before a ratio.
+    pub(super) fn form(&self, ratios: &[f64; 7]) -> Form {
+        let [length_beam, beam_draught, fullness, area, height, diameter, gravity] = *ratios;
+        let (L, volume) = (self.length, self.volume());
+        let full = self.block_coefficient.unwrap_or(fullness);
+        let by_volume = || Some(volume? / (L * self.draught? * full));
+        let B = self.beam.or_else(by_volume).unwrap_or(L / length_beam);
+        let d = self.draught.or(volume.map(|volume| volume / (L * B * full))).unwrap_or(B / beam_draught);
+        let Cb = self.block_coefficient.or(volume.map(|volume| volume / (L * B * d))).unwrap_or(fullness);
+        Form {
+            L,
+            U: self.speed,
+            B,
+            d,
+            Cb,
+            AR: self.rudder_area.unwrap_or(area * L * d),
+            HR: self.rudder_height.unwrap_or(height * d),
+            DP: self.propeller_diameter.unwrap_or(diameter * d),
+            xG: self.x_g.unwrap_or(gravity * L),
+            n: self.propeller_rate,
+        }
+    }
+
+    /// Refuses what no ship has: each number by itself, then their ratios in `form`.
+    pub(super) fn check(&self, form: &Form) -> Result<(), ParticularsError> {
+        for Particular { key, unit, range, get, .. } in PARTICULARS {
+            let needed = matches!(key, "length-m" | "speed-m-s").then_some(0.0);
+            if let Some(value) = get(self).or(needed) {
+                within(key, key.to_owned(), value, range, unit, "correct the number, or leave it out if unknown")?;
+            }
+        }
+        let froude = form.U / (GRAVITY * form.L).sqrt();
+        let cure = "length and speed have to be of one scale: both of the ship, or both of the model";
+        within("speed-m-s", "the Froude number of length-m and speed-m-s".into(), froude, FROUDE, "1", cure)?;
+        for Ratio { name, fills, range, of, .. } in RATIOS {
+            let cure = "all lengths have to be of one ship and one scale, in metres";
+            within(fills, format!("{name} ({fills})"), of(form), range, "1", cure)?;
+        }
+        if let Some(volume) = self.volume() {
+            let share = volume / (form.Cb * form.L * form.B * form.d);
+            let range = [1.0 - DISPLACEMENT_TOLERANCE, 1.0 + DISPLACEMENT_TOLERANCE];
+            let cure = "correct one of displacement-t, block-coefficient, length-m, beam-m and draught-m";
+            let what = "the displaced volume of displacement-t over C_b L B d";
+            within("displacement-t", what.into(), share, range, "1", cure)?;
+        }
+        let cure = "give revolutions per second, and the diameter and the speed of the same scale";
+        let what = "the advance ratio of propeller-rps, propeller-diameter-m and speed-m-s";
+        within("propeller-rps", what.into(), form.advance(), ADVANCE, "1", cure)
+    }
+}
+
+fn within(
+    key: &'static str,
+    what: String,
+    value: f64,
+    range: [f64; 2],
+    unit: &'static str,
+    cure: &'static str,
+) -> Result<(), ParticularsError> {
+    let [lowest, highest] = range;
+    // NaN is within nothing.
+    if (lowest..=highest).contains(&value) {
+        return Ok(());
+    }
+    Err(ParticularsError { key, what, value, range, unit, cure })
+}
