@@ -84,9 +84,9 @@ pub struct HullPrior {
 ///
 /// Fails for particulars that no ship has, or that contradict each other.
 pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
+    given.check()?;
     let typical = RATIOS.map(|ratio| ratio.mean);
     let form = given.form(&typical);
-    given.check(&form)?;
     let shifted: Vec<[Form; 2]> = RATIOS
         .iter()
         .enumerate()

@@ -181,12 +181,13 @@ fn the_displacement_tells_what_is_missing() {
 
 #[test]
 fn what_is_no_ship_is_refused() {
-    let refused = |change: fn(&mut HullParticulars)| {
+    type Change = fn(&mut HullParticulars);
+    let refused = |change: Change| {
         let mut given = KVLCC2;
         change(&mut given);
         priors(&given).expect_err("no ship").to_string()
     };
-    let cases: [(fn(&mut HullParticulars), &str); 14] = [
+    let cases: [(Change, &str); 14] = [
         (|own| own.rudder_area = Some(-112.5), "rudder-area-m2 is -112.5 m², expected 0.00001 to 500 m²"),
         (|own| own.block_coefficient = Some(1.2), "block-coefficient is 1.2, expected 0.3 to 1"),
         (|own| own.beam = Some(1.27), "L/B (beam-m) is 252, expected 2 to 12"),
