@@ -118,6 +118,11 @@ impl Sidecar {
     pub fn particulars(&self) -> Option<Particulars> {
         self.conditions.particulars
     }
+
+    /// Particulars of the hull that are declared; without [ship] length and speed are zero.
+    pub fn hull(&self) -> HullParticulars {
+        self.conditions.hull
+    }
 }
 
 /// Line, from 1, of a byte of the text.
@@ -221,10 +226,10 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
 fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Conditions) -> Result<Conditions, Fault> {
     let declared = ship.is_some();
     let ShipKeys { mut hull, speed_kn } = ship.unwrap_or_default();
-    let is_hull = hull != HullParticulars { length: hull.length, speed: hull.speed, ..HullParticulars::default() };
     if declared && (hull.length == 0.0 || (hull.speed == 0.0) == speed_kn.is_none()) {
         return Err((place(document, "ship", ""), SidecarProblem::Ship));
     }
+    let has_form = hull.has_form();
     hull.speed = speed_kn.map_or(hull.speed, |speed| speed * KNOT);
     let particulars = declared.then_some(Particulars { length: hull.length, speed: hull.speed });
     let mut conditions = Conditions { particulars, ..form };
@@ -235,7 +240,7 @@ fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Cond
         let table = if place_of_key(document, "form", key).is_some() { "form" } else { "ship" };
         return Err(unfit(text, document, (table, key), expected));
     }
-    if is_hull && let Err(error) = conditions.hull.check() {
+    if has_form && let Err(error) = conditions.hull.check() {
         let own = place_of_key(document, "ship", error.key).or_else(|| place_of_key(document, "form", error.key));
         return Err((own.or_else(|| place(document, "ship", "")), SidecarProblem::Particulars(error)));
     }

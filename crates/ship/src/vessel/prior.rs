@@ -56,6 +56,9 @@ impl Coefficient {
     }
 }
 
+/// Where the ratios come from that stand for particulars.
+pub const SOURCE_OF_RATIOS: &str = "typical: KVLCC2, KCS, ONRT, Esso Osaka, SEIUN MARU";
+
 /// A particular that was not given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assumed {

@@ -349,6 +349,11 @@ impl HullParticulars {
         }
     }
 
+    /// Whether anything is given but length and speed.
+    pub fn has_form(&self) -> bool {
+        *self != Self { length: self.length, speed: self.speed, ..Self::default() }
+    }
+
     /// Refuses what no ship has: each number by itself, then their ratios.
     pub fn check(&self) -> Result<(), ParticularsError> {
         for Particular { key, unit, range, get, .. } in PARTICULARS {
