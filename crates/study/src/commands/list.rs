@@ -114,6 +114,10 @@ fn ships() -> Table {
     for (id, keys) in [
         ("first-order", "your own: K-per-s, T-s, rudder-bias-deg, length-m, speed-kn"),
         ("second-order", "your own: K-per-s, T1-s, T2-s, T3-s, rudder-bias-deg, length-m, speed-kn"),
+        (
+            "hull",
+            "your own MMG hull: length-m, speed-m-s, and what is known of beam-m, draught-m, … (study list priors)",
+        ),
     ] {
         table.push([id, keys, "", "", "yours"]);
     }
