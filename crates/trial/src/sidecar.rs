@@ -242,7 +242,7 @@ fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Cond
     }
     if has_form && let Err(error) = conditions.hull.check() {
         let own = place_of_key(document, "ship", error.key).or_else(|| place_of_key(document, "form", error.key));
-        return Err((own.or_else(|| place(document, "ship", "")), SidecarProblem::Particulars(error)));
+        return Err((own.or_else(|| place(document, "ship", "")), SidecarProblem::Particulars(Box::new(error))));
     }
     Ok(conditions)
 }

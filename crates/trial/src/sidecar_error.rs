@@ -73,7 +73,7 @@ pub enum SidecarProblem {
     Ship,
     /// Particulars that no ship has.
     #[error("{0}")]
-    Particulars(ParticularsError),
+    Particulars(Box<ParticularsError>),
     /// A value that no ship, trial or table has.
     #[error("`{key}` is {found}, expected {expected}")]
     Value { key: String, found: String, expected: &'static str },
