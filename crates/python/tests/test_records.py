@@ -139,3 +139,11 @@ def test_effects_and_cells_of_a_scenario_are_told():
     assert [trial.truth.own.T_s for trial in trials] == pytest.approx([15.0, 20.0])
     assert all(trial.truth.effects == ("nonlinear_damping",) for trial in trials)
     assert len(kempf.simulate(swept, replicate="all")) == 6
+
+
+def test_particulars_of_the_hull_are_checked(undeclared):
+    with pytest.raises(kempf.KempfError, match=r"B/d \(draught-m\) is 16"):
+        kempf.read(undeclared, length_m=105, speed_m_s=8.6, ship={"beam_m": 16, "draught_m": 1})
+    with pytest.raises(kempf.KempfError, match="--breadth-m"):
+        kempf.read(undeclared, length_m=105, speed_m_s=8.6, ship={"breadth_m": 16})
+    assert kempf.read(undeclared, length_m=105, speed_m_s=8.6, ship={"beam_m": 16}).length_m == 105

@@ -8,7 +8,8 @@ use std::sync::LazyLock;
 use ::ship::angle::{KNOT, from_deg};
 use ::ship::effects::Parameter;
 use ::ship::linear::SecondOrderIndices;
-use ::ship::ships::{self, user, user::ShipError};
+use ::ship::ships::{self, user, user::HullError, user::ShipError};
+use ::ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError};
 use ::ship::{Particulars, Ship, ShortNumber};
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
@@ -19,6 +20,7 @@ use crate::{reader, sweep};
 
 const FIRST_ORDER: &str = "first-order";
 const SECOND_ORDER: &str = "second-order";
+const OWN_HULL: &str = "hull";
 
 const BIAS: NumberKey = NumberKey::optional("rudder-bias-deg", "Rudder bias δ_r.", Some(0.0));
 const LENGTH: NumberKey = NumberKey::optional("length-m", "Length L between perpendiculars; with the speed.", None);
@@ -45,6 +47,15 @@ const SECOND_ORDER_NUMBERS: [NumberKey; 7] = [
     SPEED,
 ];
 
+/// Particulars of a hull, of which only length and speed are needed.
+static HULL_NUMBERS: LazyLock<Vec<NumberKey>> = LazyLock::new(|| {
+    let own = |&Particular { key, meaning, .. }: &Particular| match key {
+        "length-m" | "speed-m-s" => NumberKey::required(key, meaning),
+        _ => NumberKey::optional(key, meaning, None),
+    };
+    PARTICULARS.iter().map(own).collect()
+});
+
 /// The ships of the registry.
 static REGISTRY: LazyLock<Vec<Ship>> = LazyLock::new(ships::all);
 
@@ -53,6 +64,7 @@ fn numbers_of(id: &str) -> &'static [NumberKey] {
     match id {
         FIRST_ORDER => &FIRST_ORDER_NUMBERS,
         SECOND_ORDER => &SECOND_ORDER_NUMBERS,
+        OWN_HULL => &HULL_NUMBERS,
         _ => &[],
     }
 }
@@ -61,13 +73,13 @@ fn numbers_of(id: &str) -> &'static [NumberKey] {
 ///
 /// Fails with the name or the number that makes none.
 pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
-    let known: Vec<&str> = REGISTRY.iter().map(|ship| &*ship.id).chain([FIRST_ORDER, SECOND_ORDER]).collect();
+    let known: Vec<&str> = REGISTRY.iter().map(|ship| &*ship.id).chain([FIRST_ORDER, SECOND_ORDER, OWN_HULL]).collect();
     let (id, key, numbers) = number_table::only(named, &KeyPath::dotted("ship"), &known)?;
     let keys = numbers_of(id);
     if !keys.is_empty() {
         refuse_unknown(numbers, keys, &key)?;
         refuse_incomplete(numbers, keys, &key)?;
-        return OwnShip { key, numbers }.build(id);
+        return if id == OWN_HULL { hull(key, numbers) } else { OwnShip { key, numbers }.build(id) };
     }
     match REGISTRY.iter().find(|ship| ship.id == id) {
         None => {
@@ -82,6 +94,26 @@ pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
             format!("write [ship.{id}] and nothing below it; for numbers of your own use [ship.first-order]"),
         )),
     }
+}
+
+/// The MMG hull with these particulars.
+fn hull(key: KeyPath, numbers: &BTreeMap<String, f64>) -> Result<Ship, KeyFault> {
+    let mut particulars = HullParticulars::default();
+    for (name, value) in numbers {
+        if let Some(particular) = Particular::named(name) {
+            particular.set(&mut particulars, *value);
+        }
+    }
+    user::hull(&particulars).map_err(|error| match error {
+        HullError::Particulars(ParticularsError { key: own, what, value, range, cure, .. }) => {
+            let place = if numbers.contains_key(own) { key.child(own) } else { key };
+            let [value, lowest, highest] = [value, range[0], range[1]].map(|number| ShortNumber::rounded(number, 4));
+            KeyFault::name(place, format!("{what} is {value}"), format!("expected {lowest} to {highest}"), cure)
+        }
+        HullError::Mmg(error) => {
+            KeyFault::name(key, error.to_string(), "expected particulars of a ship that sails", "change the numbers")
+        }
+    })
 }
 
 /// The ship with nothing left out.
@@ -188,7 +220,11 @@ impl OwnShip<'_> {
 
 /// The ship: one key, the id of a ship of the registry or one with numbers of its own.
 pub fn schema(_: &mut SchemaGenerator) -> Schema {
-    let own = [(FIRST_ORDER, "A ship of your own by K and T"), (SECOND_ORDER, "A ship of your own by K, T1, T2, T3")];
+    let own = [
+        (FIRST_ORDER, "A ship of your own by K and T"),
+        (SECOND_ORDER, "A ship of your own by K, T1, T2, T3"),
+        (OWN_HULL, "A hull of your own by her particulars"),
+    ];
     let own = own.map(|(id, what)| (id, what, number_table::schema(numbers_of(id))));
     let registry =
         REGISTRY.iter().map(|ship| (&*ship.id, &*ship.name, json!({ "type": "object", "maxProperties": 0 })));
@@ -200,4 +236,36 @@ pub fn schema(_: &mut SchemaGenerator) -> Schema {
     json_schema!({
         "type": "object", "minProperties": 1, "maxProperties": 1, "additionalProperties": false, "properties": ships,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn built(text: &str) -> Result<Ship, String> {
+        let named: NamedNumbers = toml::from_str(text).expect("numbers by name");
+        build(&named).map_err(|fault| format!("{fault:?}"))
+    }
+
+    #[test]
+    fn a_hull_is_made_of_her_particulars() {
+        let ship = built("[hull]\nlength-m = 320\nspeed-m-s = 7.97\nbeam-m = 58\ndraught-m = 20.8\n").expect("a ship");
+        assert_eq!(ship.particulars, Some(Particulars { length: 320.0, speed: 7.97 }));
+        assert!(ship.first_order().is_none());
+    }
+
+    #[test]
+    fn particulars_of_no_ship_are_refused_at_their_key() {
+        let scale = "[hull]\nlength-m = 320\nspeed-m-s = 7.97\n";
+        for (own, part) in [
+            ("beam-m = 1.27\n", "L/B (beam-m) is 252"),
+            ("rudder-area-m2 = -3\n", "rudder-area-m2 is -3"),
+            ("breadth-m = 58\n", "has no key `breadth-m`"),
+        ] {
+            let fault = built(&format!("{scale}{own}")).err().expect("no ship");
+            assert!(fault.contains(part), "{fault}");
+        }
+        let fault = built("[hull]\nlength-m = 320\n").err().expect("no speed");
+        assert!(fault.contains("speed-m-s"), "{fault}");
+    }
 }

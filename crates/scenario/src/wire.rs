@@ -34,7 +34,7 @@ pub struct ScenarioWire {
     pub replicates: u64,
     /// When a cell has had enough trials.
     pub stop: Option<StopRule>,
-    /// One key: the id of a ship of the registry, `first-order` or `second-order`.
+    /// One key: the id of a ship of the registry, `first-order`, `second-order` or `hull`.
     #[schemars(schema_with = "ship::schema")]
     pub ship: NamedNumbers,
     /// What a first-order ship lacks; on response models alone.

@@ -25,6 +25,7 @@ mod progress;
 pub mod records;
 pub mod scales;
 pub mod screen;
+mod ship_options;
 pub mod style_options;
 mod terminal;
 mod threads;

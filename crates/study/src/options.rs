@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::completed::{self, completed};
 use crate::formula_options::{Formulas, formula, formulas};
 use crate::outside::NamedCommand;
-use crate::style_options::within;
+pub use crate::ship_options::ShipOptions;
 pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, PageFigures, StudyFigureOptions};
 use ::trace::{EffectId, Rule, Selection};
 use campaign::task::Shard;
@@ -15,7 +15,6 @@ use clap::builder::StringValueParser;
 use clap::{Args, ValueEnum};
 use report::Table;
 use scenario::problem::suggestion;
-use ship::angle::KNOT;
 use ship::effects::Formula;
 use trial::Manoeuvre;
 use trial::clock::Stamp;
@@ -114,22 +113,9 @@ pub struct ReadingOptions {
     /// Use the record until this time
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub until: Option<TimePoint>,
-    /// Length of the ship between perpendiculars, m
-    #[arg(long, value_name = "L", value_parser = within([0.1, 1000.0]))]
-    pub length_m: Option<f64>,
-    /// Approach speed, m/s [default: that of the record]
-    #[arg(long, value_name = "V", value_parser = within([0.01, 100.0]), requires = "length_m", conflicts_with = "speed_kn")]
-    pub speed_m_s: Option<f64>,
-    /// Approach speed, kn
-    #[arg(long, value_name = "V", value_parser = within([0.01, 200.0]), requires = "length_m")]
-    pub speed_kn: Option<f64>,
-}
-
-impl ReadingOptions {
-    /// The approach speed that is given, m/s.
-    pub fn speed(&self) -> Option<f64> {
-        self.speed_m_s.or(self.speed_kn.map(|speed| speed * KNOT))
-    }
+    /// What is known of the ship
+    #[command(flatten)]
+    pub ship: ShipOptions,
 }
 
 /// A time in a record.
@@ -450,4 +436,6 @@ pub enum Listed {
     Columns,
     /// What a sidecar may say
     Sidecar,
+    /// What particulars of a ship say about the coefficients of her MMG hull
+    Priors,
 }

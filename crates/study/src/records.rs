@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use estimation::statistics::upper_median;
 use report::number::fixed;
 use ship::angle::KNOT;
+use ship::vessel::prior::HullParticulars;
 use ship::{Particulars, ShortNumber};
 use trial::file::{STDIN, called};
 use trial::find::FoundManoeuvre;
 use trial::{Channel, Log, Manoeuvre, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
+use crate::ship_options::FormOptions;
 use campaign::answers::TRIALS;
 use campaign::known::RecordFacts;
 use scenario::failure::{Failure, FailureParts, OnPath};
@@ -152,6 +154,24 @@ pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Ve
     let ship = ship(&log, path, options, warnings)?;
     let ReadRecord { trial, warnings: found } = log.into_trial(ship).map_err(refused)?;
     warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
+    with_hull(trial, path, &options.ship.form)
+}
+
+/// The record with what options say of the hull; they go before a sidecar, which says nothing of a ship of another
+/// length.
+fn with_hull(trial: Trial, path: &Path, options: &FormOptions) -> Result<Trial, Failure> {
+    let mut conditions = trial.conditions().clone();
+    let length = trial.particulars().map(|own| own.length);
+    if conditions.particulars.is_some_and(|own| Some(own.length) != length) {
+        conditions.hull = HullParticulars::default();
+    }
+    options.apply(&mut conditions.hull);
+    let trial = trial.with_conditions(conditions);
+    if let Some(key) = options.first() {
+        let advice = "give --length-m as well, or declare it under [ship] in a sidecar";
+        let unknown = || Failure::about(path, format!("--{key} needs length and speed of the ship; {advice}"));
+        trial.hull().ok_or_else(unknown)?.check().map_err(|error| Failure::about(path, error))?;
+    }
     Ok(trial)
 }
 
@@ -252,8 +272,8 @@ fn ship(
     options: &ReadingOptions,
     warnings: &mut Vec<String>,
 ) -> Result<Option<Particulars>, Failure> {
-    let Some(length) = options.length_m else { return Ok(None) };
-    if let Some(speed) = options.speed() {
+    let Some(length) = options.ship.length_m else { return Ok(None) };
+    if let Some(speed) = options.ship.speed() {
         return Ok(Some(Particulars { length, speed }));
     }
     let file = path.display();

@@ -3,6 +3,7 @@
 
 use serde::Deserialize;
 use ship::Particulars;
+use ship::vessel::prior::HullParticulars;
 use thiserror::Error;
 
 /// Water depth that a trial needs, mean draughts. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
@@ -50,6 +51,9 @@ pub struct Conditions {
     /// Length and approach speed of the same sidecar, so that ratios are of one scale.
     #[serde(skip)]
     pub particulars: Option<Particulars>,
+    /// Particulars of the hull at the trial, of [ship] and of this table; without [ship] length and speed are zero.
+    #[serde(skip)]
+    pub hull: HullParticulars,
     /// Breadth of the ship; lengths are of the scale of [ship] length-m. (m)
     #[serde(rename = "beam-m")]
     pub beam: Option<f64>,
@@ -142,6 +146,27 @@ impl Conditions {
             *text = text.take().map(|text| text.trim().to_owned());
         }
         self
+    }
+
+    /// Takes over what [ship] declares of the hull, and completes that with what is declared here. The key of what both
+    /// declare and not alike, where there is one; block coefficients may differ, here it is that at full load.
+    pub(crate) fn join(&mut self, hull: HullParticulars) -> Option<&'static str> {
+        let pairs = [
+            ("beam-m", &mut self.beam, hull.beam),
+            ("draught-m", &mut self.draught, hull.draught),
+            ("rudder-area-m2", &mut self.rudder_area, hull.rudder_area),
+        ];
+        let mut other = None;
+        for (key, own, ship) in pairs {
+            other = other.or(own.zip(ship).is_some_and(|(own, ship)| own != ship).then_some(key));
+            *own = ship.or(*own);
+        }
+        let (beam, draught, rudder_area) = (self.beam, self.draught, self.rudder_area);
+        let is_full = self.loading() != Some(Loading::Partial);
+        let block_coefficient = hull.block_coefficient.or(self.block_coefficient.filter(|_| is_full));
+        self.block_coefficient = self.block_coefficient.or(block_coefficient.filter(|_| is_full));
+        self.hull = HullParticulars { beam, draught, block_coefficient, rudder_area, ..hull };
+        other
     }
 
     /// The key of a length that no ship has beside the others, and what was expected.

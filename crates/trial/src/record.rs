@@ -6,6 +6,7 @@ mod corners;
 use std::collections::BTreeMap;
 
 use ship::signal::SignalError;
+use ship::vessel::prior::HullParticulars;
 use ship::{Particulars, Polyline};
 use thiserror::Error;
 
@@ -307,6 +308,11 @@ impl Trial {
     /// Length and approach speed of the ship, where declared.
     pub fn particulars(&self) -> Option<Particulars> {
         self.particulars
+    }
+
+    /// What is known of the hull, where length and speed are.
+    pub fn hull(&self) -> Option<HullParticulars> {
+        self.particulars.map(|Particulars { length, speed }| HullParticulars { length, speed, ..self.conditions.hull })
     }
 
     /// What is declared of ship and trial for the form of MSC/Circ.1053.

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use ship::Particulars;
 use ship::angle::{KNOT, from_deg};
+use ship::vessel::prior::HullParticulars;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
@@ -117,6 +118,11 @@ impl Sidecar {
     pub fn particulars(&self) -> Option<Particulars> {
         self.conditions.particulars
     }
+
+    /// Particulars of the hull that are declared; without [ship] length and speed are zero.
+    pub fn hull(&self) -> HullParticulars {
+        self.conditions.hull
+    }
 }
 
 /// Line, from 1, of a byte of the text.
@@ -126,8 +132,11 @@ fn line_of(text: &str, byte: usize) -> usize {
 
 /// Where a key of a table stands in the text, and its table where the key is not there.
 fn place(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
-    let table = entry(document, table)?;
-    Some(table.get_ref().as_table().and_then(|own| entry(own, key)).unwrap_or(table).span())
+    place_of_key(document, table, key).or_else(|| Some(entry(document, table)?.span()))
+}
+
+fn place_of_key(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
+    Some(entry(entry(document, table)?.get_ref().as_table()?, key)?.span())
 }
 
 fn entry<'a, 'b>(table: &'a DeTable<'b>, wanted: &str) -> Option<&'a Spanned<DeValue<'b>>> {
@@ -140,6 +149,8 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
     let above_zero = number.is_some_and(|number| number > 0.0);
     let whole = |range: std::ops::RangeInclusive<i64>| value.as_integer().is_some_and(|whole| range.contains(&whole));
     Some(match (table, key, kind) {
+        ("ship", "x-g-m", _) => (number.is_some(), "a number of metres, positive forward of midship"),
+        ("ship" | "form", _, "1") => (above_zero && number <= Some(1.0), "a number above 0, at most 1"),
         ("table", "time-step-s", _) | ("part", "every", _) | ("ship" | "noise", ..) => {
             (above_zero, "a finite number above zero")
         }
@@ -150,7 +161,6 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
         ("form", "trim-m", _) => (number.is_some(), "a number of metres, positive by the stern"),
         ("form", _, "m") => (above_zero, "a number of metres above 0"),
         ("form", _, "m²") => (above_zero, "a number of square metres above 0"),
-        ("form", _, "1") => (above_zero && number <= Some(1.0), "a number above 0, at most 1"),
         ("form", _, "number") => (whole(1..=10), "a whole number from 1 to 10"),
         ("form", _, "0 to 12") => (whole(0..=12), "a whole number from 0 to 12 (the Beaufort scale)"),
         ("form", _, "0 to 9") => (whole(0..=9), "a whole number from 0 to 9 (WMO sea state)"),
@@ -196,20 +206,7 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     let SidecarKeys { table, part, column, rudder, ship, noise, check, form } = toml::from_str(text).map_err(syntax)?;
     let header = table.header.unwrap_or(true);
     let columns = column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
-    let particulars = match ship {
-        None => None,
-        Some(ShipKeys { length_m: Some(length), speed_m_s: Some(speed), speed_kn: None }) => {
-            Some(Particulars { length, speed })
-        }
-        Some(ShipKeys { length_m: Some(length), speed_m_s: None, speed_kn: Some(speed_kn) }) => {
-            Some(Particulars { length, speed: speed_kn * KNOT })
-        }
-        Some(_) => return Err((place(&document, "ship", ""), SidecarProblem::Ship)),
-    };
-    let conditions = Conditions { particulars, ..form.trimmed() };
-    if let Some((key, expected)) = conditions.contradiction() {
-        return Err(unfit(text, &document, ("form", key), expected));
-    }
+    let conditions = conditions(text, &document, ship, form.trimmed())?;
     let noise = Noise {
         heading: noise.heading_deg.map(from_deg),
         yaw_rate: noise.yaw_rate_deg_s.map(from_deg),
@@ -223,6 +220,31 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
         return Err((place(&document, "part", key), SidecarProblem::Part { from_s, until_s }));
     }
     Ok(sidecar)
+}
+
+/// What [form] and [ship] declare, each of which may hold a particular that both have.
+fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Conditions) -> Result<Conditions, Fault> {
+    let declared = ship.is_some();
+    let ShipKeys { mut hull, speed_kn } = ship.unwrap_or_default();
+    if declared && (hull.length == 0.0 || (hull.speed == 0.0) == speed_kn.is_none()) {
+        return Err((place(document, "ship", ""), SidecarProblem::Ship));
+    }
+    let has_form = hull.has_form();
+    hull.speed = speed_kn.map_or(hull.speed, |speed| speed * KNOT);
+    let particulars = declared.then_some(Particulars { length: hull.length, speed: hull.speed });
+    let mut conditions = Conditions { particulars, ..form };
+    if let Some(key) = conditions.join(hull) {
+        return Err(unfit(text, document, ("form", key), "what [ship] says, or nothing"));
+    }
+    if let Some((key, expected)) = conditions.contradiction() {
+        let table = if place_of_key(document, "form", key).is_some() { "form" } else { "ship" };
+        return Err(unfit(text, document, (table, key), expected));
+    }
+    if has_form && let Err(error) = conditions.hull.check() {
+        let own = place_of_key(document, "ship", error.key).or_else(|| place_of_key(document, "form", error.key));
+        return Err((own.or_else(|| place(document, "ship", "")), SidecarProblem::Particulars(Box::new(error))));
+    }
+    Ok(conditions)
 }
 
 fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<DescribedColumn, Fault> {
@@ -300,6 +322,32 @@ mod tests {
         assert!(parse("").expect("no key is required").is_checked());
     }
 
+    /// [ship] and [form] complete each other; a trial in ballast has not the block coefficient of full load.
+    #[test]
+    fn the_hull_is_declared_in_either_table() {
+        let ship = "[ship]\nlength-m = 320\nspeed-m-s = 7.97\nbeam-m = 58\nrudder-height-m = 15.8\nx-g-m = -2\n\
+                    displacement-t = 320415\npropeller-diameter-m = 9.86\npropeller-rps = 1.778\n";
+        let form = "[form]\ndraught-m = 20.8\nrudder-area-m2 = 112.5\nblock-coefficient = 0.81\n";
+        let conditions = parse(&format!("{ship}{form}")).expect("one ship").conditions;
+        let declared = HullParticulars {
+            length: 320.0,
+            speed: 7.97,
+            beam: Some(58.0),
+            draught: Some(20.8),
+            block_coefficient: Some(0.81),
+            rudder_area: Some(112.5),
+            rudder_height: Some(15.8),
+            propeller_diameter: Some(9.86),
+            propeller_rate: Some(1.778),
+            displacement: Some(320_415_000.0),
+            x_g: Some(-2.0),
+        };
+        assert_eq!((conditions.hull, conditions.beam), (declared, Some(58.0)));
+        let ship = "[ship]\nlength-m = 320\nspeed-m-s = 7.97\nbeam-m = 58\n";
+        let ballast = parse(&format!("{ship}{form}loading = \"partial\"\n")).expect("one ship").conditions;
+        assert_eq!((ballast.hull.block_coefficient, ballast.block_coefficient), (None, Some(0.81)));
+    }
+
     #[test]
     fn faults_point_to_their_line() {
         let cases = [
@@ -318,6 +366,17 @@ mod tests {
             ("[table]\nheader = false\n[[column]]\nname = \"t\"\nis = \"t_s\"\n", 3, "needs a header"),
             ("[ship]\nlength-m = 7.0\n", 1, "[ship] needs"),
             ("[ship]\nlength-m = 7.0\nspeed-kn = 1.0\nspeed-m-s = 1.0\n", 1, "[ship] needs"),
+            ("[ship]\nlength-m = 7.0\nbreadth-m = 1.0\n", 3, "unknown field `breadth-m`, expected one of `length-m`"),
+            ("[ship]\nlength-m = 7\nspeed-kn = 1\nbeam-m = 58\n", 4, "a breadth below the length of [ship]"),
+            ("[ship]\nlength-m = 320\nspeed-kn = 15\nbeam-m = 1.27\n", 4, "L/B (beam-m) is 252, expected 2 to 12"),
+            ("[ship]\nlength-m = 320\nspeed-kn = 15\nrudder-area-m2 = -9\n", 4, "`rudder-area-m2` is -9"),
+            ("[ship]\nlength-m = 320\nspeed-kn = 15\nblock-coefficient = 1.2\n", 4, "at most 1"),
+            ("[ship]\nlength-m = 320\nspeed-kn = 2\nbeam-m = 58\n", 1, "both of the ship, or both of the model"),
+            (
+                "[ship]\nlength-m = 320\nspeed-kn = 15\nbeam-m = 58\n[form]\nbeam-m = 32\n",
+                6,
+                "`beam-m` is 32, expected what [ship] says",
+            ),
             ("[noise]\nheading-deg = 0\n", 2, "`heading-deg` is 0"),
             ("[form]\nbeam = 58\n", 2, "unknown field `beam`"),
             ("[form]\nbeam-m = \"wide\"\n", 2, "`beam-m` is \"wide\", expected a number of metres above 0"),

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
+use ship::vessel::prior::ParticularsError;
 use thiserror::Error;
 
 use crate::file::FileError;
@@ -70,6 +71,9 @@ pub enum SidecarProblem {
     /// Length or speed alone, or two speeds.
     #[error("[ship] needs `length-m` and one of `speed-m-s` and `speed-kn`")]
     Ship,
+    /// Particulars that no ship has.
+    #[error("{0}")]
+    Particulars(Box<ParticularsError>),
     /// A value that no ship, trial or table has.
     #[error("`{key}` is {found}, expected {expected}")]
     Value { key: String, found: String, expected: &'static str },

@@ -1,9 +1,16 @@
 //! The keys of a sidecar, each declared by the field that it is read into; the last words of the field's comment, in
 //! brackets, say what the value may be. The JSON schema and the list of keys are made of them.
 
-use schemars::Schema;
+use std::borrow::Cow;
+use std::fmt;
+use std::sync::LazyLock;
+
 use schemars::generate::SchemaSettings;
-use serde::Deserialize;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use serde_json::{Map, Value, json};
+use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
 use toml::Spanned;
 
 use crate::cells::Separator;
@@ -12,7 +19,7 @@ use crate::encoding::Encoding;
 
 // The tables of the file. Comments on fields are what `study list sidecar` and the JSON schema say of a key.
 
-#[derive(Deserialize, Default, schemars::JsonSchema)]
+#[derive(Deserialize, Default, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct SidecarKeys {
     #[serde(default)]
@@ -34,7 +41,7 @@ pub(crate) struct SidecarKeys {
     pub form: Conditions,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct TableKeys {
     /// Lines before the header, or before the rows when there is none; not even decoded. (number)
@@ -54,7 +61,7 @@ pub(crate) struct TableKeys {
     pub time_step_s: Option<f64>,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct PartKeys {
     /// First time that is used, on the clock of the record. (s)
@@ -65,7 +72,7 @@ pub(crate) struct PartKeys {
     pub every: Option<usize>,
 }
 
-#[derive(Deserialize, schemars::JsonSchema)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct ColumnKeys {
     /// Which column: counted from 1; this or its name. (number)
@@ -83,7 +90,7 @@ pub(crate) struct ColumnKeys {
     pub ignore: bool,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct RudderKeys {
     /// How much later than it was there the rudder is read on the clock of the record; below zero where it is read
@@ -93,18 +100,76 @@ pub(crate) struct RudderKeys {
     pub order_rate_deg_s: Option<f64>,
 }
 
-#[derive(Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+/// Particulars of the ship, by the keys of [`PARTICULARS`], and the speed in knots.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct ShipKeys {
-    /// Length between perpendiculars; needs a speed beside it. (m)
-    pub length_m: Option<f64>,
-    /// Approach speed. (m/s)
-    pub speed_m_s: Option<f64>,
-    /// The same in knots. (kn)
+    pub hull: HullParticulars,
     pub speed_kn: Option<f64>,
 }
 
-#[derive(Deserialize, Default, schemars::JsonSchema)]
+const SPEED_KN: &str = "speed-kn";
+
+static SHIP_KEYS: LazyLock<Vec<&str>> =
+    LazyLock::new(|| PARTICULARS.iter().map(|particular| particular.key).chain([SPEED_KN]).collect());
+
+/// A key that is one of them, refused where it stands otherwise.
+struct ShipKey(String);
+
+impl<'de> Deserialize<'de> for ShipKey {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let key = String::deserialize(deserializer)?;
+        match SHIP_KEYS.contains(&key.as_str()) {
+            true => Ok(Self(key)),
+            false => Err(D::Error::unknown_field(&key, &SHIP_KEYS)),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for ShipKeys {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Table;
+        impl<'de> Visitor<'de> for Table {
+            type Value = ShipKeys;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table with particulars of the ship")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<ShipKeys, A::Error> {
+                let mut keys = ShipKeys::default();
+                while let Some((ShipKey(key), value)) = map.next_entry::<ShipKey, f64>()? {
+                    match Particular::named(&key) {
+                        Some(particular) => particular.set(&mut keys.hull, value),
+                        None => keys.speed_kn = Some(value),
+                    }
+                }
+                Ok(keys)
+            }
+        }
+        deserializer.deserialize_map(Table)
+    }
+}
+
+impl JsonSchema for ShipKeys {
+    fn schema_name() -> Cow<'static, str> {
+        "ShipKeys".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let own = |Particular { key, meaning, unit, .. }: &Particular| match *key {
+            "length-m" => (*key, format!("{meaning}; needs a speed beside it. ({unit})")),
+            _ => (*key, format!("{meaning}. ({unit})")),
+        };
+        let knots = (SPEED_KN, String::from("The approach speed in knots. (kn)"));
+        let number = |(key, said): (&str, String)| {
+            (key.to_owned(), json!({ "description": said, "type": ["number", "null"], "format": "double" }))
+        };
+        let properties: Map<String, Value> = PARTICULARS.iter().map(own).chain([knots]).map(number).collect();
+        json_schema!({ "type": "object", "properties": properties, "additionalProperties": false })
+    }
+}
+
+#[derive(Deserialize, Default, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct NoiseKeys {
     /// Standard deviation of the heading, where it is known. (deg)
@@ -115,7 +180,7 @@ pub(crate) struct NoiseKeys {
     pub rudder_deg: Option<f64>,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct CheckKeys {
     /// With false nothing is cleaned, and what looks implausible is a warning in place of an error. (true or false)

@@ -124,6 +124,7 @@ class Record:
         length_m: Optional[float] = None,
         ship_speed_m_s: Optional[float] = None,
         ship_speed_kn: Optional[float] = None,
+        ship: Optional[Mapping[str, float]] = None,
         **columns: Any,
     ) -> Record:
         """A record from arrays, lists or anything with one number a row.
@@ -131,7 +132,7 @@ class Record:
         Time (s), rudder (deg) and heading (deg) or yaw rate (deg/s) are needed; any other column has the name it would
         have in a file, such as ``speed_m_s`` or ``wind_true_from_deg``. NaN stands for what was not read, and headings
         may jump at 360°. It is read as a file ``NAME.csv`` with these columns would be: the same checks, the same
-        numbers, and of a long log the zig-zag. ``trial``, ``from_s``, ``until_s``, ``length_m`` are those of
+        numbers, and of a long log the zig-zag. ``trial``, ``from_s``, ``until_s``, ``length_m``, ``ship`` are those of
         :func:`kempf.read`, ``ship_speed_m_s`` and ``ship_speed_kn`` the approach speed.
 
         Raises :class:`kempf.KempfError` where the columns make no record.
@@ -145,6 +146,7 @@ class Record:
             length_m=length_m,
             speed_m_s=ship_speed_m_s,
             speed_kn=ship_speed_kn,
+            **(ship or {}),
         )
         return cls._of_columns({key: values for key, values in given.items() if values is not None}, name, asked, 4)
 
@@ -160,6 +162,7 @@ class Record:
         length_m: Optional[float] = None,
         ship_speed_m_s: Optional[float] = None,
         ship_speed_kn: Optional[float] = None,
+        ship: Optional[Mapping[str, float]] = None,
     ) -> Record:
         """A record from a table of pandas or polars, or anything with ``columns`` and ``table[name]``.
 
@@ -176,6 +179,7 @@ class Record:
             length_m=length_m,
             speed_m_s=ship_speed_m_s,
             speed_kn=ship_speed_kn,
+            **(ship or {}),
         )
         return cls._of_columns(_columns(frame), name, asked, 4)
 
@@ -307,6 +311,7 @@ def read(
     length_m: Optional[float] = None,
     speed_m_s: Optional[float] = None,
     speed_kn: Optional[float] = None,
+    ship: Optional[Mapping[str, float]] = None,
 ) -> Record:
     """Reads a record: CSV and other tables, NMEA sentences, Parquet, MATLAB, packed or not.
 
@@ -321,6 +326,7 @@ def read(
     :param length_m: length of the ship between perpendiculars, m
     :param speed_m_s: approach speed, m/s; that of the record where it is left out
     :param speed_kn: the same in knots
+    :param ship: what is known of the hull, called as the options of ``study fit``: ``{"beam_m": 58, "draught_m": 20.8}``
 
     Raises :class:`kempf.KempfError` where the file holds no record; what the reader had to decide is a
     :class:`kempf.KempfWarning`.
@@ -334,6 +340,7 @@ def read(
         length_m=length_m,
         speed_m_s=speed_m_s,
         speed_kn=speed_kn,
+        **(ship or {}),
     )
     found = _kempf.read(os.fspath(path), asked)
     if len(found) != 1:

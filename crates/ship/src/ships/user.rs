@@ -12,6 +12,8 @@ use crate::linear::SecondOrderIndices;
 use crate::particulars::Particulars;
 use crate::response::{Response, ResponseModel};
 use crate::short_number::ShortNumber;
+use crate::vessel::mmg::{Mmg, MmgError};
+use crate::vessel::prior::{self, HullParticulars, ParticularsError};
 
 /// Why numbers do not make a ship.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -114,6 +116,34 @@ pub fn second_order(
     let response = second_order_response(indices, rudder_bias, Vec::new(), &[]);
     check_range(&response, &["T1", "K", "rudder bias", "T2", "T3"])?;
     Ok(ship(name, response, particulars))
+}
+
+/// Why particulars do not make a ship that sails.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum HullError {
+    /// No ship has such particulars.
+    #[error(transparent)]
+    Particulars(#[from] ParticularsError),
+    /// The hull with the mean of every coefficient does not sail.
+    #[error(transparent)]
+    Mmg(#[from] MmgError),
+}
+
+/// An MMG hull by its particulars, with the identifier `user`: every coefficient is the mean of its prior.
+///
+/// Fails for particulars that no ship has.
+pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {
+    let hull = Mmg::at_speed(prior::priors(particulars)?.parameters, particulars.speed)?;
+    let HullParticulars { length, speed, .. } = *particulars;
+    Ok(Ship {
+        id: "user".into(),
+        name: format!("MMG hull by particulars, L = {length} m, U = {speed} m/s").into(),
+        source: "regressions on the particulars".into(),
+        particulars: Some(Particulars { length, speed }),
+        rudder_rate: None,
+        largest_rudder: None,
+        model: Model::Hull(Arc::new(hull)),
+    })
 }
 
 /// A second-order response, and after it `more` effects with their `values`.

@@ -56,6 +56,9 @@ impl Coefficient {
     }
 }
 
+/// Where the ratios come from that stand for particulars.
+pub const SOURCE_OF_RATIOS: &str = "typical: KVLCC2, KCS, ONRT, Esso Osaka, SEIUN MARU";
+
 /// A particular that was not given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assumed {
@@ -84,9 +87,9 @@ pub struct HullPrior {
 ///
 /// Fails for particulars that no ship has, or that contradict each other.
 pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
+    given.check()?;
     let typical = RATIOS.map(|ratio| ratio.mean);
     let form = given.form(&typical);
-    given.check(&form)?;
     let shifted: Vec<[Form; 2]> = RATIOS
         .iter()
         .enumerate()

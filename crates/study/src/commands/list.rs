@@ -1,18 +1,21 @@
 //! `study list`: what scenario files can name.
 
+use std::path::PathBuf;
+
 use clap::{Args, ValueEnum};
 use identify::{IdentifierSettings, external, registry};
 use report::Table;
 use report::number::MISSING;
 use ship::angle::KNOT;
+use ship::vessel::prior::{self, Assumed, Particular};
 use ship::{effects, ships};
 
 use crate::documents::{self, answers::ListAnswer};
-use crate::options::{Common, Format, Listed};
+use crate::options::{Common, Format, Listed, ShipOptions};
 use crate::screen;
 use trial::Channel;
 use trial::names::{self, ColumnMeaning};
-use trial::sidecar::{self, Key};
+use trial::sidecar::{self, Key, Sidecar};
 
 use scenario::effect_keys;
 use scenario::failure::Failure;
@@ -23,10 +26,22 @@ use scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 pub struct ListRequest {
     /// What to list
     pub what: Listed,
+    /// For priors: sidecar of a record whose [ship] and [form] say what is known of the ship
+    #[arg(long, value_name = "FILE.toml")]
+    pub columns: Option<PathBuf>,
+    /// For priors: what is known of the ship
+    #[command(flatten)]
+    pub ship: ShipOptions,
 }
 
 /// Prints the list.
-pub fn run(&ListRequest { what }: &ListRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &ListRequest, common: &Common) -> Result<(), Failure> {
+    let what = request.what;
+    if what != Listed::Priors && !(request.columns.is_none() && request.ship.is_empty()) {
+        return Err(Failure::input(
+            "particulars of a ship change no list but that of `study list priors`; leave them out",
+        ));
+    }
     let table = match what {
         Listed::Identifiers => identifiers()?,
         Listed::Effects => effects(),
@@ -36,6 +51,7 @@ pub fn run(&ListRequest { what }: &ListRequest, common: &Common) -> Result<(), F
         Listed::Keys => keys_below(""),
         Listed::Columns => columns(),
         Listed::Sidecar => sidecar(),
+        Listed::Priors => priors(request)?,
     };
     if common.format == Format::Json {
         let name = what.to_possible_value().map(|value| value.get_name().to_owned());
@@ -50,7 +66,7 @@ pub fn run(&ListRequest { what }: &ListRequest, common: &Common) -> Result<(), F
         Listed::Keys => include_str!("../../templates/list-keys.md"),
         Listed::Columns => include_str!("../../templates/list-columns.md"),
         Listed::Sidecar => include_str!("../../templates/list-sidecar.md"),
-        Listed::Manoeuvres | Listed::Sensors => "",
+        Listed::Manoeuvres | Listed::Sensors | Listed::Priors => "",
     };
     screen::say(&format!("{head}{}", common.format.render(&table).trim_end()))
 }
@@ -98,6 +114,10 @@ fn ships() -> Table {
     for (id, keys) in [
         ("first-order", "your own: K-per-s, T-s, rudder-bias-deg, length-m, speed-kn"),
         ("second-order", "your own: K-per-s, T1-s, T2-s, T3-s, rudder-bias-deg, length-m, speed-kn"),
+        (
+            "hull",
+            "your own MMG hull: length-m, speed-m-s, and what is known of beam-m, draught-m, … (study list priors)",
+        ),
     ] {
         table.push([id, keys, "", "", "yours"]);
     }
@@ -148,4 +168,33 @@ fn sidecar() -> Table {
         table.push([&key, &value, &meaning.replace('`', "")]);
     }
     table
+}
+
+/// What stands for particulars that are missing, and the prior of every coefficient.
+fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Failure> {
+    let declared = columns.as_deref().map(Sidecar::load).transpose().map_err(Failure::input)?;
+    let mut hull = declared.map(|sidecar| sidecar.hull()).unwrap_or_default();
+    hull.length = ship.length_m.unwrap_or(hull.length);
+    hull.speed = ship.speed().unwrap_or(hull.speed);
+    ship.form.apply(&mut hull);
+    if hull.length == 0.0 || hull.speed == 0.0 {
+        return Err(Failure::input(
+            "priors need the length and the approach speed of the ship; give --length-m with --speed-m-s or --speed-kn, or \
+             a sidecar with [ship] as --columns",
+        ));
+    }
+    let prior = prior::priors(&hull).map_err(|error| match columns {
+        Some(file) => Failure::about(file, error),
+        None => Failure::input(error),
+    })?;
+    let mut table = Table::headed("key | symbol | .mean | .sd | formula | source");
+    let digits = |value: f64| report::number::significant(value, 3);
+    for Assumed { key, value, sd, formula } in prior.assumed {
+        let symbol = Particular::named(key).map_or("", |particular| particular.symbol);
+        table.push([key, symbol, &digits(value), &digits(sd), formula, prior::SOURCE_OF_RATIOS]);
+    }
+    for own in &prior.coefficients {
+        table.push([own.key(), own.symbol(), &digits(own.mean), &digits(own.sd), own.formula(), own.source()]);
+    }
+    Ok(table)
 }

@@ -138,7 +138,7 @@ fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
 
 /// Length and speed that are predicted for; a speed that is not given is NaN.
 fn asked_scale(options: &ReadingOptions) -> Option<Particulars> {
-    Some(Particulars { length: options.length_m?, speed: options.speed().unwrap_or(f64::NAN) })
+    Some(Particulars { length: options.ship.length_m?, speed: options.ship.speed().unwrap_or(f64::NAN) })
 }
 
 /// The manoeuvres that drawn ships come to the end of, and why the last of the others is lost; `file` is what messages

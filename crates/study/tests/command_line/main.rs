@@ -13,6 +13,7 @@ mod names;
 mod outside;
 mod pages;
 mod predictions;
+mod priors;
 mod programs;
 mod records;
 mod reference;

@@ -136,8 +136,7 @@ pub(super) const FORMULAS: &[Formula] = &[
         place: at!(hull.mx),
         of: Form::added_surge,
         spread: Absolute(0.008),
-        text: "m'/100 (.398 + 11.97 C_b (1 + 3.73 d/B) − 2.89 C_b L/B (1 + 1.13 d/B) + .175 C_b (L/B)² (1 + .541 d/B) \
-               − 1.107 L d/B²)",
+        text: "m' f(C_b, L/B, d/B)",
         source: ZHOU,
     },
     Formula {
@@ -146,8 +145,7 @@ pub(super) const FORMULAS: &[Formula] = &[
         place: at!(hull.my),
         of: Form::added_sway,
         spread: Share(0.15),
-        text: "m' (.882 − .54 C_b (1 − 1.6 d/B) − .156 L/B (1 − .673 C_b) + .826 L d/B² (1 − .678 d/B) − .638 C_b L d/B² \
-               (1 − .669 d/B))",
+        text: "m' f(C_b, L/B, d/B)",
         source: ZHOU,
     },
     Formula {

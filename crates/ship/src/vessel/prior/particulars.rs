@@ -349,14 +349,20 @@ impl HullParticulars {
         }
     }
 
-    /// Refuses what no ship has: each number by itself, then their ratios in `form`.
-    pub(super) fn check(&self, form: &Form) -> Result<(), ParticularsError> {
+    /// Whether anything is given but length and speed.
+    pub fn has_form(&self) -> bool {
+        *self != Self { length: self.length, speed: self.speed, ..Self::default() }
+    }
+
+    /// Refuses what no ship has: each number by itself, then their ratios.
+    pub fn check(&self) -> Result<(), ParticularsError> {
         for Particular { key, unit, range, get, .. } in PARTICULARS {
             let needed = matches!(key, "length-m" | "speed-m-s").then_some(0.0);
             if let Some(value) = get(self).or(needed) {
                 within(key, key.to_owned(), value, range, unit, "correct the number, or leave it out if unknown")?;
             }
         }
+        let form = &self.form(&RATIOS.map(|ratio| ratio.mean));
         let froude = form.U / (GRAVITY * form.L).sqrt();
         let cure = "length and speed have to be of one scale: both of the ship, or both of the model";
         within("speed-m-s", "the Froude number of length-m and speed-m-s".into(), froude, FROUDE, "1", cure)?;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::dynamics::Input;
 use crate::ships::{kvlcc2, seiun_like};
 use crate::vessel::mmg::Mmg;
 
@@ -181,12 +182,13 @@ fn the_displacement_tells_what_is_missing() {
 
 #[test]
 fn what_is_no_ship_is_refused() {
-    let refused = |change: fn(&mut HullParticulars)| {
+    type Change = fn(&mut HullParticulars);
+    let refused = |change: Change| {
         let mut given = KVLCC2;
         change(&mut given);
         priors(&given).expect_err("no ship").to_string()
     };
-    let cases: [(fn(&mut HullParticulars), &str); 14] = [
+    let cases: [(Change, &str); 14] = [
         (|own| own.rudder_area = Some(-112.5), "rudder-area-m2 is -112.5 m², expected 0.00001 to 500 m²"),
         (|own| own.block_coefficient = Some(1.2), "block-coefficient is 1.2, expected 0.3 to 1"),
         (|own| own.beam = Some(1.27), "L/B (beam-m) is 252, expected 2 to 12"),
@@ -218,5 +220,25 @@ fn every_particular_is_found_by_its_key() {
         assert_eq!(particular.get(&own), None, "{}", particular.key);
         Particular::named(particular.key).expect("its own key").set(&mut own, 0.75);
         assert_eq!(particular.get(&own), Some(0.75), "{}", particular.key);
+    }
+}
+
+/// A tanker and a training ship by their particulars alone turn to the side of the rudder, at a rate that ships have:
+/// r' of KVLCC2 at 20° is 0.33.
+#[test]
+fn the_mean_hull_turns_as_ships_do() {
+    for given in [KVLCC2, SEIUN_LIKE, bare(320.0, 7.97)] {
+        let ship = crate::ships::user::hull(&given).expect("it sails").dynamics();
+        let mut state = vec![0.0; ship.dimension()];
+        ship.approach(0.0, 0.0, &mut state);
+        let time = given.length / given.speed;
+        let input = Input { rudder: 20f64.to_radians(), ..Input::default() };
+        let mut rate = state.clone();
+        for _ in 0..1500 {
+            ship.rates(0.0, &state, &input, &mut rate);
+            state.iter_mut().zip(&rate).for_each(|(own, rate)| *own += 0.01 * time * rate);
+        }
+        let turning = state[super::super::state::YAW_RATE] * time;
+        assert!((0.1..0.8).contains(&turning), "{given:?}: r' = {turning}");
     }
 }

@@ -1,0 +1,88 @@
+//! Particulars of a ship as options, of every command that asks for them.
+
+use clap::error::ErrorKind;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use ship::angle::KNOT;
+use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
+
+use crate::style_options::within;
+
+/// What is known of a ship.
+#[derive(Debug, Clone, Default, Args)]
+pub struct ShipOptions {
+    /// Length of the ship between perpendiculars, m
+    #[arg(long, value_name = "L", value_parser = within([0.1, 1000.0]))]
+    pub length_m: Option<f64>,
+    /// Approach speed, m/s [default: that of the record]
+    #[arg(long, value_name = "V", value_parser = within([0.01, 100.0]), requires = "length_m", conflicts_with = "speed_kn")]
+    pub speed_m_s: Option<f64>,
+    /// Approach speed, kn
+    #[arg(long, value_name = "V", value_parser = within([0.01, 200.0]), requires = "length_m")]
+    pub speed_kn: Option<f64>,
+    /// Her hull, rudder and propeller
+    #[command(flatten)]
+    pub form: FormOptions,
+}
+
+impl ShipOptions {
+    /// The approach speed that is given, m/s.
+    pub fn speed(&self) -> Option<f64> {
+        self.speed_m_s.or(self.speed_kn.map(|speed| speed * KNOT))
+    }
+
+    /// Whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        self.length_m.is_none() && self.form.0.is_empty()
+    }
+}
+
+/// The options that are called as [`PARTICULARS`] are, without length and speed.
+#[derive(Debug, Clone, Default)]
+pub struct FormOptions(Vec<(&'static Particular, f64)>);
+
+impl FormOptions {
+    /// The first that is given.
+    pub fn first(&self) -> Option<&'static str> {
+        self.0.first().map(|(particular, _)| particular.key)
+    }
+
+    /// Puts what is given in its place.
+    pub fn apply(&self, hull: &mut HullParticulars) {
+        self.0.iter().for_each(|(particular, value)| particular.set(hull, *value));
+    }
+
+    fn particulars() -> impl Iterator<Item = &'static Particular> {
+        PARTICULARS.iter().filter(|particular| !matches!(particular.key, "length-m" | "speed-m-s"))
+    }
+}
+
+impl Args for FormOptions {
+    fn augment_args(command: Command) -> Command {
+        Self::particulars().fold(command, |command, Particular { key, symbol, unit, meaning, range, .. }| {
+            let unit = if *unit == "1" { String::new() } else { format!(", {unit}") };
+            let option = Arg::new(*key).long(*key).value_name(*symbol).help(format!("{meaning}{unit}"));
+            command.arg(option.value_parser(within(*range)).allow_negative_numbers(true))
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for FormOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut given = Vec::new();
+        for particular in Self::particulars() {
+            let value = matches.try_get_one::<f64>(particular.key);
+            let value = value.map_err(|error| clap::Error::raw(ErrorKind::InvalidValue, error))?;
+            given.extend(value.map(|value| (particular, *value)));
+        }
+        Ok(Self(given))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
