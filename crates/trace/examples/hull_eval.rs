@@ -59,6 +59,44 @@ fn main() {
             pooled(&a.identification),
             pooled(&a.validation)
         );
+        if std::env::var("SPEED").is_ok() {
+            use ship::{Dynamics, Replayable};
+            for h in &a.hulls {
+                let ship = h.ship::<f64>();
+                print!("   {}:", h.form.as_str());
+                for trial in held {
+                    let rec = trace::record::PreparedRecord::whole(trial);
+                    let rd = rec.recorded(&ship);
+                    let mut st = vec![0.0; 4];
+                    ship.enter(rec.heading[0], 0.0, &rd.input(rec.time[0], 0.0), &mut st);
+                    let n = rec.time.len();
+                    let sp = rec.speed.as_ref().unwrap();
+                    let sw = rec.sway.as_ref().unwrap();
+                    let (mut e, mut f) = (0.0, 0.0);
+                    let u0 = ship.speed;
+                    ship::replay::replay_states(
+                        &ship,
+                        &rd,
+                        &rec.time,
+                        |_, _| ship.largest_step(),
+                        &mut st,
+                        |i, s, _| {
+                            e += ((s[2].hypot(s[3]) - sp.at(rec.time[i])) / u0).powi(2);
+                            f += ((s[3] - sw.at(rec.time[i])) / u0).powi(2);
+                        },
+                    );
+                    print!(
+                        " {} {:.3}/{:.3} end {:.2}/{:.2}",
+                        trial.name(),
+                        (e / n as f64).sqrt(),
+                        (f / n as f64).sqrt(),
+                        st[2].hypot(st[3]) / u0,
+                        sp.at(rec.time[n - 1]) / u0
+                    );
+                }
+                println!();
+            }
+        }
         if std::env::var("SHOW").is_ok() {
             for h in &a.hulls {
                 for (c, v) in h.expected.iter().zip(h.values.iter()) {

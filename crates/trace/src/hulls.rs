@@ -3,7 +3,7 @@
 use identify::hull::{self, HullEstimate};
 use rayon::prelude::*;
 use ship::vessel::prime::HullForm;
-use ship::vessel::prior::{HullParticulars, priors};
+use ship::vessel::prior::priors;
 use trial::Trial;
 
 use crate::comparison::RecordComparison;
@@ -16,7 +16,7 @@ const FAR: f64 = 3.0;
 pub fn fit(trials: &[Trial], structures: &[RecordComparison]) -> Vec<HullEstimate> {
     let mut forms = vec![HullForm::Quadratic, HullForm::Cubic];
     forms.extend(
-        trials.iter().find_map(particulars).and_then(|own| priors(&own).ok()).map(|prior| HullForm::mmg(&prior)),
+        trials.iter().find_map(Trial::hull).and_then(|own| priors(&own).ok()).map(|prior| HullForm::mmg(&prior)),
     );
     let fitted = |form: &HullForm| hull::fit(trials, form, &form.coefficients()).ok();
     let found: Vec<HullEstimate> = forms.par_iter().filter_map(fitted).collect();
@@ -35,23 +35,4 @@ pub fn refitted(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
 fn left(hull: &HullEstimate) -> f64 {
     let square: f64 = hull.records.iter().map(|record| record.whole * record.whole).sum();
     (square / hull.records.len() as f64).sqrt()
-}
-
-/// What is declared of the ship of a trial, where that is more than length and speed.
-fn particulars(trial: &Trial) -> Option<HullParticulars> {
-    let (own, form) = (trial.particulars()?, trial.conditions());
-    let particulars = HullParticulars {
-        length: own.length,
-        speed: own.speed,
-        beam: form.beam,
-        draught: form.draught,
-        block_coefficient: form.block_coefficient,
-        rudder_area: form.rudder_area,
-        rudder_height: None,
-        propeller_diameter: None,
-        propeller_rate: None,
-        displacement: None,
-        x_g: None,
-    };
-    form.beam.map(|_| particulars)
 }

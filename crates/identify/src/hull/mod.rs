@@ -4,11 +4,12 @@
 //! windows of 3.5 L/U₀; heading and yaw rate at the start are fitted, speed and sway begin as measured (or at approach
 //! speed) and run on. Minimised is
 //!
-//! J = Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of speed and sway where recorded]
+//! J = Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of the speed where it was recorded]
 //!   + Σ ((θ − μ)/s)²
 //!
 //! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
-//! or twenty numbers is the ship. The covariance is the inverse of the second derivatives of J/2, so it holds the error
+//! or twenty numbers is the ship. They start large and follow what is left of every record, down to 1°, 0.2° and 0.1 U₀.
+//! A sway velocity is not fitted: logs do not say of which point of the ship it is. The covariance is the inverse of the second derivatives of J/2, so it holds the error
 //! of the form as far as that is another in every ship length. Firm priors are what lets one record tell so many
 //! coefficients; without them the fitted hull is unstable as often as not.
 
@@ -40,6 +41,14 @@ pub enum HullError {
         /// Name of the record.
         trial: String,
     },
+    /// A record does not begin on a steady approach, which the equations of a hull are about.
+    #[error("{trial} begins at {share:.2} of the approach speed")]
+    GathersWay {
+        /// Name of the record.
+        trial: String,
+        /// Speed in its first row over that of the approach.
+        share: f64,
+    },
     /// No values near the expected ones can be replayed.
     #[error("no hull near the expected one can be replayed")]
     NoReplay,
@@ -59,9 +68,8 @@ const RULES: Rules = Rules {
     in_a_row: 2,
 };
 
-/// Starts beside the expected values, in standard deviations, of the first coefficients with alternating signs.
-const STARTS: [f64; 1] = [0.0];
-const STARTED: usize = 5;
+/// Times the records are believed anew from what is left of them.
+const REWEIGHED: usize = 3;
 
 /// What is left of one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,30 +103,23 @@ pub struct HullEstimate {
 
 /// Fits a hull of a form about what is expected of its coefficients to records of one ship.
 ///
-/// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings, and where no
-/// values near the expected ones can be replayed.
+/// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings or begins while
+/// the ship gathers way, and where no values near the expected ones can be replayed.
 pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> Result<HullEstimate, HullError> {
-    let reference = trials.iter().find_map(HullReference::of).ok_or(HullError::Particulars)?.with_speed_of(trials);
-    let track = |trial: &Trial| {
-        HullTrack::of(trial, &reference).ok_or_else(|| HullError::Short { trial: trial.name().to_owned() })
-    };
+    let reference = trials.iter().find_map(HullReference::of).ok_or(HullError::Particulars)?;
+    let track = |trial: &Trial| HullTrack::of(trial, &reference);
     let tracks = trials.iter().map(track).collect::<Result<Vec<HullTrack>, _>>()?;
-    let search = |shift: f64| {
-        let start = expected.iter().enumerate().map(|(place, own)| {
-            let sign = if place % 2 == 0 { 1.0 } else { -1.0 };
-            let shift = if place < STARTED { sign * shift * own.sd } else { 0.0 };
-            (own.mean + shift).clamp(own.ends[0], own.ends[1])
-        });
-        let mut problem = HullObjective::new(form, expected.to_vec(), &tracks);
-        let found = minimise(&mut problem, DVector::from_iterator(expected.len(), start), &RULES);
-        (found.end != End::NotFinite).then_some((found, problem))
-    };
-    let best = STARTS.into_iter().filter_map(search).min_by(|one, other| one.0.value.total_cmp(&other.0.value));
-    let (found, mut problem) = best.ok_or(HullError::NoReplay)?;
-    let mut found = found;
-    for _ in 0..std::env::var("RW").ok().and_then(|x| x.parse().ok()).unwrap_or(3) {
+    let mut problem = HullObjective::new(form, expected.to_vec(), &tracks);
+    let mut at = DVector::from_iterator(expected.len(), expected.iter().map(|own| own.mean));
+    let mut found = minimise(&mut problem, at, &RULES);
+    // Each record is believed the more the nearer the hull has come: the way down avoids far minima.
+    for _ in 0..REWEIGHED {
         problem.reweigh(found.at.as_slice());
-        found = minimise(&mut problem, found.at, &RULES);
+        at = found.at;
+        found = minimise(&mut problem, at, &RULES);
+    }
+    if found.end == End::NotFinite {
+        return Err(HullError::NoReplay);
     }
     let covariance = Cholesky::new(found.normal.matrix.clone()).map(|factor| factor.inverse());
     let covariance = covariance.ok_or(HullError::NoReplay)?;
@@ -145,8 +146,8 @@ impl HullEstimate {
     /// The hull, ready to be replayed.
     pub fn ship<R: Real>(&self) -> ScaledHull<R> {
         let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
-        let HullReference { length, speed, propeller, driven } = self.reference;
+        let HullReference { length, speed, propeller } = self.reference;
         let hull = self.form.with(&values).expect("it was replayed");
-        ScaledHull { hull, length, speed, propeller, driven }
+        ScaledHull { hull, length, speed, propeller }
     }
 }

@@ -1,14 +1,15 @@
 //! How far a hull is from records: replays of the rudder over whole records and over windows, in which heading and yaw
-//! rate at the start are fitted while speed and sway run on; speed and sway where they were recorded.
+//! rate at the start are fitted while speed and sway run on; and the speed, where it was recorded.
 
 use estimation::levenberg_marquardt::{Normal, Objective};
 use estimation::number::{Dual, Real};
 use nalgebra::DMatrix;
+use ship::angle::DEGREE;
 use ship::vessel::prime::{HullCoefficient, HullForm, PrimeHull};
 
 use super::track::HullTrack;
 
-/// Most coefficients, and the yaw rate at the start.
+/// Coefficients of the largest form, the yaw rate at the start, and room for one more.
 const DIRECTIONS: usize = 26;
 
 /// Steps of the search for a yaw rate at the start, and shares of them that are tried.
@@ -31,9 +32,13 @@ pub struct HullDeviations {
     pub window: f64,
     /// Speed over U₀.
     pub speed: f64,
-    /// Sway over U₀.
-    pub sway: f64,
 }
+
+/// The least that is believed of any record.
+const LEAST: HullDeviations = HullDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
+
+/// Where a search begins: so much that the hull is hardly another than expected.
+const FIRST: HullDeviations = HullDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
 
 /// Mean squares of what a hull leaves on one record.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -41,7 +46,6 @@ pub(super) struct Left {
     pub whole: f64,
     pub window: f64,
     pub speed: f64,
-    pub sway: f64,
 }
 
 /// The yaw rates at the start of a record and of its windows, kept from one evaluation to the next.
@@ -81,11 +85,8 @@ fn replayed<R: Real>(hull: &PrimeHull<R>, track: &HullTrack, [from, to]: [usize;
         let step = span / pieces;
         let between = |values: &[f64], share: f64| values[row - 1] + share * (values[row] - values[row - 1]);
         for piece in 0..pieces as usize {
-            let rates = |mut state: [R; 3], piece: usize| {
+            let rates = |state: [R; 3], piece: usize| {
                 let share = piece as f64 / pieces;
-                if let Some(surge) = &track.driven {
-                    state[0] = R::from(between(surge, share));
-                }
                 let rudder = R::from(between(&track.rudder, share));
                 hull.accelerations(state, rudder, between(&track.turning, share), 0.0)
             };
@@ -185,8 +186,7 @@ impl<'a> HullObjective<'a> {
         assert!(coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
         let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
-        let loose = HullDeviations { whole: 3_f64.to_radians(), window: 1_f64.to_radians(), speed: 0.2, sway: 0.2 };
-        let deviations = vec![loose; tracks.len()];
+        let deviations = vec![FIRST; tracks.len()];
         Self { form, coefficients, tracks, deviations, starts, is_begun: false }
     }
 
@@ -199,13 +199,9 @@ impl<'a> HullObjective<'a> {
             let mut left = Left::default();
             through(&hull, track, &track.whole, &mut starts.whole, is_begun, |found| {
                 left.whole = found.square / found.read.max(1) as f64;
-                let rows = found.rows.len() as f64;
-                let mean = |measured: &Option<Vec<f64>>, own: fn(&[f64; 3]) -> f64| {
-                    let pairs = measured.iter().flatten().zip(&found.rows);
-                    pairs.map(|(measured, row)| (measured - own(row)).powi(2)).sum::<f64>() / rows
-                };
-                left.speed = mean(&track.speed, |row| row[1].hypot(row[2]));
-                left.sway = mean(&track.sway, |row| row[2]);
+                let pairs = track.speed.iter().flatten().zip(&found.rows);
+                let squares = pairs.map(|(measured, row)| (measured - row[1].hypot(row[2])).powi(2));
+                left.speed = squares.sum::<f64>() / found.rows.len() as f64;
             });
             let (mut square, mut read) = (0.0, 0);
             through(&hull, track, &track.cuts, &mut starts.windows, is_begun, |found| {
@@ -221,12 +217,10 @@ impl<'a> HullObjective<'a> {
     pub fn reweigh(&mut self, at: &[f64]) {
         let all = self.left(at).unwrap_or_default();
         for (believed, left) in self.deviations.iter_mut().zip(all) {
-            let least = deviations();
             *believed = HullDeviations {
-                whole: least.whole.max(left.whole.sqrt()),
-                window: least.window.max(left.window.sqrt()),
-                speed: least.speed.max(left.speed.sqrt()),
-                sway: least.sway.max(left.sway.sqrt()),
+                whole: LEAST.whole.max(left.whole.sqrt()),
+                window: LEAST.window.max(left.window.sqrt()),
+                speed: LEAST.speed.max(left.speed.sqrt()),
             };
         }
     }
@@ -246,10 +240,10 @@ impl Objective for HullObjective<'_> {
     fn value(&mut self, at: &[f64]) -> f64 {
         let Some(left) = self.left(at) else { return f64::INFINITY };
         let of = |((track, left), believed): ((&HullTrack, Left), &HullDeviations)| {
-            let HullDeviations { whole, window, speed, sway } = *believed;
+            let HullDeviations { whole, window, speed } = *believed;
             let share = |square: f64, deviation: f64| square / (deviation * deviation);
             let headings = share(left.whole, whole) + share(left.window, window);
-            track.duration() * (headings + share(left.speed, speed) + share(left.sway, sway))
+            track.duration() * (headings + share(left.speed, speed))
         };
         self.of_priors(at) + self.tracks.iter().zip(left).zip(&self.deviations).map(of).sum::<f64>()
     }
@@ -266,27 +260,26 @@ impl Objective for HullObjective<'_> {
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
         let Some(hull) = self.form.with(&values) else { return f64::INFINITY };
         for ((track, starts), believed) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
-            let HullDeviations { whole, window, speed, sway } = *believed;
+            let HullDeviations { whole, window, speed } = *believed;
             let lengths = track.duration();
             let read = track.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
             let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);
-            let rows = track.time.len() as f64;
-            let of_others = Some([weight(speed, rows), weight(sway, rows)]);
-            add(normal, &hull, track, (&track.whole, &starts.whole), weight(whole, read), of_others);
+            let of_speed = Some(weight(speed, track.time.len() as f64));
+            add(normal, &hull, track, (&track.whole, &starts.whole), weight(whole, read), of_speed);
             add(normal, &hull, track, (&track.cuts, &starts.windows), weight(window, read), None);
         }
         value
     }
 }
 
-/// Adds the normal equations of the windows of a record; `of_others` are the weights of speed and sway.
+/// Adds the normal equations of the windows of a record; `of_speed` is the weight of a speed.
 fn add(
     normal: &mut Normal,
     hull: &PrimeHull<Dual<DIRECTIONS>>,
     track: &HullTrack,
     (cuts, rates): (&[usize], &[f64]),
     weight: f64,
-    of_others: Option<[f64; 2]>,
+    of_speed: Option<f64>,
 ) {
     let unknowns = normal.gradient.len();
     let mut start = track.start.map(Dual::from);
@@ -315,21 +308,16 @@ fn add(
             columns.column_mut(place).axpy(-share, &by_rate, 1.0);
         }
         add_squares(normal, &columns, unknowns + 1, weight);
-        let Some(weights) = of_others else { continue };
-        let outputs = [(&track.speed, weights[0]), (&track.sway, weights[1])];
-        for (output, (measured, weight)) in outputs.into_iter().enumerate() {
-            let Some(measured) = measured else { continue };
-            let of_row = |row: &[Dual<DIRECTIONS>; 3]| if output == 0 { row[1].hypot(row[2]) } else { row[2] };
-            let columns = DMatrix::from_fn(rows.len(), unknowns + 2, |i, j| {
-                let own = of_row(&rows[i]);
-                match j {
-                    _ if j > unknowns => measured[ends[0] + i] - own.value,
-                    _ if j == unknowns => 0.0,
-                    _ => own.by[j] - follows[j] * own.by[unknowns],
-                }
-            });
-            add_squares(normal, &columns, unknowns + 1, weight);
-        }
+        let Some((weight, measured)) = of_speed.zip(track.speed.as_ref()) else { continue };
+        let columns = DMatrix::from_fn(rows.len(), unknowns + 2, |i, j| {
+            let own = rows[i][1].hypot(rows[i][2]);
+            match j {
+                _ if j > unknowns => measured[ends[0] + i] - own.value,
+                _ if j == unknowns => 0.0,
+                _ => own.by[j] - follows[j] * own.by[unknowns],
+            }
+        });
+        add_squares(normal, &columns, unknowns + 1, weight);
     }
 }
 
@@ -338,15 +326,4 @@ fn add_squares(normal: &mut Normal, columns: &DMatrix<f64>, error: usize, weight
     let of_unknowns = columns.columns(0, error - 1);
     normal.matrix.gemm_tr(weight, &of_unknowns, &of_unknowns, 1.0);
     normal.gradient.gemv_tr(weight, &of_unknowns, &columns.column(error), 1.0);
-}
-
-/// What hulls of these forms leave on records of other hulls.
-fn deviations() -> HullDeviations {
-    let e = |n: &str, d: f64| std::env::var(n).ok().and_then(|x| x.parse().ok()).unwrap_or(d);
-    HullDeviations {
-        whole: e("S0", 1.0_f64).to_radians(),
-        window: e("S1", 0.2_f64).to_radians(),
-        speed: e("S2", 9.0),
-        sway: e("S3", 9.0),
-    }
 }

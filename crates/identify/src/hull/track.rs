@@ -2,13 +2,15 @@
 
 use trial::{Channel, Trial};
 
+use super::HullError;
+
 /// Time between two rows that is fine enough, in L/U₀.
 const SPACING: f64 = 0.05;
 
 /// Length of the windows after which a replay is restarted, in L/U₀: about half a period of a zig-zag.
 const WINDOW: f64 = 3.5;
 
-/// Share of the approach speed below which a ship gathers way.
+/// Share of the approach speed below which a ship still gathers way at the start of a record.
 const SLOW: f64 = 0.7;
 
 /// Fewest headings that a record has to hold.
@@ -23,9 +25,6 @@ pub struct HullReference {
     pub speed: f64,
     /// Rate of the propeller at that speed, 1/s, where it was recorded.
     pub propeller: Option<f64>,
-    /// Whether the measured speed takes the place of the surge equation: where a ship gathers way or changes the rate
-    /// of its propeller, the speed is not that of the manoeuvre.
-    pub driven: bool,
 }
 
 impl HullReference {
@@ -33,16 +32,7 @@ impl HullReference {
     pub fn of(trial: &Trial) -> Option<Self> {
         let own = trial.particulars()?;
         let propeller = trial.channel(Channel::PropellerRate).and_then(median).filter(|rate| *rate > 0.0);
-        Some(Self { length: own.length, speed: own.speed, propeller, driven: false })
-    }
-
-    /// The same for records of which some begin at another speed than that of the approach, and all have their speed.
-    pub fn with_speed_of(self, trials: &[Trial]) -> Self {
-        let speed =
-            |trial: &Trial| trial.channel(Channel::Speed).and_then(|all| all.iter().copied().find(|x| x.is_finite()));
-        let first: Option<Vec<f64>> = trials.iter().map(speed).collect();
-        let is_slow = |first: &f64| *first < SLOW * self.speed;
-        Self { driven: first.is_some_and(|first| first.iter().any(is_slow)), ..self }
+        Some(Self { length: own.length, speed: own.speed, propeller })
     }
 
     /// L/U₀, s.
@@ -63,10 +53,6 @@ pub(super) struct HullTrack {
     pub turning: Vec<f64>,
     /// Speed, where it was recorded.
     pub speed: Option<Vec<f64>>,
-    /// Sway, where it was recorded.
-    pub sway: Option<Vec<f64>>,
-    /// Speed that takes the place of the surge equation, in a record whose speed is not that of the approach at first.
-    pub driven: Option<Vec<f64>>,
     /// Surge and sway in the first row.
     pub start: [f64; 2],
     /// First rows of the windows, and the number of rows.
@@ -76,8 +62,17 @@ pub(super) struct HullTrack {
 }
 
 impl HullTrack {
-    /// `None` for a record with too few headings.
-    pub fn of(trial: &Trial, reference: &HullReference) -> Option<Self> {
+    /// Fails for a record with too few headings, and for one that begins while the ship gathers way.
+    pub fn of(trial: &Trial, reference: &HullReference) -> Result<Self, HullError> {
+        let short = || HullError::Short { trial: trial.name().to_owned() };
+        let track = Self::cut(trial, reference).ok_or_else(short)?;
+        match track.start[0] < SLOW {
+            true => Err(HullError::GathersWay { trial: trial.name().to_owned(), share: track.start[0] }),
+            false => Ok(track),
+        }
+    }
+
+    fn cut(trial: &Trial, reference: &HullReference) -> Option<Self> {
         let rows: Vec<usize> = trial.observed_rows().collect();
         let (first, last) = (*rows.first()?, *rows.last()?);
         let own = HullReference::of(trial).unwrap_or(*reference);
@@ -109,9 +104,7 @@ impl HullTrack {
             whole: [0, count],
             start: [surge, drift],
             time,
-            driven: speed.clone().filter(|_| reference.driven),
             speed,
-            sway,
         })
     }
 

@@ -23,8 +23,6 @@ pub struct ScaledHull<R = f64> {
     pub speed: f64,
     /// Rate of the propeller at that speed, 1/s, where it is known.
     pub propeller: Option<f64>,
-    /// Whether a measured speed takes the place of the surge equation.
-    pub driven: bool,
 }
 
 impl<R: Real> Dynamics<R> for ScaledHull<R> {
@@ -40,8 +38,7 @@ impl<R: Real> Dynamics<R> for ScaledHull<R> {
     fn rates(&self, _t: f64, state: &[R], input: &Input<R>, rate: &mut [R]) {
         let Self { length, speed, .. } = *self;
         let turning = input.measured.propeller.zip(self.propeller).map_or(1.0, |(now, approach)| now / approach);
-        let driven = input.measured.speed.filter(|_| self.driven).map(R::from);
-        let prime = [driven.unwrap_or(state[2]) / speed, state[3] / speed, state[1] * (length / speed)];
+        let prime = [state[2] / speed, state[3] / speed, state[1] * (length / speed)];
         let [surge, sway, yaw] = self.hull.accelerations(prime, input.rudder, turning, input.disturbance);
         let unit = speed * speed / length;
         rate.copy_from_slice(&[state[1], yaw * (unit / length), surge * unit, sway * unit]);
@@ -84,12 +81,6 @@ impl<R: Real> Replayable<R> for ScaledHull<R> {
 impl ReplayedShip for ScaledHull {
     fn tangent(&self) -> Box<dyn Replayable<Tangent>> {
         let hull = self.hull.constant();
-        Box::new(ScaledHull {
-            hull,
-            length: self.length,
-            speed: self.speed,
-            propeller: self.propeller,
-            driven: self.driven,
-        })
+        Box::new(ScaledHull { hull, length: self.length, speed: self.speed, propeller: self.propeller })
     }
 }
