@@ -51,14 +51,20 @@ impl AveragedModel<'_> {
         1.0 / (1 + self.hulls.len()) as f64
     }
 
-    /// Its ships with their weights: structures first.
-    pub fn average(&self) -> Average {
+    /// Weights of its ships: structures first.
+    pub fn weights(&self) -> impl Iterator<Item = f64> {
         let share = self.share();
-        let structure = |(weight, fit): &(f64, &StructureFit)| -> (f64, Box<dyn ReplayedShip>) {
-            (share * weight, Box::new(fit.structure.response(self.known, &fit.theta)))
+        self.members.iter().map(move |(weight, _)| share * weight).chain(self.hulls.iter().map(move |_| share))
+    }
+
+    /// Its ships with their weights.
+    pub fn average(&self) -> Average {
+        let structure = |(_, fit): &(f64, &StructureFit)| -> Box<dyn ReplayedShip> {
+            Box::new(fit.structure.response(self.known, &fit.theta))
         };
-        let hull = |hull: &HullEstimate| -> (f64, Box<dyn ReplayedShip>) { (share, Box::new(hull.ship::<f64>())) };
-        Average { members: self.members.iter().map(structure).chain(self.hulls.iter().map(hull)).collect() }
+        let hull = |hull: &HullEstimate| -> Box<dyn ReplayedShip> { Box::new(hull.ship::<f64>()) };
+        let ships = self.members.iter().map(structure).chain(self.hulls.iter().map(hull));
+        Average { members: self.weights().zip(ships).collect() }
     }
 }
 

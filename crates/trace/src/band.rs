@@ -36,20 +36,24 @@ pub fn of(after: &AveragedModel, trial: &Trial, mean: &Replay, members: &[Replay
     let rows = record.observed.len();
     let mut variance = vec![0.0; rows];
     let mut generator = ChaCha8Rng::seed_from_u64(1);
+    let share = after.share();
     for ((weight, fit), replay) in after.members.iter().zip(members) {
         let own = ResidualSampler::new(after, &problem, fit, replay.initial(), law_variance)?;
         for _ in 0..DRAWS {
             let residual = own.draw(&mut generator);
-            variance.iter_mut().zip(residual).for_each(|(sum, e)| *sum += weight * e * e / DRAWS as f64);
+            variance.iter_mut().zip(residual).for_each(|(sum, e)| *sum += share * weight * e * e / DRAWS as f64);
         }
     }
     let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
     let smooth = Polyline::new(time, smoothed(&variance)).ok()?;
+    let of_hulls: Vec<Polyline> = after.hulls.iter().map(|hull| hull.heading_variance(trial)).collect::<Option<_>>()?;
+    let hulls = |t: f64| share * of_hulls.iter().map(|own| own.at(t)).sum::<f64>();
+    let weights: Vec<f64> = after.weights().collect();
     let between = |row: usize| -> f64 {
-        let parts = after.members.iter().zip(members);
-        parts.map(|((weight, _), own)| weight * (own.heading[row] - mean.heading[row]).powi(2)).sum()
+        let parts = weights.iter().zip(members);
+        parts.map(|(weight, own)| weight * (own.heading[row] - mean.heading[row]).powi(2)).sum()
     };
-    let half = |(row, &t): (usize, &f64)| QUANTILE * (smooth.at(t) + white + between(row)).sqrt();
+    let half = |(row, &t): (usize, &f64)| QUANTILE * (smooth.at(t) + hulls(t) + white + between(row)).sqrt();
     let band: Vec<f64> = mean.time.iter().enumerate().map(half).collect();
     band.iter().all(|half| half.is_finite()).then_some(band)
 }

@@ -22,6 +22,7 @@ pub fn fit(trials: &[Trial], structures: &[RecordComparison]) -> Vec<HullEstimat
     let found: Vec<HullEstimate> = forms.par_iter().filter_map(fitted).collect();
     let rows: usize = structures.iter().map(|one| one.after.errors.rows).sum();
     let of_structures = (squares(structures)[1] / rows as f64).sqrt();
+    let left = |hull: &HullEstimate| hull.mean_square().sqrt();
     let least = found.iter().map(left).fold(of_structures, f64::min);
     found.into_iter().filter(|hull| left(hull) <= FAR * least).collect()
 }
@@ -29,10 +30,4 @@ pub fn fit(trials: &[Trial], structures: &[RecordComparison]) -> Vec<HullEstimat
 /// The same hulls fitted to other records.
 pub fn refitted(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
     hulls.par_iter().filter_map(|own| hull::fit(trials, &own.form, &own.expected).ok()).collect()
-}
-
-/// Root mean square of what a hull leaves of whole records, rad.
-fn left(hull: &HullEstimate) -> f64 {
-    let square: f64 = hull.records.iter().map(|record| record.whole * record.whole).sum();
-    (square / hull.records.len() as f64).sqrt()
 }

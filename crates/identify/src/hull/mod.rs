@@ -19,13 +19,14 @@ mod track;
 use estimation::levenberg_marquardt::{End, Rules, minimise};
 use estimation::number::Real;
 use nalgebra::{Cholesky, DMatrix, DVector};
+use ship::Polyline;
 use ship::vessel::prime::{HullCoefficient, HullForm};
 use ship::vessel::scaled::ScaledHull;
 use thiserror::Error;
 use trial::Trial;
 
 pub use objective::HullDeviations;
-use objective::HullObjective;
+use objective::{HullObjective, variances};
 pub use track::HullReference;
 use track::{FEWEST, HullTrack};
 
@@ -149,5 +150,25 @@ impl HullEstimate {
         let HullReference { length, speed, propeller } = self.reference;
         let hull = self.form.with(&values).expect("it was replayed");
         ScaledHull { hull, length, speed, propeller }
+    }
+
+    /// Variance of the heading of the replay of a record over time (s), rad²: by the covariance of the coefficients, and
+    /// by what the form has left of the records of the fit. `None` for a record that cannot be replayed.
+    pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
+        let track = HullTrack::of(trial, &self.reference).ok()?;
+        let [time, mut variance] = variances(&self.form, &track, self.values.as_slice(), &self.covariance)?;
+        let left = self.mean_square();
+        variance.iter_mut().for_each(|own| *own += left);
+        Polyline::new(time.into_iter().map(|t| t * track.second).collect(), variance).ok()
+    }
+
+    /// Mean square of what it leaves of whole records, rad².
+    pub fn mean_square(&self) -> f64 {
+        self.records.iter().map(|record| record.whole * record.whole).sum::<f64>() / self.records.len() as f64
+    }
+
+    /// How far each coefficient is from what was expected, in standard deviations of that.
+    pub fn departures(&self) -> impl Iterator<Item = (&HullCoefficient, f64)> {
+        self.expected.iter().zip(self.values.iter()).map(|(own, value)| (own, (value - own.mean) / own.sd))
     }
 }

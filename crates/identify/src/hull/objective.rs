@@ -213,6 +213,12 @@ impl<'a> HullObjective<'a> {
         Some(self.tracks.iter().zip(&mut self.starts).map(of).collect())
     }
 
+    /// The best yaw rate at the start of the first record; `None` where the values make no ship.
+    fn begin(mut self, at: &[f64]) -> Option<f64> {
+        self.left(at)?;
+        Some(self.starts[0].whole[0])
+    }
+
     /// Believes every record as far as what is left of it, and no further than a hull of the right form.
     pub fn reweigh(&mut self, at: &[f64]) {
         let all = self.left(at).unwrap_or_default();
@@ -289,24 +295,7 @@ fn add(
         let variable = Dual::variable(rate, unknowns, 1.0);
         let Replayed { rows, end } = replayed(hull, track, [ends[0], ends[1]], [start[0], start[1], variable]);
         start = [end[0], end[1]];
-        let read: Vec<usize> = (0..rows.len()).filter(|&row| track.heading[ends[0] + row].is_finite()).collect();
-        let heading = |i: usize, j: usize| {
-            let own = &rows[read[i]][0];
-            if j > unknowns { track.heading[ends[0] + read[i]] - own.value } else { own.by[j] }
-        };
-        let mut columns = DMatrix::from_fn(read.len(), unknowns + 2, heading);
-        for mut column in columns.column_iter_mut() {
-            let mean = column.mean();
-            column.add_scalar_mut(-mean);
-        }
-        // How the best yaw rate at the start follows the coefficients.
-        let by_rate = columns.column(unknowns).clone_owned();
-        let own = by_rate.norm_squared();
-        let follows: Vec<f64> =
-            columns.column_iter().map(|column| if own > 0.0 { column.dot(&by_rate) / own } else { 0.0 }).collect();
-        for (place, share) in follows.iter().enumerate().filter(|(place, _)| *place != unknowns) {
-            columns.column_mut(place).axpy(-share, &by_rate, 1.0);
-        }
+        let (columns, follows) = of_headings(&rows, &track.heading[ends[0]..ends[1]], unknowns);
         add_squares(normal, &columns, unknowns + 1, weight);
         let Some((weight, measured)) = of_speed.zip(track.speed.as_ref()) else { continue };
         let columns = DMatrix::from_fn(rows.len(), unknowns + 2, |i, j| {
@@ -319,6 +308,52 @@ fn add(
         });
         add_squares(normal, &columns, unknowns + 1, weight);
     }
+}
+
+/// How the headings that were read follow the coefficients from the best yaw rate at the start, and what is left of
+/// them; and how that yaw rate follows the coefficients.
+fn of_headings(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: usize) -> (DMatrix<f64>, Vec<f64>) {
+    let read: Vec<usize> = (0..rows.len()).filter(|&row| measured[row].is_finite()).collect();
+    let heading = |i: usize, j: usize| {
+        let own = &rows[read[i]][0];
+        if j > unknowns { measured[read[i]] - own.value } else { own.by[j] }
+    };
+    let mut columns = DMatrix::from_fn(read.len(), unknowns + 2, heading);
+    for mut column in columns.column_iter_mut() {
+        let mean = column.mean();
+        column.add_scalar_mut(-mean);
+    }
+    let by_rate = columns.column(unknowns).clone_owned();
+    let own = by_rate.norm_squared();
+    let follows: Vec<f64> =
+        columns.column_iter().map(|column| if own > 0.0 { column.dot(&by_rate) / own } else { 0.0 }).collect();
+    for (place, share) in follows.iter().enumerate().filter(|(place, _)| *place != unknowns) {
+        columns.column_mut(place).axpy(-share, &by_rate, 1.0);
+    }
+    (columns, follows)
+}
+
+/// Times, in L/U₀, and variances of the heading of a whole replay where the coefficients have this covariance, rad².
+/// `None` where the values make no ship.
+pub(super) fn variances(
+    form: &HullForm,
+    track: &HullTrack,
+    values: &[f64],
+    covariance: &DMatrix<f64>,
+) -> Option<[Vec<f64>; 2]> {
+    let rate = HullObjective::new(form, form.coefficients(), std::slice::from_ref(track)).begin(values)?;
+    let unknowns = values.len();
+    let variables: Vec<Dual<DIRECTIONS>> =
+        values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
+    let [u, v] = track.start.map(Dual::from);
+    let start = [u, v, Dual::variable(rate, unknowns, 1.0)];
+    let Replayed { rows, .. } = replayed(&form.with(&variables)?, track, track.whole, start);
+    let (columns, _) = of_headings(&rows, &track.heading, unknowns);
+    let by = columns.columns(0, unknowns);
+    let spread = by * covariance;
+    let variance = (0..by.nrows()).map(|row| spread.row(row).dot(&by.row(row))).collect();
+    let read = track.time.iter().zip(&track.heading).filter(|(_, heading)| heading.is_finite());
+    Some([read.map(|(time, _)| *time).collect(), variance])
 }
 
 /// XᵀX and Xᵀe of the first columns and the error, which is the last.

@@ -45,6 +45,8 @@ impl HullReference {
 #[derive(Debug, Clone)]
 pub(super) struct HullTrack {
     pub time: Vec<f64>,
+    /// L/U₀, s.
+    pub second: f64,
     /// rad; NaN where it was not recorded.
     pub heading: Vec<f64>,
     /// rad.
@@ -103,6 +105,7 @@ impl HullTrack {
             cuts: cuts(&time),
             whole: [0, count],
             start: [surge, drift],
+            second,
             time,
             speed,
         })
