@@ -330,7 +330,9 @@ mod tests {
     fn expression<R: Real>(x: R, y: R) -> R {
         let (sin, cos) = (x * y).sin_cos();
         let power = (x * x + 0.5).powf(y / 3.0) + (y - x).powi(3) * 2.0 + (x * x + 0.1).sqrt().ln() * (y * 0.3).exp();
-        power / (cos + 2.0) - (sin - y).tanh() + (x * y).atan2(y - x) * x.hypot(y) + (-x).abs() * x.at_least(0.4).between(R::from(0.1), y + 5.0)
+        power / (cos + 2.0) - (sin - y).tanh()
+            + (x * y).atan2(y - x) * x.hypot(y)
+            + (-x).abs() * x.at_least(0.4).between(R::from(0.1), y + 5.0)
     }
 
     #[test]

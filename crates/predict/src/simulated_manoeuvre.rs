@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::motion::{self, Planar, PlanarShip};
 use serde::{Deserialize, Serialize};
-use ship::Regressor;
+use ship::{Regressor, Replayable};
 use simulate::simulation::Truth;
 use simulate::vessel::Solver;
 use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};

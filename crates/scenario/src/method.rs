@@ -192,7 +192,7 @@ fn tracing(wire: &TraceWire) -> Result<::trace::Settings, SettingsError> {
     if monomials > empirical::all().len() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }
-    let settings = ::trace::Settings { probability, rule, monomials, selection, thorough: false };
+    let settings = ::trace::Settings { probability, rule, monomials, selection, thorough: false, hulls: false };
     settings.check()?;
     Ok(settings)
 }

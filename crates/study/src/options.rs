@@ -260,6 +260,10 @@ pub struct TraceRequest {
     /// The same from a file, `effects = ["…"]`
     #[arg(long, value_name = "FILE.toml", value_parser = formulas)]
     pub effects: Option<Formulas>,
+    /// Without hulls of three degrees of freedom beside the structures, which are fitted where length and speed of the
+    /// ship are known and the structures leave more than noise
+    #[arg(long)]
+    pub without_hull: bool,
     /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
     #[arg(
         long, value_name = "NAME", default_value = Rule::default().as_str(),

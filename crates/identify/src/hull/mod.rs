@@ -166,9 +166,4 @@ impl HullEstimate {
     pub fn mean_square(&self) -> f64 {
         self.records.iter().map(|record| record.whole * record.whole).sum::<f64>() / self.records.len() as f64
     }
-
-    /// How far each coefficient is from what was expected, in standard deviations of that.
-    pub fn departures(&self) -> impl Iterator<Item = (&HullCoefficient, f64)> {
-        self.expected.iter().zip(self.values.iter()).map(|(own, value)| (own, (value - own.mean) / own.sd))
-    }
 }

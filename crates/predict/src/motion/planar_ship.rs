@@ -1,6 +1,6 @@
 //! A yaw response with speed and drift beside it: a ship that can be steered and leaves a track.
 
-use ship::{Dynamics, Input, Measured, Motion, Response};
+use ship::{Dynamics, Input, Measured, Motion, Replayable, Response};
 
 use super::planar::Planar;
 

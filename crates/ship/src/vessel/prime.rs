@@ -130,6 +130,20 @@ fn ends_of(key: &str) -> [f64; 2] {
     }
 }
 
+/// What a departure of a coefficient from the expected value can mean, in words; `None` where nothing is to be said.
+pub fn meaning(key: &str) -> Option<&'static str> {
+    Some(match key {
+        "delta_r" => "a bent rudder, a rudder whose zero is off, or a bank on one side",
+        "b" | "gammaR-starboard" | "gammaR-port" => "a rudder whose inflow differs by side",
+        "R0" | "x0" => "fouling, or another draught",
+        "k" | "wP0" => "another wake: fouling, trim or shallow water",
+        "epsilon" | "e" | "Nd" | "aH" => "a rudder of another force: damaged, fouled, or of another size",
+        "Nv" | "Nr" | "lR" => "trim, or shallow water",
+        "Yv" | "Yr" | "my" => "another draught, or shallow water",
+        _ => return None,
+    })
+}
+
 /// What a hull is made of.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HullForm {

@@ -177,7 +177,8 @@ fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
 
 /// How the records of a request are analysed.
 pub fn settings(request: &TraceRequest) -> Settings {
-    Settings { rule: request.rule, selection: request.selection(), ..Settings::default() }
+    let hulls = !request.without_hull;
+    Settings { rule: request.rule, selection: request.selection(), hulls, ..Settings::default() }
 }
 
 /// The records of a request without the channels that are withheld.
