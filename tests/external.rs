@@ -379,9 +379,7 @@ fn a_fit_asks_other_programs_too() {
             trial: None,
             from: None,
             until: None,
-            length_m: None,
-            speed_m_s: None,
-            speed_kn: None,
+            ship: ShipOptions::default(),
         },
         style: PageFigureOptions {
             style: FigureOptions { paper: Some(60.0), dpi: 72.0, style: None },

@@ -15,7 +15,7 @@ use kempf_tests::wrapped::without_jumps;
 use report::number::{fixed, significant};
 use report::{Table, TableColumn};
 use study::options::{
-    Common, FigureOptions, Format, PageFigureOptions, PageFigures, ReadingOptions, TraceRequest, Withheld,
+    Common, FigureOptions, Format, PageFigureOptions, PageFigures, ReadingOptions, ShipOptions, TraceRequest, Withheld,
 };
 use trace::document::{BeforeAfter, EffectEntry, ErrorsEntry, RecordNoiseEntry};
 use trace::{Document, Rule};
@@ -285,9 +285,7 @@ fn trace_files(
             trial: None,
             from: None,
             until: None,
-            length_m: None,
-            speed_m_s: None,
-            speed_kn: None,
+            ship: ShipOptions::default(),
         },
         without,
         with: Vec::new(),
@@ -295,6 +293,7 @@ fn trace_files(
         without_effect: Vec::new(),
         effect: Vec::new(),
         effects: None,
+        without_hull: false,
         rule: Rule::default(),
         style: PageFigureOptions {
             style: FigureOptions { paper: None, dpi: 600.0, style: None },
