@@ -14,6 +14,8 @@
 //! coefficients; without them the fitted hull is unstable as often as not.
 
 mod objective;
+#[cfg(test)]
+mod tests;
 mod track;
 
 use estimation::levenberg_marquardt::{End, Rules, minimise};
