@@ -44,20 +44,7 @@ impl Coefficient {
     pub fn source(&self) -> &'static str {
         self.formula.source
     }
-
-    /// Its value in these parameters; NaN where they have no such coefficient (another law of the wake).
-    pub fn of(&self, parameters: &Parameters) -> f64 {
-        (self.formula.place.get)(parameters)
-    }
-
-    /// Puts a value in its place.
-    pub fn set(&self, parameters: &mut Parameters, value: f64) {
-        (self.formula.place.set)(parameters, value);
-    }
 }
-
-/// Where the ratios come from that stand for particulars.
-pub const SOURCE_OF_RATIOS: &str = "typical: KVLCC2, KCS, ONRT, Esso Osaka, SEIUN MARU";
 
 /// A particular that was not given.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,7 +104,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
         })
         .collect();
     for coefficient in &coefficients {
-        coefficient.set(&mut parameters, coefficient.mean);
+        *parameters.named(coefficient.key()).expect("every coefficient has its place") = coefficient.mean;
     }
     let assumed = PARTICULARS.iter().filter_map(|particular| {
         let of = |form: &Form| particular.of_form.map_or(f64::NAN, |of| of(form));

@@ -214,7 +214,7 @@ impl Parameters {
 }
 
 impl<R> Parameters<R> {
-    /// The parameter of this name, where it is one that a record can tell something of; `None` of any other.
+    /// The coefficient of this name in files; `None` where there is none, as of another law of the wake.
     pub fn named(&mut self, name: &str) -> Option<&mut R> {
         let Self { hull, propeller, rudder, kzz, .. } = self;
         Some(match name {
@@ -240,13 +240,24 @@ impl<R> Parameters<R> {
             "Nrrr" => &mut hull.Nrrr,
             "kzz" => kzz,
             "wP0" => &mut propeller.wP0,
+            "C1" | "C2-starboard" | "C2-port" => match (&mut propeller.wake, name) {
+                (Wake::Gaussian, _) => return None,
+                (Wake::Exponential { C1, .. }, "C1") => C1,
+                (Wake::Exponential { C2, .. }, "C2-starboard") => &mut C2.positive,
+                (Wake::Exponential { C2, .. }, _) => &mut C2.negative,
+            },
             "tP" => &mut propeller.tP,
+            "xP" => &mut propeller.xP,
+            "k0" => &mut propeller.k[0],
+            "k1" => &mut propeller.k[1],
+            "k2" => &mut propeller.k[2],
             "f_alpha" => &mut rudder.f_alpha,
             "epsilon" => &mut rudder.epsilon,
             "kappa" => &mut rudder.kappa,
             "tR" => &mut rudder.tR,
             "aH" => &mut rudder.aH,
             "xH" => &mut rudder.xH,
+            "xR" => &mut rudder.xR,
             "lR" => &mut rudder.lR,
             "gammaR-starboard" => &mut rudder.gammaR.positive,
             "gammaR-port" => &mut rudder.gammaR.negative,

@@ -8,7 +8,6 @@
 use std::f64::consts::PI;
 
 use super::particulars::Form;
-use crate::vessel::mmg::{Parameters, Wake};
 
 /// Standard deviation of a coefficient whose particulars are all known.
 #[derive(Debug, Clone, Copy)]
@@ -20,29 +19,15 @@ pub(super) enum Spread {
 }
 use Spread::{Absolute, Share};
 
-/// Where a coefficient stands among the parameters.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
-    pub get: fn(&Parameters) -> f64,
-    pub set: fn(&mut Parameters, f64),
-}
-
 /// How a coefficient follows from the particulars.
 #[derive(Debug)]
 pub(super) struct Formula {
     pub key: &'static str,
     pub symbol: &'static str,
-    pub place: Place,
     pub of: fn(&Form) -> f64,
     pub spread: Spread,
     pub text: &'static str,
     pub source: &'static str,
-}
-
-macro_rules! at {
-    ($($field:tt)+) => {
-        Place { get: |own| own.$($field)+, set: |own, value| own.$($field)+ = value }
-    };
 }
 
 impl Form {
@@ -133,7 +118,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "mx",
         symbol: "m_x'",
-        place: at!(hull.mx),
         of: Form::added_surge,
         spread: Absolute(0.008),
         text: "m' f(C_b, L/B, d/B)",
@@ -142,7 +126,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "my",
         symbol: "m_y'",
-        place: at!(hull.my),
         of: Form::added_sway,
         spread: Share(0.15),
         text: "m' f(C_b, L/B, d/B)",
@@ -151,7 +134,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Jz",
         symbol: "J_z'",
-        place: at!(hull.Jz),
         of: |f| {
             let radius = 0.01 * (33.0 - 76.85 * f.Cb * (1.0 - 0.784 * f.Cb) + 3.43 * f.L / f.B * (1.0 - 0.63 * f.Cb));
             radius * radius * f.mass()
@@ -163,7 +145,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "R0",
         symbol: "R_0'",
-        place: at!(hull.R0),
         of: Form::resistance,
         spread: Share(0.3),
         text: "2 (1 − t_P) (1 − w_P0)² D_P² .18/(L d J²); without propeller-rps .018",
@@ -172,7 +153,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Xvv",
         symbol: "X_vv'",
-        place: at!(hull.Xvv),
         of: |f| 1.15 * f.fullness() - 0.18,
         spread: Absolute(0.04),
         text: "1.15 C_b B/L − .18",
@@ -181,25 +161,15 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Xvr",
         symbol: "X_vr'",
-        place: at!(hull.Xvr),
         of: |f| 0.08 - 1.91 * f.fullness() + f.added_sway(),
         spread: Absolute(0.04),
         text: "m_y' − 1.91 C_b B/L + .08",
         source: YOSHIMURA,
     },
-    Formula {
-        key: "Xrr",
-        symbol: "X_rr'",
-        place: at!(hull.Xrr),
-        of: |_| 0.012,
-        spread: Absolute(0.012),
-        text: ".012",
-        source: PUBLISHED,
-    },
+    Formula { key: "Xrr", symbol: "X_rr'", of: |_| 0.012, spread: Absolute(0.012), text: ".012", source: PUBLISHED },
     Formula {
         key: "Xvvvv",
         symbol: "X_vvvv'",
-        place: at!(hull.Xvvvv),
         of: |f| 1.1 - 6.68 * f.fullness(),
         spread: Absolute(0.5),
         text: "1.1 − 6.68 C_b B/L",
@@ -208,7 +178,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Yv",
         symbol: "Y_v'",
-        place: at!(hull.Yv),
         of: |f| -(0.5 * PI * f.k() + 1.4 * f.fullness()),
         spread: Share(0.25),
         text: "−(π k/2 + 1.4 C_b B/L)",
@@ -217,7 +186,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Yr",
         symbol: "Y_r'",
-        place: at!(hull.Yr),
         of: |f| f.added_surge() + 0.5 * f.fullness(),
         spread: Share(0.2),
         text: "m_x' + .5 C_b B/L",
@@ -226,7 +194,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Yvvv",
         symbol: "Y_vvv'",
-        place: at!(hull.Yvvv),
         of: |f| -(0.185 * f.L / f.B + 0.48),
         spread: Share(0.2),
         text: "−(.185 L/B + .48)",
@@ -235,7 +202,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Yvvr",
         symbol: "Y_vvr'",
-        place: at!(hull.Yvvr),
         of: |_| 0.0,
         spread: Absolute(0.5),
         text: "0; formulas can have the wrong sign",
@@ -244,34 +210,18 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Yvrr",
         symbol: "Y_vrr'",
-        place: at!(hull.Yvrr),
         of: |f| -(0.26 * (1.0 - f.Cb) * f.L / f.B + 0.11),
         spread: Share(0.3),
         text: "−(.26 (1 − C_b) L/B + .11)",
         source: YOSHIMURA,
     },
     Formula {
-        key: "Yrrr",
-        symbol: "Y_rrr'",
-        place: at!(hull.Yrrr),
-        of: |_| -0.051,
-        spread: Absolute(0.05),
-        text: "−.051",
-        source: YOSHIMURA,
+        key: "Yrrr", symbol: "Y_rrr'", of: |_| -0.051, spread: Absolute(0.05), text: "−.051", source: YOSHIMURA
     },
-    Formula {
-        key: "Nv",
-        symbol: "N_v'",
-        place: at!(hull.Nv),
-        of: |f| -f.k(),
-        spread: Share(0.15),
-        text: "−k",
-        source: KIJIMA,
-    },
+    Formula { key: "Nv", symbol: "N_v'", of: |f| -f.k(), spread: Share(0.15), text: "−k", source: KIJIMA },
     Formula {
         key: "Nr",
         symbol: "N_r'",
-        place: at!(hull.Nr),
         of: |f| {
             let dl = f.d / f.L;
             (-0.003724 + 0.10446 * dl - 1.393 * dl * dl) / dl
@@ -283,7 +233,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Nvvv",
         symbol: "N_vvv'",
-        place: at!(hull.Nvvv),
         of: |f| -(0.66 - 0.69 * f.Cb),
         spread: Share(1.0),
         text: "−(.66 − .69 C_b)",
@@ -292,7 +241,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Nvvr",
         symbol: "N_vvr'",
-        place: at!(hull.Nvvr),
         of: |f| 1.55 * f.fullness() - 0.76,
         spread: Share(1.0),
         text: "1.55 C_b B/L − .76",
@@ -301,7 +249,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Nvrr",
         symbol: "N_vrr'",
-        place: at!(hull.Nvrr),
         of: |_| 0.0,
         spread: Absolute(0.2),
         text: "0; formulas can have the wrong sign",
@@ -310,7 +257,6 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "Nrrr",
         symbol: "N_rrr'",
-        place: at!(hull.Nrrr),
         of: |f| 0.25 * f.fullness() - 0.056,
         spread: Absolute(0.02),
         text: ".25 C_b B/L − .056",
@@ -319,39 +265,15 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "wP0",
         symbol: "w_P0",
-        place: at!(propeller.wP0),
         of: Form::wake,
         spread: Absolute(0.08),
         text: ".5 C_b − .05",
         source: "Taylor",
     },
-    Formula {
-        key: "C1",
-        symbol: "C_1",
-        place: Place {
-            get: |own| if let Wake::Exponential { C1, .. } = own.propeller.wake { C1 } else { f64::NAN },
-            set: |own, value| {
-                if let Wake::Exponential { C1, .. } = &mut own.propeller.wake {
-                    *C1 = value;
-                }
-            },
-        },
-        of: |_| 2.0,
-        spread: Absolute(0.6),
-        text: "2",
-        source: KVLCC2,
-    },
+    Formula { key: "C1", symbol: "C_1", of: |_| 2.0, spread: Absolute(0.6), text: "2", source: KVLCC2 },
     Formula {
         key: "C2-starboard",
         symbol: "C_2, β_P > 0",
-        place: Place {
-            get: |own| if let Wake::Exponential { C2, .. } = own.propeller.wake { C2.positive } else { f64::NAN },
-            set: |own, value| {
-                if let Wake::Exponential { C2, .. } = &mut own.propeller.wake {
-                    C2.positive = value;
-                }
-            },
-        },
         of: |_| 1.6,
         spread: Absolute(0.25),
         text: "1.6",
@@ -360,140 +282,48 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "C2-port",
         symbol: "C_2, β_P < 0",
-        place: Place {
-            get: |own| if let Wake::Exponential { C2, .. } = own.propeller.wake { C2.negative } else { f64::NAN },
-            set: |own, value| {
-                if let Wake::Exponential { C2, .. } = &mut own.propeller.wake {
-                    C2.negative = value;
-                }
-            },
-        },
         of: |_| 1.1,
         spread: Absolute(0.25),
         text: "1.1",
         source: KVLCC2,
     },
-    Formula {
-        key: "tP",
-        symbol: "t_P",
-        place: at!(propeller.tP),
-        of: |_| DEDUCTION,
-        spread: Absolute(0.04),
-        text: ".22",
-        source: PUBLISHED,
-    },
-    Formula {
-        key: "xP",
-        symbol: "x_P'",
-        place: at!(propeller.xP),
-        of: |_| -0.48,
-        spread: Absolute(0.02),
-        text: "−.48",
-        source: KVLCC2,
-    },
+    Formula { key: "tP", symbol: "t_P", of: |_| DEDUCTION, spread: Absolute(0.04), text: ".22", source: PUBLISHED },
+    Formula { key: "xP", symbol: "x_P'", of: |_| -0.48, spread: Absolute(0.02), text: "−.48", source: KVLCC2 },
     Formula {
         key: "k0",
         symbol: "k_0",
-        place: at!(propeller.k[0]),
         of: |f| SERVICE_THRUST - THRUST_SLOPE * f.advance(),
         spread: Share(0.15),
         text: ".18 + .38 J",
         source: PUBLISHED,
     },
-    Formula {
-        key: "k1",
-        symbol: "k_1",
-        place: at!(propeller.k[1]),
-        of: |_| THRUST_SLOPE,
-        spread: Share(0.2),
-        text: "−.38",
-        source: PUBLISHED,
-    },
-    Formula {
-        key: "k2",
-        symbol: "k_2",
-        place: at!(propeller.k[2]),
-        of: |_| 0.0,
-        spread: Absolute(0.1),
-        text: "0",
-        source: PUBLISHED,
-    },
+    Formula { key: "k1", symbol: "k_1", of: |_| THRUST_SLOPE, spread: Share(0.2), text: "−.38", source: PUBLISHED },
+    Formula { key: "k2", symbol: "k_2", of: |_| 0.0, spread: Absolute(0.1), text: "0", source: PUBLISHED },
     Formula {
         key: "f_alpha",
         symbol: "f_α",
-        place: at!(rudder.f_alpha),
         of: |f| 6.13 * f.aspect() / (2.25 + f.aspect()),
         spread: Share(0.12),
         text: "6.13 Λ/(2.25 + Λ)",
         source: FUJII,
     },
-    Formula {
-        key: "epsilon",
-        symbol: "ε",
-        place: at!(rudder.epsilon),
-        of: |_| 1.1,
-        spread: Absolute(0.2),
-        text: "1.1",
-        source: PUBLISHED,
-    },
-    Formula {
-        key: "kappa",
-        symbol: "κ",
-        place: at!(rudder.kappa),
-        of: |_| 0.5,
-        spread: Absolute(0.15),
-        text: ".5",
-        source: PUBLISHED,
-    },
-    Formula {
-        key: "tR",
-        symbol: "t_R",
-        place: at!(rudder.tR),
-        of: |_| 0.31,
-        spread: Absolute(0.1),
-        text: ".31",
-        source: PUBLISHED,
-    },
+    Formula { key: "epsilon", symbol: "ε", of: |_| 1.1, spread: Absolute(0.2), text: "1.1", source: PUBLISHED },
+    Formula { key: "kappa", symbol: "κ", of: |_| 0.5, spread: Absolute(0.15), text: ".5", source: PUBLISHED },
+    Formula { key: "tR", symbol: "t_R", of: |_| 0.31, spread: Absolute(0.1), text: ".31", source: PUBLISHED },
     Formula {
         key: "aH",
         symbol: "a_H",
-        place: at!(rudder.aH),
         of: |f| 0.627 * f.Cb - 0.153,
         spread: Absolute(0.08),
         text: ".627 C_b − .153",
         source: "Quadvlieg (2013)",
     },
-    Formula {
-        key: "xH",
-        symbol: "x_H'",
-        place: at!(rudder.xH),
-        of: |_| -0.44,
-        spread: Absolute(0.05),
-        text: "−.44",
-        source: PUBLISHED,
-    },
-    Formula {
-        key: "xR",
-        symbol: "x_R'",
-        place: at!(rudder.xR),
-        of: |_| -0.5,
-        spread: Absolute(0.01),
-        text: "−.5",
-        source: PUBLISHED,
-    },
-    Formula {
-        key: "lR",
-        symbol: "ℓ_R'",
-        place: at!(rudder.lR),
-        of: |_| -0.9,
-        spread: Absolute(0.2),
-        text: "−.9",
-        source: YOSHIMURA,
-    },
+    Formula { key: "xH", symbol: "x_H'", of: |_| -0.44, spread: Absolute(0.05), text: "−.44", source: PUBLISHED },
+    Formula { key: "xR", symbol: "x_R'", of: |_| -0.5, spread: Absolute(0.01), text: "−.5", source: PUBLISHED },
+    Formula { key: "lR", symbol: "ℓ_R'", of: |_| -0.9, spread: Absolute(0.2), text: "−.9", source: YOSHIMURA },
     Formula {
         key: "gammaR-starboard",
         symbol: "γ_R, β_R > 0",
-        place: at!(rudder.gammaR.positive),
         of: |f| 2.06 * f.fullness() + 0.14,
         spread: Share(0.3),
         text: "2.06 C_b B/L + .14",
@@ -502,19 +332,10 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "gammaR-port",
         symbol: "γ_R, β_R < 0",
-        place: at!(rudder.gammaR.negative),
         of: |f| 2.06 * f.fullness() + 0.14,
         spread: Share(0.3),
         text: "2.06 C_b B/L + .14",
         source: MANSIM,
     },
-    Formula {
-        key: "kzz",
-        symbol: "k_zz",
-        place: at!(kzz),
-        of: |_| 0.25,
-        spread: Absolute(0.015),
-        text: ".25",
-        source: KVLCC2,
-    },
+    Formula { key: "kzz", symbol: "k_zz", of: |_| 0.25, spread: Absolute(0.015), text: ".25", source: KVLCC2 },
 ];
