@@ -45,7 +45,7 @@ pub(crate) fn known() -> IdentifiedShip {
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
         motion: None,
-        hull: None,
+        hulls: Vec::new(),
     }
 }
 
