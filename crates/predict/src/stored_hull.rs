@@ -161,3 +161,100 @@ impl DrawableHull {
         found.unwrap_or_else(|| self.most_probable())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identified_ship::IdentifiedShip;
+    use crate::mixture::{ShipMixture, UncertaintySource};
+    use crate::testing;
+    use ship::{Dynamics, Input};
+    use simulate::Manoeuvre;
+
+    fn ship() -> IdentifiedShip {
+        IdentifiedShip { hulls: ["quadratic", "cubic", "mmg"].map(testing::hull).into(), ..testing::known() }
+    }
+
+    fn circle(mixture: &ShipMixture, draws: usize) -> crate::Prediction {
+        let kind: Manoeuvre = "turning-circle:35".parse().expect("known");
+        mixture.predict(&kind, draws, true).expect("a turn")
+    }
+
+    /// A ship with hulls is drawn from them, by their weights, and shows a track of her own.
+    #[test]
+    fn hulls_take_the_place_of_the_structures() {
+        let mut known = ship();
+        known.hulls[0].weight = 2.0;
+        let mixture = testing::mixture(known);
+        let is_first = |number| {
+            let hull = mixture.draw(number, &[UncertaintySource::Structure]).hull.expect("a hull");
+            hull == mixture.most_probable().hull.expect("a hull")
+        };
+        assert_eq!((0..1000).filter(|&number| is_first(number)).count(), 500);
+        let prediction = circle(&mixture, 60);
+        for name in ["advance_m", "transfer_m", "tactical_diameter_m", "speed_loss_share", "drift_angle_deg"] {
+            let figure = &prediction.figures[name];
+            assert!(figure.interval.median > 0.0 && figure.interval.ci90[0] < figure.interval.ci90[1], "{name}");
+        }
+        let shares = &prediction.figures["advance_m"].shares;
+        assert!(["parameters", "structure", "process-noise"].iter().all(|source| shares[*source] > 0.0), "{shares:?}");
+        let spiral = mixture.predict(&"spiral:15".parse().expect("known"), 40, true).expect("a curve");
+        assert!(spiral.figures["rate_starboard_deg_s"].interval.median > 0.0);
+    }
+
+    /// One number is one draw, in any company; without doubt it is the most probable ship.
+    #[test]
+    fn one_number_is_one_draw() {
+        let mixture = testing::mixture(ship());
+        let draw = |number| mixture.draw(number, &UncertaintySource::ALL).hull.expect("a hull");
+        assert_eq!(draw(7), draw(7));
+        assert_ne!(draw(7), draw(8));
+        assert_eq!(circle(&mixture, 20).figures, circle(&mixture, 20).figures);
+        let bound = |hull: &ScaledHull| match &hull.hull {
+            ship::vessel::prime::PrimeHull::Quadratic(values) => values[10] <= 0.9 && values[9] >= 0.005,
+            _ => true,
+        };
+        assert!((0..300).map(draw).all(|hull| bound(&hull)), "coefficients keep within their ends");
+    }
+
+    /// At the same Froude number times grow with the root of the scale, and what is random with them.
+    #[test]
+    fn a_hull_at_another_scale_moves_alike() {
+        let known = testing::hull("mmg");
+        let ratio: f64 = 25.0;
+        let (length, speed) = (known.length_m * ratio, known.speed_m_s * ratio.sqrt());
+        let large = known.scaled_to(length, speed);
+        let of = |known: &StoredHull, state: [f64; 4]| {
+            let mut rate = [0.0; 4];
+            let input = Input { rudder: 0.3, disturbance: 0.02, ..Input::default() };
+            DrawableHull::new(known).expect("a hull").most_probable().rates(0.0, &state, &input, &mut rate);
+            rate
+        };
+        let time = ratio.sqrt();
+        let small = of(&known, [0.3, 0.02, 5.0, -0.8]);
+        let other = of(&large, [0.3, 0.02 / time, 5.0 * time, -0.8 * time]);
+        for (small, other) in small.iter().zip([other[0] * time, other[1] * ratio, other[2], other[3]]) {
+            assert!((small - other).abs() <= 1e-12 * small.abs(), "{small} {other}");
+        }
+        assert_eq!(large.moment.correlation_s, known.moment.correlation_s * time);
+        assert_eq!(large.particulars, known.particulars);
+    }
+
+    #[test]
+    fn what_is_written_is_read_again_and_nonsense_is_refused() {
+        let known = ship();
+        let text = serde_json::to_string(&known).expect("plain data");
+        assert_eq!(serde_json::from_str::<IdentifiedShip>(&text).expect("the same"), known);
+        let refused = |change: fn(&mut StoredHull)| {
+            let mut hull = testing::hull("mmg");
+            change(&mut hull);
+            DrawableHull::new(&hull).expect_err("refused").to_string()
+        };
+        assert!(refused(|hull| hull.form = "magic".into()).contains("magic"));
+        assert!(refused(|hull| hull.coefficients[0].key = "magic".into()).contains("mmg"));
+        assert!(refused(|hull| hull.particulars.clear()).contains("mmg"));
+        assert!(refused(|hull| hull.coefficients[0].value = f64::NAN).contains("mmg"));
+        assert!(refused(|hull| hull.covariance.truncate(2)).contains("rows"));
+        assert!(refused(|hull| hull.covariance[0][0] = f64::NAN).contains("covariance"));
+    }
+}

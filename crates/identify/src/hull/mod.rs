@@ -189,3 +189,6 @@ impl HullEstimate {
         self.records.iter().map(|record| record.whole * record.whole).sum::<f64>() / self.records.len() as f64
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,153 @@
+//! Records of hulls of the forms themselves, without noise: what a fit finds again.
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use ship::angle::{from_deg, to_deg};
+use ship::integrate::RungeKutta4;
+use ship::vessel::prime::HullForm;
+use ship::vessel::scaled::ScaledHull;
+use ship::{Dynamics, Input, Particulars};
+use trial::{Channel, Columns, Origin, Trial};
+
+use super::{HullError, HullEstimate, RandomMoment, fit, members};
+
+const LENGTH: f64 = 7.0;
+const SPEED: f64 = 1.2;
+
+/// A quadratic hull that is not the expected one.
+const TRUTH: [f64; 18] =
+    [-3.6, -1.9, 1.05, -0.7, -0.45, -0.14, 0.4, 0.0, 0.01, 0.08, 0.5, 1.7, 0.08, 0.08, -0.9, 0.4, -0.9, 0.1];
+
+fn hull() -> ScaledHull {
+    let hull = HullForm::Quadratic.with(&TRUTH).expect("a ship");
+    ScaledHull { hull, length: LENGTH, speed: SPEED, propeller: None }
+}
+
+/// A zig-zag at 8 Hz, in which `moment` (as rudder angle over the number of the row, rad) acts beside the rudder.
+fn record(ship: &ScaledHull, [angle, change]: [f64; 2], moment: impl Fn(usize) -> f64) -> Trial {
+    let (step, rate) = (0.125, from_deg(15.0));
+    let mut state = [0.0; 4];
+    ship.approach(0.0, 0.0, &mut state);
+    let mut solver = RungeKutta4::new(4);
+    let (mut rudder, mut order) = (0.0, from_deg(angle));
+    let mut columns = Columns::default();
+    for row in 0..960 {
+        let t = row as f64 * step;
+        columns.time.push(t);
+        let speed = f64::hypot(state[2], state[3]);
+        for (channel, value) in [(Channel::Rudder, rudder), (Channel::Heading, state[0]), (Channel::Speed, speed)] {
+            columns.channels.entry(channel).or_default().push(value);
+        }
+        let next = rudder + (order - rudder).clamp(-rate * step, rate * step);
+        let disturbance = moment(row);
+        let input =
+            |now: f64| Input { rudder: rudder + (next - rudder) * (now - t) / step, disturbance, ..Input::default() };
+        solver.step(ship, t, step, &mut state, input);
+        rudder = next;
+        if order.signum() * state[0] >= from_deg(change) {
+            order = -order;
+        }
+    }
+    let origin = Origin::Measured { file: "made up".into(), sha256: String::new() };
+    let ship = Particulars { length: LENGTH, speed: SPEED };
+    Trial::new(format!("{angle}/{change}"), origin, columns).expect("a record").with_particulars(ship)
+}
+
+fn records(moment: impl Fn(usize) -> f64 + Copy) -> Vec<Trial> {
+    [[10.0, 10.0], [-20.0, 20.0], [30.0, 20.0]].map(|angles| record(&hull(), angles, moment)).into()
+}
+
+fn quadratic(trials: &[Trial]) -> HullEstimate {
+    fit(trials, &HullForm::Quadratic, &HullForm::Quadratic.coefficients()).expect("a fit")
+}
+
+/// Those that the zig-zags excite come back to within 10 % of their size, and all to within what is left open.
+#[test]
+fn a_hull_of_the_form_comes_back() {
+    let found = quadratic(&records(|_| 0.0));
+    for (place, (own, truth)) in found.expected.iter().zip(TRUTH).enumerate() {
+        let (value, sd) = (found.values[place], found.covariance[(place, place)].sqrt());
+        assert!((value - truth).abs() < sd, "{}: {value} ± {sd}, {truth}", own.symbol);
+        let is_excited = ["Nv", "Nr", "Nd", "Yv", "Yr", "Yd", "e", "x0"].contains(&own.key);
+        assert!(!is_excited || (value / truth - 1.0).abs() < 0.1, "{}: {value} {truth}", own.symbol);
+    }
+    for left in &found.records {
+        assert!(to_deg(left.whole) < 0.05, "{}: {}°", left.name, to_deg(left.whole));
+    }
+    assert!(found.moment.deviation < from_deg(0.1), "{:?}", found.moment);
+}
+
+#[test]
+fn the_mirrored_records_give_the_mirrored_hull() {
+    let trials = records(|_| 0.0);
+    let mirrored: Vec<Trial> = trials.iter().map(in_the_mirror).collect();
+    let (one, other) = (quadratic(&trials), quadratic(&mirrored));
+    for (place, own) in one.expected.iter().enumerate() {
+        let side = if ["b", "delta_r"].contains(&own.key) { -1.0 } else { 1.0 };
+        let [value, other] = [one.values[place], side * other.values[place]];
+        assert!((value - other).abs() < 1e-3 * own.sd, "{}: {value} {other}", own.symbol);
+    }
+}
+
+fn in_the_mirror(trial: &Trial) -> Trial {
+    let negative = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<f64>>();
+    let channels = [
+        (Channel::Rudder, negative(trial.rudder())),
+        (Channel::Heading, negative(trial.heading())),
+        (Channel::Speed, trial.channel(Channel::Speed).expect("a speed").to_vec()),
+    ];
+    let columns = Columns { time: trial.time().to_vec(), channels: channels.into(), unknown: Vec::new() };
+    let ship = trial.particulars().expect("declared");
+    Trial::new("mirrored", trial.origin().clone(), columns).expect("a record").with_particulars(ship)
+}
+
+/// A moment of 1° of rudder that acts on the ship is what the fit leaves, to within a third.
+#[test]
+fn a_random_moment_is_found_again() {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let (deviation, kept) = (from_deg(1.0), (-0.125 * SPEED / (2.0 * LENGTH)).exp());
+    let mut moment = vec![0.0];
+    for _ in 1..960 {
+        let fresh: f64 = random.sample(StandardNormal);
+        moment.push(kept * moment[moment.len() - 1] + (1.0 - kept * kept).sqrt() * deviation * fresh);
+    }
+    let RandomMoment { deviation: found, correlation_time } = quadratic(&records(|row| moment[row])).moment;
+    assert!((found / deviation - 1.0).abs() < 0.34, "{}°", to_deg(found));
+    assert!((correlation_time * SPEED / LENGTH - 2.0).abs() < 1e-12, "{correlation_time}");
+}
+
+#[test]
+fn the_hulls_that_records_speak_for_are_near_them() {
+    let found = members(&records(|_| 0.0), f64::INFINITY);
+    // All three forms are fitted; the quadratic one is the truth, and what leaves three times as much is left out.
+    let left: Vec<f64> = found.iter().map(|hull| hull.mean_square().sqrt()).collect();
+    let least = left.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(found[0].form == HullForm::Quadratic && left.iter().all(|own| *own <= 3.0 * least), "{left:?}");
+    assert!(members(&records(|_| 0.0), 1e-9).is_empty(), "another model that leaves nothing");
+}
+
+#[test]
+fn records_that_tell_no_hull_are_refused() {
+    let form = HullForm::Quadratic;
+    let refused = |change: fn(&mut Columns)| {
+        let trial = &records(|_| 0.0)[0];
+        let channels = [Channel::Heading, Channel::Speed].map(|own| (own, trial.channel(own).expect("one").to_vec()));
+        let rudder = (Channel::Rudder, trial.rudder().to_vec());
+        let channels = channels.into_iter().chain([rudder]).collect();
+        let mut columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
+        change(&mut columns);
+        let bare = Trial::new("bare", trial.origin().clone(), columns).expect("a record");
+        let known = bare.clone().with_particulars(Particulars { length: LENGTH, speed: SPEED });
+        [bare, known].map(|trial| fit(&[trial], &form, &form.coefficients()).err())
+    };
+    let slow = |columns: &mut Columns| columns.channels[&Channel::Speed].fill(0.5 * SPEED);
+    let [bare, slow] = refused(slow);
+    assert_eq!(bare, Some(HullError::Particulars));
+    assert!(matches!(slow, Some(HullError::GathersWay { .. })), "{slow:?}");
+    let short = |columns: &mut Columns| {
+        columns.time.truncate(10);
+        columns.channels.values_mut().for_each(|values| values.truncate(10));
+    };
+    assert!(matches!(refused(short)[1], Some(HullError::Short { .. })));
+}
