@@ -253,7 +253,8 @@ impl TrialQuestion<'_> {
             |id: &str| document.candidates.iter().find(|one| one.id == id).map_or(0.0, |one| one.probability);
         let indices = &document.model.indices;
         // Effects may ask for a speed and a sway.
-        let known = |facts: &RecordFacts| Some(known::of_analysis(analysis, &facts.clone().with_motion()));
+        let known =
+            |facts: &RecordFacts| Some(known::of_analysis(analysis, &facts.clone().with_motion(Some(analysis))));
         StudyRow {
             heading_rmse_deg: finite(to_deg(misfit(analysis, self.trials))),
             validation_rmse_deg: validation.as_ref().and_then(|on| finite(to_deg(on.errors.heading))),

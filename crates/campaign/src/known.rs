@@ -1,13 +1,19 @@
 //! What an estimate or an analysis knows of a ship, as a prediction takes it.
 
+use std::collections::BTreeMap;
+
 use identify::estimate::{Estimate, Uncertainty};
+use identify::hull::{self, HullEstimate, HullReference};
 use identify::replay::{Replay, replay};
 use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
 use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
-use predict::motion::{self, IdentifiedHull, Planar};
+use predict::motion::{self, Planar};
+use predict::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
 use ship::Particulars;
 use ship::angle::{from_deg, to_deg};
+use ship::vessel::prime::{HullCoefficient, HullForm};
+use ship::vessel::prior::{HullParticulars, PARTICULARS};
 use trace::Analysis;
 use trace::analysis::Plausible;
 use trace::document::RecordNoiseEntry;
@@ -35,7 +41,7 @@ pub struct RecordFacts<'a> {
     length: Option<f64>,
     speed: Option<f64>,
     motion: Option<Planar>,
-    hull: Option<IdentifiedHull>,
+    hulls: Vec<StoredHull>,
     /// Why there is no track, from records with a speed or positions.
     no_track: Option<String>,
 }
@@ -53,7 +59,7 @@ impl<'a> RecordFacts<'a> {
             length: particular(|own| own.length),
             speed: particular(|own| own.speed),
             motion: None,
-            hull: None,
+            hulls: Vec::new(),
             no_track: None,
         }
     }
@@ -64,17 +70,24 @@ impl<'a> RecordFacts<'a> {
         self.no_track.as_deref()
     }
 
-    /// The same with speed and drift: a hull where the length is known and all records have surge and sway, else two
-    /// equations beside the yaw response where they have speed or position. As it was where neither can be fitted.
-    pub fn with_motion(mut self) -> Self {
+    /// The same with speed and drift: the hulls of an analysis of these records, or those that they speak for where
+    /// length and speed are known and all of them have a speed and begin on a steady approach; else two equations beside
+    /// the yaw response where they have speed or position. As it was where nothing can be fitted.
+    pub fn with_motion(mut self, analysis: Option<&Analysis>) -> Self {
         let Some(length) = self.length else { return self };
-        let all_have = |channel: Channel| self.trials.iter().all(|trial| trial.channel(channel).is_some());
-        if all_have(Channel::Surge) && all_have(Channel::Sway) {
-            self.hull = motion::fit_hull(self.trials, length).ok().filter(|hull| loses_speed(&hull.planar));
-        }
+        let has = |trial: &Trial, channel: Channel| trial.channel(channel).is_some();
+        let has_speed =
+            |trial: &Trial| has(trial, Channel::Speed) || has(trial, Channel::Surge) && has(trial, Channel::Sway);
+        let fitted =
+            || if self.trials.iter().all(has_speed) { hull::members(self.trials, f64::INFINITY) } else { Vec::new() };
+        let known = analysis.map(|analysis| analysis.hulls.clone()).filter(|hulls| !hulls.is_empty());
+        let mut hulls = known.unwrap_or_else(fitted);
+        hulls.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
+        let particulars = self.trials.iter().find_map(Trial::hull).unwrap_or_default();
+        self.hulls = hulls.iter().map(|hull| stored(hull, hulls.len(), &particulars)).collect();
         let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
         let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
-        if self.hull.is_none() && self.trials.iter().all(is_told) {
+        if self.hulls.is_empty() && self.trials.iter().all(is_told) {
             match motion::fit(self.trials, length) {
                 Ok(planar) if loses_speed(&planar) => {
                     self.no_track = (!planar.tells_drift()).then(|| NO_DRIFT.to_owned());
@@ -98,7 +111,7 @@ impl<'a> RecordFacts<'a> {
     ) -> IdentifiedShip {
         let rates: Vec<&[f64]> = rates.collect();
         // A hull leaves no residual that would tell the noise of a reading.
-        let of_readings = self.hull.as_ref().and(self.reading_noise);
+        let of_readings = self.reading_noise.filter(|_| !self.hulls.is_empty());
         IdentifiedShip {
             members,
             noise: KnownNoise { heading_sd_rad: of_readings.unwrap_or(noise.heading_sd_rad), ..noise },
@@ -111,7 +124,7 @@ impl<'a> RecordFacts<'a> {
             length_m: self.length,
             speed_m_s: self.speed,
             motion: self.motion.clone(),
-            hull: self.hull.clone(),
+            hulls: self.hulls.clone(),
         }
     }
 
@@ -132,6 +145,38 @@ impl<'a> RecordFacts<'a> {
         let squares: Vec<f64> = self.zigzags.iter().zip(replays).filter_map(square).collect();
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).max(0.0).sqrt()
     }
+}
+
+/// A fitted hull as a file holds it, one of so many; the particulars are those of the ship of the records.
+fn stored(hull: &HullEstimate, of: usize, particulars: &HullParticulars) -> StoredHull {
+    let coefficient = |(own, value): (&HullCoefficient, &f64)| StoredCoefficient {
+        key: own.key.to_owned(),
+        symbol: own.symbol.to_owned(),
+        value: *value,
+        expected: own.mean,
+        expected_sd: own.sd,
+    };
+    let given = PARTICULARS.iter().filter_map(|own| Some((own.key.to_owned(), own.get(particulars)?)));
+    let HullReference { length, speed, propeller } = hull.reference;
+    StoredHull {
+        form: hull.form.as_str().to_owned(),
+        weight: 1.0 / of as f64,
+        length_m: length,
+        speed_m_s: speed,
+        propeller_per_s: propeller,
+        particulars: if matches!(hull.form, HullForm::Mmg(..)) { given.collect() } else { BTreeMap::new() },
+        coefficients: hull.expected.iter().zip(hull.values.iter()).map(coefficient).collect(),
+        covariance: rows_of(&hull.covariance),
+        moment: RandomYawMoment {
+            deviation_rudder_rad: hull.moment.deviation,
+            correlation_s: hull.moment.correlation_time,
+        },
+    }
+}
+
+/// A matrix by its rows.
+fn rows_of(matrix: &nalgebra::DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
 /// Largest size of some values.
@@ -239,9 +284,6 @@ fn reading_noise(zigzags: &[Option<ZigZag>]) -> Option<f64> {
 
 fn member(plausible: &Plausible) -> WeightedStructure {
     let Plausible { weight, response, fitted, covariance } = plausible;
-    let rows = |all: &nalgebra::DMatrix<f64>| -> Vec<Vec<f64>> {
-        all.row_iter().map(|row| row.iter().copied().collect()).collect()
-    };
     let stored = |effect: &std::sync::Arc<dyn ship::effects::Effect>| StoredEffect {
         id: effect.id().to_owned(),
         form: effect.form().to_owned(),
@@ -253,7 +295,7 @@ fn member(plausible: &Plausible) -> WeightedStructure {
         effects: response.model().effects().iter().map(stored).collect(),
         parameters: response.parameters().to_vec(),
         fitted: if sound.is_some() { fitted.clone() } else { Vec::new() },
-        covariance: sound.map(rows).unwrap_or_default(),
+        covariance: sound.map(rows_of).unwrap_or_default(),
         degrees_of_freedom: None,
     }
 }

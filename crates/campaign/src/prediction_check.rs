@@ -34,7 +34,7 @@ impl<'a> PredictionCheck<'a> {
                 sensors: Sensors::default(),
                 ..simulation.clone()
             };
-            let passage = SimulatedManoeuvre::of(calm, &other, timescale, None).ok()?;
+            let passage = SimulatedManoeuvre::of(calm, &other, timescale).ok()?;
             Some(figures::of(kind, &passage, None))
         };
         Self { asked, true_manoeuvres: asked.kinds.iter().map(one).collect(), facts: RecordFacts::of(records) }

@@ -85,7 +85,7 @@ pub struct Correction {
 /// Structures are those of the most probable member. Source: MSC/Circ.1053 (2002), 3.4.1.3: B and F by one method.
 pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip) -> Vec<String> {
     let structure = |known: &IdentifiedShip| {
-        if known.hull.is_some() {
+        if !known.hulls.is_empty() {
             return String::from("a hull");
         }
         let members = known.members.first().into_iter();

@@ -34,6 +34,12 @@ pub enum PredictError {
     /// A covariance is none.
     #[error("the covariance of the parameters is not positive definite; fit or trace the record again")]
     Covariance,
+    /// A hull cannot be made again.
+    #[error("the hull `{form}` of the file is not one of this program; fit or trace the record again with it")]
+    Hull {
+        /// The word for its form.
+        form: String,
+    },
     /// There is no model.
     #[error("there is no model to predict from")]
     Empty,

@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use crate::motion::{IdentifiedHull, Planar};
 use serde::{Deserialize, Serialize};
 use ship::ResponseModel;
 use ship::effects::{self, Effect, Parameter, SteeringLag};
 pub use trial::noise_model::Moment;
 
 use crate::error::PredictError;
+use crate::motion::Planar;
+pub use crate::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
 
 /// An effect as it is written down.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -94,10 +95,10 @@ pub struct IdentifiedShip {
     /// Speed and drift; none where the records have neither speed nor position.
     #[serde(default)]
     pub motion: Option<Planar>,
-    /// A hull of three degrees of freedom, where the records have speed and sway; predictions are then made with it and
-    /// not with the structures.
+    /// Hulls of three degrees of freedom that the records speak for, the nearest first; predictions are then made with
+    /// them and not with the structures.
     #[serde(default)]
-    pub hull: Option<IdentifiedHull>,
+    pub hulls: Vec<StoredHull>,
 }
 
 impl WeightedStructure {
@@ -198,7 +199,7 @@ impl IdentifiedShip {
         scaled.approach_yaw_rate_rad_s /= second;
         scaled.seen.yaw_rate_rad_s /= second;
         scaled.motion = self.motion.as_ref().map(|planar| planar.scaled_to(length, speed)).transpose()?;
-        scaled.hull = self.hull.as_ref().map(|hull| hull.scaled_to(length, speed)).transpose()?;
+        scaled.hulls = self.hulls.iter().map(|hull| hull.scaled_to(length, speed)).collect();
         scaled.length_m = Some(length);
         scaled.speed_m_s = Some(speed);
         Ok(scaled)
@@ -208,9 +209,7 @@ impl IdentifiedShip {
     pub fn in_calm(&self) -> Result<Self, PredictError> {
         let mut calm = self.clone();
         calm.noise.moment = Moment::None;
-        if let Some(hull) = &mut calm.hull {
-            hull.moment.deviation = 0.0;
-        }
+        calm.hulls.iter_mut().for_each(|hull| hull.moment.deviation_rudder_rad = 0.0);
         for member in &mut calm.members {
             let model = member.model()?;
             let mut first = ship::response::BASE_PARAMETERS;
@@ -249,20 +248,7 @@ impl IdentifiedShip {
     pub fn leans_on_sway(&self) -> bool {
         let sway = ship::effects::Effect::id(&ship::effects::SwayCouplingMeasured { approach_speed: 1.0 });
         let likeliest = self.members.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));
-        self.hull.is_none() && likeliest.is_some_and(|member| member.effects.iter().any(|effect| effect.id == sway))
-    }
-
-    /// What is random in yaw: what the hull leaves, or what the structures do.
-    pub(crate) fn process_noise(&self) -> KnownNoise {
-        match &self.hull {
-            None => self.noise,
-            Some(hull) => KnownNoise {
-                moment: if hull.moment.deviation > 0.0 { Moment::OrnsteinUhlenbeck } else { Moment::None },
-                moment_sd_rudder_rad: hull.moment.deviation,
-                moment_correlation_s: Some(hull.moment.correlation_time),
-                ..self.noise
-            },
-        }
+        self.hulls.is_empty() && likeliest.is_some_and(|member| member.effects.iter().any(|effect| effect.id == sway))
     }
 
     /// A time of the ship, s: L/U where they are known, else (K/T)^(−1/2) of the most probable structure, which is

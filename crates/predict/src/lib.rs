@@ -8,7 +8,8 @@
 //! | to learn about | read |
 //! |---|---|
 //! | what is known of a ship, as files hold it | [`identified_ship`] |
-//! | speed, drift and hulls fitted to records, tracks, turning circles | [`motion`] |
+//! | speed and drift fitted to records, tracks, turning circles | [`motion`] |
+//! | a hull as files hold it | [`stored_hull`] |
 //! | ships drawn from it | [`mixture`] |
 //! | the manoeuvres, and what ends them | [`standard`] |
 //! | figures of merit | [`figures`] |
@@ -37,9 +38,11 @@ pub mod mixture;
 pub mod motion;
 pub mod prediction;
 pub mod replay;
+mod root;
 pub mod simulated_manoeuvre;
 pub mod standard;
 pub mod steady;
+pub mod stored_hull;
 #[cfg(test)]
 mod testing;
 pub mod turn;

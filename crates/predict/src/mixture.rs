@@ -1,16 +1,19 @@
 //! Ships drawn from what is known: a structure by its probability, parameters by their covariance, and what chance adds
 //! to one trial. Every source can be switched off, so that the share of each in an interval can be told.
 
-use crate::motion::{IdentifiedHull, Planar};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
+use ship::vessel::scaled::ScaledHull;
 use ship::{Regressor, Response, ResponseModel};
 use simulate::disturbance::GaussMarkov;
 use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
 
 use crate::error::PredictError;
 use crate::identified_ship::{IdentifiedShip, KnownNoise, Moment, WeightedStructure};
+use crate::motion::Planar;
+use crate::root::root_of;
+use crate::stored_hull::DrawableHull;
 
 /// Where an interval comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -50,7 +53,8 @@ const MOST_TRIES: usize = 100;
 /// Correlation time of what stands for a white moment, in times of the ship.
 const WHITE: f64 = 0.05;
 
-/// One structure with the square root of its covariance.
+/// One structure with the square root of its covariance; of a file with hulls, one of these beside the most probable
+/// structure.
 #[derive(Debug, Clone)]
 struct DrawableStructure {
     /// Probability among all.
@@ -60,6 +64,8 @@ struct DrawableStructure {
     root: DMatrix<f64>,
     /// Places of dead times among the parameters.
     dead_times: Vec<usize>,
+    /// The hull that takes its place.
+    hull: Option<DrawableHull>,
     /// The file it is from.
     file: usize,
 }
@@ -69,7 +75,7 @@ struct DrawableStructure {
 pub struct ShipMixture {
     parts: Vec<DrawableStructure>,
     files: Vec<IdentifiedShip>,
-    /// Square roots of the covariances of the hull, or of speed and drift, of every file.
+    /// Square roots of the covariances of speed and drift of every file.
     motions: Vec<DMatrix<f64>>,
     timescale: f64,
     /// Whether the draws are apart from those of any other mixture that is not.
@@ -81,10 +87,10 @@ pub struct ShipMixture {
 pub struct DrawnShip {
     /// How the ship turns.
     pub response: Response,
-    /// How it loses speed and drifts, where that is known.
+    /// How it loses speed and drifts, where that is known and no hull says it.
     pub planar: Option<Planar>,
     /// The hull, where one was fitted; it takes the place of the response.
-    pub hull: Option<IdentifiedHull>,
+    pub hull: Option<ScaledHull>,
     /// Its steering gear.
     pub gear: SteeringGear,
     /// What acts on it.
@@ -95,64 +101,32 @@ pub struct DrawnShip {
     pub key: StreamKey,
 }
 
-/// The square root of a covariance: U √Λ of its eigenvalues, which may be zero but for rounding.
-fn root_of(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
-    let count = covariance.len();
-    if count == 0 {
-        return Ok(DMatrix::zeros(0, 0));
-    }
-    if covariance.iter().any(|row| row.len() != count) {
-        return Err(PredictError::Covariance);
-    }
-    let matrix = DMatrix::from_fn(count, count, |i, j| covariance[i][j]);
-    // Parameters have units of their own: what counts are correlations.
-    let sd: Vec<f64> = (0..count).map(|k| matrix[(k, k)].max(0.0).sqrt()).collect();
-    let scale = |k: usize| if sd[k] > 0.0 { sd[k] } else { 1.0 };
-    let correlation =
-        DMatrix::from_fn(count, count, |i, j| 0.5 * (matrix[(i, j)] + matrix[(j, i)]) / (scale(i) * scale(j)));
-    if correlation.iter().any(|entry| !entry.is_finite()) {
-        return Err(PredictError::Covariance);
-    }
-    let eigen = correlation.symmetric_eigen();
-    let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
-    if eigen.eigenvalues.iter().any(|value| *value < -1e-6 * largest.max(1.0)) {
-        return Err(PredictError::Covariance);
-    }
-    let roots = eigen.eigenvalues.map(|value| value.max(0.0).sqrt());
-    Ok(DMatrix::from_fn(count, count, |i, j| scale(i) * eigen.eigenvectors[(i, j)] * roots[j]))
-}
-
 impl ShipMixture {
     /// Takes what several files say of one ship, each with its weight; fails for what no file of this program holds.
     pub fn new(files: Vec<(IdentifiedShip, f64)>) -> Result<Self, PredictError> {
         let total: f64 = files.iter().map(|(_, weight)| weight).sum();
         let mut parts = Vec::new();
         for (file, (known, of_file)) in files.iter().enumerate() {
-            let sum: f64 = known.members.iter().map(|member| member.weight).sum();
-            for member in &known.members {
-                let weight = of_file / total * member.weight / sum;
-                if !(weight.is_finite() && weight >= 0.0) {
-                    return Err(PredictError::Value { key: "weight", value: member.weight });
-                }
-                let model = member.model()?;
-                let has_motion = known.hull.is_some() || known.motion.is_some();
-                for (regressor, channel, option) in
-                    [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
-                {
-                    let needs = model.effects().iter().any(|effect| effect.needs() == Some(regressor));
-                    if needs && !has_motion {
-                        return Err(PredictError::Needs { channel, option });
-                    }
-                }
-                let root = root_of(&member.covariance)?;
-                let dead_times = member.dead_times(&model);
-                parts.push(DrawableStructure { weight, model, known: member.clone(), root, dead_times, file });
+            let share = of_file / total;
+            let of_structures: f64 = known.members.iter().map(|member| member.weight).sum();
+            let structures = known.members.iter().map(|member| (member, member.weight / of_structures));
+            let structures =
+                structures.map(|(member, weight)| DrawableStructure::new(known, member, share * weight, file));
+            let structures = structures.collect::<Result<Vec<_>, _>>()?;
+            if known.hulls.is_empty() {
+                parts.extend(structures);
+                continue;
+            }
+            let beside = likeliest(&structures).ok_or(PredictError::Empty)?;
+            let of_hulls: f64 = known.hulls.iter().map(|hull| hull.weight).sum();
+            for own in &known.hulls {
+                let (hull, weight) = (DrawableHull::new(own)?, checked(share * own.weight / of_hulls, own.weight)?);
+                parts.push(DrawableStructure { hull: Some(hull), weight, ..beside.clone() });
             }
         }
-        let motion = |(known, _): &(IdentifiedShip, f64)| match (&known.hull, &known.motion) {
-            (Some(hull), _) => root_of(&hull.covariance),
-            (None, Some(planar)) => root_of(&planar.covariance.map(|row| row.to_vec())),
-            (None, None) => Ok(DMatrix::zeros(0, 0)),
+        let motion = |(known, _): &(IdentifiedShip, f64)| match &known.motion {
+            Some(planar) => root_of(&planar.covariance.map(|row| row.to_vec())),
+            None => Ok(DMatrix::zeros(0, 0)),
         };
         let motions = files.iter().map(motion).collect::<Result<_, _>>()?;
         let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
@@ -205,15 +179,19 @@ impl ShipMixture {
         });
         // By the covariance of the coefficients of the hull, or of speed and drift.
         let mut rng = key.indexed(Purpose::Specification, 2);
-        let root = &self.motions[part.file];
-        let step = root * DVector::from_fn(root.ncols(), |_, _| rng.sample::<f64, _>(StandardNormal));
-        let step = if has(UncertaintySource::Parameters) { step.as_slice() } else { &[] };
-        let hull = known.hull.as_ref().map(|hull| hull.stepped(step));
-        let planar = known.motion.as_ref().map(|planar| planar.stepped(step));
-        let noise = if has(UncertaintySource::ProcessNoise) { known.process_noise() } else { KnownNoise::default() };
+        let hull = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
+            true => hull.drawn(&mut rng),
+            false => hull.most_probable(),
+        });
+        let planar = known.motion.as_ref().filter(|_| hull.is_none()).map(|planar| {
+            let root = &self.motions[part.file];
+            let step = root * DVector::from_fn(root.ncols(), |_, _| rng.sample::<f64, _>(StandardNormal));
+            planar.stepped(if has(UncertaintySource::Parameters) { step.as_slice() } else { &[] })
+        });
+        let noise = if has(UncertaintySource::ProcessNoise) { part.noise(known) } else { KnownNoise::default() };
         DrawnShip {
             response: part.model.clone().with(values),
-            planar: hull.as_ref().map(|hull| hull.planar.clone()).or(planar),
+            planar,
             hull,
             gear,
             disturbances: self.disturbances(&noise),
@@ -241,8 +219,7 @@ impl ShipMixture {
     }
 
     fn likeliest(&self) -> &DrawableStructure {
-        let most = |one: &&DrawableStructure, other: &&DrawableStructure| one.weight.total_cmp(&other.weight);
-        self.parts.iter().rev().max_by(most).expect("there is a structure")
+        likeliest(&self.parts).expect("there is a structure")
     }
 
     /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of a
@@ -261,7 +238,45 @@ impl ShipMixture {
     }
 }
 
+/// The most probable one, the first of several.
+fn likeliest(parts: &[DrawableStructure]) -> Option<&DrawableStructure> {
+    parts.iter().rev().max_by(|one, other| one.weight.total_cmp(&other.weight))
+}
+
+/// A weight that is one; `stored` is what the file says.
+fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
+    let is_weight = weight.is_finite() && weight >= 0.0;
+    if is_weight { Ok(weight) } else { Err(PredictError::Value { key: "weight", value: stored }) }
+}
+
 impl DrawableStructure {
+    fn new(ship: &IdentifiedShip, known: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
+        let weight = checked(weight, known.weight)?;
+        let model = known.model()?;
+        let has_motion = !ship.hulls.is_empty() || ship.motion.is_some();
+        for (regressor, channel, option) in
+            [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
+        {
+            let needs = model.effects().iter().any(|effect| effect.needs() == Some(regressor));
+            if needs && !has_motion {
+                return Err(PredictError::Needs { channel, option });
+            }
+        }
+        let (root, dead_times) = (root_of(&known.covariance)?, known.dead_times(&model));
+        Ok(Self { weight, model, known: known.clone(), root, dead_times, hull: None, file })
+    }
+
+    /// What is random in yaw: what the form of the hull leaves, or what the structures do.
+    fn noise(&self, ship: &IdentifiedShip) -> KnownNoise {
+        let Some(moment) = self.hull.as_ref().map(DrawableHull::moment) else { return ship.noise };
+        KnownNoise {
+            moment: if moment.deviation_rudder_rad > 0.0 { Moment::OrnsteinUhlenbeck } else { Moment::None },
+            moment_sd_rudder_rad: moment.deviation_rudder_rad,
+            moment_correlation_s: Some(moment.correlation_s),
+            ..ship.noise
+        }
+    }
+
     /// Parameters by their covariance, inside the ranges of the effects: normal, or Student's t.
     fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
         let WeightedStructure { parameters: known, fitted, degrees_of_freedom, .. } = &self.known;

@@ -2,14 +2,16 @@
 
 use std::sync::Arc;
 
-use crate::motion::{self, Planar, PlanarShip};
 use serde::{Deserialize, Serialize};
+use ship::vessel::scaled::ScaledHull;
 use ship::{Regressor, Replayable};
-use simulate::simulation::Truth;
+use simulate::simulation::{Simulated, Truth};
 use simulate::vessel::Solver;
 use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};
+use trial::{Channel, Trial};
 
 use crate::mixture::DrawnShip;
+use crate::motion::{self, Planar, PlanarShip};
 
 /// Rows per time of the ship.
 const ROWS: f64 = 20.0;
@@ -51,6 +53,25 @@ pub struct PlanarMotion {
     pub velocity: Vec<[f64; 2]>,
     /// North and east, m, 0 at the first execute; north is the course of the approach. Empty where drift is not known.
     pub track: Vec<[f64; 2]>,
+}
+
+impl PlanarMotion {
+    /// The way of a hull, which has speed and sway of her own.
+    fn of_hull(hull: &ScaledHull, trial: &Trial, heading: &[f64]) -> Option<Self> {
+        let (speed, sway) = (trial.channel(Channel::Speed)?, trial.channel(Channel::Sway)?);
+        let surge = |(speed, sway): (&f64, &f64)| [(speed * speed - sway * sway).max(0.0).sqrt(), *sway];
+        let velocity: Vec<[f64; 2]> = speed.iter().zip(sway).map(surge).collect();
+        let track = motion::track(trial.time(), heading, &velocity);
+        Some(Self { length: hull.length, velocity, track })
+    }
+
+    /// The way that equations beside a yaw response give, from her approach speed on; no track where they do not tell
+    /// drift.
+    fn beside(planar: &Planar, time: &[f64], passage: &SimulatedManoeuvre) -> Self {
+        let driven = planar.drive(time, &passage.yaw_rate, &passage.rudder, [planar.approach_speed, 0.0]);
+        let track = if planar.tells_drift() { motion::track(time, &passage.heading, &driven) } else { Vec::new() };
+        Self { length: planar.length, velocity: driven, track }
+    }
 }
 
 /// Time between rows, s.
@@ -121,31 +142,29 @@ impl SimulatedManoeuvre {
             let step = (shortest / STEPS).min(period(timescale));
             simulation.solver = Solver::RungeKutta(step.max(SHORTEST_STEP));
         }
-        Self::of(simulation, &ship.key, timescale, ship.planar.as_ref())
+        let (mut passage, trial) = Self::recorded(simulation, &ship.key, timescale)?;
+        passage.way = match (&ship.hull, &ship.planar) {
+            (Some(hull), _) => PlanarMotion::of_hull(hull, &trial, &passage.heading),
+            (None, Some(planar)) => Some(PlanarMotion::beside(planar, trial.time(), &passage)),
+            (None, None) => None,
+        };
+        Ok(passage)
     }
 
-    /// What any simulated ship does; how often and how long it is recorded follows from `timescale`, a time of the
-    /// ship, s. It has a way where speed and drift are given.
+    /// What any simulated ship does, without her way; how often and how long it is recorded follows from `timescale`, a
+    /// time of the ship, s.
     ///
     /// Fails as the simulation does.
-    pub fn of(
-        mut simulation: Simulation,
-        key: &StreamKey,
-        timescale: f64,
-        planar: Option<&Planar>,
-    ) -> Result<Self, SimulateError> {
+    pub fn of(simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {
+        Ok(Self::recorded(simulation, key, timescale)?.0)
+    }
+
+    fn recorded(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<(Self, Trial), SimulateError> {
         simulation.recording = Recording::every(period(timescale));
         simulation.longest_wait = LONGEST_WAIT * timescale;
-        let truth = Arc::unwrap_or_clone(simulation.run(key)?.truth);
-        let Truth { time, heading, yaw_rate, rudder, executes, .. } = truth;
-        let way = planar.map(|planar| {
-            // From her approach speed on.
-            let velocity = planar.drive(&time, &yaw_rate, &rudder, [planar.approach_speed, 0.0]);
-            let told = planar.tells_drift();
-            let track = if told { motion::track(&time, &heading, &velocity) } else { Vec::new() };
-            PlanarMotion { length: planar.length, velocity, track }
-        });
-        Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })
+        let Simulated { trial, truth } = simulation.run(key)?;
+        let Truth { heading, yaw_rate, rudder, executes, .. } = Arc::unwrap_or_clone(truth);
+        Ok((Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way: None }, trial))
     }
 
     /// The same on another course: every heading is larger by `angle` (rad).

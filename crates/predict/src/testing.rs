@@ -1,11 +1,14 @@
 //! A ship that tests know.
 
 use ship::angle::from_deg;
+use ship::vessel::prime::HullForm;
+use ship::vessel::prior::HullParticulars;
 use simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
 use trial::Trial;
 
 use crate::identified_ship::{
-    IdentifiedShip, KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure,
+    IdentifiedShip, KnownGear, KnownNoise, Moment, RandomYawMoment, StoredCoefficient, StoredEffect, StoredHull,
+    ValidityRange, WeightedStructure,
 };
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::standard;
@@ -45,7 +48,38 @@ pub(crate) fn known() -> IdentifiedShip {
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
         motion: None,
-        hull: None,
+        hulls: Vec::new(),
+    }
+}
+
+/// A hull of a form as it is expected of the ship of [`known`], with a tenth of the expected deviations.
+pub(crate) fn hull(form: &str) -> StoredHull {
+    let (length_m, speed_m_s) = (75.0, 6.0);
+    let particulars = HullParticulars { length: length_m, speed: speed_m_s, ..HullParticulars::default() };
+    let forms = HullForm::of_ship(Some(&particulars)).into_iter();
+    let own = forms.filter(|own| own.as_str() == form).flat_map(|own| own.coefficients());
+    let coefficients: Vec<StoredCoefficient> = own
+        .map(|own| StoredCoefficient {
+            key: own.key.into(),
+            symbol: own.symbol.into(),
+            value: own.mean,
+            expected: own.mean,
+            expected_sd: own.sd,
+        })
+        .collect();
+    let variance = |own: &StoredCoefficient| (0.1 * own.expected_sd).powi(2);
+    let row =
+        |i: usize| (0..coefficients.len()).map(|j| if i == j { variance(&coefficients[i]) } else { 0.0 }).collect();
+    StoredHull {
+        form: form.into(),
+        weight: 1.0,
+        length_m,
+        speed_m_s,
+        propeller_per_s: None,
+        particulars: [("length-m".into(), length_m), ("speed-m-s".into(), speed_m_s)].into(),
+        covariance: (0..coefficients.len()).map(row).collect(),
+        coefficients,
+        moment: RandomYawMoment { deviation_rudder_rad: from_deg(0.5), correlation_s: 25.0 },
     }
 }
 

@@ -13,6 +13,7 @@
 //! of the form as far as that is another in every ship length. Firm priors are what lets one record tell so many
 //! coefficients; without them the fitted hull is unstable as often as not.
 
+mod moment;
 mod objective;
 #[cfg(test)]
 mod tests;
@@ -21,12 +22,14 @@ mod track;
 use estimation::levenberg_marquardt::{End, Rules, minimise};
 use estimation::number::Real;
 use nalgebra::{Cholesky, DMatrix, DVector};
+use rayon::prelude::*;
 use ship::Polyline;
 use ship::vessel::prime::{HullCoefficient, HullForm};
 use ship::vessel::scaled::ScaledHull;
 use thiserror::Error;
 use trial::Trial;
 
+pub use moment::RandomMoment;
 pub use objective::HullDeviations;
 use objective::{HullObjective, variances};
 pub use track::HullReference;
@@ -102,6 +105,8 @@ pub struct HullEstimate {
     pub objective: f64,
     /// Its records.
     pub records: Vec<HullResidual>,
+    /// What the form leaves of them, as a random moment.
+    pub moment: RandomMoment,
 }
 
 /// Fits a hull of a form about what is expected of its coefficients to records of one ship.
@@ -132,6 +137,8 @@ pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> R
         whole: left.whole.sqrt(),
         window: left.window.sqrt(),
     };
+    let moment = RandomMoment::of(&form.with(found.at.as_slice()).ok_or(HullError::NoReplay)?, &tracks, &left);
+    let moment = RandomMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
     let records = trials.iter().zip(left).map(residual).collect();
     let (values, objective) = (found.at, found.value);
     Ok(HullEstimate {
@@ -142,7 +149,22 @@ pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> R
         covariance,
         objective,
         records,
+        moment,
     })
+}
+
+/// A hull that leaves this many times what another model leaves takes no part.
+const FAR: f64 = 3.0;
+
+/// The hulls of all forms that records of one ship speak for: those that leave no more than three times what the best of
+/// them leaves of whole records, or another model (`rival`, rad; infinite without one). None where none can be fitted.
+pub fn members(trials: &[Trial], rival: f64) -> Vec<HullEstimate> {
+    let particulars = trials.iter().find_map(Trial::hull);
+    let fitted = |form: &HullForm| fit(trials, form, &form.coefficients()).ok();
+    let found: Vec<HullEstimate> = HullForm::of_ship(particulars.as_ref()).par_iter().filter_map(fitted).collect();
+    let left = |hull: &HullEstimate| hull.mean_square().sqrt();
+    let least = found.iter().map(left).fold(rival, f64::min);
+    found.into_iter().filter(|hull| left(hull) <= FAR * least).collect()
 }
 
 impl HullEstimate {
@@ -169,3 +191,6 @@ impl HullEstimate {
         self.records.iter().map(|record| record.whole * record.whole).sum::<f64>() / self.records.len() as f64
     }
 }
+
+#[cfg(test)]
+mod tests;

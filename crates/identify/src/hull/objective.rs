@@ -67,13 +67,18 @@ pub(super) struct HullObjective<'a> {
 }
 
 /// A window replayed: rows of states, each (ψ, u, v).
-struct Replayed<R> {
-    rows: Vec<[R; 3]>,
+pub(super) struct Replayed<R> {
+    pub rows: Vec<[R; 3]>,
     end: [R; 3],
 }
 
 /// Steps a hull through rows `from..to` from (u, v, r), with a heading of zero at the first of them (Heun).
-fn replayed<R: Real>(hull: &PrimeHull<R>, track: &HullTrack, [from, to]: [usize; 2], start: [R; 3]) -> Replayed<R> {
+pub(super) fn replayed<R: Real>(
+    hull: &PrimeHull<R>,
+    track: &HullTrack,
+    [from, to]: [usize; 2],
+    start: [R; 3],
+) -> Replayed<R> {
     let mut state = start;
     let mut heading = R::from(0.0);
     let mut rows = Vec::with_capacity(to - from);
@@ -88,7 +93,7 @@ fn replayed<R: Real>(hull: &PrimeHull<R>, track: &HullTrack, [from, to]: [usize;
             let rates = |state: [R; 3], piece: usize| {
                 let share = piece as f64 / pieces;
                 let rudder = R::from(between(&track.rudder, share));
-                hull.accelerations(state, rudder, between(&track.turning, share), 0.0)
+                hull.accelerations(state, rudder, between(&track.turning, share), between(&track.moment, share))
             };
             let first = rates(state, piece);
             let ahead: [R; 3] = std::array::from_fn(|i| state[i] + first[i] * step);
@@ -181,6 +186,15 @@ fn through(
     }
 }
 
+/// Mean square that the windows of a record leave; `rates` are the yaw rates at their starts.
+pub(super) fn left_of_windows(hull: &PrimeHull<Dual<1>>, track: &HullTrack, rates: &mut [f64], is_begun: bool) -> f64 {
+    let (mut square, mut read) = (0.0, 0);
+    through(hull, track, &track.cuts, rates, is_begun, |found| {
+        (square, read) = (square + found.square, read + found.read);
+    });
+    square / read.max(1) as f64
+}
+
 impl<'a> HullObjective<'a> {
     pub fn new(form: &'a HullForm, coefficients: Vec<HullCoefficient>, tracks: &'a [HullTrack]) -> Self {
         assert!(coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
@@ -203,11 +217,7 @@ impl<'a> HullObjective<'a> {
                 let squares = pairs.map(|(measured, row)| (measured - row[1].hypot(row[2])).powi(2));
                 left.speed = squares.sum::<f64>() / found.rows.len() as f64;
             });
-            let (mut square, mut read) = (0.0, 0);
-            through(&hull, track, &track.cuts, &mut starts.windows, is_begun, |found| {
-                (square, read) = (square + found.square, read + found.read);
-            });
-            left.window = square / read.max(1) as f64;
+            left.window = left_of_windows(&hull, track, &mut starts.windows, is_begun);
             left
         };
         Some(self.tracks.iter().zip(&mut self.starts).map(of).collect())

@@ -53,6 +53,8 @@ pub(super) struct HullTrack {
     pub rudder: Vec<f64>,
     /// Rate of the propeller over that of the approach.
     pub turning: Vec<f64>,
+    /// Yaw moment as rudder angle, rad: none of a record.
+    pub moment: Vec<f64>,
     /// Speed, where it was recorded.
     pub speed: Option<Vec<f64>>,
     /// Surge and sway in the first row.
@@ -102,6 +104,7 @@ impl HullTrack {
             heading: take(trial.heading()),
             rudder: take(trial.rudder()),
             turning: turning.unwrap_or_else(|| vec![1.0; count]),
+            moment: vec![0.0; count],
             cuts: cuts(&time),
             whole: [0, count],
             start: [surge, drift],

@@ -11,12 +11,6 @@ pub enum MotionError {
         /// Number of records.
         records: usize,
     },
-    /// Yaw cannot be told beside drift.
-    #[error("{records} records and none has both surge and sway, which the yaw equation needs")]
-    NoDrift {
-        /// Number of records.
-        records: usize,
-    },
     /// The ship keeps its heading in all records.
     #[error(
         "nothing turns: the heading changes by {:.1}° at most, and {:.0}° are needed",

@@ -63,7 +63,7 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
                 .map(|output| pooled(&records, output).unwrap_or(0.0).max(LEAST_SHARE * scale(output)));
         }
     }
-    let covariance = problem.squares().covariance(&at, &SYMBOLS, true)?;
+    let covariance = problem.squares().covariance(&at, &SYMBOLS)?;
     let records = problem.summary(&at);
     let approach_speed = median(records.iter().map(|record| record.approach_speed)).expect("there are records");
     Ok(Planar {

@@ -71,7 +71,7 @@ impl GroupedSquares<'_> {
     ///
     /// Fails with [`MotionError::Undetermined`] and the symbol of the coefficient that weighs most in what is open;
     /// `symbols` are those of the first unknowns.
-    pub fn inverse(&self, at: &[f64], symbols: &[&'static str]) -> Result<(Vec<usize>, DMatrix<f64>), MotionError> {
+    fn inverse(&self, at: &[f64], symbols: &[&'static str]) -> Result<(Vec<usize>, DMatrix<f64>), MotionError> {
         let mut normal = Normal::zeros(at.len());
         (&mut &*self).linearise(at, &mut normal);
         let free: Vec<usize> = (0..at.len()).filter(|&i| !normal.is_held(i, at[i], self.bounds[i])).collect();
@@ -100,22 +100,16 @@ impl GroupedSquares<'_> {
     }
 
     /// A⁻¹ S A⁻¹ of all unknowns, zero of those at a bound, with A the normal matrix and S the long-run covariance of
-    /// the scores, whose lags follow from all unknowns or only from those that are at no bound.
+    /// the scores.
     ///
     /// Fails as [`inverse`](Self::inverse) does.
-    pub fn covariance(
-        &self,
-        at: &[f64],
-        symbols: &[&'static str],
-        all_score: bool,
-    ) -> Result<DMatrix<f64>, MotionError> {
+    pub fn covariance(&self, at: &[f64], symbols: &[&'static str]) -> Result<DMatrix<f64>, MotionError> {
         let (free, inverse) = self.inverse(at, symbols)?;
         let mut middle = DMatrix::zeros(at.len(), at.len());
         for (group, unknowns) in self.groups.iter().enumerate() {
             let residuals = (self.residuals)(group, at);
             let slopes = unknowns.iter().zip(self.derivatives(group, at));
             let (places, scores): (Vec<usize>, Vec<Vec<f64>>) = slopes
-                .filter(|(unknown, _)| all_score || free.contains(unknown))
                 .map(|(&unknown, slope)| (unknown, slope.component_mul(&residuals).column_sum().as_slice().to_vec()))
                 .unzip();
             let long_run = newey_west(&[scores]);

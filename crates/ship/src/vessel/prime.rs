@@ -15,7 +15,7 @@
 use estimation::number::Real;
 
 use super::mmg::{Mmg, Parameters};
-use super::prior::HullPrior;
+use super::prior::{HullParticulars, HullPrior, priors};
 
 /// Least surge, in U₀, at which the equations are evaluated: below, the ship has all but stopped.
 const LEAST_SURGE: f64 = 0.15;
@@ -157,6 +157,12 @@ pub enum HullForm {
 }
 
 impl HullForm {
+    /// The forms that a ship can be fitted with: the two polynomials, and the MMG model about what her particulars say.
+    pub fn of_ship(particulars: Option<&HullParticulars>) -> Vec<Self> {
+        let mmg = particulars.and_then(|own| priors(own).ok()).map(|prior| Self::mmg(&prior));
+        [Self::Quadratic, Self::Cubic].into_iter().chain(mmg).collect()
+    }
+
     /// The MMG model about what the particulars of a ship say.
     pub fn mmg(prior: &HullPrior) -> Self {
         let of = |key: &&str| prior.coefficients.iter().find(|own| own.key() == *key);

@@ -1,6 +1,7 @@
 //! A hull without dimension, at the size and speed of a ship: what is steered and replayed.
 
-use estimation::number::Real;
+use estimation::number::{Dual, Real};
+use nalgebra::{Matrix3, Vector3};
 
 use super::prime::PrimeHull;
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
@@ -78,9 +79,93 @@ impl<R: Real> Replayable<R> for ScaledHull<R> {
     }
 }
 
+/// Steps in which speed, drift and rudder of a turn settle, the first of them in L/U₀, how much longer each is than the
+/// one before, and the accelerations that are none.
+const SETTLING: usize = 60;
+const FIRST_STEP: f64 = 0.5;
+const LONGER: f64 = 1.5;
+const SETTLED: f64 = 1e-10;
+
+/// Largest rudder that is looked at in a turn, rad.
+const LARGEST_RUDDER: f64 = 1.2;
+
+impl ScaledHull {
+    /// Rudder (rad) at which the hull turns steadily at a yaw rate (rad/s): speed and drift settle while the rudder
+    /// keeps the rate (reversed spiral, Bech 1968), so the branch that a spiral test jumps over is found, too. `None`
+    /// where no rudder within 1.2 rad does it.
+    ///
+    /// Implicit Euler steps of growing length, which end as those of Newton.
+    pub fn steady_rudder(&self, yaw_rate: f64) -> Option<f64> {
+        let hull = self.hull.constant::<Dual<3>>();
+        let rate = yaw_rate * self.length / self.speed;
+        let mut at = Vector3::new(1.0, 0.0, 0.0);
+        let mut step = FIRST_STEP;
+        for _ in 0..SETTLING {
+            let [u, v, rudder] = [0, 1, 2].map(|place| Dual::variable(at[place], place, 1.0));
+            let left = hull.accelerations([u, v, Dual::from(rate)], rudder, 1.0, 0.0);
+            let mut matrix = Matrix3::from_fn(|row, column| -left[row].by[column]);
+            matrix[(0, 0)] += step.recip();
+            matrix[(1, 1)] += step.recip();
+            let left = Vector3::from(left.map(|one| one.value));
+            if left.amax() < SETTLED {
+                return (at[2].abs() < LARGEST_RUDDER).then_some(at[2]);
+            }
+            at += matrix.lu().solve(&left)?;
+            at[2] = at[2].clamp(-LARGEST_RUDDER, LARGEST_RUDDER);
+            step *= LONGER;
+        }
+        None
+    }
+}
+
 impl ReplayedShip for ScaledHull {
     fn tangent(&self) -> Box<dyn Replayable<Tangent>> {
         let hull = self.hull.constant();
         Box::new(ScaledHull { hull, length: self.length, speed: self.speed, propeller: self.propeller })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::angle::from_deg;
+    use crate::integrate::RungeKutta4;
+    use crate::ships::kvlcc2;
+    use crate::vessel::mmg::Mmg;
+    use crate::vessel::prime::HullForm;
+
+    fn scaled(hull: PrimeHull) -> ScaledHull {
+        ScaledHull { hull, length: 320.0, speed: 7.97, propeller: None }
+    }
+
+    /// The hull as expected, and KVLCC2.
+    fn hulls() -> [ScaledHull; 2] {
+        let means: Vec<f64> = HullForm::Quadratic.coefficients().iter().map(|own| own.mean).collect();
+        let quadratic = HullForm::Quadratic.with(&means).expect("a ship");
+        let mmg = Mmg::at_speed(kvlcc2::FULL_SCALE.of_length_one(), 1.0).expect("a ship");
+        [quadratic, PrimeHull::Mmg(Box::new(mmg), 0.0)].map(scaled)
+    }
+
+    /// A ship that is left to her rudder comes to the rate that this rudder is said to keep.
+    #[test]
+    fn a_steady_turn_is_where_the_hull_settles() {
+        for (hull, side) in hulls().into_iter().zip([1.0, -1.0]) {
+            let rate = side * from_deg(0.5);
+            let rudder = hull.steady_rudder(rate).expect("a turn");
+            let mut state = [0.0; 4];
+            hull.approach(0.0, 0.0, &mut state);
+            let mut solver = RungeKutta4::new(4);
+            for row in 0..4000 {
+                solver.step(&hull, f64::from(row), 1.0, &mut state, |_| Input { rudder, ..Input::default() });
+            }
+            assert!((state[1] / rate - 1.0).abs() < 1e-4, "{} {rate} at {rudder}", state[1]);
+        }
+    }
+
+    #[test]
+    fn a_turn_that_no_rudder_makes_is_none() {
+        let [hull, _] = hulls();
+        assert_eq!(hull.steady_rudder(from_deg(8.0)), None);
+        assert!(hull.steady_rudder(0.0).expect("straight ahead").abs() < 1e-9);
     }
 }

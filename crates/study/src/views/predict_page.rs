@@ -18,7 +18,8 @@ pub fn words(document: &PredictDocument) -> String {
     };
     let mut words = format!("{}: {} ships drawn, {weather}\n", document.model_files(), document.draws);
     if document.hull {
-        words += "the records have surge and sway: the ship is the hull fitted to them, not the yaw response\n";
+        words +=
+            "the ship is the hulls of three degrees of freedom that were fitted to the records, not the yaw response\n";
     }
     if document.manoeuvres.iter().any(Prediction::is_extrapolated) {
         words += &format!(

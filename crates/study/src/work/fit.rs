@@ -131,7 +131,7 @@ pub fn fit(
         trial_entry(trial, &zigzag)
     };
     let records: Vec<TrialEntry> = records.iter().map(of_record).collect();
-    let shown = RecordFacts::of(trials).with_motion();
+    let shown = RecordFacts::of(trials).with_motion(None);
     warn_of_no_track(&shown, warnings);
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))

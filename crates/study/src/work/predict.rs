@@ -233,7 +233,7 @@ pub fn predict(
         form,
         form_remarks,
         ballast: files(ballast),
-        hull: mixture.first().hull.is_some(),
+        hull: !mixture.first().hulls.is_empty(),
         seen: mixture.first().seen,
     })
 }

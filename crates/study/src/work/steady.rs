@@ -17,7 +17,7 @@ const RUDDER_DEG: [f64; 2] = [10.0, 35.0];
 /// which the records show her; `None` where no steady turn is found.
 pub fn of_ship(known: &IdentifiedShip) -> Option<(Vec<SteadyCurve>, ValidityRange)> {
     // Those of the traced response, whatever a hull beside it would do.
-    let ship = IdentifiedShip { hull: None, ..known.in_calm().ok()? };
+    let ship = IdentifiedShip { hulls: Vec::new(), ..known.in_calm().ok()? };
     let seen = ship.seen;
     let [least, most] = RUDDER_DEG.map(from_deg);
     let kind = Manoeuvre::Spiral { rudder: (BEYOND * seen.rudder_rad).clamp(least, most) };

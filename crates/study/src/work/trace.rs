@@ -98,7 +98,7 @@ pub fn trace(
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let scales = together.sentence();
     let RescaledRecords { trials, others: held_out, .. } = together;
-    let shown = RecordFacts::of(&trials).with_motion();
+    let shown = RecordFacts::of(&trials).with_motion(Some(&analysis));
     warn_of_no_track(&shown, warnings);
     warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
     let all = records.iter().chain(others);

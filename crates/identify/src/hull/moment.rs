@@ -1,0 +1,70 @@
+//! The error of the form of a hull, as a random yaw moment that leaves of a record what the hull has left of it.
+
+use estimation::number::Dual;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use ship::vessel::prime::PrimeHull;
+
+use super::objective::{Left, left_of_windows, replayed};
+use super::track::HullTrack;
+
+/// Correlation time, in L/U₀: what a form gets wrong changes with the manoeuvre and not with a gust.
+const CORRELATION: f64 = 2.0;
+
+/// Deviation of the first moments that are tried, rad, and times they are scaled: a hull is nearly linear in them.
+const FIRST: f64 = 5e-3;
+const SCALED: usize = 2;
+
+/// Draws for every record, from this seed.
+const DRAWS: u64 = 6;
+const SEED: u64 = 2_210_105;
+
+/// What is random in yaw: an Ornstein–Uhlenbeck process.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RandomMoment {
+    /// Standard deviation as the rudder angle that has the same moment at approach speed, rad.
+    pub deviation: f64,
+    /// Time in which its autocorrelation falls to 1/e, s.
+    pub correlation_time: f64,
+}
+
+impl RandomMoment {
+    /// The moment, in units of L and U₀, under which the hull departs from itself in windows of 3.5 L/U₀ as far as the
+    /// records do, which have `left` so much.
+    pub(super) fn of(hull: &PrimeHull, tracks: &[HullTrack], left: &[Left]) -> Self {
+        let hull = hull.constant::<Dual<1>>();
+        let mean = |squares: &mut dyn Iterator<Item = f64>| squares.sum::<f64>() / tracks.len() as f64;
+        let wanted = mean(&mut left.iter().map(|left| left.window));
+        let mut deviation = FIRST;
+        for _ in 0..SCALED {
+            let of_track = |track| (0..DRAWS).map(|draw| departure(&hull, track, deviation, SEED + draw)).sum::<f64>();
+            let found = mean(&mut tracks.iter().map(of_track)) / DRAWS as f64;
+            if !(found > 0.0 && found.is_finite()) {
+                return Self { deviation: 0.0, correlation_time: CORRELATION };
+            }
+            deviation *= (wanted / found).sqrt();
+        }
+        Self { deviation, correlation_time: CORRELATION }
+    }
+}
+
+/// Mean square heading error in windows of a replay under one random moment, as of a record.
+fn departure(hull: &PrimeHull<Dual<1>>, track: &HullTrack, deviation: f64, seed: u64) -> f64 {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut disturbed = track.clone();
+    let mut moment = deviation * random.sample::<f64, _>(StandardNormal);
+    for (row, own) in disturbed.moment.iter_mut().enumerate() {
+        if row > 0 {
+            let kept = (-(track.time[row] - track.time[row - 1]) / CORRELATION).exp();
+            moment = kept * moment + (1.0 - kept * kept).sqrt() * deviation * random.sample::<f64, _>(StandardNormal);
+        }
+        *own = moment;
+    }
+    let start = [track.start[0], track.start[1], 0.0].map(Dual::from);
+    let rows = replayed(hull, &disturbed, track.whole, start).rows;
+    let heading = rows.iter().zip(&track.heading);
+    let heading = heading.map(|(row, read)| if read.is_finite() { row[0].value } else { f64::NAN }).collect();
+    let mut rates = vec![0.0; track.cuts.len() - 1];
+    left_of_windows(hull, &HullTrack { heading, ..track.clone() }, &mut rates, false)
+}

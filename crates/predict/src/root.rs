@@ -1,0 +1,32 @@
+//! The square root of a covariance.
+
+use nalgebra::DMatrix;
+
+use crate::error::PredictError;
+
+/// The square root of a covariance: U √Λ of its eigenvalues, which may be zero but for rounding.
+pub(crate) fn root_of(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
+    let count = covariance.len();
+    if count == 0 {
+        return Ok(DMatrix::zeros(0, 0));
+    }
+    if covariance.iter().any(|row| row.len() != count) {
+        return Err(PredictError::Covariance);
+    }
+    let matrix = DMatrix::from_fn(count, count, |i, j| covariance[i][j]);
+    // Parameters have units of their own: what counts are correlations.
+    let sd: Vec<f64> = (0..count).map(|k| matrix[(k, k)].max(0.0).sqrt()).collect();
+    let scale = |k: usize| if sd[k] > 0.0 { sd[k] } else { 1.0 };
+    let correlation =
+        DMatrix::from_fn(count, count, |i, j| 0.5 * (matrix[(i, j)] + matrix[(j, i)]) / (scale(i) * scale(j)));
+    if correlation.iter().any(|entry| !entry.is_finite()) {
+        return Err(PredictError::Covariance);
+    }
+    let eigen = correlation.symmetric_eigen();
+    let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
+    if eigen.eigenvalues.iter().any(|value| *value < -1e-6 * largest.max(1.0)) {
+        return Err(PredictError::Covariance);
+    }
+    let roots = eigen.eigenvalues.map(|value| value.max(0.0).sqrt());
+    Ok(DMatrix::from_fn(count, count, |i, j| scale(i) * eigen.eigenvectors[(i, j)] * roots[j]))
+}

@@ -1,0 +1,260 @@
+//! A hull of three degrees of freedom as files hold it, and ships drawn from it.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use rand::RngExt;
+use rand_distr::StandardNormal;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use ship::vessel::prime::{HullCoefficient, HullForm};
+use ship::vessel::prior::{HullParticulars, Particular};
+use ship::vessel::scaled::ScaledHull;
+
+use crate::error::PredictError;
+use crate::root::root_of;
+
+/// Draws that make no ship, or lie beyond the ends of a coefficient, and are made again before the known values are
+/// taken.
+const MOST_TRIES: usize = 100;
+
+/// A coefficient of a hull beside what was expected of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StoredCoefficient {
+    /// Name.
+    pub key: String,
+    /// Symbol.
+    pub symbol: String,
+    /// Value.
+    pub value: f64,
+    /// What was expected before the records were seen.
+    pub expected: f64,
+    /// Standard deviation of that.
+    pub expected_sd: f64,
+}
+
+impl StoredCoefficient {
+    /// How far it is from what was expected, in standard deviations of that.
+    pub fn departure(&self) -> f64 {
+        (self.value - self.expected) / self.expected_sd
+    }
+}
+
+/// What is random in yaw: an Ornstein–Uhlenbeck moment that stands for what the form gets wrong.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RandomYawMoment {
+    /// Standard deviation as the rudder angle that has the same moment at approach speed, rad.
+    pub deviation_rudder_rad: f64,
+    /// Time in which its autocorrelation falls to 1/e, s.
+    pub correlation_s: f64,
+}
+
+/// A hull of three degrees of freedom with what is known of its coefficients, which have no dimension.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StoredHull {
+    /// `quadratic`, `cubic` or `mmg`.
+    pub form: String,
+    /// Weight among the hulls of the file.
+    pub weight: f64,
+    /// Length of the ship, m.
+    pub length_m: f64,
+    /// Approach speed, m/s.
+    pub speed_m_s: f64,
+    /// Rate of the propeller on the approach, 1/s, where it was recorded.
+    pub propeller_per_s: Option<f64>,
+    /// Particulars of the ship of the records by their keys, which the form `mmg` is made from; at the scale of the
+    /// records, whatever the scale of this hull.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub particulars: BTreeMap<String, f64>,
+    /// Its coefficients.
+    pub coefficients: Vec<StoredCoefficient>,
+    /// Their covariance, by rows.
+    pub covariance: Vec<Vec<f64>>,
+    /// What the form leaves of the records.
+    pub moment: RandomYawMoment,
+}
+
+impl StoredHull {
+    /// The form, made again; fails for one that this program does not know, and for other coefficients than its own.
+    pub fn form(&self) -> Result<HullForm, PredictError> {
+        let refused = || PredictError::Hull { form: self.form.clone() };
+        let mut particulars = HullParticulars::default();
+        for (key, value) in &self.particulars {
+            Particular::named(key).ok_or_else(refused)?.set(&mut particulars, *value);
+        }
+        let forms = HullForm::of_ship(Some(&particulars));
+        let form = forms.into_iter().find(|form| form.as_str() == self.form).ok_or_else(refused)?;
+        let own = form.coefficients();
+        let are_same = own.iter().map(|own| own.key).eq(self.coefficients.iter().map(|own| own.key.as_str()));
+        if are_same { Ok(form) } else { Err(refused()) }
+    }
+
+    /// The values of the coefficients.
+    pub fn values(&self) -> Vec<f64> {
+        self.coefficients.iter().map(|own| own.value).collect()
+    }
+
+    /// The same coefficients on a ship of another length (m) and approach speed (m/s): at the same Froude number the
+    /// ship of the model.
+    #[must_use]
+    pub fn scaled_to(&self, length: f64, speed: f64) -> Self {
+        let second = length / speed * self.speed_m_s / self.length_m;
+        let moment = RandomYawMoment { correlation_s: self.moment.correlation_s * second, ..self.moment };
+        let propeller_per_s = self.propeller_per_s.map(|rate| rate / second);
+        Self { length_m: length, speed_m_s: speed, propeller_per_s, moment, ..self.clone() }
+    }
+}
+
+/// A hull that ships are drawn from.
+#[derive(Debug, Clone)]
+pub(crate) struct DrawableHull {
+    known: StoredHull,
+    form: HullForm,
+    coefficients: Vec<HullCoefficient>,
+    /// Square root of the covariance.
+    root: DMatrix<f64>,
+}
+
+impl DrawableHull {
+    /// Fails for what no file of this program holds.
+    pub fn new(known: &StoredHull) -> Result<Self, PredictError> {
+        let form = known.form()?;
+        let coefficients = form.coefficients();
+        let found = known.covariance.len();
+        if found != coefficients.len() {
+            let expected = coefficients.len();
+            return Err(PredictError::Count { what: "rows of the covariance of a hull", expected, found });
+        }
+        let root = root_of(&known.covariance)?;
+        let hull = Self { known: known.clone(), form, coefficients, root };
+        match hull.with(&known.values()) {
+            Some(_) => Ok(hull),
+            None => Err(PredictError::Hull { form: known.form.clone() }),
+        }
+    }
+
+    /// What is random in yaw.
+    pub fn moment(&self) -> RandomYawMoment {
+        self.known.moment
+    }
+
+    fn with(&self, values: &[f64]) -> Option<ScaledHull> {
+        let hull = self.form.with(values)?;
+        let StoredHull { length_m: length, speed_m_s: speed, propeller_per_s: propeller, .. } = self.known;
+        (values.iter().all(|value| value.is_finite())).then_some(ScaledHull { hull, length, speed, propeller })
+    }
+
+    /// The hull with the known values.
+    pub fn most_probable(&self) -> ScaledHull {
+        self.with(&self.known.values()).expect("it was made once")
+    }
+
+    /// A hull by the covariance of its coefficients, within their ends; what makes no ship is drawn again.
+    pub fn drawn(&self, rng: &mut impl rand::Rng) -> ScaledHull {
+        let known = DVector::from_vec(self.known.values());
+        let is_within = |values: &DVector<f64>| {
+            self.coefficients.iter().zip(values).all(|(own, value)| own.ends[0] <= *value && *value <= own.ends[1])
+        };
+        let mut tries = (0..MOST_TRIES)
+            .map(|_| &known + &self.root * DVector::from_fn(known.len(), |_, _| rng.sample::<f64, _>(StandardNormal)));
+        let found = tries.find_map(|values| self.with(values.as_slice()).filter(|_| is_within(&values)));
+        found.unwrap_or_else(|| self.most_probable())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identified_ship::IdentifiedShip;
+    use crate::mixture::{ShipMixture, UncertaintySource};
+    use crate::testing;
+    use ship::{Dynamics, Input};
+    use simulate::Manoeuvre;
+
+    fn ship() -> IdentifiedShip {
+        IdentifiedShip { hulls: ["quadratic", "cubic", "mmg"].map(testing::hull).into(), ..testing::known() }
+    }
+
+    fn circle(mixture: &ShipMixture, draws: usize) -> crate::Prediction {
+        let kind: Manoeuvre = "turning-circle:35".parse().expect("known");
+        mixture.predict(&kind, draws, true).expect("a turn")
+    }
+
+    /// A ship with hulls is drawn from them, by their weights, and shows a track of her own.
+    #[test]
+    fn hulls_take_the_place_of_the_structures() {
+        let mut known = ship();
+        known.hulls[0].weight = 2.0;
+        let mixture = testing::mixture(known);
+        let is_first = |number| {
+            let hull = mixture.draw(number, &[UncertaintySource::Structure]).hull.expect("a hull");
+            hull == mixture.most_probable().hull.expect("a hull")
+        };
+        assert_eq!((0..1000).filter(|&number| is_first(number)).count(), 500);
+        let prediction = circle(&mixture, 60);
+        for name in ["advance_m", "transfer_m", "tactical_diameter_m", "speed_loss_share", "drift_angle_deg"] {
+            let figure = &prediction.figures[name];
+            assert!(figure.interval.median > 0.0 && figure.interval.ci90[0] < figure.interval.ci90[1], "{name}");
+        }
+        let shares = &prediction.figures["advance_m"].shares;
+        assert!(["parameters", "structure", "process-noise"].iter().all(|source| shares[*source] > 0.0), "{shares:?}");
+        let spiral = mixture.predict(&"spiral:15".parse().expect("known"), 40, true).expect("a curve");
+        assert!(spiral.figures["rate_starboard_deg_s"].interval.median > 0.0);
+    }
+
+    /// One number is one draw, in any company; without doubt it is the most probable ship.
+    #[test]
+    fn one_number_is_one_draw() {
+        let mixture = testing::mixture(ship());
+        let draw = |number| mixture.draw(number, &UncertaintySource::ALL).hull.expect("a hull");
+        assert_eq!(draw(7), draw(7));
+        assert_ne!(draw(7), draw(8));
+        assert_eq!(circle(&mixture, 20).figures, circle(&mixture, 20).figures);
+        let bound = |hull: &ScaledHull| match &hull.hull {
+            ship::vessel::prime::PrimeHull::Quadratic(values) => values[10] <= 0.9 && values[9] >= 0.005,
+            _ => true,
+        };
+        assert!((0..300).map(draw).all(|hull| bound(&hull)), "coefficients keep within their ends");
+    }
+
+    /// At the same Froude number times grow with the root of the scale, and what is random with them.
+    #[test]
+    fn a_hull_at_another_scale_moves_alike() {
+        let known = testing::hull("mmg");
+        let ratio: f64 = 25.0;
+        let (length, speed) = (known.length_m * ratio, known.speed_m_s * ratio.sqrt());
+        let large = known.scaled_to(length, speed);
+        let of = |known: &StoredHull, state: [f64; 4]| {
+            let mut rate = [0.0; 4];
+            let input = Input { rudder: 0.3, disturbance: 0.02, ..Input::default() };
+            DrawableHull::new(known).expect("a hull").most_probable().rates(0.0, &state, &input, &mut rate);
+            rate
+        };
+        let time = ratio.sqrt();
+        let small = of(&known, [0.3, 0.02, 5.0, -0.8]);
+        let other = of(&large, [0.3, 0.02 / time, 5.0 * time, -0.8 * time]);
+        for (small, other) in small.iter().zip([other[0] * time, other[1] * ratio, other[2], other[3]]) {
+            assert!((small - other).abs() <= 1e-12 * small.abs(), "{small} {other}");
+        }
+        assert_eq!(large.moment.correlation_s, known.moment.correlation_s * time);
+        assert_eq!(large.particulars, known.particulars);
+    }
+
+    #[test]
+    fn what_is_written_is_read_again_and_nonsense_is_refused() {
+        let known = ship();
+        let text = serde_json::to_string(&known).expect("plain data");
+        assert_eq!(serde_json::from_str::<IdentifiedShip>(&text).expect("the same"), known);
+        let refused = |change: fn(&mut StoredHull)| {
+            let mut hull = testing::hull("mmg");
+            change(&mut hull);
+            DrawableHull::new(&hull).expect_err("refused").to_string()
+        };
+        assert!(refused(|hull| hull.form = "magic".into()).contains("magic"));
+        assert!(refused(|hull| hull.coefficients[0].key = "magic".into()).contains("mmg"));
+        assert!(refused(|hull| hull.particulars.clear()).contains("mmg"));
+        assert!(refused(|hull| hull.coefficients[0].value = f64::NAN).contains("mmg"));
+        assert!(refused(|hull| hull.covariance.truncate(2)).contains("rows"));
+        assert!(refused(|hull| hull.covariance[0][0] = f64::NAN).contains("covariance"));
+    }
+}
