@@ -176,8 +176,10 @@ fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
 }
 
 /// How the records of a request are analysed.
-pub fn settings(request: &TraceRequest) -> Settings {
-    Settings { rule: request.rule, selection: request.selection(), ..Settings::default() }
+///
+/// Fails with the name of an effect that is not known.
+pub fn settings(request: &TraceRequest) -> Result<Settings, Failure> {
+    Ok(Settings { rule: request.rule, selection: request.selection()?, ..Settings::default() })
 }
 
 /// The records of a request without the channels that are withheld.
