@@ -17,6 +17,7 @@ use crate::dynamics::Regressor;
 use crate::particulars::{self, Dimension};
 use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
+use parse::LONGEST;
 use points::{SignalPoint, SignalSizes};
 use program::{FormulaProgram, FormulaSignal};
 
@@ -105,10 +106,15 @@ impl Formula {
         let is_name = name.starts_with(|letter: char| letter.is_ascii_alphabetic())
             && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         if !is_name || name.len() > LONGEST_NAME {
+            let name: String = name.chars().take(LONGEST_NAME).collect();
             let expected = format!(
                 "`{name}` cannot be the name of an effect: expected letters, digits and _, at most {LONGEST_NAME}"
             );
             return Err(error(0, expected));
+        }
+        let found = text.chars().count();
+        if found > LONGEST {
+            return Err(error(LONGEST, format!("{found} characters, expected at most {LONGEST}")));
         }
         let (formula, said) = text.split_once(';').unwrap_or((text, ""));
         let program = parse::parse(formula.trim_end())?;

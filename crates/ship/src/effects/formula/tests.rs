@@ -91,6 +91,10 @@ fn priors_follow_from_the_records_or_from_what_is_said() {
 
 #[test]
 fn what_is_no_effect_is_refused_where_it_stands() {
+    for long in ["x".repeat(9000), format!("x = c{}", " * r".repeat(3000)), format!("x = c * r; {}", "c".repeat(9000))] {
+        let message = Formula::read(&long).expect_err("too long").to_string();
+        assert!(message.len() < 2000, "{} bytes", message.len());
+    }
     assert!(crate::effects::formula("second_order = c * r").is_err_and(|error| error.problem.contains("on the list")));
     for (line, at, said) in [
         ("bank", 4, "expected `name = formula`"),
