@@ -34,7 +34,7 @@ fn a_line_of_text_is_simulated_named_and_predicted_with() {
     assert!(run.out.contains("\nbank = c * tanh(k * psi) acts to port as to starboard\n"), "{}", run.out);
     let only = desk.json("only/trace.json")["effects"].clone();
     assert_eq!((only.as_array().map(Vec::len), &only[0]["asked"]), (Some(1), &true.into()), "{only}");
-    desk.run(&["trace", &record, "--effect", BANK, "--with", "bnak"]).is_refused(2, &["--with", "did you mean `bank`"]);
+    desk.run(&["trace", &record, "--effect", BANK, "--with", "banc"]).is_refused(2, &["--with", "did you mean `bank`"]);
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn a_formula_of_a_scenario_is_marked_in_the_file() {
     desk.run(&["check", "bad.toml"]).is_refused(2, &[&format!("--> bad.toml:{line}:47"), "did you mean `delta`"]);
     let swept = "\n[[sweep]]\nname = \"x\"\npoints = [{ label = \"x\", set = { effect = [{ formula = \"b = c * foo(r)\" }] } }]\n";
     desk.file("bad.toml", format!("{GOOD}{swept}"));
-    let place = format!("--> bad.toml:{}:67", line + 1);
+    let place = format!("--> bad.toml:{}:65", line + 1);
     desk.run(&["check", "bad.toml"]).is_refused(2, &[&place, "`foo` is no function"]);
 }
 

@@ -91,7 +91,8 @@ fn priors_follow_from_the_records_or_from_what_is_said() {
 
 #[test]
 fn what_is_no_effect_is_refused_where_it_stands() {
-    for long in ["x".repeat(9000), format!("x = c{}", " * r".repeat(3000)), format!("x = c * r; {}", "c".repeat(9000))] {
+    for long in ["x".repeat(9000), format!("x = c{}", " * r".repeat(3000)), format!("x = c * r; {}", "c".repeat(9000))]
+    {
         let message = Formula::read(&long).expect_err("too long").to_string();
         assert!(message.len() < 2000, "{} bytes", message.len());
     }
