@@ -204,7 +204,9 @@ impl DrawnKey {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let (key, mark, what) = match problem.mark {
             AtFault::Name => (self.key_place(), AtFault::Value, "changes a key that cannot be drawn"),
-            AtFault::Value => (self.place.clone(), AtFault::Name, "reaches a value that makes no trial"),
+            AtFault::Value | AtFault::Within(_) => {
+                (self.place.clone(), AtFault::Name, "reaches a value that makes no trial")
+            }
         };
         let found = format!("the draw of `{}` {what}{cell}: {}", self.key, problem.found);
         KeyFault { key, mark, found, ..problem }

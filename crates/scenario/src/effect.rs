@@ -6,6 +6,7 @@ use std::sync::{Arc, LazyLock};
 
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, json};
+use ship::Regressor;
 use ship::angle::DEGREE;
 use ship::effects::{
     Effect, Formula, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, RudderDeadband, RudderSaturation,
@@ -14,8 +15,10 @@ use ship::effects::{
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ShortNumber};
 
+use crate::effect_wire::EffectWire;
 use crate::number_table::{self, NamedNumbers, NumberKey, closed};
 use crate::problem::{KeyFault, KeyPath, suggestion};
+use crate::wire::ScenarioWire;
 use crate::{limits, reader};
 
 /// A number of an effect: the effect in its form, the key and what it means.
@@ -119,8 +122,8 @@ pub fn keys(effect: &dyn Effect) -> Option<String> {
 }
 
 /// The effects with nothing left out.
-pub fn complete(entries: &mut [NamedNumbers]) {
-    for (id, numbers) in entries.iter_mut().flatten() {
+pub fn complete(entries: &mut [EffectWire]) {
+    for (id, numbers) in entries.iter_mut().flat_map(|entry| &mut entry.named) {
         forms_of(id).iter().for_each(|form| number_table::complete(numbers, &form.keys));
     }
 }
@@ -147,47 +150,66 @@ fn asked<'a>(
     Ok((form, key, numbers))
 }
 
-/// The line of an entry that is written as a formula, `name = formula`.
-fn line_of(entry: &NamedNumbers) -> Option<&String> {
-    entry.keys().next().filter(|name| name.contains('='))
-}
-
-/// An effect that is written as a formula, and a value for every constant of it.
-fn formula(entry: &NamedNumbers, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), KeyFault> {
-    let (line, key, numbers) = number_table::only(entry, place, &[])?;
-    let formula = ship::effects::formula(line).map_err(|error| {
-        let advice = "write `\"name = formula\" = { constant = value }`; docs/src/howto/own-effect.md has the names";
-        KeyFault::name(key.clone(), error.to_string(), "this is no formula", advice)
-    })?;
+/// An effect that is written as a formula, with the value of every constant of it.
+fn formula(entry: &EffectWire, line: &str, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), KeyFault> {
+    let formula = read(line, place.child("formula"))?;
     let keys: Vec<NumberKey> =
         formula.parameters().iter().map(|own| NumberKey::required(own.key, "A constant of the formula.")).collect();
-    number_table::refuse_unknown(numbers, &keys, &key)?;
-    number_table::refuse_incomplete(numbers, &keys, &key)?;
+    number_table::refuse_unknown(&entry.values, &keys, place)?;
+    number_table::refuse_incomplete(&entry.values, &keys, place)?;
     for own in formula.parameters() {
-        let value = numbers[own.key];
+        let value = entry.values[own.key];
         if !own.holds(value) {
             let expected =
                 format!("expected a number from {} to {}", ShortNumber(own.lowest), ShortNumber(own.highest));
-            return Err(KeyFault::of(key.child(own.key), ShortNumber(value), expected, "change the value"));
+            return Err(KeyFault::of(place.child(own.key), ShortNumber(value), expected, "change the value"));
         }
     }
-    let values = formula.parameters().iter().map(|own| numbers[own.key]).collect();
+    let values = formula.parameters().iter().map(|own| entry.values[own.key]).collect();
     Ok((formula, values))
+}
+
+/// The effect of a line `name = formula` at a key.
+pub fn read(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
+    ship::effects::formula(line).map_err(|error| {
+        let advice = "docs/src/howto/own-effect.md says what a formula may hold";
+        KeyFault::within(error.at, key.clone(), format!("`{key}`: {}", error.problem), "here", advice)
+    })
+}
+
+/// Refuses a formula over a signal that no trial of this scenario has: its moment would be zero.
+fn refuse_without(formula: &Formula, wire: &ScenarioWire, key: KeyPath) -> Result<(), KeyFault> {
+    let moves = wire.speed_and_sway.is_some();
+    let blows = wire.disturbance.wind.is_some_and(|wind| wind.speed.is_some());
+    let signals = [
+        (Regressor::Sway, moves, "sway velocity", "add `[speed-and-sway]`"),
+        (Regressor::Speed, moves, "speed", "add `[speed-and-sway]`"),
+        (Regressor::Wind, blows, "relative wind", "add `[disturbance.wind]` with `speed-m-s`"),
+        (Regressor::Propeller, false, "propeller revolutions", "simulate without this effect"),
+    ];
+    match signals.into_iter().find(|(channel, is_there, ..)| formula.uses(*channel) && !is_there) {
+        Some((_, _, signal, advice)) => {
+            let found = format!("`{}` needs {signal}, and the simulated ship has none", formula.id());
+            Err(KeyFault::value(key, found, "expected a formula over signals of the ship", advice))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The ship with effects added to its response.
 ///
-/// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, and
-/// for a parameter outside its range.
-pub fn added(ship: Ship, entries: &[NamedNumbers]) -> Result<Ship, KeyFault> {
+/// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, for a
+/// parameter outside its range, and for a formula over signals that the trials do not have.
+pub fn added(ship: Ship, wire: &ScenarioWire) -> Result<Ship, KeyFault> {
+    let entries = &wire.effect;
     if entries.is_empty() {
         return Ok(ship);
     }
     limits::entries("effect", entries.len(), limits::MOST_EFFECTS)?;
     let list = KeyPath::dotted("effect");
     let (formulas, listed): (Vec<_>, Vec<_>) =
-        entries.iter().enumerate().partition(|(_, entry)| line_of(entry).is_some());
-    let asked = listed.into_iter().map(|(index, entry)| asked(entry, &list.child(index)));
+        entries.iter().enumerate().partition(|(_, entry)| entry.formula.is_some());
+    let asked = listed.into_iter().map(|(index, entry)| asked(entry.listed(&list.child(index))?, &list.child(index)));
     let asked = asked.collect::<Result<Vec<_>, _>>()?;
     let Model::Response(response) = &ship.model else {
         return Err(KeyFault::name(
@@ -227,7 +249,9 @@ pub fn added(ship: Ship, entries: &[NamedNumbers]) -> Result<Ship, KeyFault> {
         parameters.extend(settings.iter().map(|setting| setting.value));
     }
     for (index, entry) in formulas {
-        let (formula, values) = formula(entry, &list.child(index))?;
+        let (line, place) = (entry.formula.as_deref().unwrap_or_default(), list.child(index));
+        let (formula, values) = formula(entry, line, &place)?;
+        refuse_without(&formula, wire, place.child("formula"))?;
         effects.push(Arc::new(formula.with_length(ship.particulars.map_or(1.0, |own| own.length))));
         parameters.extend(values);
     }
@@ -278,9 +302,13 @@ pub fn schema(_: &mut SchemaGenerator) -> Schema {
     });
     let formula = json!({
         "type": "object",
-        "description": "A moment as a line of text, `\"bank = c * tanh(k * psi)\" = { c = 0.05, k = 8.0 }`: an angle of the rudder, rad.",
-        "patternProperties": { "=": { "type": "object", "additionalProperties": { "type": "number" } } },
-        "additionalProperties": false
+        "description": "A moment as a formula, an angle of the rudder in rad, with the values of its constants beside it.",
+        "properties": { "formula": {
+            "type": "string",
+            "description": "`name = formula`, as in `bank = c * tanh(k * psi)`; the constants `c` and `k` are further keys.",
+        } },
+        "required": ["formula"],
+        "additionalProperties": { "type": "number" }
     });
     json_schema!({ "type": "array", "items": { "oneOf": effects.chain([formula]).collect::<Vec<_>>() } })
 }

@@ -34,9 +34,21 @@ pub fn span(text: &str, path: &KeyPath, mark: AtFault) -> Range<usize> {
             _ => (None, None),
         };
         let by_name = table.is_some() || array.is_some() || (depth == last && mark == AtFault::Name);
-        place = if by_name { key_span } else { value.span() };
+        place = match (mark, value.get_ref()) {
+            _ if by_name => key_span,
+            (AtFault::Within(at), DeValue::String(said)) if depth == last => within(text, value.span(), said, at),
+            _ => value.span(),
+        };
     }
     place
+}
+
+/// The letter of a text in quotes that stands after `at` characters; all of it where escapes make it another one than is
+/// written.
+fn within(text: &str, quoted: Range<usize>, said: &str, at: usize) -> Range<usize> {
+    let Some(start) = text[quoted.clone()].find(said) else { return quoted };
+    let from = quoted.start + start + said.chars().take(at).map(char::len_utf8).sum::<usize>();
+    from..from + text[from..].chars().next().map_or(0, char::len_utf8)
 }
 
 /// The first line that is neither empty nor a comment.
@@ -71,6 +83,17 @@ mod tests {
         let swept = KeyPath::dotted("sweep.0.points.0.set").child("a.b");
         assert_eq!(&TEXT[span(TEXT, &swept, AtFault::Value)], "3");
         assert_eq!(&TEXT[span(TEXT, &swept, AtFault::Name)], "\"a.b\"");
+    }
+
+    #[test]
+    fn finds_a_letter_of_a_text() {
+        let marked = |text: &str, at: usize| {
+            let span = span(text, &KeyPath::dotted("effect.0.formula"), AtFault::Within(at));
+            (span.start, text[span].to_owned())
+        };
+        assert_eq!(marked("[[effect]]\nformula = \"é = c * x\"\n", 8), (31, String::from("x")));
+        assert_eq!(marked("effect = [{ formula = 'c *' }]\n", 3), (26, String::from("'")));
+        assert_eq!(marked("[[effect]]\nformula = \"c\\u002a\"\n", 1).1, "\"c\\u002a\"");
     }
 
     #[test]

@@ -8,12 +8,13 @@ use identify::settings::SettingsError;
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError, Outside, external};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
+use ship::effects::Formula;
 use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
 use crate::answers::Answers;
 use crate::problem::{KeyFault, KeyPath, of_text};
-use crate::{limits, name};
+use crate::{effect, limits, name};
 
 /// A method as a scenario names it.
 #[derive(Clone)]
@@ -164,7 +165,13 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath, folder: &Path) -> Result<Pro
             let identifier = settings.build_in(folder).map_err(|error| refused(&table, &error))?;
             Ok(Procedure::Identify { settings: Some(settings.clone()), identifier: identifier.into() })
         }
-        (None, Some(wire)) => tracing(wire).map(Procedure::Trace).map_err(|error| refused(&key.child("trace"), &error)),
+        (None, Some(wire)) => {
+            let table = key.child("trace");
+            let lines = wire.formulas.iter().enumerate();
+            let read = lines.map(|(index, line)| effect::read(line, table.child("formulas").child(index)));
+            let formulas = read.collect::<Result<_, _>>()?;
+            tracing(wire, formulas).map(Procedure::Trace).map_err(|error| refused(&table, &error))
+        }
         (method, _) => Err(KeyFault::name(
             key.clone(),
             format!("`{key}` names {}", if method.is_some() { "a method and a trace" } else { "no method" }),
@@ -181,14 +188,10 @@ fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
 }
 
 /// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.
-fn tracing(wire: &TraceWire) -> Result<::trace::Settings, SettingsError> {
-    let TraceWire { rule, probability, ref menu, monomials, ref formulas } = *wire;
-    let mut selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), among)?;
-    let read = |line: &String| {
-        ship::effects::formula(line)
-            .map_err(|error| SettingsError::new("formulas", error, "formulas as `bank = c * tanh(k * psi)`"))
-    };
-    selection.formulas = formulas.iter().map(read).collect::<Result<_, _>>()?;
+fn tracing(wire: &TraceWire, formulas: Vec<Arc<Formula>>) -> Result<::trace::Settings, SettingsError> {
+    let TraceWire { rule, probability, ref menu, monomials, .. } = *wire;
+    let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), among)?;
+    let selection = Selection { formulas, ..selection };
     if monomials > empirical::all().len() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }
@@ -218,7 +221,7 @@ mod tests {
     fn traced(keys: &str) -> Result<::trace::Settings, String> {
         let wire: IdentifierWire =
             toml::from_str(&format!("trace = {{ {keys} }}")).map_err(|error| error.to_string())?;
-        tracing(&wire.trace.expect("a trace")).map_err(|error| error.to_string())
+        tracing(&wire.trace.expect("a trace"), Vec::new()).map_err(|error| error.to_string())
     }
 
     #[test]

@@ -56,6 +56,8 @@ pub enum AtFault {
     Name,
     /// Its value.
     Value,
+    /// The text that is its value, after so many characters.
+    Within(usize),
 }
 
 /// Something wrong with a scenario.
@@ -82,6 +84,17 @@ impl KeyFault {
         advice: impl Into<String>,
     ) -> Self {
         Self { key, mark: AtFault::Value, found: found.into(), expected: expected.into(), advice: advice.into() }
+    }
+
+    /// The text that is the value of a key, at fault after `at` characters.
+    pub fn within(
+        at: usize,
+        key: KeyPath,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        advice: impl Into<String>,
+    ) -> Self {
+        Self { mark: AtFault::Within(at), ..Self::value(key, found, expected, advice) }
     }
 
     /// The value of a key, which is at fault.

@@ -1,9 +1,11 @@
 //! From what a scenario says to what the engine accepts: names to ships, settings to a simulation, every value checked.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use ::ship::Ship;
 use ::ship::ships::Model;
+use ::ship::{Particulars, Ship, ShortNumber};
+use predict::motion::{Planar, PlanarShip};
 use simulate::{Assumption, Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
 use crate::problem::{KeyFault, KeyPath};
@@ -13,7 +15,7 @@ use crate::{effect, ship};
 
 /// Resolves everything about a trial.
 pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification, KeyFault> {
-    let ship = effect::added(ship::build(&wire.ship)?, &wire.effect)?;
+    let ship = effect::added(ship::build(&wire.ship)?, wire)?;
     let simulation = Simulation {
         gear: wire.steering_gear.of(&ship),
         helmsman: wire.helmsman,
@@ -21,7 +23,7 @@ pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification
         recording: wire.recording,
         sensors: wire.sensor,
         disturbances: wire.disturbance,
-        ..Simulation::new(Vessel::ship(&ship), manoeuvre(&wire.manoeuvre, folder)?)
+        ..Simulation::new(vessel(&ship, wire)?, manoeuvre(&wire.manoeuvre, folder)?)
     };
     simulation.validate()?;
     // A further record has the same ship, gear, helmsman, weather and instruments.
@@ -56,6 +58,28 @@ pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification
         assumed,
         simulation,
     })
+}
+
+/// What is steered: the ship, with speed and sway beside its yaw response where the scenario says so.
+///
+/// Fails for a hull, for a ship without length and speed, and for a coefficient outside its range.
+fn vessel(ship: &Ship, wire: &ScenarioWire) -> Result<Vessel, KeyFault> {
+    let vessel = Vessel::ship(ship);
+    let Some(coefficients) = wire.speed_and_sway else { return Ok(vessel) };
+    let key = KeyPath::dotted("speed-and-sway");
+    let (Model::Response(response), Some(Particulars { length, speed })) = (&ship.model, ship.particulars) else {
+        let expected = "expected a response model with length and speed";
+        let advice = "leave the table out, or use yukun, or first-order with `length-m` and `speed-kn`";
+        return Err(KeyFault::name(key, format!("speed and sway are added to `{}`", ship.id), expected, advice));
+    };
+    if let Some((symbol, value, [low, high])) = coefficients.beyond() {
+        let expected = format!("expected a number from {} to {}", ShortNumber(low), ShortNumber(high));
+        return Err(KeyFault::of(key.child(symbol), ShortNumber(value), expected, "change the number"));
+    }
+    let planar = Planar::new(coefficients, length, speed).map_err(|error| {
+        KeyFault::name(key, error.to_string(), "not accepted", "change length and speed of the ship")
+    })?;
+    Ok(vessel.with_dynamics(Arc::new(PlanarShip { response: response.clone(), planar })))
 }
 
 /// What a first-order base lacks in a trial: effects of the ship, and disturbances that are effects by another name.

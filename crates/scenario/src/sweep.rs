@@ -120,17 +120,23 @@ impl SweepSetting {
 
     /// The problem of a changed scenario, moved to the sweep that caused it; `cell` names the cell where it helps.
     pub fn attributed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
-        let name = problem.mark == AtFault::Name;
-        let place = if name { &self.key_place } else { &self.value_place };
-        // Where the point itself names the key, its name is underlined and not its value.
-        let mark = if name && self.key_place == self.value_place { AtFault::Name } else { AtFault::Value };
+        let (place, mark) = match problem.mark {
+            // Where the point itself names the key, its name is underlined and not its value.
+            AtFault::Name if self.key_place == self.value_place => (self.key_place.clone(), AtFault::Name),
+            AtFault::Name => (self.key_place.clone(), AtFault::Value),
+            AtFault::Value => (self.value_place.clone(), AtFault::Value),
+            AtFault::Within(_) => {
+                let below = problem.key.parts().strip_prefix(self.key.parts()).unwrap_or_default();
+                (below.iter().fold(self.value_place.clone(), |key, part| key.child(part)), problem.mark)
+            }
+        };
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let mut found = format!("the sweep sets `{}` to {}{cell}", self.key, written(&self.value));
         // "to −1: `key` is −1" would say it twice.
         if !problem.found.starts_with(&format!("`{}` is", self.key)) {
             found = format!("{found}: {}", problem.found);
         }
-        KeyFault { key: place.clone(), mark, found, ..problem }
+        KeyFault { key: place, mark, found, ..problem }
     }
 }
 

@@ -2,11 +2,13 @@
 //! believed yet; [`crate::resolve`] turns it into specifications the engine accepts. How a trial is made is declared in
 //! [`simulate`] itself.
 
+use predict::motion::PlanarCoefficients;
 use serde::{Deserialize, Serialize};
 use simulate::{BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear, numbers};
 
 use crate::draw::DrawWire;
 use crate::effect;
+use crate::effect_wire::EffectWire;
 use crate::method::IdentifierWire;
 use crate::number_table::NamedNumbers;
 use crate::predictions::PredictWire;
@@ -40,7 +42,10 @@ pub struct ScenarioWire {
     /// What a first-order ship lacks; on response models alone.
     #[serde(default)]
     #[schemars(schema_with = "effect::schema")]
-    pub effect: Vec<NamedNumbers>,
+    pub effect: Vec<EffectWire>,
+    /// Speed and sway of a response model, whose own equations have none; without dimension, by length and speed of
+    /// the ship. A full ship has X_0 0.05, X_vr 1.3, X_dd 0.1, X_dv 0.1, Y_v 0.4, Y_vv 2, Y_r 0.5, Y_d 0.1.
+    pub speed_and_sway: Option<PlanarCoefficients>,
     /// What the ship does.
     pub manoeuvre: Manoeuvre,
     /// Further records of the same ship, in the same weather and with the same instruments.
@@ -98,6 +103,6 @@ pub struct FurtherWire {
 }
 
 numbers! {
-    ScenarioWire: "ship" ship, "effect" effect, "manoeuvre" manoeuvre, "steering-gear" steering_gear, "helmsman" helmsman,
-        "approach" approach, "recording" recording, "sensor" sensor, "disturbance" disturbance;
+    ScenarioWire: "ship" ship, "effect" effect, "speed-and-sway" speed_and_sway, "manoeuvre" manoeuvre,
+        "steering-gear" steering_gear, "helmsman" helmsman, "approach" approach, "recording" recording, "sensor" sensor, "disturbance" disturbance;
 }

@@ -68,6 +68,11 @@ impl Vessel {
         Self { particulars: ship.particulars, ..vessel }
     }
 
+    /// The same vessel with equations that hold more than its own.
+    pub fn with_dynamics(self, dynamics: Arc<dyn Dynamics>) -> Self {
+        Self { largest_step: dynamics.largest_step(), dynamics, first_order: None, ..self }
+    }
+
     /// The same vessel with length and approach speed declared.
     pub fn with_particulars(self, particulars: Particulars) -> Self {
         Self { particulars: Some(particulars), ..self }

@@ -14,6 +14,7 @@ use campaign::task::Shard;
 use clap::builder::StringValueParser;
 use clap::{Args, ValueEnum};
 use report::Table;
+use scenario::failure::Failure;
 use scenario::problem::suggestion;
 use ship::effects::Formula;
 use trial::Manoeuvre;
@@ -231,28 +232,29 @@ pub struct TraceRequest {
     /// Analyse without these columns, as if they had not been recorded: `wind`, `speed`, `propeller`, `sway`
     #[arg(long, value_name = "CHANNEL", value_enum)]
     pub without: Vec<Withheld>,
-    /// Effects that are in the model whatever the evidence says, by their ids in `study list effects`
+    /// Effects that are in the model whatever the evidence says, by their ids in `study list effects` or their names
+    /// in `--effect`
     #[arg(
         long, value_name = "ID,…", value_delimiter = ',',
-        value_parser = completed(effect, completed::effects),
+        value_parser = completed(StringValueParser::new(), completed::effects),
         hide_possible_values = true
     )]
-    pub with: Vec<EffectId>,
+    pub with: Vec<String>,
     /// Exactly these effects and no search
     #[arg(
         long, value_name = "ID,…", value_delimiter = ',',
-        value_parser = completed(effect, completed::effects),
+        value_parser = completed(StringValueParser::new(), completed::effects),
         hide_possible_values = true,
         conflicts_with_all = ["with", "without_effect"]
     )]
-    pub only: Vec<EffectId>,
+    pub only: Vec<String>,
     /// Effects that are no candidates
     #[arg(
         long, value_name = "ID,…", value_delimiter = ',',
-        value_parser = completed(effect, completed::effects),
+        value_parser = completed(StringValueParser::new(), completed::effects),
         hide_possible_values = true
     )]
-    pub without_effect: Vec<EffectId>,
+    pub without_effect: Vec<String>,
     /// An effect of one's own, a candidate like those of the list: a moment as an angle of the rudder, `bank = c *
     /// tanh(k * psi)`; can be given several times
     #[arg(long, value_name = "NAME = FORMULA", value_parser = formula)]
@@ -278,15 +280,24 @@ pub struct TraceRequest {
 
 impl TraceRequest {
     /// What is asked for and what excluded.
-    pub fn selection(&self) -> Selection {
+    ///
+    /// Fails with a name that is neither on the list nor that of a formula.
+    pub fn selection(&self) -> Result<Selection, Failure> {
         let of_file = self.effects.iter().flat_map(|own| own.all());
         let formulas: Vec<Arc<Formula>> = self.effect.iter().chain(of_file).cloned().collect();
-        if self.only.is_empty() {
-            return Selection { with: self.with.clone(), without: self.without_effect.clone(), search: true, formulas };
+        let known = Selection { formulas, ..Selection::default() };
+        let named = |option: &str, names: &[String]| -> Result<Vec<EffectId>, Failure> {
+            names.iter().map(|name| effect(option, name, &known)).collect()
+        };
+        let (with, without) = (named("with", &self.with)?, named("without-effect", &self.without_effect)?);
+        let mut only = named("only", &self.only)?;
+        if only.is_empty() {
+            return Ok(Selection { with, without, ..known });
         }
-        let own = formulas.iter().map(|formula| EffectId::of(formula));
-        let with = self.only.iter().copied().chain(own).collect();
-        Selection { formulas, ..Selection::only(with) }
+        let typed = known.formulas.iter().map(|formula| EffectId::of(formula));
+        let more: Vec<EffectId> = typed.filter(|own| !only.contains(own)).collect();
+        only.extend(more);
+        Ok(Selection { formulas: known.formulas, ..Selection::only(only) })
     }
 }
 
@@ -295,10 +306,11 @@ fn rule(name: &str) -> Result<Rule, String> {
     Rule::ALL.into_iter().find(|rule| rule.as_str() == name).ok_or_else(|| suggestion(name, &known))
 }
 
-fn effect(name: &str) -> Result<EffectId, String> {
-    EffectId::find(name).ok_or_else(|| {
-        let known: Vec<&str> = EffectId::all().into_iter().map(EffectId::as_str).collect();
-        format!("there is no such effect; {}", suggestion(name, &known))
+/// The effect that an option names.
+fn effect(option: &str, name: &str, known: &Selection) -> Result<EffectId, Failure> {
+    known.find(name).ok_or_else(|| {
+        let ids: Vec<&str> = known.ids().into_iter().map(EffectId::as_str).collect();
+        Failure::input(format!("--{option}: there is no effect `{name}`; {}", suggestion(name, &ids)))
     })
 }
 

@@ -186,6 +186,9 @@ pub struct CandidateEntry {
     pub p_value: Option<f64>,
     /// Why it is no candidate.
     pub reason: Option<String>,
+    /// Of a formula: what becomes of its moment where port and starboard are exchanged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sides: Option<String>,
     /// Its forms.
     pub forms: Vec<FormEntry>,
 }

@@ -297,6 +297,7 @@ impl TraceParts<'_> {
             delta_bic: best.and_then(|best| best.delta_bic),
             p_value: best.and_then(|best| best.p_value),
             reason: reason.map(String::from),
+            sides: self.settings.selection.formula(id).map(|own| own.sides().as_str().into()),
             forms,
         }
     }

@@ -82,6 +82,16 @@ impl Selection {
         EffectId::all().into_iter().chain(self.formulas.iter().map(|formula| EffectId::of(formula))).collect()
     }
 
+    /// The formula of this name.
+    pub fn formula(&self, name: &str) -> Option<&Formula> {
+        self.formulas.iter().find(|formula| formula.id() == name).map(Arc::as_ref)
+    }
+
+    /// The effect of this name, on the list or a formula; `None` where there is none.
+    pub fn find(&self, name: &str) -> Option<EffectId> {
+        EffectId::find(name).or_else(|| self.formula(name).map(EffectId::of))
+    }
+
     /// Refuses an effect that is asked for and excluded at once, and two formulas of one name.
     pub fn check(&self) -> Result<(), SettingsError> {
         let ids: Vec<&str> = self.formulas.iter().map(|formula| formula.id()).collect();

@@ -12,7 +12,7 @@ pub mod targets;
 
 use std::path::PathBuf;
 
-use targets::{cells, find, gzip, manifest, nmea, record, rows, scenario, sidecar, stamp};
+use targets::{cells, find, formula, gzip, manifest, nmea, record, rows, scenario, sidecar, stamp};
 
 /// A format, and what is done with a file of it.
 #[derive(Clone, Copy)]
@@ -30,7 +30,7 @@ pub struct Target {
 }
 
 /// Every format.
-pub const TARGETS: [Target; 10] = [
+pub const TARGETS: [Target; 11] = [
     Target { name: "record", run: record, dictionary: "record", share: 6, made: Vec::new },
     Target { name: "nmea", run: nmea, dictionary: "nmea", share: 3, made: Vec::new },
     Target { name: "gzip", run: gzip, dictionary: "record", share: 2, made: seeds::packed },
@@ -41,6 +41,7 @@ pub const TARGETS: [Target; 10] = [
     Target { name: "rows", run: rows, dictionary: "", share: 2, made: seeds::rows },
     Target { name: "cells", run: cells, dictionary: "cells", share: 2, made: seeds::cells },
     Target { name: "manifest", run: manifest, dictionary: "scenario", share: 2, made: seeds::manifest },
+    Target { name: "formula", run: formula, dictionary: "formula", share: 2, made: Vec::new },
 ];
 
 impl Target {

@@ -13,6 +13,8 @@ use campaign::task::Shard;
 use identify::{Identifier, registry};
 use scenario::Scenario;
 use scenario::failure::Failure;
+use ship::effects::{self, Effect, Formula, Now};
+use ship::{EffectReal, Measured, Tangent};
 use study::screen;
 use study::views::tables;
 use tempfile::TempDir;
@@ -260,6 +262,42 @@ fn is_a_reading(ReadRecord { trial, warnings }: &ReadRecord) {
     let mut present = trial.channels().flat_map(|(_, values)| values);
     assert!(present.all(|value| !value.is_infinite()), "a value that is infinite");
     assert!(trial.heading().iter().filter(|heading| heading.is_finite()).count() >= Trial::FEWEST_ROWS);
+}
+
+/// An effect as a line of text; one that is read is worked out at all sorts of instants.
+pub fn formula(data: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(data);
+    match effects::formula(&text) {
+        Ok(formula) => {
+            worked_out(&formula);
+            true
+        }
+        Err(error) => {
+            assert!(error.at <= error.text.chars().count(), "a mark beyond the text");
+            is_one_message(&error.to_string())
+        }
+    }
+}
+
+/// In plain numbers and in numbers with derivatives it has the same value, finite or not.
+fn worked_out(formula: &Formula) {
+    for size in [0.0, -0.3, 1e-12, 7.0, 1e300, f64::NAN] {
+        let some = Some(size);
+        let measured = Measured { speed: some, sway: some, wind_speed: some, wind_from: some, propeller: some };
+        for measured in [measured, Measured::default()] {
+            let values = vec![size; formula.parameters().len()];
+            let plain = acceleration::<f64>(formula, &values, size, &measured);
+            let Tangent { value, .. } = acceleration::<Tangent>(formula, &values, size, &measured);
+            assert!(plain == value || plain.is_nan() && value.is_nan(), "{plain} and {value} of one formula");
+        }
+    }
+}
+
+fn acceleration<R: EffectReal>(formula: &Formula, values: &[f64], size: f64, measured: &Measured) -> R {
+    let (heading, rudder, yaw_rate, one) = (R::from(size), R::from(-size), R::from(size), R::from(1.0));
+    let now = Now { t: size, heading, yaw_rate, rudder, inverse_time: one, gain: one, measured };
+    let values: Vec<R> = values.iter().map(|&value| R::from(value)).collect();
+    R::acts(formula).yaw_acceleration(&values, &[], &now)
 }
 
 /// Every method gives numbers or a reason.

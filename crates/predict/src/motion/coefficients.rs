@@ -71,6 +71,10 @@ pub struct PlanarCoefficients {
     pub Y_d: f64,
 }
 
+simulate::numbers! {
+    PlanarCoefficients: "X_0" X_0, "X_vr" X_vr, "X_dd" X_dd, "X_dv" X_dv, "Y_v" Y_v, "Y_vv" Y_vv, "Y_r" Y_r, "Y_d" Y_d;
+}
+
 impl PlanarCoefficients {
     /// The coefficients in the order of [`SYMBOLS`].
     pub fn to_array(self) -> [f64; COEFFICIENTS] {
@@ -83,6 +87,13 @@ impl PlanarCoefficients {
     pub fn from_array(values: [f64; COEFFICIENTS]) -> Self {
         let [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d] = within(values, BOUNDS);
         Self { X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d }
+    }
+
+    /// The first coefficient outside its range: symbol, value, ends.
+    pub fn beyond(self) -> Option<(&'static str, f64, [f64; 2])> {
+        let all = SYMBOLS.into_iter().zip(self.to_array()).zip(BOUNDS);
+        all.map(|((symbol, value), ends)| (symbol, value, ends))
+            .find(|(_, value, [low, high])| !(*low..=*high).contains(value))
     }
 
     /// (u', v') in units of U₀²/L, of speeds in U₀, the yaw rate in U₀/L and the rudder in rad.

@@ -27,7 +27,7 @@ mod wind_moment;
 pub use effect::{
     Acts, Description, Effect, EffectReal, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale, SwayCoupling,
 };
-pub use formula::{Formula, FormulaError};
+pub use formula::{Formula, FormulaError, Sides};
 pub use moment_drift::MomentDrift;
 pub use nonlinear_damping::NonlinearDamping;
 pub use port_starboard_asymmetry::PortStarboardAsymmetry;

@@ -25,7 +25,11 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     if !trace.effects.is_empty() {
         before += &format!("\n{}", tables::effects(document).to_text());
     }
-    let mut behind = format!("\nnoise: {}", noise(document));
+    let mut behind = String::new();
+    for typed in formulas(document, "") {
+        behind += &format!("\n{typed}");
+    }
+    behind += &format!("\nnoise: {}", noise(document));
     if let Some(signature) = &trace.unexplained.signature {
         behind += &format!("\nleft: {signature}");
     }
@@ -40,6 +44,15 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
 pub fn all_errors(document: &TraceDocument) -> Table {
     let (fitted, judged) = document.errors();
     tables::errors(&[fitted, judged].concat())
+}
+
+/// A sentence for every effect that was typed, with `mark` around its text.
+fn formulas(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String> {
+    let typed = document.trace.candidates.iter().filter_map(|own| Some((own, own.sides.as_ref()?)));
+    typed.map(move |(own, sides)| {
+        let text = own.forms.first().map_or_else(String::new, |form| format!(" = {}", form.form));
+        format!("{mark}{}{text}{mark} {sides}", own.id)
+    })
 }
 
 /// The noise in one sentence.
@@ -127,6 +140,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     }
     table(&mut page, "Fitted records", tables::errors(&fitted), "");
     table(&mut page, "Candidates", tables::candidates(document), CANDIDATES);
+    formulas(document, "`").for_each(|typed| page.say(format!("{typed}.")));
     table(&mut page, "Noise", tables::noise(document), "");
     table(&mut page, "Model", tables::parameters(document), &model(document));
     what_is_left(&mut page, document);

@@ -176,9 +176,11 @@ fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
 }
 
 /// How the records of a request are analysed.
-pub fn settings(request: &TraceRequest) -> Settings {
+///
+/// Fails with the name of an effect that is not known.
+pub fn settings(request: &TraceRequest) -> Result<Settings, Failure> {
     let hulls = !request.without_hull;
-    Settings { rule: request.rule, selection: request.selection(), hulls, ..Settings::default() }
+    Ok(Settings { rule: request.rule, selection: request.selection()?, hulls, ..Settings::default() })
 }
 
 /// The records of a request without the channels that are withheld.

@@ -17,6 +17,7 @@ use crate::dynamics::Regressor;
 use crate::particulars::{self, Dimension};
 use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
+use parse::LONGEST;
 use points::{SignalPoint, SignalSizes};
 use program::{FormulaProgram, FormulaSignal};
 
@@ -32,6 +33,28 @@ const LONGEST_NAME: usize = 40;
 /// Formulas by name and text.
 type KnownFormulas = BTreeMap<(String, String), Arc<Formula>>;
 
+/// What becomes of a moment where port and starboard are exchanged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sides {
+    /// It changes its sign, as that of a ship with two equal sides does.
+    Alike,
+    /// It stays as it is.
+    Same,
+    /// Neither.
+    Differ,
+}
+
+impl Sides {
+    /// What such a moment does, in words.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Alike => "acts to port as to starboard",
+            Self::Same => "acts to the same side in turns to port and to starboard",
+            Self::Differ => "acts differently to port and to starboard",
+        }
+    }
+}
+
 /// A yaw moment as a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
@@ -40,7 +63,7 @@ pub struct Formula {
     expected: Vec<Expectation>,
     /// Whether the moment is proportional to a constant: it is absent where all these are zero. The others are shapes.
     is_size: Vec<bool>,
-    is_symmetric: bool,
+    sides: Sides,
     /// Length of the ship, m, for signals without dimension.
     length: f64,
 }
@@ -83,10 +106,15 @@ impl Formula {
         let is_name = name.starts_with(|letter: char| letter.is_ascii_alphabetic())
             && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         if !is_name || name.len() > LONGEST_NAME {
+            let name: String = name.chars().take(LONGEST_NAME).collect();
             let expected = format!(
                 "`{name}` cannot be the name of an effect: expected letters, digits and _, at most {LONGEST_NAME}"
             );
             return Err(error(0, expected));
+        }
+        let found = text.chars().count();
+        if found > LONGEST {
+            return Err(error(LONGEST, format!("{found} characters, expected at most {LONGEST}")));
         }
         let (formula, said) = text.split_once(';').unwrap_or((text, ""));
         let program = parse::parse(formula.trim_end())?;
@@ -98,7 +126,7 @@ impl Formula {
         let mut own = Self {
             description: Description { id: "", form: "", equation: "", parameters: &[] },
             is_size: vec![false; program.constants().len()],
-            is_symmetric: true,
+            sides: Sides::Alike,
             length: 1.0,
             program,
             expected,
@@ -146,7 +174,12 @@ impl Formula {
     fn describe(&mut self, name: &str, text: &str, shapes: &[f64]) {
         let kept = |words: String| -> &'static str { words.leak() };
         let symmetries: Vec<Option<bool>> = (0..shapes.len()).map(|place| self.symmetry(place, shapes)).collect();
-        self.is_symmetric = symmetries.iter().all(Option::is_some);
+        let of_sizes = |sides: bool| (0..shapes.len()).all(|own| !self.is_size[own] || symmetries[own] == Some(sides));
+        self.sides = match (of_sizes(true), of_sizes(false)) {
+            (true, _) => Sides::Alike,
+            (_, true) => Sides::Same,
+            _ => Sides::Differ,
+        };
         let units = self.units(shapes);
         let units: Vec<&'static str> = units.into_iter().map(|unit| unit.map_or(Parameter::NO_UNIT, kept)).collect();
         let parameters = (0..self.expected.len()).map(|place| {
@@ -232,9 +265,9 @@ impl Formula {
         Some([power(2.0, 1.0)?, power(1.0, 2.0)?])
     }
 
-    /// Whether it acts alike to port and to starboard, each constant with its sign or with the other.
-    pub fn is_symmetric(&self) -> bool {
-        self.is_symmetric
+    /// What becomes of it where port and starboard are exchanged and its constants stay.
+    pub fn sides(&self) -> Sides {
+        self.sides
     }
 
     fn moment(&self, constants: &[f64], point: &SignalPoint) -> f64 {

@@ -49,10 +49,18 @@ fn a_formula_does_what_an_effect_of_the_same_equation_does() {
 fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
     let bank = Formula::read("bank = c * tanh(k * psi)").expect("a formula");
     assert_eq!(bank.is_size, [true, false]);
-    assert!(bank.is_symmetric() && bank.parameters().iter().all(|own| !own.odd) && bank.sees_heading());
+    assert!(bank.parameters().iter().all(|own| !own.odd) && bank.sees_heading());
     let even = Formula::read("drift = c * abs(r) + d * v").expect("a formula");
     assert_eq!(even.parameters().iter().map(|own| own.odd).collect::<Vec<_>>(), [true, false]);
-    assert!(!Formula::read("one_sided = c * max(r, 0)").expect("a formula").is_symmetric());
+    for (line, sides) in [
+        ("bank = c * tanh(k * psi)", Sides::Alike),
+        ("trend = c * t", Sides::Same),
+        ("drift = c * abs(r) + d * abs(v)", Sides::Same),
+        ("drift = c * abs(r) + d * v", Sides::Differ),
+        ("one_sided = c * max(r, 0)", Sides::Differ),
+    ] {
+        assert_eq!(Formula::read(line).expect("a formula").sides(), sides, "{line}");
+    }
     assert!(Formula::read("trend = c * t").expect("a formula").is_of_time());
     for (line, units) in [
         ("cross = c * r * abs(v)", vec!["s²/m"]),
@@ -83,6 +91,11 @@ fn priors_follow_from_the_records_or_from_what_is_said() {
 
 #[test]
 fn what_is_no_effect_is_refused_where_it_stands() {
+    for long in ["x".repeat(9000), format!("x = c{}", " * r".repeat(3000)), format!("x = c * r; {}", "c".repeat(9000))]
+    {
+        let message = Formula::read(&long).expect_err("too long").to_string();
+        assert!(message.len() < 2000, "{} bytes", message.len());
+    }
     assert!(crate::effects::formula("second_order = c * r").is_err_and(|error| error.problem.contains("on the list")));
     for (line, at, said) in [
         ("bank", 4, "expected `name = formula`"),
