@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, STACK};
+use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK};
 
 /// Longest text, characters.
 const LONGEST: usize = 400;
@@ -31,10 +31,10 @@ impl fmt::Display for FormulaError {
     }
 }
 
-/// Reads a formula.
+/// Reads a formula; of a moment as an angle of the rudder the program is the yaw acceleration, K/T times that.
 ///
 /// Fails where the text is no formula, is too long or too deep, or has too many constants.
-pub fn parse(text: &str) -> Result<FormulaProgram, FormulaError> {
+pub fn parse(text: &str, is_moment: bool) -> Result<FormulaProgram, FormulaError> {
     let mut parser = FormulaParser {
         letters: text.chars().collect(),
         at: 0,
@@ -49,8 +49,12 @@ pub fn parse(text: &str) -> Result<FormulaProgram, FormulaError> {
     if let Some(at) = parser.letters.iter().position(|letter| letter.is_control()) {
         return Err(parser.error(at, String::from("a character that cannot be printed")));
     }
+    if is_moment {
+        parser.push(Instruction::Take(Operand::Signal(FormulaSignal::Gain)))?;
+    }
     parser.sum()?;
     match parser.peek() {
+        None if is_moment => parser.push(Instruction::Operate(FormulaOperator::Multiply)).map(|()| parser.program),
         None => Ok(parser.program),
         Some(')') => Err(parser.error(parser.at, String::from("a bracket that was not opened"))),
         Some(letter) => Err(parser.error(parser.at, format!("`{letter}`, expected an operator or the end"))),
@@ -88,8 +92,14 @@ impl FormulaParser {
 
     fn push(&mut self, step: Instruction) -> Result<(), FormulaError> {
         match step {
-            Instruction::Number(_) | Instruction::Constant(_) | Instruction::Signal(_) => self.waiting += 1,
-            Instruction::Operate(_) => self.waiting -= 1,
+            Instruction::Take(_) => self.waiting += 1,
+            Instruction::Operate(operator) => {
+                self.waiting -= 1;
+                if let Some(&Instruction::Take(operand)) = self.program.instructions.last() {
+                    self.program.instructions.pop();
+                    return self.push(Instruction::With(operator, operand));
+                }
+            }
             _ => {}
         }
         if self.waiting > STACK {
@@ -97,6 +107,7 @@ impl FormulaParser {
                 self.error(self.at, format!("more than {STACK} values wait here for an operator; use fewer brackets"))
             );
         }
+        self.program.waiting = self.program.waiting.max(self.waiting);
         self.program.instructions.push(step);
         Ok(())
     }
@@ -164,8 +175,8 @@ impl FormulaParser {
     /// A power whose exponent was read from instruction `from` on; a whole number takes negative bases, too.
     fn raise(&mut self, from: usize) -> Result<(), FormulaError> {
         let exponent = match self.program.instructions[from..] {
-            [Instruction::Number(number)] => Some(number),
-            [Instruction::Number(number), Instruction::Negate] => Some(-number),
+            [Instruction::Take(Operand::Number(number))] => Some(number),
+            [Instruction::Take(Operand::Number(number)), Instruction::Negate] => Some(-number),
             _ => None,
         };
         match exponent.filter(|number| number.fract() == 0.0 && number.abs() <= 20.0) {
@@ -223,7 +234,7 @@ impl FormulaParser {
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
         let number = number.ok_or_else(|| self.error(from, format!("`{text}` is no number")))?;
         self.at = end;
-        self.push(Instruction::Number(number))
+        self.push(Instruction::Take(Operand::Number(number)))
     }
 
     fn name(&mut self) -> Result<(), FormulaError> {
@@ -235,10 +246,10 @@ impl FormulaParser {
             return self.call(&name, from);
         }
         if let Some((_, signal)) = FormulaSignal::NAMES.iter().find(|(known, _)| *known == name) {
-            return self.push(Instruction::Signal(*signal));
+            return self.push(Instruction::Take(Operand::Signal(*signal)));
         }
         if name == "pi" {
-            return self.push(Instruction::Number(std::f64::consts::PI));
+            return self.push(Instruction::Take(Operand::Number(std::f64::consts::PI)));
         }
         if let Some(known) = misspelt(&name) {
             return Err(self.error(from, format!("`{name}` is no signal; did you mean `{known}`?")));
@@ -258,7 +269,7 @@ impl FormulaParser {
         if place == constants.len() {
             constants.push(name);
         }
-        self.push(Instruction::Constant(place))
+        self.push(Instruction::Take(Operand::Constant(place)))
     }
 
     fn call(&mut self, name: &str, from: usize) -> Result<(), FormulaError> {
@@ -324,7 +335,10 @@ mod tests {
                 _ => 1.5,
             })
         };
-        parse(text).unwrap_or_else(|error| panic!("{error}")).value(&[2.0, 3.0, 5.0, 7.0], signal).expect("all there")
+        parse(text, false)
+            .unwrap_or_else(|error| panic!("{error}"))
+            .value(&[2.0, 3.0, 5.0, 7.0], signal)
+            .expect("all there")
     }
 
     #[test]
@@ -351,8 +365,7 @@ mod tests {
         ] {
             assert!((value(text) - expected).abs() < 1e-12, "{text}: {} is not {expected}", value(text));
         }
-        assert_eq!(parse("k*tanh(c*psi)*k").expect("a formula").constants(), ["k", "c"]);
-        assert_eq!(parse("c*r*abs(v)*r").expect("a formula").signals(), [FormulaSignal::YawRate, FormulaSignal::Sway]);
+        assert_eq!(parse("k*tanh(c*psi)*k", false).expect("a formula").constants(), ["k", "c"]);
     }
 
     #[test]
@@ -375,10 +388,10 @@ mod tests {
             ("a*b*c*d*e*r", 8, "one more than the 4 constants"),
             ("c*é", 2, "without accents"),
         ] {
-            let error = parse(text).expect_err(text);
+            let error = parse(text, false).expect_err(text);
             assert!(error.at == at && error.problem.contains(said), "{text}: {error:?}");
         }
-        let marked = parse("c * dleta").expect_err("misspelt").to_string();
+        let marked = parse("c * dleta", false).expect_err("misspelt").to_string();
         assert!(marked.ends_with("\n  c * dleta\n      ^"), "{marked}");
     }
 
@@ -387,7 +400,7 @@ mod tests {
         for text in
             ["(".repeat(300), "-".repeat(300), "2^".repeat(150), "r+(".repeat(100), "c*".repeat(300), "a\u{0}".into()]
         {
-            assert!(parse(&text).is_err(), "{text}");
+            assert!(parse(&text, false).is_err(), "{text}");
         }
     }
 }

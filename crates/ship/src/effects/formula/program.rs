@@ -3,10 +3,13 @@
 
 use estimation::number::Real;
 
+use crate::dynamics::Regressor;
 use crate::effects::effect::Now;
+use crate::particulars::Dimension;
 
-/// Most values that wait for an operator at once.
+/// Most values that wait for an operator at once, and as many as most formulas have waiting.
 pub(super) const STACK: usize = 16;
+const FEW: usize = 4;
 
 /// A signal that a formula may name. Units and signs are those of NOTATION.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,11 +38,27 @@ pub enum FormulaSignal {
     PrimeYawRate,
     /// `vp`, sway velocity without dimension, v/U.
     PrimeSway,
+    /// `q`, speed over that of the approach, U/U₀; 1 where the record has no speed.
+    SpeedRatio,
+    /// `start`, time of the first row, s.
+    Start,
+    /// `K_over_T`, K/T of the ship, 1/s²: a moment divided by it is a yaw acceleration.
+    Gain,
 }
+
+/// Numbers that a formula takes from a record: the signal that needs it, its neutral value and its dimension.
+pub(super) const OF_RECORD: [(FormulaSignal, f64, Dimension); 3] = [
+    (FormulaSignal::SpeedRatio, 1.0, [-1, 1]),
+    (FormulaSignal::Start, 0.0, [1, 0]),
+    (FormulaSignal::PrimeYawRate, 1.0, [0, 1]),
+];
+
+/// Their values: approach speed, m/s, first time, s, and length of the ship, m.
+pub(super) type OfRecord = [f64; OF_RECORD.len()];
 
 impl FormulaSignal {
     /// Every signal with its name.
-    pub const NAMES: [(&'static str, Self); 12] = [
+    pub const NAMES: [(&'static str, Self); 15] = [
         ("r", Self::YawRate),
         ("delta", Self::Rudder),
         ("psi", Self::Heading),
@@ -52,10 +71,26 @@ impl FormulaSignal {
         ("wind_angle", Self::WindAngle),
         ("rp", Self::PrimeYawRate),
         ("vp", Self::PrimeSway),
+        ("q", Self::SpeedRatio),
+        ("start", Self::Start),
+        ("K_over_T", Self::Gain),
     ];
 
-    /// Its value at an instant; `None` where the record has no such channel. `length` is that of the ship, m.
-    pub(super) fn at<R: Real>(self, now: &Now<R>, length: f64) -> Option<R> {
+    /// The measured channels it needs.
+    pub(super) fn channels(self) -> &'static [Regressor] {
+        match self {
+            Self::Sway => &[Regressor::Sway],
+            Self::Surge | Self::PrimeSway => &[Regressor::Sway, Regressor::Speed],
+            Self::Speed | Self::PrimeYawRate => &[Regressor::Speed],
+            Self::Propeller => &[Regressor::Propeller],
+            Self::WindSpeed | Self::WindAngle => &[Regressor::Wind],
+            _ => &[],
+        }
+    }
+
+    /// Its value at an instant of a record; `None` where the record has no such channel.
+    #[inline(always)]
+    pub(super) fn at<R: Real>(self, now: &Now<R>, &[approach_speed, start, length]: &OfRecord) -> Option<R> {
         let measured = now.measured;
         Some(match self {
             Self::YawRate => now.yaw_rate,
@@ -70,6 +105,9 @@ impl FormulaSignal {
             Self::WindAngle => R::from(measured.wind_from?),
             Self::PrimeYawRate => now.yaw_rate * (length / measured.speed?),
             Self::PrimeSway => R::from(measured.sway? / measured.speed?),
+            Self::SpeedRatio => R::from(measured.speed.map_or(1.0, |speed| speed / approach_speed)),
+            Self::Start => R::from(start),
+            Self::Gain => now.gain,
         })
     }
 }
@@ -114,6 +152,7 @@ impl FormulaFunction {
         ("step", Self::Step),
     ];
 
+    #[inline]
     fn of<R: Real>(self, x: R) -> R {
         match self {
             Self::Abs => x.abs(),
@@ -160,6 +199,7 @@ impl FormulaOperator {
     pub const NAMES: [(&'static str, Self); 4] =
         [("min", Self::Min), ("max", Self::Max), ("pow", Self::Power), ("step", Self::SmoothStep)];
 
+    #[inline]
     fn of<R: Real>(self, x: R, y: R) -> R {
         match self {
             Self::Add => x + y,
@@ -186,23 +226,32 @@ impl FormulaOperator {
     }
 }
 
-/// One step of a program.
+/// What needs no working out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Instruction {
+pub(super) enum Operand {
     /// A number.
     Number(f64),
     /// A constant that is fitted, by its place.
     Constant(usize),
     /// A signal.
     Signal(FormulaSignal),
+}
+
+/// One step of a program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Instruction {
+    /// The last value waits; this is the last one now.
+    Take(Operand),
     /// Minus.
     Negate,
     /// A whole power.
     WholePower(i32),
     /// A function of the last value.
     Call(FormulaFunction),
-    /// An operator between the last two values.
+    /// An operator between the value that has waited least and the last one.
     Operate(FormulaOperator),
+    /// An operator between the last value and this: what would be a `Take` and an `Operate`.
+    With(FormulaOperator, Operand),
 }
 
 /// A formula ready to be evaluated.
@@ -211,6 +260,8 @@ pub struct FormulaProgram {
     pub(super) instructions: Vec<Instruction>,
     /// The constants in the order of their first use.
     pub(super) constants: Vec<String>,
+    /// Most values that wait at once.
+    pub(super) waiting: usize,
 }
 
 impl FormulaProgram {
@@ -219,46 +270,52 @@ impl FormulaProgram {
         &self.constants
     }
 
-    /// The signals it names, each once.
-    pub fn signals(&self) -> Vec<FormulaSignal> {
-        let named = self.instructions.iter().filter_map(|step| match step {
-            Instruction::Signal(signal) => Some(*signal),
-            _ => None,
-        });
-        let mut signals: Vec<FormulaSignal> = named.collect();
-        signals.sort_unstable();
-        signals.dedup();
-        signals
+    /// Whether it names any of these signals.
+    pub fn names(&self, mut any: impl FnMut(FormulaSignal) -> bool) -> bool {
+        self.instructions.iter().any(|step| match step {
+            Instruction::Take(Operand::Signal(signal)) | Instruction::With(_, Operand::Signal(signal)) => any(*signal),
+            _ => false,
+        })
     }
 
     /// Its value with these constants; `signal` gives the signals. `None` where one is missing.
     #[inline]
     pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> Option<R>) -> Option<R> {
-        let mut stack = [R::from(0.0); STACK];
-        let mut top = 0;
+        match self.waiting {
+            0..=FEW => self.run::<R, FEW>(constants, signal),
+            _ => self.run::<R, STACK>(constants, signal),
+        }
+    }
+
+    #[inline]
+    fn run<R: Real, const WAITING: usize>(
+        &self,
+        constants: &[R],
+        signal: impl Fn(FormulaSignal) -> Option<R>,
+    ) -> Option<R> {
+        let value = |operand: Operand| match operand {
+            Operand::Number(number) => Some(R::from(number)),
+            Operand::Constant(place) => Some(constants[place]),
+            Operand::Signal(own) => signal(own),
+        };
+        let (mut last, mut waiting, mut count) = (R::from(0.0), [R::from(0.0); WAITING], 0);
         for step in &self.instructions {
             match *step {
-                Instruction::Number(number) => {
-                    stack[top] = R::from(number);
-                    top += 1;
+                Instruction::Take(operand) => {
+                    waiting[count] = last;
+                    count += 1;
+                    last = value(operand)?;
                 }
-                Instruction::Constant(place) => {
-                    stack[top] = constants[place];
-                    top += 1;
-                }
-                Instruction::Signal(own) => {
-                    stack[top] = signal(own)?;
-                    top += 1;
-                }
-                Instruction::Negate => stack[top - 1] = -stack[top - 1],
-                Instruction::WholePower(power) => stack[top - 1] = stack[top - 1].powi(power),
-                Instruction::Call(function) => stack[top - 1] = function.of(stack[top - 1]),
+                Instruction::Negate => last = -last,
+                Instruction::WholePower(power) => last = last.powi(power),
+                Instruction::Call(function) => last = function.of(last),
                 Instruction::Operate(operator) => {
-                    top -= 1;
-                    stack[top - 1] = operator.of(stack[top - 1], stack[top]);
+                    count -= 1;
+                    last = operator.of(waiting[count], last);
                 }
+                Instruction::With(operator, operand) => last = operator.of(last, value(operand)?),
             }
         }
-        Some(stack[0])
+        Some(last)
     }
 }
