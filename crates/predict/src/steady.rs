@@ -113,7 +113,6 @@ impl SteadyCurve {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
 
     use super::*;
     use ship::ResponseModel;

@@ -80,7 +80,7 @@ pub(super) static LIST: [ListedEffect; 22] = [
     Rust(|| Arc::new(Backlash)),
     // Angles below g do not act, larger ones act less g.
     row(["rudder_deadband", "dead band", "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)"],
-        (Places::RUDDER, "delta - min(max(g, 0), max(-max(g, 0), delta))"),
+        (Places::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))"),
         &[Backlash::HALF_WIDTH],
         |about| Some(Backlash::prior(about))),
     // The gain is 1 + a to starboard and 1 − a to port.

@@ -1,4 +1,3 @@
-use std::sync::Arc;
 
 use approx::assert_relative_eq;
 use nalgebra::{DMatrix, DVector};
