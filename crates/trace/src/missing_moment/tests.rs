@@ -1,4 +1,3 @@
-
 use approx::assert_relative_eq;
 use nalgebra::{DMatrix, DVector};
 use ship::angle::from_deg;

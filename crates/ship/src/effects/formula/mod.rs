@@ -164,12 +164,13 @@ impl Formula {
     /// The measured channels it needs.
     fn channels(&self) -> impl Iterator<Item = Regressor> {
         let all = [Regressor::Sway, Regressor::Speed, Regressor::Wind, Regressor::Propeller];
-        all.into_iter().filter(|channel| self.program.names(|signal| signal.channels().contains(channel)))
+        all.into_iter()
+            .filter(|channel| self.program.signals().iter().any(|signal| signal.channels().contains(channel)))
     }
 
     /// Numbers of [`OF_RECORD`] that it takes, by their places.
     fn taken(&self) -> impl Iterator<Item = usize> {
-        (0..OF_RECORD.len()).filter(|place| self.program.names(|signal| signal == OF_RECORD[*place].0))
+        (0..OF_RECORD.len()).filter(|place| self.program.signals().contains(&OF_RECORD[*place].0))
     }
 
     /// The same for a ship of this length, m.
@@ -219,7 +220,7 @@ impl Effect for Formula {
     }
 
     fn uses(&self, channel: Regressor) -> bool {
-        let has_ratio = || self.program.names(|signal| signal == FormulaSignal::SpeedRatio);
+        let has_ratio = || self.program.signals().contains(&FormulaSignal::SpeedRatio);
         self.channels().any(|own| own == channel) || channel == Regressor::Speed && has_ratio()
     }
 
@@ -234,11 +235,11 @@ impl Effect for Formula {
     }
 
     fn is_of_time(&self) -> bool {
-        self.program.names(|signal| signal == FormulaSignal::Time)
+        self.program.signals().contains(&FormulaSignal::Time)
     }
 
     fn sees_heading(&self) -> bool {
-        self.program.names(|signal| signal == FormulaSignal::Heading)
+        self.program.signals().contains(&FormulaSignal::Heading)
     }
 }
 

@@ -50,15 +50,32 @@ pub fn parse(text: &str, is_moment: bool) -> Result<FormulaProgram, FormulaError
         return Err(parser.error(at, String::from("a character that cannot be printed")));
     }
     if is_moment {
-        parser.push(Instruction::Take(Operand::Signal(FormulaSignal::Gain)))?;
+        parser.signal(FormulaSignal::Gain)?;
     }
     parser.sum()?;
     match parser.peek() {
-        None if is_moment => parser.push(Instruction::Operate(FormulaOperator::Multiply)).map(|()| parser.program),
-        None => Ok(parser.program),
+        None => {
+            if is_moment {
+                parser.push(Instruction::Operate(FormulaOperator::Multiply))?;
+            }
+            Ok(FormulaProgram { waiting: waiting(&parser.program.instructions), ..parser.program })
+        }
         Some(')') => Err(parser.error(parser.at, String::from("a bracket that was not opened"))),
         Some(letter) => Err(parser.error(parser.at, format!("`{letter}`, expected an operator or the end"))),
     }
+}
+
+/// Most values that wait at once beside the last one.
+fn waiting(instructions: &[Instruction]) -> usize {
+    let counts = instructions.iter().scan(0, |count, step| {
+        match step {
+            Instruction::Take(_) => *count += 1,
+            Instruction::Operate(_) => *count -= 1,
+            _ => {}
+        }
+        Some(*count)
+    });
+    counts.max().unwrap_or(1) - 1
 }
 
 struct FormulaParser {
@@ -107,7 +124,6 @@ impl FormulaParser {
                 self.error(self.at, format!("more than {STACK} values wait here for an operator; use fewer brackets"))
             );
         }
-        self.program.waiting = self.program.waiting.max(self.waiting);
         self.program.instructions.push(step);
         Ok(())
     }
@@ -246,7 +262,7 @@ impl FormulaParser {
             return self.call(&name, from);
         }
         if let Some((_, signal)) = FormulaSignal::NAMES.iter().find(|(known, _)| *known == name) {
-            return self.push(Instruction::Take(Operand::Signal(*signal)));
+            return self.signal(*signal);
         }
         if name == "pi" {
             return self.push(Instruction::Take(Operand::Number(std::f64::consts::PI)));
@@ -270,6 +286,15 @@ impl FormulaParser {
             constants.push(name);
         }
         self.push(Instruction::Take(Operand::Constant(place)))
+    }
+
+    fn signal(&mut self, signal: FormulaSignal) -> Result<(), FormulaError> {
+        let signals = &mut self.program.signals;
+        let place = signals.iter().position(|known| *known == signal).unwrap_or(signals.len());
+        if place == signals.len() {
+            signals.push(signal);
+        }
+        self.push(Instruction::Take(Operand::Signal(place)))
     }
 
     fn call(&mut self, name: &str, from: usize) -> Result<(), FormulaError> {

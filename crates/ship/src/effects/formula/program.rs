@@ -7,9 +7,9 @@ use crate::dynamics::Regressor;
 use crate::effects::effect::Now;
 use crate::particulars::Dimension;
 
-/// Most values that wait for an operator at once, and as many as most formulas have waiting.
+/// Most values that wait for an operator at once, and as many as most formulas have, of signals too.
 pub(super) const STACK: usize = 16;
-const FEW: usize = 4;
+const FEW: usize = 3;
 
 /// A signal that a formula may name. Units and signs are those of NOTATION.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -233,8 +233,8 @@ pub(super) enum Operand {
     Number(f64),
     /// A constant that is fitted, by its place.
     Constant(usize),
-    /// A signal.
-    Signal(FormulaSignal),
+    /// A signal, by its place.
+    Signal(usize),
 }
 
 /// One step of a program.
@@ -260,7 +260,9 @@ pub struct FormulaProgram {
     pub(super) instructions: Vec<Instruction>,
     /// The constants in the order of their first use.
     pub(super) constants: Vec<String>,
-    /// Most values that wait at once.
+    /// The signals in the order of their first use.
+    pub(super) signals: Vec<FormulaSignal>,
+    /// Most values that wait at once beside the last one.
     pub(super) waiting: usize,
 }
 
@@ -270,41 +272,47 @@ impl FormulaProgram {
         &self.constants
     }
 
-    /// Whether it names any of these signals.
-    pub fn names(&self, mut any: impl FnMut(FormulaSignal) -> bool) -> bool {
-        self.instructions.iter().any(|step| match step {
-            Instruction::Take(Operand::Signal(signal)) | Instruction::With(_, Operand::Signal(signal)) => any(*signal),
-            _ => false,
-        })
+    /// The signals it names, each once.
+    pub fn signals(&self) -> &[FormulaSignal] {
+        &self.signals
     }
 
     /// Its value with these constants; `signal` gives the signals. `None` where one is missing.
     #[inline]
     pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> Option<R>) -> Option<R> {
-        match self.waiting {
+        match self.waiting.max(self.signals.len()) {
             0..=FEW => self.run::<R, FEW>(constants, signal),
             _ => self.run::<R, STACK>(constants, signal),
         }
     }
 
     #[inline]
-    fn run<R: Real, const WAITING: usize>(
+    fn run<R: Real, const MOST: usize>(
         &self,
         constants: &[R],
         signal: impl Fn(FormulaSignal) -> Option<R>,
     ) -> Option<R> {
+        let mut signals = [R::from(0.0); MOST];
+        for (value, own) in signals.iter_mut().zip(&self.signals) {
+            *value = signal(*own)?;
+        }
         let value = |operand: Operand| match operand {
-            Operand::Number(number) => Some(R::from(number)),
-            Operand::Constant(place) => Some(constants[place]),
-            Operand::Signal(own) => signal(own),
+            Operand::Number(number) => R::from(number),
+            Operand::Constant(place) => constants[place],
+            Operand::Signal(place) => signals[place],
         };
-        let (mut last, mut waiting, mut count) = (R::from(0.0), [R::from(0.0); WAITING], 0);
-        for step in &self.instructions {
+        let Some((&Instruction::Take(first), rest)) = self.instructions.split_first() else { return None };
+        let mut last = value(first);
+        let (mut waiting, mut count) = ([R::from(0.0); MOST], 0);
+        for step in rest {
             match *step {
+                // Products are most of what formulas do.
+                Instruction::With(FormulaOperator::Multiply, Operand::Signal(place)) => last = last * signals[place],
+                Instruction::With(FormulaOperator::Multiply, operand) => last = last * value(operand),
                 Instruction::Take(operand) => {
                     waiting[count] = last;
                     count += 1;
-                    last = value(operand)?;
+                    last = value(operand);
                 }
                 Instruction::Negate => last = -last,
                 Instruction::WholePower(power) => last = last.powi(power),
@@ -313,7 +321,7 @@ impl FormulaProgram {
                     count -= 1;
                     last = operator.of(waiting[count], last);
                 }
-                Instruction::With(operator, operand) => last = operator.of(last, value(operand)?),
+                Instruction::With(operator, operand) => last = operator.of(last, value(operand)),
             }
         }
         Some(last)
