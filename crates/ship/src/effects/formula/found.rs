@@ -16,7 +16,7 @@ const MODERATE: f64 = 0.2;
 impl Formula {
     /// Its value at a point: a yaw acceleration or a rudder angle.
     pub(super) fn value_at(&self, constants: &[f64], point: &SignalPoint) -> f64 {
-        self.program.value(constants, |signal| Some(point.of(signal))).unwrap_or(f64::NAN)
+        self.program.value(constants, |signal| point.of(signal))
     }
 
     /// The moment as an angle of the rudder, rad.

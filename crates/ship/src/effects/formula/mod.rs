@@ -52,6 +52,8 @@ pub struct Formula {
     program: FormulaProgram,
     description: Description,
     acts: Places,
+    /// The measured channels that it needs.
+    channels: Vec<Regressor>,
     of_record: OfRecord,
     /// What is expected, of a formula of the list.
     listed: Option<ListedPrior>,
@@ -112,8 +114,10 @@ impl Formula {
     /// # Panics
     /// When the row is no formula: a mistake of the list.
     pub(super) fn listed(row: &ListedFormula) -> Self {
+        let program = parse::parse(row.formula, false).unwrap_or_else(|error| panic!("{error}"));
         Self {
-            program: parse::parse(row.formula, false).unwrap_or_else(|error| panic!("{error}")),
+            channels: program.channels(),
+            program,
             description: row.description,
             acts: row.acts,
             of_record: OF_RECORD.map(|(_, neutral, _)| neutral),
@@ -143,6 +147,7 @@ impl Formula {
         let kept = |words: String| -> &'static str { words.leak() };
         let equation = kept(format!("T r' + r = K (δ + δ_r + {})", formula.trim()));
         let mut own = Self {
+            channels: program.channels(),
             program,
             description: Description { id: "", form: "", equation, parameters: &[] },
             acts: Places::MOMENT,
@@ -159,13 +164,6 @@ impl Formula {
         let (id, form) = (kept(name.to_owned()), kept(text.to_owned()));
         own.description = Description { id, form, parameters: own.found_parameters().leak(), ..own.description };
         Ok(own)
-    }
-
-    /// The measured channels it needs.
-    fn channels(&self) -> impl Iterator<Item = Regressor> {
-        let all = [Regressor::Sway, Regressor::Speed, Regressor::Wind, Regressor::Propeller];
-        all.into_iter()
-            .filter(|channel| self.program.signals().iter().any(|signal| signal.channels().contains(channel)))
     }
 
     /// Numbers of [`OF_RECORD`] that it takes, by their places.
@@ -193,7 +191,7 @@ impl Effect for Formula {
             Regressor::Wind => about.wind_square.is_some(),
             Regressor::Propeller => about.propeller.is_some(),
         };
-        if !self.channels().all(has) {
+        if !self.channels.iter().copied().all(has) {
             return None;
         }
         let SignalSizes { speed, length, .. } = SignalSizes::of(about);
@@ -216,12 +214,12 @@ impl Effect for Formula {
     }
 
     fn needs(&self) -> Option<Regressor> {
-        self.channels().next()
+        self.channels.first().copied()
     }
 
     fn uses(&self, channel: Regressor) -> bool {
         let has_ratio = || self.program.signals().contains(&FormulaSignal::SpeedRatio);
-        self.channels().any(|own| own == channel) || channel == Regressor::Speed && has_ratio()
+        self.channels.contains(&channel) || channel == Regressor::Speed && has_ratio()
     }
 
     fn constants(&self) -> Vec<(f64, Dimension)> {
@@ -249,15 +247,15 @@ impl<R: Real> Acts<R> for Formula {
         if !self.acts.rudder {
             return rudder;
         }
-        self.program.value(p, |signal| (signal == FormulaSignal::Rudder).then_some(rudder)).unwrap_or(rudder)
+        self.program.value(p, |_| rudder)
     }
 
     #[inline]
     fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
-        if !self.acts.moment {
+        if !self.acts.moment || !self.channels.iter().all(|channel| now.measured.has(*channel)) {
             return R::from(0.0);
         }
-        self.program.value(p, |signal| signal.at(now, &self.of_record)).unwrap_or_default()
+        self.program.value(p, |signal| signal.at(now, &self.of_record))
     }
 }
 

@@ -3,7 +3,7 @@
 
 use estimation::number::Real;
 
-use crate::dynamics::Regressor;
+use crate::dynamics::{Measured, Regressor};
 use crate::effects::effect::Now;
 use crate::particulars::Dimension;
 
@@ -88,27 +88,29 @@ impl FormulaSignal {
         }
     }
 
-    /// Its value at an instant of a record; `None` where the record has no such channel.
+    /// Its value at an instant of a record that has its channels.
     #[inline(always)]
-    pub(super) fn at<R: Real>(self, now: &Now<R>, &[approach_speed, start, length]: &OfRecord) -> Option<R> {
-        let measured = now.measured;
-        Some(match self {
+    pub(super) fn at<R: Real>(self, now: &Now<R>, &[approach_speed, start, length]: &OfRecord) -> R {
+        let Measured { speed, sway, wind_speed, wind_from, propeller } = *now.measured;
+        let there = |channel: Option<f64>| channel.unwrap_or(f64::NAN);
+        let of = |channel: Option<f64>| R::from(there(channel));
+        match self {
             Self::YawRate => now.yaw_rate,
             Self::Rudder => now.rudder,
             Self::Heading => now.heading,
-            Self::Sway => R::from(measured.sway?),
-            Self::Surge => R::from((measured.speed?.powi(2) - measured.sway?.powi(2)).max(0.0).sqrt()),
-            Self::Speed => R::from(measured.speed?),
-            Self::Propeller => R::from(measured.propeller?),
+            Self::Sway => of(sway),
+            Self::Surge => R::from((there(speed).powi(2) - there(sway).powi(2)).max(0.0).sqrt()),
+            Self::Speed => of(speed),
+            Self::Propeller => of(propeller),
             Self::Time => R::from(now.t),
-            Self::WindSpeed => R::from(measured.wind_speed?),
-            Self::WindAngle => R::from(measured.wind_from?),
-            Self::PrimeYawRate => now.yaw_rate * (length / measured.speed?),
-            Self::PrimeSway => R::from(measured.sway? / measured.speed?),
-            Self::SpeedRatio => R::from(measured.speed.map_or(1.0, |speed| speed / approach_speed)),
+            Self::WindSpeed => of(wind_speed),
+            Self::WindAngle => of(wind_from),
+            Self::PrimeYawRate => now.yaw_rate * (length / there(speed)),
+            Self::PrimeSway => R::from(there(sway) / there(speed)),
+            Self::SpeedRatio => R::from(speed.map_or(1.0, |speed| speed / approach_speed)),
             Self::Start => R::from(start),
             Self::Gain => now.gain,
-        })
+        }
     }
 }
 
@@ -277,33 +279,40 @@ impl FormulaProgram {
         &self.signals
     }
 
-    /// Its value with these constants; `signal` gives the signals. `None` where one is missing.
+    /// The measured channels that these need, the sway first.
+    pub(super) fn channels(&self) -> Vec<Regressor> {
+        let all = [Regressor::Sway, Regressor::Speed, Regressor::Wind, Regressor::Propeller];
+        all.into_iter().filter(|own| self.signals.iter().any(|signal| signal.channels().contains(own))).collect()
+    }
+
+    /// Its value with these constants; `signal` gives the signals.
     #[inline]
-    pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> Option<R>) -> Option<R> {
-        match self.waiting.max(self.signals.len()) {
-            0..=FEW => self.run::<R, FEW>(constants, signal),
-            _ => self.run::<R, STACK>(constants, signal),
+    pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> R) -> R {
+        match (self.signals.len(), self.waiting) {
+            (0..=FEW, 0) => self.run::<R, FEW, 0>(constants, signal),
+            (0..=FEW, 0..=FEW) => self.run::<R, FEW, FEW>(constants, signal),
+            _ => self.run::<R, STACK, STACK>(constants, signal),
         }
     }
 
     #[inline]
-    fn run<R: Real, const MOST: usize>(
+    fn run<R: Real, const SIGNALS: usize, const WAITING: usize>(
         &self,
         constants: &[R],
-        signal: impl Fn(FormulaSignal) -> Option<R>,
-    ) -> Option<R> {
-        let mut signals = [R::from(0.0); MOST];
+        signal: impl Fn(FormulaSignal) -> R,
+    ) -> R {
+        let mut signals = [R::from(0.0); SIGNALS];
         for (value, own) in signals.iter_mut().zip(&self.signals) {
-            *value = signal(*own)?;
+            *value = signal(*own);
         }
         let value = |operand: Operand| match operand {
             Operand::Number(number) => R::from(number),
             Operand::Constant(place) => constants[place],
             Operand::Signal(place) => signals[place],
         };
-        let Some((&Instruction::Take(first), rest)) = self.instructions.split_first() else { return None };
+        let Some((&Instruction::Take(first), rest)) = self.instructions.split_first() else { return R::from(0.0) };
         let mut last = value(first);
-        let (mut waiting, mut count) = ([R::from(0.0); MOST], 0);
+        let (mut waiting, mut count) = ([R::from(0.0); WAITING], 0);
         for step in rest {
             match *step {
                 // Products are most of what formulas do.
@@ -324,6 +333,6 @@ impl FormulaProgram {
                 Instruction::With(operator, operand) => last = operator.of(last, value(operand)),
             }
         }
-        Some(last)
+        last
     }
 }
