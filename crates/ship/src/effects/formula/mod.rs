@@ -47,7 +47,7 @@ pub(super) struct ListedFormula {
 pub(super) type ListedPrior = fn(&Manoeuvres) -> Option<[f64; 3]>;
 
 /// An effect as a formula.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Formula {
     program: FormulaProgram,
     description: Description,
@@ -64,12 +64,6 @@ pub struct Formula {
 }
 
 /// A formula is its name, its text and the numbers it takes from a record.
-impl std::fmt::Debug for Formula {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} = {} {:?}", self.description.id, self.description.form, self.of_record)
-    }
-}
-
 impl PartialEq for Formula {
     fn eq(&self, other: &Self) -> bool {
         (self.description, self.of_record) == (other.description, other.of_record)
@@ -115,13 +109,17 @@ impl Formula {
     /// When the row is no formula: a mistake of the list.
     pub(super) fn listed(row: &ListedFormula) -> Self {
         let program = parse::parse(row.formula, false).unwrap_or_else(|error| panic!("{error}"));
+        Self { acts: row.acts, listed: Some(row.prior), ..Self::of(program, row.description) }
+    }
+
+    fn of(program: FormulaProgram, description: Description) -> Self {
         Self {
             channels: program.channels(),
             program,
-            description: row.description,
-            acts: row.acts,
+            description,
+            acts: Places::MOMENT,
             of_record: OF_RECORD.map(|(_, neutral, _)| neutral),
-            listed: Some(row.prior),
+            listed: None,
             expected: Vec::new(),
             is_size: Vec::new(),
         }
@@ -146,16 +144,8 @@ impl Formula {
             expectations(said, program.constants()).map_err(|problem| error(formula.chars().count() + 1, problem))?;
         let kept = |words: String| -> &'static str { words.leak() };
         let equation = kept(format!("T r' + r = K (δ + δ_r + {})", formula.trim()));
-        let mut own = Self {
-            channels: program.channels(),
-            program,
-            description: Description { id: "", form: "", equation, parameters: &[] },
-            acts: Places::MOMENT,
-            of_record: OF_RECORD.map(|(_, neutral, _)| neutral),
-            listed: None,
-            expected,
-            is_size: Vec::new(),
-        };
+        let none = Description { id: "", form: "", equation, parameters: &[] };
+        let mut own = Self { expected, ..Self::of(program, none) };
         own.is_size = own.sizes();
         if !own.can_be_absent() {
             let problem = "no value of the constants takes the effect away: multiply every term with a constant, as in `c * tanh(k * psi)`";

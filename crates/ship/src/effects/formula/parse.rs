@@ -47,7 +47,7 @@ pub fn parse(text: &str, is_moment: bool) -> Result<FormulaProgram, FormulaError
         return Err(parser.error(LONGEST, format!("{found} characters, expected at most {LONGEST}")));
     }
     if let Some(at) = parser.letters.iter().position(|letter| letter.is_control()) {
-        return Err(parser.error(at, String::from("a character that cannot be printed")));
+        return Err(parser.error(at, "a character that cannot be printed"));
     }
     if is_moment {
         parser.signal(FormulaSignal::Gain)?;
@@ -58,24 +58,11 @@ pub fn parse(text: &str, is_moment: bool) -> Result<FormulaProgram, FormulaError
             if is_moment {
                 parser.push(Instruction::Operate(FormulaOperator::Multiply))?;
             }
-            Ok(FormulaProgram { waiting: waiting(&parser.program.instructions), ..parser.program })
+            Ok(parser.program)
         }
-        Some(')') => Err(parser.error(parser.at, String::from("a bracket that was not opened"))),
+        Some(')') => Err(parser.error(parser.at, "a bracket that was not opened")),
         Some(letter) => Err(parser.error(parser.at, format!("`{letter}`, expected an operator or the end"))),
     }
-}
-
-/// Most values that wait at once beside the last one.
-fn waiting(instructions: &[Instruction]) -> usize {
-    let counts = instructions.iter().scan(0, |count, step| {
-        match step {
-            Instruction::Take(_) => *count += 1,
-            Instruction::Operate(_) => *count -= 1,
-            _ => {}
-        }
-        Some(*count)
-    });
-    counts.max().unwrap_or(1) - 1
 }
 
 struct FormulaParser {
@@ -88,8 +75,8 @@ struct FormulaParser {
 }
 
 impl FormulaParser {
-    fn error(&self, at: usize, problem: String) -> FormulaError {
-        FormulaError { text: self.letters.iter().collect(), at, problem }
+    fn error(&self, at: usize, problem: impl Into<String>) -> FormulaError {
+        FormulaError { text: self.letters.iter().collect(), at, problem: problem.into() }
     }
 
     /// The next letter that is no blank.
@@ -108,21 +95,23 @@ impl FormulaParser {
     }
 
     fn push(&mut self, step: Instruction) -> Result<(), FormulaError> {
+        if let (Instruction::Operate(operator), Some(&Instruction::Take(operand))) =
+            (step, self.program.instructions.last())
+        {
+            self.waiting -= 1;
+            self.program.instructions.pop();
+            self.program.instructions.push(Instruction::With(operator, operand));
+            return Ok(());
+        }
+        self.program.waiting = self.program.waiting.max(self.waiting.saturating_sub(1));
         match step {
             Instruction::Take(_) => self.waiting += 1,
-            Instruction::Operate(operator) => {
-                self.waiting -= 1;
-                if let Some(&Instruction::Take(operand)) = self.program.instructions.last() {
-                    self.program.instructions.pop();
-                    return self.push(Instruction::With(operator, operand));
-                }
-            }
+            Instruction::Operate(_) => self.waiting -= 1,
             _ => {}
         }
         if self.waiting > STACK {
-            return Err(
-                self.error(self.at, format!("more than {STACK} values wait here for an operator; use fewer brackets"))
-            );
+            let problem = format!("more than {STACK} values wait here for an operator; use fewer brackets");
+            return Err(self.error(self.at, problem));
         }
         self.program.instructions.push(step);
         Ok(())
@@ -216,35 +205,26 @@ impl FormulaParser {
             Some(letter) if letter.is_ascii_digit() || letter == '.' => self.number(),
             Some(letter) if letter.is_alphabetic() || letter == '_' => self.name(),
             Some(letter) => Err(self.error(self.at, format!("`{letter}`, expected a number, a name or a bracket"))),
-            None => {
-                Err(self.error(self.at, String::from("the formula ends here, expected a number, a name or a bracket")))
-            }
+            None => Err(self.error(self.at, "the formula ends here, expected a number, a name or a bracket")),
         }
     }
 
     fn close(&mut self, open: usize) -> Result<(), FormulaError> {
         match self.take(&[')']) {
             Some(_) => Ok(()),
-            None if self.peek().is_none() => Err(self.error(open, String::from("a bracket that is not closed"))),
-            None => Err(self.error(self.at, String::from("expected `)` or an operator"))),
+            None if self.peek().is_none() => Err(self.error(open, "a bracket that is not closed")),
+            None => Err(self.error(self.at, "expected `)` or an operator")),
         }
     }
 
     fn number(&mut self) -> Result<(), FormulaError> {
         let from = self.at;
         let letter = |at: usize| self.letters.get(at).copied().unwrap_or(' ');
-        let mut end = from;
-        while letter(end).is_ascii_digit() || letter(end) == '.' {
-            end += 1;
-        }
-        if matches!(letter(end), 'e' | 'E') {
-            let digits = end + 1 + usize::from(matches!(letter(end + 1), '+' | '-'));
-            if letter(digits).is_ascii_digit() {
-                end = digits;
-                while letter(end).is_ascii_digit() {
-                    end += 1;
-                }
-            }
+        let after_digits = |from: usize| (from..).find(|at| !matches!(letter(*at), '0'..='9' | '.')).unwrap_or(from);
+        let mut end = after_digits(from);
+        let power = end + 1 + usize::from(matches!(letter(end + 1), '+' | '-'));
+        if matches!(letter(end), 'e' | 'E') && letter(power).is_ascii_digit() {
+            end = after_digits(power);
         }
         let text: String = self.letters[from..end].iter().collect();
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
