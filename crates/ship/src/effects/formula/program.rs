@@ -154,7 +154,7 @@ impl FormulaFunction {
         ("step", Self::Step),
     ];
 
-    #[inline]
+    #[inline(always)]
     fn of<R: Real>(self, x: R) -> R {
         match self {
             Self::Abs => x.abs(),
@@ -201,7 +201,7 @@ impl FormulaOperator {
     pub const NAMES: [(&'static str, Self); 4] =
         [("min", Self::Min), ("max", Self::Max), ("pow", Self::Power), ("step", Self::SmoothStep)];
 
-    #[inline]
+    #[inline(always)]
     fn of<R: Real>(self, x: R, y: R) -> R {
         match self {
             Self::Add => x + y,
@@ -289,7 +289,7 @@ impl FormulaProgram {
     #[inline]
     pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> R) -> R {
         match (self.signals.len(), self.waiting) {
-            (0..=FEW, 0) => self.run::<R, FEW, 0>(constants, signal),
+            (0..=2, 0..=1) => self.run::<R, 2, 1>(constants, signal),
             (0..=FEW, 0..=FEW) => self.run::<R, FEW, FEW>(constants, signal),
             _ => self.run::<R, STACK, STACK>(constants, signal),
         }
