@@ -51,7 +51,7 @@ pub struct ResponseModel {
     places: Vec<Place>,
     parameters: usize,
     states: usize,
-    /// Number of effects up to the last that has memory: what comes behind it needs no rudder but its own.
+    /// Number of effects up to the last that has states: for memory the rudder is needed no further.
     with_memory: usize,
     /// Index of the effect that makes the response second order; its first own state is s.
     second_order: Option<usize>,

@@ -3,9 +3,14 @@
 
 use std::sync::{Arc, LazyLock};
 
+use super::backlash::Backlash;
 use super::effect::{Description, Effect, Parameter, Places};
 use super::formula::{Formula, ListedFormula, ListedPrior};
-use super::{Backlash, SecondOrder, SpeedLoss, SteeringLag, TransientDisturbance, WaveYaw};
+use super::second_order::SecondOrder;
+use super::speed_loss::SpeedLoss;
+use super::steering_lag::SteeringLag;
+use super::transient_disturbance::TransientDisturbance;
+use super::wave_yaw::WaveYaw;
 use ListedEffect::{Row, Rust};
 
 /// An effect of the list in one of its forms.
@@ -71,8 +76,8 @@ pub(super) static LIST: [ListedEffect; 22] = [
     Rust(|| Arc::new(SteeringLag::DeadTime)),
     Rust(|| Arc::new(SteeringLag::FirstOrder)),
     // A rudder that loses lift at large angles. Half of sin 2δ, the side force of a rudder whose lift is normal to its
-    // blade, is δ − ⅔ δ³; a hull that turns takes some of the angle away. A larger rudder has the larger effect as far as
-    // the records go: c₃ < 1/(3 δ²).
+    // blade, is δ − ⅔ δ³; a hull that turns takes some of the angle away. A larger rudder has the larger effect as far
+    // as the records go: c₃ < 1/(3 δ²).
     row(["rudder_saturation", "stall", "T r' + r = K (δ − c₃ δ³ + δ_r)"],
         (Places::RUDDER, "delta - c3 * delta * delta * delta"),
         &[Parameter::even(["c3", "c₃", "1/rad²"], [0.0, 0.5], [-2.0, 5.0])],
@@ -88,8 +93,8 @@ pub(super) static LIST: [ListedEffect; 22] = [
         (Places::RUDDER, "delta + a * abs(delta)"),
         &[Parameter::odd(["a", "a", "1"], [0.0, 0.05], [-0.8, 0.8])],
         |_| Some([0.0, 0.12, ANY])),
-    // A moment that is even in the yaw rate, and so in the drift that goes with it. A rudder whose inflow is straightened
-    // differently on either side has it (Yasukawa and Yoshimura 2015, γ_R).
+    // A moment that is even in the yaw rate, and so in the drift that goes with it. A rudder whose inflow is
+    // straightened differently on either side has it (Yasukawa and Yoshimura 2015, γ_R).
     row(["port_starboard_asymmetry", "moment by drift", "T r' + r = K (δ + c_r |r| + δ_r)"],
         (Places::MOMENT, "K_over_T * c_r * abs(r)"),
         &[Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])],
@@ -102,8 +107,8 @@ pub(super) static LIST: [ListedEffect; 22] = [
     Rust(|| Arc::new(TransientDisturbance::Passing)),
     Rust(|| Arc::new(TransientDisturbance::Lasting { edge: 1.0 })),
     Rust(|| Arc::new(WaveYaw)),
-    // The moment of a drifting hull is N_v u v, so it falls with the measured speed. N_v/N_δ of hulls is −3 ± 1.5 without
-    // dimension.
+    // The moment of a drifting hull is N_v u v, so it falls with the measured speed. N_v/N_δ of hulls is −3 ± 1.5
+    // without dimension.
     row(["sway_coupling_measured", "measured sway", "T r' + r = K (δ + δ_r + c_v q v), q = U/U₀"],
         (Places::MOMENT, "K_over_T * c_v * (q * v)"),
         &[Parameter::even(["c_v", "c_v", "rad s/m"], [0.0, 0.1], [-100.0, 100.0])],

@@ -1,11 +1,11 @@
-//! Effects a first-order response lacks: rows of formulas in one [list], and a file each for those with memory or states.
+//! Effects a first-order response lacks: rows of formulas in one list, and a file each for those with memory or states.
 //!
 //! An effect is structure only: its parameters travel beside it as a slice in the order of [`Effect::parameters`]. The
 //! same effect simulates an undeclared influence and is a candidate when a residual is traced. With all parameters at
 //! their neutral value a model with the effect is the model without it.
 //!
 //! An effect may act in five places, all optional: it can transform the rudder that acts (with memory), add states,
-//! scale damping and gain, add a yaw acceleration, and add to the heading that is seen. To add one: a row of the [list].
+//! scale damping and gain, add a yaw acceleration, and add to the heading that is seen. To add one: a row of `list.rs`.
 
 mod backlash;
 mod effect;

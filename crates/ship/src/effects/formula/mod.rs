@@ -43,7 +43,7 @@ pub(super) struct ListedFormula {
     pub(super) prior: ListedPrior,
 }
 
-/// Mean, standard deviation and largest value of every constant in records of some manoeuvres; `None` without a channel.
+/// Mean, standard deviation and largest value of every constant in records of some manoeuvres.
 pub(super) type ListedPrior = fn(&Manoeuvres) -> Option<[f64; 3]>;
 
 /// An effect as a formula.
