@@ -8,7 +8,7 @@ use std::sync::Arc;
 use kempf_tests::records::{mirrored, zig_zag};
 use ship::angle::from_deg;
 use ship::dynamics::{Dynamics, Input, Motion};
-use ship::effects::{self, Effect};
+use ship::effects::{self, Effect, listed};
 use ship::{Polyline, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Squall};
 use simulate::{Simulation, StreamKey, Vessel};
@@ -75,17 +75,17 @@ fn sizes() -> Vec<Missing> {
     use effects::*;
     vec![
         (Arc::new(SecondOrder), vec![2.5, 6.2]),
-        (Arc::new(NonlinearDamping::Cubic), vec![80.0]),
-        (Arc::new(NonlinearDamping::Quadratic), vec![1.6]),
-        (Arc::new(NonlinearDamping::Square), vec![1.0]),
-        (Arc::new(WindMoment::Steady), vec![0.03, 0.02]),
+        (listed("nonlinear_damping", "r³"), vec![80.0]),
+        (listed("nonlinear_damping", "r|r|"), vec![1.6]),
+        (listed("nonlinear_damping", "r²"), vec![1.0]),
+        (listed("wind_moment", "steady wind"), vec![0.03, 0.02]),
         (Arc::new(SpeedLoss::Modelled), vec![13.0, 100.0, 2.0]),
         (Arc::new(SteeringLag::DeadTime), vec![1.0]),
         (Arc::new(SteeringLag::FirstOrder), vec![1.2]),
-        (Arc::new(RudderDeadband::Backlash), vec![from_deg(1.5)]),
-        (Arc::new(PortStarboardAsymmetry::Gain), vec![0.2]),
-        (Arc::new(PortStarboardAsymmetry::Drift), vec![3.0]),
-        (Arc::new(MomentDrift { reference_time: 0.0 }), vec![7e-5]),
+        (Arc::new(Backlash), vec![from_deg(1.5)]),
+        (listed("port_starboard_asymmetry", "gain by side"), vec![0.2]),
+        (listed("port_starboard_asymmetry", "moment by drift"), vec![3.0]),
+        (listed("moment_drift", "linear trend"), vec![7e-5]),
         (Arc::new(TransientDisturbance::Passing), vec![0.04, 150.0, 30.0]),
         (Arc::new(WaveYaw), vec![from_deg(0.4), 0.6, 0.1]),
     ]
@@ -201,14 +201,14 @@ fn with_channels() -> [(Missing, Vec<Signal>, &'static str); 5] {
     let inflow = SpeedLoss::Inflow { approach_speed: 5.0, approach_rate: 2.0 };
     [
         (
-            (Arc::new(SwayCouplingMeasured { approach_speed: 5.0 }), vec![-0.3]),
+            (named("sway_coupling_measured", "measured sway", &[5.0]).expect("on the list"), vec![-0.3]),
             vec![(Channel::Sway, |t| 0.4 * (0.11 * t).sin())],
             "measured sway",
         ),
         ((Arc::new(free_stream), vec![0.5, 1.2]), vec![speed], "inflow share"),
         ((Arc::new(inflow), vec![1.0, 0.5, 0.5]), vec![speed, propeller], "inflow share"),
         ((Arc::new(SpeedLoss::Propeller { approach_rate: 2.0 }), vec![1.5]), vec![propeller], "measured propeller"),
-        ((Arc::new(WindMoment::Measured), vec![4e-4]), wind.to_vec(), "measured wind"),
+        ((listed("wind_moment", "measured wind"), vec![4e-4]), wind.to_vec(), "measured wind"),
     ]
 }
 
@@ -232,8 +232,11 @@ fn measured_channels_are_used_where_they_help() {
 fn pairs_are_named() {
     use effects::*;
     let pairs: [[Missing; 2]; 3] = [
-        [(Arc::new(SecondOrder), vec![2.5, 6.2]), (Arc::new(MomentDrift { reference_time: 0.0 }), vec![7e-5])],
-        [(Arc::new(NonlinearDamping::Cubic), vec![80.0]), (Arc::new(PortStarboardAsymmetry::Gain), vec![0.2])],
+        [(Arc::new(SecondOrder), vec![2.5, 6.2]), (listed("moment_drift", "linear trend"), vec![7e-5])],
+        [
+            (listed("nonlinear_damping", "r³"), vec![80.0]),
+            (listed("port_starboard_asymmetry", "gain by side"), vec![0.2]),
+        ],
         [(Arc::new(SpeedLoss::Modelled), vec![13.0, 100.0, 2.0]), (Arc::new(SteeringLag::DeadTime), vec![1.0])],
     ];
     for pair in pairs {
@@ -335,7 +338,7 @@ fn what_no_candidate_carries_is_seen() {
 /// Stall at one amplitude is a smaller K: not observable. At two it is seen, and the next trial says so beforehand.
 #[test]
 fn one_amplitude_is_blind_for_stall_and_two_are_not() {
-    let vessel = || Vessel::response(ship(vec![(Arc::new(effects::RudderSaturation) as Arc<dyn Effect>, vec![0.88])]));
+    let vessel = || Vessel::response(ship(vec![(listed("rudder_saturation", "stall"), vec![0.88])]));
     let (small, large) = (run(&steered(vessel(), 10.0), 7), run(&steered(vessel(), 30.0), 8));
     let alone = analysed(std::slice::from_ref(&small), &[]);
     let outcome = |analysis: &Analysis| {
@@ -354,8 +357,7 @@ fn one_amplitude_is_blind_for_stall_and_two_are_not() {
 
 #[test]
 fn damping_of_either_power_is_one_group_and_a_validation_record_is_never_fitted() {
-    let vessel =
-        || Vessel::response(ship(vec![(Arc::new(effects::NonlinearDamping::Cubic) as Arc<dyn Effect>, vec![40.0])]));
+    let vessel = || Vessel::response(ship(vec![(listed("nonlinear_damping", "r³"), vec![40.0])]));
     let (fitted, other) = (run(&steered(vessel(), 10.0), 9), run(&steered(vessel(), 20.0), 10));
     let analysis = analysed(std::slice::from_ref(&fitted), std::slice::from_ref(&other));
     let [own] = &analysis.document.effects[..] else { panic!("named {:?}", names(&analysis)) };
@@ -374,8 +376,8 @@ fn damping_of_either_power_is_one_group_and_a_validation_record_is_never_fitted(
 #[test]
 fn port_and_starboard_are_exchanged_and_nothing_else() {
     let effects: Vec<Missing> = vec![
-        (Arc::new(effects::NonlinearDamping::Cubic), vec![80.0]),
-        (Arc::new(effects::PortStarboardAsymmetry::Gain), vec![0.2]),
+        (listed("nonlinear_damping", "r³"), vec![80.0]),
+        (listed("port_starboard_asymmetry", "gain by side"), vec![0.2]),
     ];
     let trial = run(&steered(Vessel::response(ship(effects)), 10.0), 15);
     let (one, other) = (analysed(std::slice::from_ref(&trial), &[]), analysed(&[mirrored(&trial)], &[]));

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ship::angle::from_deg;
-use ship::effects::{Effect, NonlinearDamping};
+use ship::effects::{Effect, listed};
 use ship::{FirstOrder, Response, ResponseModel};
 use simulate::{Manoeuvre, Recording, Sensors, Simulation, SteeringGear, StreamKey, Vessel};
 use trial::Trial;
@@ -40,7 +40,7 @@ pub fn first_order_zig_zag(rows: usize) -> Simulation {
 
 /// The same trial of a ship with K = 0.1 1/s, T = 16.3 s and cubic damping.
 pub fn damped_zig_zag(rows: usize) -> Simulation {
-    let effect: Arc<dyn Effect> = Arc::new(NonlinearDamping::Cubic);
+    let effect: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
     let ship: Response = ResponseModel::new(vec![effect]).with(vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 80.0]);
     Simulation { vessel: Vessel::response(ship), ..first_order_zig_zag(rows) }
 }

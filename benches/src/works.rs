@@ -1,5 +1,6 @@
 //! All pieces of work, in groups: what is measured, what stands beside it and what is to be reached.
 
+mod effects;
 mod identification;
 mod outside;
 mod prediction;
@@ -7,6 +8,7 @@ mod simulation;
 mod studies;
 mod tracing;
 
+pub use effects::effects;
 pub use identification::identification;
 pub use outside::outside;
 pub use prediction::prediction;
@@ -18,7 +20,7 @@ use crate::work::WorkGroup;
 
 /// Every group of the report, in its order; [`outside`] needs a program beside the one that measures.
 pub fn all() -> Vec<WorkGroup> {
-    vec![simulation(), identification(), tracing(), prediction(), studies()]
+    vec![simulation(), effects(), identification(), tracing(), prediction(), studies()]
 }
 
 #[cfg(test)]

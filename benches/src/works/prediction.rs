@@ -3,7 +3,7 @@
 use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
 use predict::{IdentifiedShip, ShipMixture};
 use ship::angle::from_deg;
-use ship::effects::{Effect, NonlinearDamping};
+use ship::effects::{Effect, listed};
 use simulate::Manoeuvre;
 
 use crate::records::{K, T};
@@ -47,7 +47,7 @@ fn known(effect: Option<&dyn Effect>, moment: Moment) -> IdentifiedShip {
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
         motion: None,
-        hull: None,
+        hulls: Vec::new(),
     }
 }
 
@@ -69,6 +69,6 @@ pub fn prediction() -> WorkGroup {
     add("first order, calm", known(None, Moment::None));
     add("first order, gusts", known(None, Moment::OrnsteinUhlenbeck));
     add("first order, white moment", known(None, Moment::White));
-    add("cubic damping, calm", known(Some(&NonlinearDamping::Cubic), Moment::None));
+    add("cubic damping, calm", known(Some(listed("nonlinear_damping", "r³").as_ref()), Moment::None));
     group
 }

@@ -287,7 +287,7 @@ fn member(plausible: &Plausible) -> WeightedStructure {
     let stored = |effect: &std::sync::Arc<dyn ship::effects::Effect>| StoredEffect {
         id: effect.id().to_owned(),
         form: effect.form().to_owned(),
-        constants: effect.constants(),
+        constants: effect.constants().into_iter().map(|(constant, _)| constant).collect(),
     };
     let sound = covariance.as_ref().filter(|all| all.iter().all(|entry| entry.is_finite()));
     WeightedStructure {

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use ship::ResponseModel;
 use ship::effects::{self, Effect, Parameter, SteeringLag};
+use ship::{Regressor, ResponseModel};
 pub use trial::noise_model::Moment;
 
 use crate::error::PredictError;
@@ -183,8 +183,8 @@ impl IdentifiedShip {
                 }
             }
             for (effect, written) in model.effects().iter().zip(&mut member.effects) {
-                let by = factor(effect.dimension_of_constants());
-                written.constants.iter_mut().for_each(|constant| *constant *= by);
+                let scaled = effect.constants().into_iter().map(|(constant, dimension)| constant * factor(dimension));
+                written.constants = scaled.collect();
             }
         }
         scaled.noise.moment_sd_rudder_rad *= match self.noise.moment {
@@ -246,9 +246,10 @@ impl IdentifiedShip {
     /// Whether the most probable structure has a term in the measured sway and no hull takes its place: a manoeuvre
     /// that was not made has the sway of an equation fitted beside it.
     pub fn leans_on_sway(&self) -> bool {
-        let sway = ship::effects::Effect::id(&ship::effects::SwayCouplingMeasured { approach_speed: 1.0 });
         let likeliest = self.members.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));
-        self.hulls.is_empty() && likeliest.is_some_and(|member| member.effects.iter().any(|effect| effect.id == sway))
+        let model = likeliest.and_then(|member| member.model().ok());
+        let has_sway = |model: ResponseModel| model.effects().iter().any(|own| own.uses(Regressor::Sway));
+        self.hulls.is_empty() && model.is_some_and(has_sway)
     }
 
     /// A time of the ship, s: L/U where they are known, else (K/T)^(−1/2) of the most probable structure, which is

@@ -380,10 +380,8 @@ mod tests {
     #[test]
     fn a_model_that_needs_what_is_not_there_is_refused() {
         let mut known = testing::known();
-        let sway = ship::effects::SwayCouplingMeasured { approach_speed: 1.0 };
-        known.members[0].effects[0].id = ship::effects::Effect::id(&sway).into();
-        known.members[0].effects[0].form = ship::effects::Effect::form(&sway).into();
-        known.members[0].effects[0].constants = ship::effects::Effect::constants(&sway);
+        let (id, form) = ("sway_coupling_measured".into(), "measured sway".into());
+        known.members[0].effects[0] = crate::identified_ship::StoredEffect { id, form, constants: vec![1.0] };
         let error = ShipMixture::new(vec![(known, 1.0)]).expect_err("refused").to_string();
         assert!(error.contains("sway") && error.contains("--without sway"), "{error}");
     }

@@ -113,14 +113,13 @@ impl SteadyCurve {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
 
     use super::*;
     use ship::ResponseModel;
-    use ship::effects::NonlinearDamping;
+    use ship::effects::listed;
 
     fn curve(inverse_time: f64) -> SteadyCurve {
-        let model = ResponseModel::new(vec![Arc::new(NonlinearDamping::Cubic)]);
+        let model = ResponseModel::new(vec![listed("nonlinear_damping", "r³")]);
         let ship = model.with(vec![inverse_time, 6e-3, 0.0, 300.0]);
         SteadyCurve::of_turns(|rate| ship.steady_rudder(rate), 0.3, 12.0)
     }

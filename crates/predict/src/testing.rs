@@ -26,11 +26,7 @@ pub(crate) fn known() -> IdentifiedShip {
     IdentifiedShip {
         members: vec![WeightedStructure {
             weight: 1.0,
-            effects: vec![StoredEffect {
-                id: "nonlinear_damping".into(),
-                form: ship::effects::Effect::form(&ship::effects::NonlinearDamping::Cubic).into(),
-                constants: Vec::new(),
-            }],
+            effects: vec![StoredEffect { id: "nonlinear_damping".into(), form: "r³".into(), constants: Vec::new() }],
             parameters,
             fitted: vec![0, 1, 2, 3],
             covariance: (0..4).map(|i| (0..4).map(|j| correlation(i, j) * sd[i] * sd[j]).collect()).collect(),

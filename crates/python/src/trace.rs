@@ -52,7 +52,7 @@ pub fn trace(
         let (records, others) = (work::trace::without(&asked, records), work::trace::without(&asked, others));
         let mut warnings = Vec::new();
         warn_of_repetition(&records, &others, &mut warnings);
-        let traced = work::trace::trace(&records, &others, &work::trace::settings(&asked), true, &mut warnings)?;
+        let traced = work::trace::trace(&records, &others, &work::trace::settings(&asked)?, true, &mut warnings)?;
         let text = document::text(&traced.document).map_err(Failure::work)?;
         let records = traced.curves()?.records;
         Ok(PyTrace { text, warnings, records })

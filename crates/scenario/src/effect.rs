@@ -8,10 +8,7 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, json};
 use ship::Regressor;
 use ship::angle::DEGREE;
-use ship::effects::{
-    Effect, Formula, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, RudderDeadband, RudderSaturation,
-    SecondOrder, SpeedLoss, SteeringLag, TransientDisturbance, WaveYaw, WindMoment,
-};
+use ship::effects::{Effect, Formula, listed};
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ShortNumber};
 
@@ -21,8 +18,8 @@ use crate::problem::{KeyFault, KeyPath, suggestion};
 use crate::wire::ScenarioWire;
 use crate::{limits, reader};
 
-/// A number of an effect: the effect in its form, the key and what it means.
-type EffectNumber = (fn() -> Arc<dyn Effect>, &'static str, &'static str);
+/// A number of an effect: identifier and form of the effect, the key and what it means.
+type EffectNumber = (&'static str, &'static str, &'static str, &'static str);
 
 /// What holds when the exponent of the gain is left out; all other numbers are needed.
 const GAIN_EXPONENT: (&str, f64) = ("gain-exponent", 2.0);
@@ -30,32 +27,32 @@ const GAIN_EXPONENT: (&str, f64) = ("gain-exponent", 2.0);
 /// Every number of every effect that a scenario can add, in the order of lists and of the parameters.
 #[rustfmt::skip]
 const NUMBERS: [EffectNumber; 24] = [
-    (|| Arc::new(SecondOrder), "T2-s", "Smaller time constant T2."),
-    (|| Arc::new(SecondOrder), "T3-s", "Time constant T3 of the rudder rate."),
-    (|| Arc::new(NonlinearDamping::Cubic), "n3-s2-per-deg2", "+ n3 r³ on the left (Norrbin, Bech)."),
-    (|| Arc::new(NonlinearDamping::Quadratic), "n2-s-per-deg", "+ n2 r|r| on the left."),
-    (|| Arc::new(NonlinearDamping::Square), "n11-s-per-deg", "+ n11 r² on the left."),
-    (|| Arc::new(WindMoment::Steady), "rudder-deg", "Largest moment, as rudder angle."),
-    (|| Arc::new(WindMoment::Steady), "from-deg", "Direction the wind comes from, clockwise from north."),
-    (|| Arc::new(SpeedLoss::Modelled), "loss-s-per-deg2", "Rate of loss for a squared yaw rate of 1 deg²/s²."),
-    (|| Arc::new(SpeedLoss::Modelled), "recovery-s", "Time in which the speed comes back."),
-    (|| Arc::new(SpeedLoss::Modelled), "gain-exponent", "Power of the speed in the gain of the rudder."),
-    (|| Arc::new(SteeringLag::DeadTime), "dead-time-s", "Dead time."),
-    (|| Arc::new(SteeringLag::FirstOrder), "first-order-s", "Time constant of a first-order lag."),
-    (|| Arc::new(RudderSaturation), "c3-per-deg2", "Coefficient c3."),
-    (|| Arc::new(RudderDeadband::Backlash), "backlash-deg", "Width of a backlash."),
-    (|| Arc::new(RudderDeadband::DeadBand), "dead-band-deg", "Width of a dead band."),
-    (|| Arc::new(PortStarboardAsymmetry::Gain), "gain-share",
+    ("second_order", "sway coupling", "T2-s", "Smaller time constant T2."),
+    ("second_order", "sway coupling", "T3-s", "Time constant T3 of the rudder rate."),
+    ("nonlinear_damping", "r³", "n3-s2-per-deg2", "+ n3 r³ on the left (Norrbin, Bech)."),
+    ("nonlinear_damping", "r|r|", "n2-s-per-deg", "+ n2 r|r| on the left."),
+    ("nonlinear_damping", "r²", "n11-s-per-deg", "+ n11 r² on the left."),
+    ("wind_moment", "steady wind", "rudder-deg", "Largest moment, as rudder angle."),
+    ("wind_moment", "steady wind", "from-deg", "Direction the wind comes from, clockwise from north."),
+    ("speed_loss", "modelled speed", "loss-s-per-deg2", "Rate of loss for a squared yaw rate of 1 deg²/s²."),
+    ("speed_loss", "modelled speed", "recovery-s", "Time in which the speed comes back."),
+    ("speed_loss", "modelled speed", "gain-exponent", "Power of the speed in the gain of the rudder."),
+    ("steering_lag", "dead time", "dead-time-s", "Dead time."),
+    ("steering_lag", "first-order lag", "first-order-s", "Time constant of a first-order lag."),
+    ("rudder_saturation", "stall", "c3-per-deg2", "Coefficient c3."),
+    ("rudder_deadband", "backlash", "backlash-deg", "Width of a backlash."),
+    ("rudder_deadband", "dead band", "dead-band-deg", "Width of a dead band."),
+    ("port_starboard_asymmetry", "gain by side", "gain-share",
      "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard."),
-    (|| Arc::new(PortStarboardAsymmetry::Drift), "moment-by-drift-s",
+    ("port_starboard_asymmetry", "moment by drift", "moment-by-drift-s",
      "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn."),
-    (|| Arc::new(MomentDrift { reference_time: 0.0 }), "rudder-deg-per-s", "Change of the moment, as rudder angle."),
-    (|| Arc::new(TransientDisturbance::Passing), "rudder-deg", "Largest moment, as rudder angle."),
-    (|| Arc::new(TransientDisturbance::Passing), "centre-s", "Time of its middle."),
-    (|| Arc::new(TransientDisturbance::Passing), "duration-s", "How long it lasts."),
-    (|| Arc::new(WaveYaw), "sd-deg", "Standard deviation of the heading they add."),
-    (|| Arc::new(WaveYaw), "frequency-rad-s", "Frequency of encounter."),
-    (|| Arc::new(WaveYaw), "damping", "Relative damping: the smaller, the narrower the band."),
+    ("moment_drift", "linear trend", "rudder-deg-per-s", "Change of the moment, as rudder angle."),
+    ("transient_disturbance", "moment for a while", "rudder-deg", "Largest moment, as rudder angle."),
+    ("transient_disturbance", "moment for a while", "centre-s", "Time of its middle."),
+    ("transient_disturbance", "moment for a while", "duration-s", "How long it lasts."),
+    ("wave_yaw", "narrow band", "sd-deg", "Standard deviation of the heading they add."),
+    ("wave_yaw", "narrow band", "frequency-rad-s", "Frequency of encounter."),
+    ("wave_yaw", "narrow band", "damping", "Relative damping: the smaller, the narrower the band."),
 ];
 
 /// What the effects are; of several forms one is given.
@@ -82,8 +79,8 @@ struct EffectForm {
 /// The forms in the order of [`NUMBERS`].
 static FORMS: LazyLock<Vec<EffectForm>> = LazyLock::new(|| {
     let mut forms: Vec<EffectForm> = Vec::new();
-    for (effect, key, meaning) in NUMBERS {
-        let effect = effect();
+    for (id, form, key, meaning) in NUMBERS {
+        let effect = listed(id, form);
         let number = match key == GAIN_EXPONENT.0 {
             true => NumberKey::optional(key, meaning, Some(GAIN_EXPONENT.1)),
             false => NumberKey::required(key, meaning),

@@ -20,6 +20,18 @@ pub struct Measured {
     pub propeller: Option<f64>,
 }
 
+impl Measured {
+    /// Whether a channel is there.
+    pub fn has(&self, channel: Regressor) -> bool {
+        match channel {
+            Regressor::Speed => self.speed.is_some(),
+            Regressor::Sway => self.sway.is_some(),
+            Regressor::Wind => self.wind_speed.is_some() && self.wind_from.is_some(),
+            Regressor::Propeller => self.propeller.is_some(),
+        }
+    }
+}
+
 /// A channel of [`Measured`], by what it is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regressor {

@@ -35,10 +35,12 @@ struct Place {
 }
 
 impl Place {
+    #[inline]
     fn parameters(&self) -> Range<usize> {
         self.parameters.0..self.parameters.1
     }
 
+    #[inline]
     fn states(&self) -> Range<usize> {
         self.states.0..self.states.1
     }
@@ -51,6 +53,8 @@ pub struct ResponseModel {
     places: Vec<Place>,
     parameters: usize,
     states: usize,
+    /// Number of effects up to the last that has states: for memory the rudder is needed no further.
+    with_memory: usize,
     /// Index of the effect that makes the response second order; its first own state is s.
     second_order: Option<usize>,
 }
@@ -67,7 +71,7 @@ impl ResponseModel {
     pub fn new(effects: Vec<Arc<dyn Effect>>) -> Self {
         let (mut parameters, mut states) = (BASE_PARAMETERS, 2);
         let mut places = Vec::with_capacity(effects.len());
-        let mut second_order = None;
+        let (mut second_order, mut with_memory) = (None, 0);
         for (index, effect) in effects.iter().enumerate() {
             let place = Place {
                 parameters: (parameters, parameters + effect.parameters().len()),
@@ -75,13 +79,16 @@ impl ResponseModel {
                 acts: effect.places(),
             };
             (parameters, states) = (place.parameters.1, place.states.1);
+            if effect.states() > 0 {
+                with_memory = index + 1;
+            }
             let neutral: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
             if f64::acts(effect.as_ref()).sway_coupling(&neutral).is_some() {
                 second_order = Some(index);
             }
             places.push(place);
         }
-        Self { effects, places, parameters, states, second_order }
+        Self { effects, places, parameters, states, with_memory, second_order }
     }
 
     /// The base alone.
@@ -306,7 +313,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
         if self.model.states > 2 {
             let now = self.now(t, state, instant.rudder, input);
             let mut before = input.rudder;
-            for (effect, p, place) in self.effects() {
+            for (effect, p, place) in self.effects().take(self.model.with_memory) {
                 let z = &state[place.states()];
                 if !z.is_empty() {
                     R::acts(effect).rates(p, z, &now, before, &mut rate[place.states()]);
@@ -326,7 +333,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
             return;
         }
         let mut before = input.rudder;
-        for (effect, p, place) in self.effects() {
+        for (effect, p, place) in self.effects().take(self.model.with_memory) {
             let z = &mut state[place.states()];
             R::acts(effect).settle(p, z, before);
             before = R::acts(effect).rudder(p, z, before);

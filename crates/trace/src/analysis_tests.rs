@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use ship::effects::{Effect, Formula, NonlinearDamping};
+use ship::effects::{Effect, Formula, listed};
 use trial::Trial;
 
 use crate::testing::{TrialPlan, record, ship, wandering};
@@ -11,7 +11,7 @@ use crate::{Analysis, EffectId, Rule, Selection, Settings, Watcher, trace, watch
 
 /// A record of a ship whose damping grows with the cube of its yaw rate.
 fn damped(plan: TrialPlan) -> Trial {
-    let damping: Arc<dyn Effect> = Arc::new(NonlinearDamping::Cubic);
+    let damping: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
     record(&ship(vec![(damping, vec![80.0])]), plan)
 }
 

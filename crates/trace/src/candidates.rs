@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ship::effects::{Effect, Manoeuvres, Proposal, RudderDeadband, SecondOrder, SteeringLag};
+use ship::effects::{Backlash, Effect, Manoeuvres, Proposal, SecondOrder, SteeringLag};
 use ship::{Polyline, Regressor};
 use trial::Trial;
 
@@ -93,9 +93,10 @@ pub fn is_variant(effect: &dyn Effect) -> bool {
 
 /// Whether an effect makes the ship answer the rudder later, or sooner, and little else.
 pub fn is_delay(effect: &dyn Effect) -> bool {
-    let play = RudderDeadband::Backlash;
     let id = effect.id();
-    id == SteeringLag::DeadTime.id() || id == SecondOrder.id() || (id, effect.form()) == (play.id(), play.form())
+    id == SteeringLag::DeadTime.id()
+        || id == SecondOrder.id()
+        || (id, effect.form()) == (Backlash.id(), Backlash.form())
 }
 
 /// Mean square of a channel over all records; `None` when one of them lacks it, or when it is zero throughout.

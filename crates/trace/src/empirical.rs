@@ -2,6 +2,7 @@
 //! carries; and such with magnitudes, against which named effects can be held.
 
 use ship::effects::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use ship::particulars::Dimension;
 use ship::{EffectReal, Regressor};
 
 use std::sync::{Arc, LazyLock};
@@ -133,8 +134,8 @@ impl Effect for Monomial {
         }
     }
 
-    fn constants(&self) -> Vec<f64> {
-        self.size.into()
+    fn constants(&self) -> Vec<(f64, Dimension)> {
+        self.size.into_iter().zip([[-1, 0], [0, 0], [0, 0], [-1, 1]]).collect()
     }
 
     fn sees_heading(&self) -> bool {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use identify::{Identifier, output_error};
 use rayon::prelude::*;
 use ship::angle::{DEGREE, from_deg, to_deg};
-use ship::effects::{Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, SecondOrder, SteeringLag};
+use ship::effects::{Effect, SecondOrder, SteeringLag, listed};
 use ship::{Response, ResponseModel};
 use simulate::{StreamKey, Vessel};
 use trace::candidates;
@@ -73,7 +73,7 @@ fn lines() -> Vec<Line> {
         },
         line(
             "n₂ = 0.2 s/deg",
-            Arc::new(NonlinearDamping::Quadratic),
+            listed("nonlinear_damping", "r|r|"),
             vec![0.2 * per_degree / 16.3],
             0.047,
             [-12.7, -13.6],
@@ -81,16 +81,23 @@ fn lines() -> Vec<Line> {
         ),
         line(
             "n₃ = 0.2 s²/deg²",
-            Arc::new(NonlinearDamping::Cubic),
+            listed("nonlinear_damping", "r³"),
             vec![0.2 * cubic],
             0.067,
             [-10.1, -11.3],
             (0, cubic, 0.2006),
         ),
-        line("asymmetry 5 %", Arc::new(PortStarboardAsymmetry::Gain), vec![0.05], 0.026, [0.0, 0.0], (0, 1.0, 0.0524)),
+        line(
+            "asymmetry 5 %",
+            listed("port_starboard_asymmetry", "gain by side"),
+            vec![0.05],
+            0.026,
+            [0.0, 0.0],
+            (0, 1.0, 0.0524),
+        ),
         line(
             "drift 0.004 deg/s",
-            Arc::new(MomentDrift { reference_time: 0.0 }),
+            listed("moment_drift", "linear trend"),
             vec![from_deg(0.004)],
             0.774,
             [0.6, -1.9],

@@ -192,19 +192,15 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
         0
     }
 
-    /// Numbers it takes from a record and holds fixed (approach speed, reference time): with its form they say which
-    /// effect it is.
-    fn constants(&self) -> Vec<f64> {
+    /// Numbers it takes from a record and holds fixed (approach speed, first time), each with its dimension: with its
+    /// form they say which effect it is.
+    fn constants(&self) -> Vec<(f64, Dimension)> {
         Vec::new()
     }
 
-    /// Dimension of these numbers.
-    fn dimension_of_constants(&self) -> Dimension {
-        match self.needs() {
-            Some(Regressor::Speed) => [-1, 1],
-            Some(Regressor::Propeller) => [-1, 0],
-            _ => [0, 0],
-        }
+    /// The same effect with as many other numbers; `None` of one that takes none.
+    fn with_constants(&self, _constants: &[f64]) -> Option<Arc<dyn Effect>> {
+        None
     }
 
     /// Whether it is a moment that depends on time alone. It then belongs to one record and says nothing of another.

@@ -1,7 +1,10 @@
 //! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
 
+use std::sync::Arc;
+
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale};
 use crate::dynamics::Regressor;
+use crate::particulars::Dimension;
 use estimation::number::Real;
 
 /// K ~ U and T ~ 1/U, so a = 1/T ~ U and b = K/T ~ U².
@@ -76,12 +79,23 @@ impl Effect for SpeedLoss {
         Description { id: "speed_loss", form, equation, parameters }
     }
 
-    fn constants(&self) -> Vec<f64> {
+    fn constants(&self) -> Vec<(f64, Dimension)> {
+        let (speed, rate) = (|value| (value, [-1, 1]), |value| (value, [-1, 0]));
         match *self {
             Self::Modelled => Vec::new(),
-            Self::Measured { approach_speed: constant } | Self::Propeller { approach_rate: constant } => vec![constant],
-            Self::Inflow { approach_speed, approach_rate } => vec![approach_speed, approach_rate],
+            Self::Measured { approach_speed } => vec![speed(approach_speed)],
+            Self::Inflow { approach_speed, approach_rate } => vec![speed(approach_speed), rate(approach_rate)],
+            Self::Propeller { approach_rate } => vec![rate(approach_rate)],
         }
+    }
+
+    fn with_constants(&self, constants: &[f64]) -> Option<Arc<dyn Effect>> {
+        Some(Arc::new(match (self, constants) {
+            (Self::Measured { .. }, &[approach_speed]) => Self::Measured { approach_speed },
+            (Self::Inflow { .. }, &[approach_speed, approach_rate]) => Self::Inflow { approach_speed, approach_rate },
+            (Self::Propeller { .. }, &[approach_rate]) => Self::Propeller { approach_rate },
+            _ => return None,
+        }))
     }
 
     /// Hulls lose c_r r'² of their speed and regain it in T_u U/L of 7 ± 4; where the speed was measured the share of

@@ -1,7 +1,10 @@
 //! A moment that is present for a part of the record only: a squall, a passing ship.
 
+use std::sync::Arc;
+
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use super::instant::{EDGE_ROWS, INSTANT, REACH};
+use crate::particulars::Dimension;
 use estimation::number::Real;
 
 /// A moment m, as an equivalent rudder angle, in one of two forms.
@@ -47,11 +50,16 @@ impl Effect for TransientDisturbance {
         Description { id: "transient_disturbance", form, equation, parameters }
     }
 
-    fn constants(&self) -> Vec<f64> {
+    fn constants(&self) -> Vec<(f64, Dimension)> {
         match self {
             Self::Passing => Vec::new(),
-            Self::Lasting { edge } => vec![*edge],
+            Self::Lasting { edge } => vec![(*edge, [1, 0])],
         }
+    }
+
+    fn with_constants(&self, constants: &[f64]) -> Option<Arc<dyn Effect>> {
+        let &[edge] = constants else { return None };
+        Some(Arc::new(Self::Lasting { edge }))
     }
 
     fn is_of_time(&self) -> bool {

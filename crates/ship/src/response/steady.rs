@@ -86,32 +86,34 @@ mod tests {
 
     use super::*;
     use crate::ResponseModel;
-    use crate::effects::{Effect, NonlinearDamping, SecondOrder, SpeedLoss, SteeringLag};
+    use crate::effects::{Effect, SecondOrder, SpeedLoss, SteeringLag, listed};
 
-    fn ship(inverse_time: f64, effect: impl Effect + 'static, own: &[f64]) -> Response {
+    fn ship(inverse_time: f64, effect: Arc<dyn Effect>, own: &[f64]) -> Response {
         let mut values = vec![inverse_time, 6e-3, 0.01];
         values.extend_from_slice(own);
-        ResponseModel::new(vec![Arc::new(effect)]).with(values)
+        ResponseModel::new(vec![effect]).with(values)
     }
 
     /// −a r − n r³ + b (δ + δ_r) = 0, by hand; a < 0 is a course-unstable ship with an unstable loop.
     #[test]
     fn the_steady_curve_holds_its_unstable_branch() {
         for inverse_time in [0.06, -0.02] {
-            let ship = ship(inverse_time, NonlinearDamping::Cubic, &[300.0]);
+            let ship = ship(inverse_time, listed("nonlinear_damping", "r³"), &[300.0]);
             for rate in [-0.02, -0.004, 0.0, 0.001, 0.01] {
                 let by_hand = (inverse_time * rate + 300.0 * rate * rate * rate) / 6e-3 - 0.01;
                 let found = ship.steady_rudder(rate).expect("within a radian");
                 assert!((found - by_hand).abs() < 1e-9, "{inverse_time} {rate}: {found} {by_hand}");
             }
         }
-        assert_eq!(ship(0.06, NonlinearDamping::Cubic, &[300.0]).steady_rudder(1.0), None);
+        assert_eq!(ship(0.06, listed("nonlinear_damping", "r³"), &[300.0]).steady_rudder(1.0), None);
     }
 
     /// Lag and sway coupling change the way to a steady turn, not the turn.
     #[test]
     fn memory_does_not_change_the_steady_curve() {
-        for ship in [ship(0.06, SteeringLag::FirstOrder, &[4.0]), ship(0.06, SecondOrder, &[5.0, 12.0])] {
+        for ship in
+            [ship(0.06, Arc::new(SteeringLag::FirstOrder), &[4.0]), ship(0.06, Arc::new(SecondOrder), &[5.0, 12.0])]
+        {
             let found = ship.steady_rudder(0.01).expect("within a radian");
             assert!((found - (0.06 * 0.01 / 6e-3 - 0.01)).abs() < 1e-9, "{found}");
         }
@@ -120,7 +122,7 @@ mod tests {
     /// q = 1 − c T_u r², and b q^m (δ + δ_r) = a q r.
     #[test]
     fn the_speed_is_that_of_a_long_turn() {
-        let ship = ship(0.06, SpeedLoss::Modelled, &[20.0, 100.0, 2.0]);
+        let ship = ship(0.06, Arc::new(SpeedLoss::Modelled), &[20.0, 100.0, 2.0]);
         let (rate, speed) = (0.01, 1.0 - 20.0 * 100.0 * 1e-4);
         let by_hand = 0.06 * speed * rate / (6e-3 * speed * speed) - 0.01;
         let found = ship.steady_rudder(rate).expect("within a radian");

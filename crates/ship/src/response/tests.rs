@@ -198,18 +198,28 @@ fn an_effect_is_what_it_says() {
     for effect in effects::all().into_iter().filter(|effect| !effect.is_random() && effect.needs().is_none()) {
         let name = format!("{} ({})", effect.id(), effect.form());
         let response = with_effect(effect.clone(), |p| p.typical, 1.0);
-        let turning = |heading: f64, from: f64| {
+        let turning = |response: &Response, heading: f64, from: f64| {
             let signal = Polyline::new(vec![from, from + 20.0, from + 60.0], vec![0.0, 0.2, -0.1]).expect("increasing");
             let times: Vec<f64> = (0..=100).map(|k| from + f64::from(k)).collect();
             let mut state = vec![0.0; response.dimension()];
             response.approach(heading, 0.0, &mut state);
-            replay(&response, &Recorded::rudder(&signal), &times, 0.1, &mut state, |_, _| {});
+            replay(response, &Recorded::rudder(&signal), &times, 0.1, &mut state, |_, _| {});
             state[0] - heading
         };
-        assert_eq!((turning(0.0, 0.0) - turning(1.0, 0.0)).abs() > 1e-9, effect.sees_heading(), "{name}");
-        assert_eq!((turning(0.0, 0.0) - turning(0.0, 500.0)).abs() > 1e-6, effect.is_of_time(), "{name}");
-        let holds_a_number = format!("{effect:?}").chars().any(|c| c.is_ascii_digit());
-        assert_eq!(holds_a_number, !effect.constants().is_empty(), "{name}");
+        assert_eq!(
+            (turning(&response, 0.0, 0.0) - turning(&response, 1.0, 0.0)).abs() > 1e-9,
+            effect.sees_heading(),
+            "{name}"
+        );
+        assert_eq!(
+            (turning(&response, 0.0, 0.0) - turning(&response, 0.0, 500.0)).abs() > 1e-6,
+            effect.is_of_time(),
+            "{name}"
+        );
+        let others: Vec<f64> = effect.constants().iter().map(|(constant, _)| constant + 1.5).collect();
+        let other = effects::named(effect.id(), effect.form(), &others).expect("all are known");
+        let other = turning(&with_effect(other, |p| p.typical, 1.0), 0.0, 0.0);
+        assert_eq!((turning(&response, 0.0, 0.0) - other).abs() > 1e-9, !others.is_empty(), "{name}");
     }
 }
 

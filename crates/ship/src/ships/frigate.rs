@@ -3,11 +3,9 @@
 //! As for [`super::zeefakkel`], n₃ belongs to yaw rates in deg/s and is converted. The source gives a lag of 1 s in the
 //! steering gear as well, which belongs to the gear and is not part of this ship.
 
-use std::sync::Arc;
-
 use super::zeefakkel::n3_from_degrees;
 use super::{Model, Ship};
-use crate::effects::NonlinearDamping;
+use crate::effects::listed;
 use crate::particulars::Particulars;
 use crate::response::ResponseModel;
 
@@ -24,7 +22,7 @@ pub fn ship() -> Ship {
         particulars: Some(Particulars { length: 100.0, speed: 9.0 }),
         rudder_rate: Some(10f64.to_radians()),
         largest_rudder: Some(30f64.to_radians()),
-        model: Model::Response(ResponseModel::new(vec![Arc::new(NonlinearDamping::Cubic)]).with(vec![
+        model: Model::Response(ResponseModel::new(vec![listed("nonlinear_damping", "r³")]).with(vec![
             1.0 / time,
             gain / time,
             0.0,

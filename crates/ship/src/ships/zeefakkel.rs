@@ -5,10 +5,8 @@
 //!
 //! Copies of the set give the length as 45 m and as 13.7 m (45 ft), so the craft has no particulars here.
 
-use std::sync::Arc;
-
 use super::{Model, Ship};
-use crate::effects::NonlinearDamping;
+use crate::effects::listed;
 use crate::response::ResponseModel;
 
 /// n₃ of a source that counts yaw rate in deg/s, in s²/rad².
@@ -29,7 +27,7 @@ pub fn ship() -> Ship {
         particulars: None,
         rudder_rate: Some(10f64.to_radians()),
         largest_rudder: Some(30f64.to_radians()),
-        model: Model::Response(ResponseModel::new(vec![Arc::new(NonlinearDamping::Cubic)]).with(vec![
+        model: Model::Response(ResponseModel::new(vec![listed("nonlinear_damping", "r³")]).with(vec![
             1.0 / time,
             gain / time,
             0.0,

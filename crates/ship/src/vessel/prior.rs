@@ -46,6 +46,9 @@ impl Coefficient {
     }
 }
 
+/// Source of every ratio that fills in a particular.
+pub const SOURCE_OF_RATIOS: &str = "typical: KVLCC2, KCS, ONRT, Esso Osaka, SEIUN MARU";
+
 /// A particular that was not given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assumed {

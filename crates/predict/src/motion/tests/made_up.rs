@@ -294,9 +294,9 @@ fn a_response_sees_the_speed_of_its_ship() {
 
 #[test]
 fn states_steps_and_memory_of_the_response_are_passed_on() {
-    use ship::effects::{RudderDeadband, SteeringLag};
+    use ship::effects::{Backlash, SteeringLag};
     // Dead time, play of the rudder, and nothing that asks for speed: the response alone turns in the same way.
-    let model = ResponseModel::new(vec![Arc::new(SteeringLag::DeadTime), Arc::new(RudderDeadband::Backlash)]);
+    let model = ResponseModel::new(vec![Arc::new(SteeringLag::DeadTime), Arc::new(Backlash)]);
     let response = model.with(vec![0.1, 0.015, 0.01, 1.3, 0.05]);
     let ship = PlanarShip { response: response.clone(), planar: planar() };
     assert_eq!((ship.dimension(), ship.dead_time()), (response.dimension() + 2, 1.3));

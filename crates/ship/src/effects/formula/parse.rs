@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, STACK};
+use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK};
 
 /// Longest text, characters.
 pub(super) const LONGEST: usize = 400;
@@ -33,10 +33,10 @@ impl fmt::Display for FormulaError {
     }
 }
 
-/// Reads a formula.
+/// Reads a formula; of a moment as an angle of the rudder the program is the yaw acceleration, K/T times that.
 ///
 /// Fails where the text is no formula, is too deep, or has too many constants.
-pub fn parse(text: &str) -> Result<FormulaProgram, FormulaError> {
+pub fn parse(text: &str, is_moment: bool) -> Result<FormulaProgram, FormulaError> {
     let mut parser = FormulaParser {
         letters: text.chars().collect(),
         at: 0,
@@ -45,12 +45,20 @@ pub fn parse(text: &str) -> Result<FormulaProgram, FormulaError> {
         program: FormulaProgram::default(),
     };
     if let Some(at) = parser.letters.iter().position(|letter| letter.is_control()) {
-        return Err(parser.error(at, String::from("a character that cannot be printed")));
+        return Err(parser.error(at, "a character that cannot be printed"));
+    }
+    if is_moment {
+        parser.signal(FormulaSignal::Gain)?;
     }
     parser.sum()?;
     match parser.peek() {
-        None => Ok(parser.program),
-        Some(')') => Err(parser.error(parser.at, String::from("a bracket that was not opened"))),
+        None => {
+            if is_moment {
+                parser.push(Instruction::Operate(FormulaOperator::Multiply))?;
+            }
+            Ok(parser.program)
+        }
+        Some(')') => Err(parser.error(parser.at, "a bracket that was not opened")),
         Some(letter) => Err(parser.error(parser.at, format!("`{letter}`, expected an operator or the end"))),
     }
 }
@@ -65,8 +73,8 @@ struct FormulaParser {
 }
 
 impl FormulaParser {
-    fn error(&self, at: usize, problem: String) -> FormulaError {
-        FormulaError { text: self.letters.iter().collect(), at, problem }
+    fn error(&self, at: usize, problem: impl Into<String>) -> FormulaError {
+        FormulaError { text: self.letters.iter().collect(), at, problem: problem.into() }
     }
 
     /// The next letter that is no blank.
@@ -85,15 +93,23 @@ impl FormulaParser {
     }
 
     fn push(&mut self, step: Instruction) -> Result<(), FormulaError> {
+        if let (Instruction::Operate(operator), Some(&Instruction::Take(operand))) =
+            (step, self.program.instructions.last())
+        {
+            self.waiting -= 1;
+            self.program.instructions.pop();
+            self.program.instructions.push(Instruction::With(operator, operand));
+            return Ok(());
+        }
+        self.program.waiting = self.program.waiting.max(self.waiting.saturating_sub(1));
         match step {
-            Instruction::Number(_) | Instruction::Constant(_) | Instruction::Signal(_) => self.waiting += 1,
+            Instruction::Take(_) => self.waiting += 1,
             Instruction::Operate(_) => self.waiting -= 1,
             _ => {}
         }
         if self.waiting > STACK {
-            return Err(
-                self.error(self.at, format!("more than {STACK} values wait here for an operator; use fewer brackets"))
-            );
+            let problem = format!("more than {STACK} values wait here for an operator; use fewer brackets");
+            return Err(self.error(self.at, problem));
         }
         self.program.instructions.push(step);
         Ok(())
@@ -162,8 +178,8 @@ impl FormulaParser {
     /// A power whose exponent was read from instruction `from` on; a whole number takes negative bases, too.
     fn raise(&mut self, from: usize) -> Result<(), FormulaError> {
         let exponent = match self.program.instructions[from..] {
-            [Instruction::Number(number)] => Some(number),
-            [Instruction::Number(number), Instruction::Negate] => Some(-number),
+            [Instruction::Take(Operand::Number(number))] => Some(number),
+            [Instruction::Take(Operand::Number(number)), Instruction::Negate] => Some(-number),
             _ => None,
         };
         match exponent.filter(|number| number.fract() == 0.0 && number.abs() <= 20.0) {
@@ -187,41 +203,32 @@ impl FormulaParser {
             Some(letter) if letter.is_ascii_digit() || letter == '.' => self.number(),
             Some(letter) if letter.is_alphabetic() || letter == '_' => self.name(),
             Some(letter) => Err(self.error(self.at, format!("`{letter}`, expected a number, a name or a bracket"))),
-            None => {
-                Err(self.error(self.at, String::from("the formula ends here, expected a number, a name or a bracket")))
-            }
+            None => Err(self.error(self.at, "the formula ends here, expected a number, a name or a bracket")),
         }
     }
 
     fn close(&mut self, open: usize) -> Result<(), FormulaError> {
         match self.take(&[')']) {
             Some(_) => Ok(()),
-            None if self.peek().is_none() => Err(self.error(open, String::from("a bracket that is not closed"))),
-            None => Err(self.error(self.at, String::from("expected `)` or an operator"))),
+            None if self.peek().is_none() => Err(self.error(open, "a bracket that is not closed")),
+            None => Err(self.error(self.at, "expected `)` or an operator")),
         }
     }
 
     fn number(&mut self) -> Result<(), FormulaError> {
         let from = self.at;
         let letter = |at: usize| self.letters.get(at).copied().unwrap_or(' ');
-        let mut end = from;
-        while letter(end).is_ascii_digit() || letter(end) == '.' {
-            end += 1;
-        }
-        if matches!(letter(end), 'e' | 'E') {
-            let digits = end + 1 + usize::from(matches!(letter(end + 1), '+' | '-'));
-            if letter(digits).is_ascii_digit() {
-                end = digits;
-                while letter(end).is_ascii_digit() {
-                    end += 1;
-                }
-            }
+        let after_digits = |from: usize| (from..).find(|at| !matches!(letter(*at), '0'..='9' | '.')).unwrap_or(from);
+        let mut end = after_digits(from);
+        let power = end + 1 + usize::from(matches!(letter(end + 1), '+' | '-'));
+        if matches!(letter(end), 'e' | 'E') && letter(power).is_ascii_digit() {
+            end = after_digits(power);
         }
         let text: String = self.letters[from..end].iter().collect();
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
         let number = number.ok_or_else(|| self.error(from, format!("`{text}` is no number")))?;
         self.at = end;
-        self.push(Instruction::Number(number))
+        self.push(Instruction::Take(Operand::Number(number)))
     }
 
     fn name(&mut self) -> Result<(), FormulaError> {
@@ -233,10 +240,10 @@ impl FormulaParser {
             return self.call(&name, from);
         }
         if let Some((_, signal)) = FormulaSignal::NAMES.iter().find(|(known, _)| *known == name) {
-            return self.push(Instruction::Signal(*signal));
+            return self.signal(*signal);
         }
         if name == "pi" {
-            return self.push(Instruction::Number(std::f64::consts::PI));
+            return self.push(Instruction::Take(Operand::Number(std::f64::consts::PI)));
         }
         if let Some(known) = misspelt(&name) {
             return Err(self.error(from, format!("`{name}` is no signal; did you mean `{known}`?")));
@@ -256,7 +263,16 @@ impl FormulaParser {
         if place == constants.len() {
             constants.push(name);
         }
-        self.push(Instruction::Constant(place))
+        self.push(Instruction::Take(Operand::Constant(place)))
+    }
+
+    fn signal(&mut self, signal: FormulaSignal) -> Result<(), FormulaError> {
+        let signals = &mut self.program.signals;
+        let place = signals.iter().position(|known| *known == signal).unwrap_or(signals.len());
+        if place == signals.len() {
+            signals.push(signal);
+        }
+        self.push(Instruction::Take(Operand::Signal(place)))
     }
 
     fn call(&mut self, name: &str, from: usize) -> Result<(), FormulaError> {
@@ -314,15 +330,13 @@ mod tests {
     use super::*;
 
     fn value(text: &str) -> f64 {
-        let signal = |signal: FormulaSignal| {
-            Some(match signal {
-                FormulaSignal::YawRate => -0.5,
-                FormulaSignal::Rudder => 2.0,
-                FormulaSignal::Sway => -3.0,
-                _ => 1.5,
-            })
+        let signal = |signal: FormulaSignal| match signal {
+            FormulaSignal::YawRate => -0.5,
+            FormulaSignal::Rudder => 2.0,
+            FormulaSignal::Sway => -3.0,
+            _ => 1.5,
         };
-        parse(text).unwrap_or_else(|error| panic!("{error}")).value(&[2.0, 3.0, 5.0, 7.0], signal).expect("all there")
+        parse(text, false).unwrap_or_else(|error| panic!("{error}")).value(&[2.0, 3.0, 5.0, 7.0], signal)
     }
 
     #[test]
@@ -349,8 +363,7 @@ mod tests {
         ] {
             assert!((value(text) - expected).abs() < 1e-12, "{text}: {} is not {expected}", value(text));
         }
-        assert_eq!(parse("k*tanh(c*psi)*k").expect("a formula").constants(), ["k", "c"]);
-        assert_eq!(parse("c*r*abs(v)*r").expect("a formula").signals(), [FormulaSignal::YawRate, FormulaSignal::Sway]);
+        assert_eq!(parse("k*tanh(c*psi)*k", false).expect("a formula").constants(), ["k", "c"]);
     }
 
     #[test]
@@ -373,10 +386,10 @@ mod tests {
             ("a*b*c*d*e*r", 8, "one more than the 4 constants"),
             ("c*é", 2, "without accents"),
         ] {
-            let error = parse(text).expect_err(text);
+            let error = parse(text, false).expect_err(text);
             assert!(error.at == at && error.problem.contains(said), "{text}: {error:?}");
         }
-        let marked = parse("c * dleta").expect_err("misspelt").to_string();
+        let marked = parse("c * dleta", false).expect_err("misspelt").to_string();
         assert!(marked.ends_with("\n  c * dleta\n      ^"), "{marked}");
     }
 
@@ -385,7 +398,7 @@ mod tests {
         for text in
             ["(".repeat(300), "-".repeat(300), "2^".repeat(150), "r+(".repeat(100), "c*".repeat(300), "a\u{0}".into()]
         {
-            assert!(parse(&text).is_err(), "{text}");
+            assert!(parse(&text, false).is_err(), "{text}");
         }
     }
 }

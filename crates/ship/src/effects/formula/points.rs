@@ -8,19 +8,29 @@ use crate::effects::effect::Manoeuvres;
 pub(super) struct SignalSizes {
     yaw_rate: f64,
     rudder: f64,
-    speed: f64,
+    pub(super) speed: f64,
     propeller: f64,
     duration: f64,
     wind: f64,
+    gain: f64,
     pub(super) length: f64,
 }
 
 impl SignalSizes {
     pub(super) fn ones() -> Self {
-        Self { yaw_rate: 1.0, rudder: 1.0, speed: 1.0, propeller: 1.0, duration: 1.0, wind: 1.0, length: 1.0 }
+        Self {
+            yaw_rate: 1.0,
+            rudder: 1.0,
+            speed: 1.0,
+            propeller: 1.0,
+            duration: 1.0,
+            wind: 1.0,
+            gain: 1.0,
+            length: 1.0,
+        }
     }
 
-    /// r L/U of a zig-zag is about 0.3.
+    /// r L/U of a zig-zag is about 0.3, K′/T′ about 1.
     pub(super) fn of(about: &Manoeuvres) -> Self {
         let speed = about.speed.or(about.sway).unwrap_or(1.0);
         Self {
@@ -30,6 +40,7 @@ impl SignalSizes {
             propeller: about.propeller.unwrap_or(1.0),
             duration: about.duration,
             wind: about.wind_square.unwrap_or(1.0).sqrt(),
+            gain: about.time.powi(-2),
             length: about.time * speed,
         }
     }
@@ -91,6 +102,9 @@ impl SignalPoint {
             FormulaSignal::WindAngle => std::f64::consts::PI * angle,
             FormulaSignal::PrimeYawRate => r * scales.yaw_rate * scales.length / (speed * scales.speed),
             FormulaSignal::PrimeSway => 0.15 * v / speed,
+            FormulaSignal::SpeedRatio => speed,
+            FormulaSignal::Start => 0.0,
+            FormulaSignal::Gain => scales.gain / (second * second),
         }
     }
 }

@@ -3,10 +3,13 @@
 
 use estimation::number::Real;
 
+use crate::dynamics::{Measured, Regressor};
 use crate::effects::effect::Now;
+use crate::particulars::Dimension;
 
-/// Most values that wait for an operator at once.
+/// Most values that wait for an operator at once, and as many as most formulas have, of signals too.
 pub(super) const STACK: usize = 16;
+const FEW: usize = 3;
 
 /// A signal that a formula may name. Units and signs are those of NOTATION.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,11 +38,27 @@ pub enum FormulaSignal {
     PrimeYawRate,
     /// `vp`, sway velocity without dimension, v/U.
     PrimeSway,
+    /// `q`, speed over that of the approach, U/U₀; 1 where the record has no speed.
+    SpeedRatio,
+    /// `start`, time of the first row, s.
+    Start,
+    /// `K_over_T`, K/T of the ship, 1/s²: a moment divided by it is a yaw acceleration.
+    Gain,
 }
+
+/// Numbers that a formula takes from a record: the signal that needs it, its neutral value and its dimension.
+pub(super) const OF_RECORD: [(FormulaSignal, f64, Dimension); 3] = [
+    (FormulaSignal::SpeedRatio, 1.0, [-1, 1]),
+    (FormulaSignal::Start, 0.0, [1, 0]),
+    (FormulaSignal::PrimeYawRate, 1.0, [0, 1]),
+];
+
+/// Their values: approach speed, m/s, first time, s, and length of the ship, m.
+pub(super) type OfRecord = [f64; OF_RECORD.len()];
 
 impl FormulaSignal {
     /// Every signal with its name.
-    pub const NAMES: [(&'static str, Self); 12] = [
+    pub const NAMES: [(&'static str, Self); 15] = [
         ("r", Self::YawRate),
         ("delta", Self::Rudder),
         ("psi", Self::Heading),
@@ -52,25 +71,46 @@ impl FormulaSignal {
         ("wind_angle", Self::WindAngle),
         ("rp", Self::PrimeYawRate),
         ("vp", Self::PrimeSway),
+        ("q", Self::SpeedRatio),
+        ("start", Self::Start),
+        ("K_over_T", Self::Gain),
     ];
 
-    /// Its value at an instant; `None` where the record has no such channel. `length` is that of the ship, m.
-    pub(super) fn at<R: Real>(self, now: &Now<R>, length: f64) -> Option<R> {
-        let measured = now.measured;
-        Some(match self {
+    /// The measured channels it needs.
+    pub(super) fn channels(self) -> &'static [Regressor] {
+        match self {
+            Self::Sway => &[Regressor::Sway],
+            Self::Surge | Self::PrimeSway => &[Regressor::Sway, Regressor::Speed],
+            Self::Speed | Self::PrimeYawRate => &[Regressor::Speed],
+            Self::Propeller => &[Regressor::Propeller],
+            Self::WindSpeed | Self::WindAngle => &[Regressor::Wind],
+            _ => &[],
+        }
+    }
+
+    /// Its value at an instant of a record that has its channels.
+    #[inline(always)]
+    pub(super) fn at<R: Real>(self, now: &Now<R>, &[approach_speed, start, length]: &OfRecord) -> R {
+        let Measured { speed, sway, wind_speed, wind_from, propeller } = *now.measured;
+        let there = |channel: Option<f64>| channel.unwrap_or(f64::NAN);
+        let of = |channel: Option<f64>| R::from(there(channel));
+        match self {
             Self::YawRate => now.yaw_rate,
             Self::Rudder => now.rudder,
             Self::Heading => now.heading,
-            Self::Sway => R::from(measured.sway?),
-            Self::Surge => R::from((measured.speed?.powi(2) - measured.sway?.powi(2)).max(0.0).sqrt()),
-            Self::Speed => R::from(measured.speed?),
-            Self::Propeller => R::from(measured.propeller?),
+            Self::Sway => of(sway),
+            Self::Surge => R::from((there(speed).powi(2) - there(sway).powi(2)).max(0.0).sqrt()),
+            Self::Speed => of(speed),
+            Self::Propeller => of(propeller),
             Self::Time => R::from(now.t),
-            Self::WindSpeed => R::from(measured.wind_speed?),
-            Self::WindAngle => R::from(measured.wind_from?),
-            Self::PrimeYawRate => now.yaw_rate * (length / measured.speed?),
-            Self::PrimeSway => R::from(measured.sway? / measured.speed?),
-        })
+            Self::WindSpeed => of(wind_speed),
+            Self::WindAngle => of(wind_from),
+            Self::PrimeYawRate => now.yaw_rate * (length / there(speed)),
+            Self::PrimeSway => R::from(there(sway) / there(speed)),
+            Self::SpeedRatio => R::from(speed.map_or(1.0, |speed| speed / approach_speed)),
+            Self::Start => R::from(start),
+            Self::Gain => now.gain,
+        }
     }
 }
 
@@ -114,6 +154,7 @@ impl FormulaFunction {
         ("step", Self::Step),
     ];
 
+    #[inline(always)]
     fn of<R: Real>(self, x: R) -> R {
         match self {
             Self::Abs => x.abs(),
@@ -160,6 +201,7 @@ impl FormulaOperator {
     pub const NAMES: [(&'static str, Self); 4] =
         [("min", Self::Min), ("max", Self::Max), ("pow", Self::Power), ("step", Self::SmoothStep)];
 
+    #[inline(always)]
     fn of<R: Real>(self, x: R, y: R) -> R {
         match self {
             Self::Add => x + y,
@@ -186,23 +228,32 @@ impl FormulaOperator {
     }
 }
 
-/// One step of a program.
+/// What needs no working out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Instruction {
+pub(super) enum Operand {
     /// A number.
     Number(f64),
     /// A constant that is fitted, by its place.
     Constant(usize),
-    /// A signal.
-    Signal(FormulaSignal),
+    /// A signal, by its place.
+    Signal(usize),
+}
+
+/// One step of a program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Instruction {
+    /// The last value waits; this is the last one now.
+    Take(Operand),
     /// Minus.
     Negate,
     /// A whole power.
     WholePower(i32),
     /// A function of the last value.
     Call(FormulaFunction),
-    /// An operator between the last two values.
+    /// An operator between the value that has waited least and the last one.
     Operate(FormulaOperator),
+    /// An operator between the last value and this: what would be a `Take` and an `Operate`.
+    With(FormulaOperator, Operand),
 }
 
 /// A formula ready to be evaluated.
@@ -211,6 +262,10 @@ pub struct FormulaProgram {
     pub(super) instructions: Vec<Instruction>,
     /// The constants in the order of their first use.
     pub(super) constants: Vec<String>,
+    /// The signals in the order of their first use.
+    pub(super) signals: Vec<FormulaSignal>,
+    /// Most values that wait at once beside the last one.
+    pub(super) waiting: usize,
 }
 
 impl FormulaProgram {
@@ -220,45 +275,64 @@ impl FormulaProgram {
     }
 
     /// The signals it names, each once.
-    pub fn signals(&self) -> Vec<FormulaSignal> {
-        let named = self.instructions.iter().filter_map(|step| match step {
-            Instruction::Signal(signal) => Some(*signal),
-            _ => None,
-        });
-        let mut signals: Vec<FormulaSignal> = named.collect();
-        signals.sort_unstable();
-        signals.dedup();
-        signals
+    pub fn signals(&self) -> &[FormulaSignal] {
+        &self.signals
     }
 
-    /// Its value with these constants; `signal` gives the signals. `None` where one is missing.
+    /// The measured channels that these need, the sway first.
+    pub(super) fn channels(&self) -> Vec<Regressor> {
+        let all = [Regressor::Sway, Regressor::Speed, Regressor::Wind, Regressor::Propeller];
+        all.into_iter().filter(|own| self.signals.iter().any(|signal| signal.channels().contains(own))).collect()
+    }
+
+    /// Its value with these constants; `signal` gives the signals.
     #[inline]
-    pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> Option<R>) -> Option<R> {
-        let mut stack = [R::from(0.0); STACK];
-        let mut top = 0;
-        for step in &self.instructions {
+    pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> R) -> R {
+        match (self.signals.len(), self.waiting) {
+            (0..=2, 0..=1) => self.run::<R, 2, 1>(constants, signal),
+            (0..=FEW, 0..=FEW) => self.run::<R, FEW, FEW>(constants, signal),
+            _ => self.run::<R, STACK, STACK>(constants, signal),
+        }
+    }
+
+    #[inline]
+    fn run<R: Real, const SIGNALS: usize, const WAITING: usize>(
+        &self,
+        constants: &[R],
+        signal: impl Fn(FormulaSignal) -> R,
+    ) -> R {
+        let mut signals = [R::from(0.0); SIGNALS];
+        for (value, own) in signals.iter_mut().zip(&self.signals) {
+            *value = signal(*own);
+        }
+        let value = |operand: Operand| match operand {
+            Operand::Number(number) => R::from(number),
+            Operand::Constant(place) => constants[place],
+            Operand::Signal(place) => signals[place],
+        };
+        let Some((&Instruction::Take(first), rest)) = self.instructions.split_first() else { return R::from(0.0) };
+        let mut last = value(first);
+        let (mut waiting, mut count) = ([R::from(0.0); WAITING], 0);
+        for step in rest {
             match *step {
-                Instruction::Number(number) => {
-                    stack[top] = R::from(number);
-                    top += 1;
+                // Products are most of what formulas do.
+                Instruction::With(FormulaOperator::Multiply, Operand::Signal(place)) => last = last * signals[place],
+                Instruction::With(FormulaOperator::Multiply, operand) => last = last * value(operand),
+                Instruction::Take(operand) => {
+                    waiting[count] = last;
+                    count += 1;
+                    last = value(operand);
                 }
-                Instruction::Constant(place) => {
-                    stack[top] = constants[place];
-                    top += 1;
-                }
-                Instruction::Signal(own) => {
-                    stack[top] = signal(own)?;
-                    top += 1;
-                }
-                Instruction::Negate => stack[top - 1] = -stack[top - 1],
-                Instruction::WholePower(power) => stack[top - 1] = stack[top - 1].powi(power),
-                Instruction::Call(function) => stack[top - 1] = function.of(stack[top - 1]),
+                Instruction::Negate => last = -last,
+                Instruction::WholePower(power) => last = last.powi(power),
+                Instruction::Call(function) => last = function.of(last),
                 Instruction::Operate(operator) => {
-                    top -= 1;
-                    stack[top - 1] = operator.of(stack[top - 1], stack[top]);
+                    count -= 1;
+                    last = operator.of(waiting[count], last);
                 }
+                Instruction::With(operator, operand) => last = operator.of(last, value(operand)),
             }
         }
-        Some(stack[0])
+        last
     }
 }

@@ -1,7 +1,8 @@
+use super::points::SignalPoint;
 use super::*;
 use crate::dynamics::Measured;
-use crate::effects::NonlinearDamping;
-use crate::number::Tangent;
+use crate::effects::effect::Parameter;
+use crate::effects::list::{LIST, ListedEffect};
 
 fn about() -> Manoeuvres {
     Manoeuvres {
@@ -17,31 +18,34 @@ fn about() -> Manoeuvres {
     }
 }
 
-/// Yaw acceleration over b = K/T of a formula, and of an effect.
-fn acceleration<R: Real>(effect: &dyn Acts<R>, p: &[R], yaw_rate: R) -> R {
-    let measured = Measured { speed: Some(6.0), sway: Some(-0.5), ..Measured::default() };
-    let now = Now {
-        t: 10.0,
-        heading: R::from(0.3),
-        yaw_rate,
-        rudder: R::from(0.2),
-        inverse_time: R::from(0.05),
-        gain: R::from(0.004),
-        measured: &measured,
-    };
-    effect.yaw_acceleration(p, &[], &now)
-}
-
+/// The value of a formula at a point, of one of the list with its typical constants, brought to other units, and the
+/// mirror image of both.
 #[test]
-fn a_formula_does_what_an_effect_of_the_same_equation_does() {
-    let formula = Formula::read("damping = c * r * abs(r)").expect("a formula");
-    let (p, r) = (Tangent::variable(-3.0, 0, 1.0), Tangent::variable(0.02, 1, 1.0));
-    let own = acceleration(formula.as_ref(), &[p], r);
-    let scaled = p * -0.004;
-    let known = acceleration(&NonlinearDamping::Quadratic, &[scaled], r);
-    assert!((own.value / known.value - 1.0).abs() < 1e-14, "{own:?} {known:?}");
-    for (own, known) in own.by.iter().zip(known.by) {
-        assert!((own - known).abs() <= 1e-14 * known.abs(), "{own} {known}");
+fn what_the_list_says_of_constants_is_what_their_formula_does() {
+    let rows = LIST.iter().filter_map(|own| if let ListedEffect::Row(row) = own { Some(row) } else { None });
+    for formula in rows.map(Formula::listed) {
+        let name = format!("{} ({})", formula.id(), formula.form());
+        let parameters = formula.parameters();
+        let keys: Vec<&str> = parameters.iter().map(|own| own.key).collect();
+        assert_eq!(formula.program.constants(), keys, "{name}");
+        assert!(!formula.acts.rudder || formula.program.signals() == [FormulaSignal::Rudder], "{name}");
+        let (second, metre): (f64, f64) = (2.0, 3.0);
+        for point in SignalPoint::all(&SignalSizes::ones()) {
+            let value = |point: SignalPoint, factor: &dyn Fn(&Parameter) -> f64| {
+                let constants: Vec<f64> = parameters.iter().map(|own| own.typical * factor(own)).collect();
+                formula.value_at(&constants, &point)
+            };
+            let is_near = |one: f64, other: f64| (one - other).abs() <= 1e-12 * one.abs();
+            let plain = value(point, &|_| 1.0);
+            let mirrored = value(point.mirrored(), &|own| if own.odd { -1.0 } else { 1.0 });
+            assert!(is_near(plain, -mirrored), "{name} of the other side: {plain} {mirrored}");
+            let in_units = value(SignalPoint { second, metre, ..point }, &|own| {
+                let [seconds, metres] = own.dimension();
+                second.powi(seconds) * metre.powi(metres)
+            });
+            let of_units = if formula.acts.rudder { 1.0 } else { second * second };
+            assert!(is_near(plain, in_units * of_units), "{name} in other units: {plain} {in_units}");
+        }
     }
 }
 
@@ -68,6 +72,9 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
         ("fast = c * tanh(k * r)", vec!["1", "s"]),
         ("two = a * r^3 + b * v", vec!["s³", "s/m"]),
         ("prime = c * rp * vp", vec!["1"]),
+        ("damping = c * r^3 / K_over_T", vec!["s"]),
+        ("slow = c * q * v", vec!["s/m"]),
+        ("trend = c * (t - start)", vec!["1/s"]),
         ("fading = c * delta * U^1.6", vec![Parameter::NO_UNIT]),
     ] {
         let formula = Formula::read(line).expect("a formula");
@@ -112,9 +119,49 @@ fn what_is_no_effect_is_refused_where_it_stands() {
     }
 }
 
+/// A formula takes the numbers of a record that its signals need, and no others.
 #[test]
 fn a_formula_is_had_again_from_what_is_written_of_it() {
-    let formula = Formula::read("bank = c * tanh(k * psi); k about 5").expect("a formula").with_length(150.0);
-    let again = crate::effects::named(formula.id(), formula.form(), &formula.constants()).expect("it is known");
-    assert_eq!((again.id(), again.form(), again.constants()), (formula.id(), formula.form(), formula.constants()));
+    for (line, constants) in [
+        ("bank = c * tanh(k * psi); k about 5", vec![]),
+        ("prime = c * rp * q", vec![6.0, 150.0]),
+        ("trend = c * rp * (t - start)", vec![-20.0, 150.0]),
+    ] {
+        let formula = Formula::read(line).expect("a formula");
+        let again = crate::effects::named(formula.id(), formula.form(), &constants).expect("it is known");
+        let found: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
+        assert_eq!((again.id(), again.form(), found), (formula.id(), formula.form(), constants));
+    }
+    for (form, constants) in [("c * rp", vec![]), ("c * rp", vec![-1.0]), ("c * r", vec![1.0]), ("c * dleta", vec![])] {
+        assert!(crate::effects::named("own", form, &constants).is_none(), "{form}");
+    }
+    assert!(crate::effects::named("moment_drift", "c * r", &[]).is_none(), "a name of the list");
+}
+
+#[test]
+fn the_formula_of_a_user_is_a_moment_as_an_angle_of_the_rudder() {
+    let measured = Measured { speed: Some(6.0), sway: Some(-0.5), ..Measured::default() };
+    let now = Now {
+        t: 10.0,
+        heading: 0.3,
+        yaw_rate: 0.02,
+        rudder: 0.2,
+        inverse_time: 0.05,
+        gain: 0.004,
+        measured: &measured,
+    };
+    let acceleration = |line: &str, now: &Now| {
+        Formula::read(line).expect("a formula").with_length(150.0).yaw_acceleration(&[-3.0], &[], now)
+    };
+    for (line, moment) in [
+        ("cross = c * r * abs(v)", -3.0 * 0.02 * 0.5),
+        ("sum = c * r + c * v", -3.0 * (0.02 - 0.5)),
+        ("prime = c * rp * vp", -3.0 * (0.02 * 150.0 / 6.0) * (-0.5 / 6.0)),
+        ("direct = c * r / K_over_T", -3.0 * 0.02 / 0.004),
+    ] {
+        assert!((acceleration(line, &now) / (0.004 * moment) - 1.0).abs() < 1e-14, "{line}");
+    }
+    let measured = Measured::default();
+    assert_eq!(acceleration("cross = c * r * abs(v)", &Now { measured: &measured, ..now }), 0.0, "no sway, no moment");
+    assert_eq!(acceleration("ratio = c * r * q", &Now { measured: &measured, ..now }), 0.004 * -3.0 * 0.02);
 }

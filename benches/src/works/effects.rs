@@ -1,0 +1,67 @@
+//! What a formula costs: the replay of a record with an effect of the list, and with its equation written in Rust.
+
+use std::sync::Arc;
+
+use ship::effects::{Acts, Description, Effect, EffectReal, Manoeuvres, Now, Places, Proposal, listed};
+use ship::replay::{Recorded, replay_states};
+use ship::{Dynamics, Polyline, Real, ResponseModel, Tangent};
+
+use crate::records::{K, ROWS, T, first_order_zig_zag, record};
+use crate::work::{Reach, Work, WorkGroup};
+
+/// r' = … − (n₃/T) r³, in Rust.
+#[derive(Debug)]
+struct CubicByHand;
+
+impl Effect for CubicByHand {
+    fn description(&self) -> Description {
+        listed("nonlinear_damping", "r³").description()
+    }
+
+    fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
+        None
+    }
+
+    fn places(&self) -> Places {
+        Places::MOMENT
+    }
+}
+
+impl<R: Real> Acts<R> for CubicByHand {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+        let r = now.yaw_rate;
+        -p[0] * r * r * r
+    }
+}
+
+/// The heading at the end of a replay.
+fn replayed<R: EffectReal>(effect: Arc<dyn Effect>, rudder: &Polyline) -> R {
+    let values = [1.0 / T, K / T, 0.0, 60.0];
+    let response = ResponseModel::new(vec![effect]).with(values.map(R::from).to_vec());
+    let mut state = vec![R::default(); response.dimension()];
+    let recorded = Recorded::rudder(rudder);
+    replay_states(&response, &recorded, rudder.times(), |_, _| 0.25, &mut state, |_, _, _| {});
+    state[0]
+}
+
+/// Replays in plain numbers and in numbers that carry derivatives, with a formula and by hand.
+pub fn effects() -> WorkGroup {
+    let mut group = WorkGroup::new(
+        "effects",
+        "Formulas",
+        "A record of 600 s replayed with damping that grows with r³, on one core: as a row of the list of effects, which is \
+         a formula, and as the same equation written in Rust; in plain numbers, and with six derivatives.",
+    );
+    let trial = record(&first_order_zig_zag(ROWS));
+    let rudder = Polyline::new(trial.time().to_vec(), trial.rudder().to_vec()).expect("increasing times");
+    let mut pair = |kind: &str, go: fn(Arc<dyn Effect>, &Polyline) -> f64| {
+        let (one, other) = (rudder.clone(), rudder.clone());
+        let by_hand = Work::new(format!("by hand, {kind}"), move || go(Arc::new(CubicByHand), &one));
+        let by_hand = group.alone(by_hand, None);
+        let formula = Work::new(format!("formula, {kind}"), move || go(listed("nonlinear_damping", "r³"), &other));
+        group.beside(formula, &by_hand, Some(Reach::Ratio(3.0)));
+    };
+    pair("plain", replayed::<f64>);
+    pair("with derivatives", |effect, rudder| replayed::<Tangent>(effect, rudder).value);
+    group
+}

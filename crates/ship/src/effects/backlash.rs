@@ -1,0 +1,63 @@
+//! Play between the recorded and the acting rudder.
+
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use estimation::number::Real;
+
+/// Backlash of half-width g: the acting rudder follows only when the recorded one has taken up the play, so it stays
+/// within ±g of it. The other form of the effect, a dead band, is a row of the list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Backlash;
+
+impl Backlash {
+    /// The half-width g, rad.
+    pub(super) const HALF_WIDTH: Parameter = Parameter::even(["g", "g", "rad"], [0.0, 0.012], [0.0, 0.15]);
+
+    /// Mean, standard deviation and largest value of g, rad.
+    pub(super) fn prior(about: &Manoeuvres) -> [f64; 3] {
+        [0.0, 0.12 * about.rudder, 0.5 * about.rudder]
+    }
+}
+
+impl Effect for Backlash {
+    fn description(&self) -> Description {
+        Description {
+            id: "rudder_deadband",
+            form: "backlash",
+            equation: "T r' + r = K (δ_e + δ_r), |δ_e − δ| ≤ g (play)",
+            parameters: &[Self::HALF_WIDTH],
+        }
+    }
+
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        let ([mean, sd, largest], g) = (Self::prior(about), Self::HALF_WIDTH);
+        Some(Proposal::new(*self, [Prior::normal(&g, mean, sd).within([0.0, largest.min(g.highest)])]))
+    }
+
+    fn places(&self) -> Places {
+        Places::RUDDER
+    }
+
+    fn states(&self) -> usize {
+        1
+    }
+}
+
+impl<R: Real> Acts<R> for Backlash {
+    fn approach(&self, _p: &[R], now: &Now<R>, z: &mut [R]) {
+        z.fill(now.rudder);
+    }
+
+    /// While the rudder is monotone the play operator is a clamp of where it was, which is exact within a step.
+    fn rudder(&self, p: &[R], z: &[R], rudder: R) -> R {
+        let g = p[0].at_least(0.0);
+        z[0].between(rudder - g, rudder + g)
+    }
+
+    fn rates(&self, _p: &[R], _z: &[R], _now: &Now<R>, _before: R, rate: &mut [R]) {
+        rate.fill(R::from(0.0));
+    }
+
+    fn settle(&self, p: &[R], z: &mut [R], before: R) {
+        z[0] = self.rudder(p, z, before);
+    }
+}

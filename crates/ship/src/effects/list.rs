@@ -1,0 +1,146 @@
+//! The list of effects, in the order of reports. What is algebra in the signals is a row; what has memory or states is
+//! written in Rust.
+
+use std::sync::{Arc, LazyLock};
+
+use super::backlash::Backlash;
+use super::effect::{Description, Effect, Parameter, Places};
+use super::formula::{Formula, ListedFormula, ListedPrior};
+use super::second_order::SecondOrder;
+use super::speed_loss::SpeedLoss;
+use super::steering_lag::SteeringLag;
+use super::transient_disturbance::TransientDisturbance;
+use super::wave_yaw::WaveYaw;
+use ListedEffect::{Row, Rust};
+
+/// An effect of the list in one of its forms.
+pub(super) enum ListedEffect {
+    /// Written as a formula.
+    Row(ListedFormula),
+    /// Written in Rust.
+    Rust(fn() -> Arc<dyn Effect>),
+}
+
+/// A row: identifier, form and equation for people; where it acts and the formula; its constants in the order in which
+/// the formula names them; mean, standard deviation and largest value of these in records of some manoeuvres.
+///
+/// At [`Places::RUDDER`] the formula is the angle that acts, from `delta` alone, rad; at [`Places::MOMENT`] a yaw
+/// acceleration, rad/s²: `K_over_T` times a moment as an angle of the rudder.
+const fn row(
+    [id, form, equation]: [&'static str; 3],
+    (acts, formula): (Places, &'static str),
+    parameters: &'static [Parameter],
+    prior: ListedPrior,
+) -> ListedEffect {
+    Row(ListedFormula { description: Description { id, form, equation, parameters }, acts, formula, prior })
+}
+
+/// No largest value but that of the parameter.
+const ANY: f64 = f64::INFINITY;
+
+/// The list. The order of factors in a formula is that with which numbers were published.
+#[rustfmt::skip]
+pub(super) static LIST: [ListedEffect; 22] = [
+    Rust(|| Arc::new(SecondOrder)),
+    // Norrbin (1963) for r|r| and r³; Bech (1968) for the polynomial T₁T₂ r'' + (T₁+T₂) r' + K H(r) = K (δ + T₃ δ'),
+    // H = b₃r³ + b₂r² + b₁r + b₀: the second-order effect with r³ of K b₃/T, r² of K b₂/T, 1/T times K b₁, δ_r = −b₀.
+    // Divided by T a coefficient stays regular when 1/T passes through zero. Without dimension: r³ within 8, r|r|
+    // within 1.2, r² (damping that differs by side) within 0.4.
+    row(["nonlinear_damping", "r³", "T r' + r + n₃ r³ = K (δ + δ_r)"],
+        (Places::MOMENT, "-n3_over_T * r * r * r"),
+        &[Parameter::even(["n3_over_T", "n₃/T", "s/rad²"], [0.0, 40.0], [0.0, 1e7])],
+        |about| Some([0.0, 8.0 * about.time, ANY])),
+    row(["nonlinear_damping", "r|r|", "T r' + r + n₂ r|r| = K (δ + δ_r)"],
+        (Places::MOMENT, "-n2_over_T * r * abs(r)"),
+        &[Parameter::even(["n2_over_T", "n₂/T", "1/rad"], [0.0, 0.7], [0.0, 1e4])],
+        |_| Some([0.0, 1.2, ANY])),
+    row(["nonlinear_damping", "r²", "T r' + r + n₁₁ r² = K (δ + δ_r)"],
+        (Places::MOMENT, "-n11_over_T * r * r"),
+        &[Parameter::odd(["n11_over_T", "n₁₁/T", "1/rad"], [0.0, 0.2], [-1e3, 1e3])],
+        |_| Some([0.0, 0.4, ANY])),
+    // The moment of a moderate wind is that of 0.025 rad of rudder.
+    row(["wind_moment", "measured wind", "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)"],
+        (Places::MOMENT, "K_over_T * c_w * wind_speed * wind_speed * sin(wind_angle)"),
+        &[Parameter::even(["c_w", "c_w", "rad s²/m²"], [0.0, 0.01], [-10.0, 10.0])],
+        |about| Some([0.0, 0.05 / about.wind_square?, ANY])),
+    // w sin 2(ψ_w − ψ): steady wind of unknown strength and direction.
+    row(["wind_moment", "steady wind", "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)"],
+        (Places::MOMENT, "K_over_T * (w_c * cos(2 * psi) + w_s * sin(2 * psi))"),
+        &[Parameter::odd(["w_c", "w_c", "rad"], [0.0, 0.02], [-0.6, 0.6]),
+          Parameter::even(["w_s", "w_s", "rad"], [0.0, 0.02], [-0.6, 0.6])],
+        |_| Some([0.0, 0.025, ANY])),
+    Rust(|| Arc::new(SpeedLoss::Modelled)),
+    Rust(|| Arc::new(SpeedLoss::Measured { approach_speed: 1.0 })),
+    Rust(|| Arc::new(SpeedLoss::Inflow { approach_speed: 1.0, approach_rate: 1.0 })),
+    Rust(|| Arc::new(SpeedLoss::Propeller { approach_rate: 1.0 })),
+    Rust(|| Arc::new(SteeringLag::DeadTime)),
+    Rust(|| Arc::new(SteeringLag::FirstOrder)),
+    // A rudder that loses lift at large angles. Half of sin 2δ, the side force of a rudder whose lift is normal to its
+    // blade, is δ − ⅔ δ³; a hull that turns takes some of the angle away. A larger rudder has the larger effect as far
+    // as the records go: c₃ < 1/(3 δ²).
+    row(["rudder_saturation", "stall", "T r' + r = K (δ − c₃ δ³ + δ_r)"],
+        (Places::RUDDER, "delta - c3 * delta * delta * delta"),
+        &[Parameter::even(["c3", "c₃", "1/rad²"], [0.0, 0.5], [-2.0, 5.0])],
+        |about| Some([0.0, 0.4, (about.rudder * about.rudder * 3.0).recip()])),
+    Rust(|| Arc::new(Backlash)),
+    // Angles below g do not act, larger ones act less g.
+    row(["rudder_deadband", "dead band", "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)"],
+        (Places::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))"),
+        &[Backlash::HALF_WIDTH],
+        |about| Some(Backlash::prior(about))),
+    // The gain is 1 + a to starboard and 1 − a to port.
+    row(["port_starboard_asymmetry", "gain by side", "T r' + r = K (δ + a |δ| + δ_r)"],
+        (Places::RUDDER, "delta + a * abs(delta)"),
+        &[Parameter::odd(["a", "a", "1"], [0.0, 0.05], [-0.8, 0.8])],
+        |_| Some([0.0, 0.12, ANY])),
+    // A moment that is even in the yaw rate, and so in the drift that goes with it. A rudder whose inflow is
+    // straightened differently on either side has it (Yasukawa and Yoshimura 2015, γ_R).
+    row(["port_starboard_asymmetry", "moment by drift", "T r' + r = K (δ + c_r |r| + δ_r)"],
+        (Places::MOMENT, "K_over_T * c_r * abs(r)"),
+        &[Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])],
+        |about| Some([0.0, 0.1 * about.time, ANY])),
+    // The start of a record keeps the trend apart from δ_r.
+    row(["moment_drift", "linear trend", "T r' + r = K (δ + δ_r + m (t − t₀))"],
+        (Places::MOMENT, "K_over_T * m * (t - start)"),
+        &[Parameter::odd(["m", "m", "rad/s"], [0.0, 7e-5], [-0.01, 0.01])],
+        |about| Some([0.0, 0.02 / about.duration, ANY])),
+    Rust(|| Arc::new(TransientDisturbance::Passing)),
+    Rust(|| Arc::new(TransientDisturbance::Lasting { edge: 1.0 })),
+    Rust(|| Arc::new(WaveYaw)),
+    // The moment of a drifting hull is N_v u v, so it falls with the measured speed. N_v/N_δ of hulls is −3 ± 1.5
+    // without dimension.
+    row(["sway_coupling_measured", "measured sway", "T r' + r = K (δ + δ_r + c_v q v), q = U/U₀"],
+        (Places::MOMENT, "K_over_T * c_v * (q * v)"),
+        &[Parameter::even(["c_v", "c_v", "rad s/m"], [0.0, 0.1], [-100.0, 100.0])],
+        |about| about.sway.map(|speed| [-3.0 / speed, 1.5 / speed, ANY])),
+];
+
+static ALL: LazyLock<Vec<Arc<dyn Effect>>> = LazyLock::new(|| {
+    let made = |own: &ListedEffect| -> Arc<dyn Effect> {
+        match own {
+            Row(row) => Arc::new(Formula::listed(row)),
+            Rust(make) => make(),
+        }
+    };
+    LIST.iter().map(made).collect()
+});
+
+/// Every effect in every form, in the order of reports.
+///
+/// Forms that need a constant of the record have it at a neutral value: approach speed 1 m/s, propeller 1/s, first time
+/// 0, edge of a lasting moment 1 s.
+pub fn all() -> Vec<Arc<dyn Effect>> {
+    ALL.clone()
+}
+
+/// The effect of the list with this identifier and form.
+///
+/// # Panics
+/// When there is none: a mistake of the caller, not of a user.
+pub fn listed(id: &str, form: &str) -> Arc<dyn Effect> {
+    let found = ALL.iter().find(|effect| (effect.id(), effect.form()) == (id, form));
+    Arc::clone(found.unwrap_or_else(|| panic!("no effect of the list is {id} ({form})")))
+}
+
+#[cfg(test)]
+mod tests;

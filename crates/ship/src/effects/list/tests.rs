@@ -1,0 +1,93 @@
+use super::*;
+use crate::dynamics::Measured;
+use crate::effects::effect::{EffectReal, Now};
+use crate::number::Tangent;
+use estimation::number::Real;
+
+/// The rows in equations written by hand: the rudder that acts, or the yaw acceleration.
+fn by_hand<R: Real>(id: &str, form: &str, p: &[R], now: &Now<R>) -> R {
+    let Now { rudder, gain, yaw_rate: r, measured, .. } = *now;
+    match (id, form) {
+        ("nonlinear_damping", "r³") => -p[0] * r * r * r,
+        ("nonlinear_damping", "r|r|") => -p[0] * r * r.abs(),
+        ("nonlinear_damping", "r²") => -p[0] * r * r,
+        ("wind_moment", "steady wind") => {
+            let (sin, cos) = (now.heading * 2.0).sin_cos();
+            gain * (p[0] * cos + p[1] * sin)
+        }
+        ("wind_moment", "measured wind") => {
+            let (speed, from) = (measured.wind_speed.expect("measured"), measured.wind_from.expect("measured"));
+            gain * p[0] * speed * speed * from.sin()
+        }
+        ("rudder_saturation", _) => rudder - p[0] * rudder * rudder * rudder,
+        ("rudder_deadband", "dead band") => (rudder.abs() - p[0].at_least(0.0)).at_least(0.0) * rudder.value().signum(),
+        ("port_starboard_asymmetry", "gain by side") => rudder + p[0] * rudder.abs(),
+        ("port_starboard_asymmetry", "moment by drift") => gain * p[0] * r.abs(),
+        ("moment_drift", _) => gain * p[0] * (now.t - 3.25),
+        ("sway_coupling_measured", _) => {
+            let ratio = measured.speed.map_or(1.0, |speed| speed / 7.3);
+            gain * p[0] * (ratio * measured.sway.expect("measured"))
+        }
+        _ => panic!("{id} ({form}) is not written by hand"),
+    }
+}
+
+fn rows() -> impl Iterator<Item = &'static ListedFormula> {
+    LIST.iter().filter_map(|own| if let Row(row) = own { Some(row) } else { None })
+}
+
+/// A number from −1 to 1, one for every place and round; zero in some rounds.
+fn number(round: u32, place: u32) -> f64 {
+    match (round + place) % 11 {
+        0 => 0.0,
+        _ => 2.0 * (f64::from(round) * f64::from(2 + 3 * place).sqrt()).fract() - 1.0,
+    }
+}
+
+/// The published numbers were computed with these very operations.
+#[test]
+fn rows_are_their_equations_to_the_last_bit() {
+    for row in rows() {
+        let Description { id, form, parameters, .. } = row.description;
+        let formula = Formula::listed(row);
+        let constants: Vec<f64> =
+            formula.constants().iter().map(|(own, _)| if *own > 0.0 { 7.3 } else { 3.25 }).collect();
+        let formula = formula.with_constants(&constants).expect("as many");
+        let acts = Tangent::acts(formula.as_ref());
+        for round in 0..500 {
+            let variable = |place: u32, size: f64| {
+                Tangent::variable(size * number(round, place), place as usize, 0.5 + number(round, place + 20).abs())
+            };
+            let measured = Measured {
+                speed: (round % 3 > 0).then(|| 5.0 + number(round, 6)),
+                sway: Some(number(round, 7)),
+                wind_speed: Some(10.0 * number(round, 8).abs()),
+                wind_from: Some(3.0 * number(round, 9)),
+                propeller: None,
+            };
+            let mut now = Now {
+                t: 100.0 * number(round, 10),
+                heading: variable(0, 1.0),
+                yaw_rate: variable(1, 0.03),
+                rudder: variable(2, 0.6),
+                inverse_time: variable(3, 0.1),
+                gain: variable(3, 0.01),
+                measured: &measured,
+            };
+            let p = [variable(4, 2.0 * parameters[0].typical), variable(5, 0.03)];
+            // The edges of a dead band.
+            now.rudder.value = match round % 7 {
+                0 => p[0].value,
+                1 => 0.0 - p[0].value,
+                _ => now.rudder.value,
+            };
+            let p = &p[..parameters.len()];
+            let (found, expected) = match row.acts.rudder {
+                true => (acts.rudder(p, &[], now.rudder), by_hand(id, form, p, &now)),
+                false => (acts.yaw_acceleration(p, &[], &now), by_hand(id, form, p, &now)),
+            };
+            // The sign of a zero may differ.
+            assert!(found == expected, "{id} ({form}), {round}: {found:?} is not {expected:?}\n{now:?} {p:?}");
+        }
+    }
+}
