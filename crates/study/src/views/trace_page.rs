@@ -6,6 +6,7 @@ use predict::steady::SteadyCurve;
 use report::number::{fixed, significant};
 use report::{Page, PageFigure, Table};
 use ship::ShortNumber;
+use ship::vessel::prime::meaning;
 
 use super::record_figures::steady_turns;
 use super::trace_figures as figures;
@@ -33,6 +34,7 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     if let Some(signature) = &trace.unexplained.signature {
         behind += &format!("\nleft: {signature}");
     }
+    behind += &odd(document);
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
@@ -53,6 +55,24 @@ fn formulas(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String
         let text = own.forms.first().map_or_else(String::new, |form| format!(" = {}", form.form));
         format!("{mark}{}{text}{mark} {sides}", own.id)
     })
+}
+
+/// Departures of a hull, in standard deviations, that are said.
+const ODD: f64 = 2.0;
+
+/// What is odd about the ship: the farthest departure of the hull of her dimensions, else of any.
+fn odd(document: &TraceDocument) -> String {
+    let hulls = &document.ship.hulls;
+    let Some(hull) = hulls.iter().find(|hull| hull.form == "mmg").or(hulls.first()) else { return String::new() };
+    let farthest =
+        hull.coefficients.iter().max_by(|one, other| one.departure().abs().total_cmp(&other.departure().abs()));
+    let told = farthest.filter(|own| own.departure().abs() >= ODD).map(|own| {
+        let means = meaning(&own.key).map_or_else(String::new, |means| format!(" ({means})"));
+        format!("{} is {} sd from what was expected{means}", own.symbol, fixed(own.departure(), 1))
+    });
+    let what = told.unwrap_or_else(|| format!("no coefficient is more than {ODD} sd from what was expected"));
+    let forms: Vec<&str> = hulls.iter().map(|hull| hull.form.as_str()).collect();
+    format!("\nhull ({}): of {}, {what}", forms.join(", "), hull.form)
 }
 
 /// The noise in one sentence.
@@ -100,6 +120,11 @@ const EVIDENCE: &str = "The probability of an effect is the weight of all struct
                         An effect is named where its probability, or that of the group it cannot be told from, is \
                         high enough.";
 
+const HULLS: &str = "Hulls of three degrees of freedom, fitted about what the dimensions of the ship say (`mmg`) or what \
+                     hulls have (`quadratic`, `cubic`): their coefficients without dimension that are one standard \
+                     deviation or more from what was expected. Predictions are made with these hulls, and they take part \
+                     in the replays where the structures leave more than noise.";
+
 const CANDIDATES: &str = "Visibility is the expected square of the size of an effect over its error beside all other \
                           candidates: what is small here cannot be seen in these records.";
 
@@ -143,6 +168,9 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     formulas(document, "`").for_each(|typed| page.say(format!("{typed}.")));
     table(&mut page, "Noise", tables::noise(document), "");
     table(&mut page, "Model", tables::parameters(document), &model(document));
+    if !document.ship.hulls.is_empty() {
+        table(&mut page, "The hull behind the response", tables::hulls(document), HULLS);
+    }
     what_is_left(&mut page, document);
     table(&mut page, "Aliases and blind spots", aliases(document), "");
     page.part("Next trial");

@@ -2,9 +2,11 @@
 
 use ::trace::document::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
 use ::trace::replay_errors::HORIZONS;
+use predict::stored_hull::StoredCoefficient;
 use report::Table;
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
 use ship::angle::to_deg;
+use ship::vessel::prime::meaning;
 use trial::Quantity;
 
 use crate::documents::trace::{RecordErrors, TraceDocument};
@@ -93,6 +95,33 @@ fn interval(ends: Option<[f64; 2]>) -> String {
         Some([lo, hi]) if lo.abs().max(hi.abs()) < 1e-3 => format!("[{}, {}]", significant(lo, 3), significant(hi, 3)),
         _ => number::interval(ends),
     }
+}
+
+/// Departures from what was expected, in standard deviations, that are listed.
+const DEPARTS: f64 = 1.0;
+
+/// Coefficients of the hulls that are not as expected, the farthest first.
+pub fn hulls(document: &TraceDocument) -> Table {
+    let mut table = Table::headed("hull | coefficient | .value | .expected | .departure [sd] | what it can mean");
+    for hull in &document.ship.hulls {
+        let mut far: Vec<&StoredCoefficient> =
+            hull.coefficients.iter().filter(|own| own.departure().abs() >= DEPARTS).collect();
+        far.sort_by(|one, other| other.departure().abs().total_cmp(&one.departure().abs()));
+        for own in far {
+            let expected = format!("{} ± {}", significant(own.expected, 2), significant(own.expected_sd, 2));
+            let meaning = meaning(&own.key).unwrap_or(MISSING).to_owned();
+            let departure = fixed(own.departure(), 1);
+            table.push([
+                hull.form.clone(),
+                own.symbol.clone(),
+                significant(own.value, 3),
+                expected,
+                departure,
+                meaning,
+            ]);
+        }
+    }
+    table
 }
 
 /// K, T, δ_r and every parameter of the most probable structure.
