@@ -16,7 +16,9 @@ use identify::{Identifier, IdentifyError};
 use kempf_tests::outside::least_squares;
 use kempf_tests::records::Case;
 use scenario::Scenario;
-use study::options::{Common, FigureOptions, FitRequest, Format, PageFigureOptions, PageFigures, ReadingOptions, ShipOptions};
+use study::options::{
+    Common, FigureOptions, FitRequest, Format, PageFigureOptions, PageFigures, ReadingOptions, ShipOptions,
+};
 use trial::Trial;
 
 const ESTIMATOR: &str = env!("CARGO_BIN_EXE_estimator");
