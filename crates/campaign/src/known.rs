@@ -441,4 +441,52 @@ mod tests {
         assert!((first.parameters[1] / first.parameters[0] - 0.1).abs() < 0.003);
         ShipMixture::new(vec![(known, 1.0)]).expect("what is known can be drawn from");
     }
+
+    /// Time of the ship KVLCC2, L/U, s.
+    const KVLCC2: f64 = 320.0 / 7.97;
+
+    /// KVLCC2 in a manoeuvre, by a gear of 2.34°/s, with her particulars.
+    fn tanker(kind: &Manoeuvre) -> Trial {
+        let manoeuvre = predict::standard::steered(kind, KVLCC2).expect("steered");
+        let mut simulation = Simulation::new(Vessel::ship(&ship::ships::kvlcc2::full_scale()), manoeuvre);
+        simulation.gear = SteeringGear::with_rate(from_deg(2.34));
+        simulation.recording.period = 2.0;
+        let trial = simulation.run(&StreamKey::default()).expect("a trial").trial;
+        let hull = HullParticulars {
+            beam: Some(58.0),
+            draught: Some(20.8),
+            block_coefficient: Some(0.81),
+            rudder_area: Some(112.5),
+            rudder_height: Some(15.8),
+            propeller_diameter: Some(9.86),
+            ..HullParticulars::default()
+        };
+        trial.with_conditions(trial::Conditions { hull, ..trial::Conditions::default() })
+    }
+
+    /// Two zig-zags and her particulars tell her circle: advance and tactical diameter to 3 %. Without beam and draught
+    /// it is 4 % in the advance, within the interval.
+    #[test]
+    fn zig_zags_of_a_tanker_tell_her_circle() {
+        let zig_zags = ["zig-zag:10/10", "zig-zag:-20/20"].map(|kind| tanker(&kind.parse().expect("known")));
+        let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
+        let facts = RecordFacts::of(&zig_zags).with_motion(None);
+        let known = of_estimate(&estimate, &facts).expect("a covariance");
+        assert!(facts.no_track().is_none() && !known.hulls.is_empty() && known.motion.is_none());
+        let kind: Manoeuvre = "turning-circle:35".parse().expect("known");
+        let circle = tanker(&kind);
+        let read = |channel| circle.channel(channel).expect("a hull");
+        let velocity: Vec<[f64; 2]> =
+            read(Channel::Speed).iter().zip(read(Channel::Sway)).map(|(u, v)| [(u * u - v * v).sqrt(), *v]).collect();
+        let (time, heading) = (circle.time(), circle.heading());
+        let track = motion::track(time, heading, &velocity);
+        let rates = vec![0.0; time.len()];
+        let truth = motion::turning_circle([time, heading, &rates], [&track, &velocity], 0.0);
+        let mixture = ShipMixture::new(vec![(known, 1.0)]).expect("sound");
+        let prediction = mixture.predict(&kind, 300, false).expect("a turn");
+        for (name, truth) in [("advance_m", truth.advance), ("tactical_diameter_m", truth.tactical_diameter)] {
+            let (interval, truth) = (prediction.figures[name].interval, truth.expect("a circle"));
+            assert!((interval.median / truth - 1.0).abs() < 0.03, "{name}: {truth} {interval:?}");
+        }
+    }
 }
