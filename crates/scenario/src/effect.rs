@@ -5,18 +5,35 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
 use schemars::{Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, json};
 use ship::Regressor;
 use ship::angle::DEGREE;
 use ship::effects::{Effect, Formula, listed};
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ShortNumber};
+use simulate::numbers::Numbers;
+use toml::{Table, Value};
 
-use crate::effect_wire::EffectWire;
 use crate::number_table::{self, NamedNumbers, NumberKey, closed};
 use crate::problem::{KeyFault, KeyPath, suggestion};
-use crate::wire::ScenarioWire;
 use crate::{limits, reader};
+
+/// The key of a formula in its entry.
+const FORMULA: &str = "formula";
+
+/// An entry of `[[effect]]`: an effect of the list with its numbers below, or a formula with values beside it.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+pub struct EffectWire(Table);
+
+impl Numbers for EffectWire {
+    fn set(&mut self, key: &[String], value: f64) -> bool {
+        let Some((name, above)) = key.split_last() else { return false };
+        let table = above.iter().try_fold(&mut self.0, |table, part| table.get_mut(part)?.as_table_mut());
+        let number = table.and_then(|table| table.get_mut(name)).filter(|own| own.is_float() || own.is_integer());
+        number.map(|number| *number = Value::Float(value)).is_some()
+    }
+}
 
 /// A number of an effect: identifier and form of the effect, the key and what it means.
 type EffectNumber = (&'static str, &'static str, &'static str, &'static str);
@@ -120,8 +137,12 @@ pub fn keys(effect: &dyn Effect) -> Option<String> {
 
 /// The effects with nothing left out.
 pub fn complete(entries: &mut [EffectWire]) {
-    for (id, numbers) in entries.iter_mut().flat_map(|entry| &mut entry.named) {
-        forms_of(id).iter().for_each(|form| number_table::complete(numbers, &form.keys));
+    for (id, numbers) in entries.iter_mut().flat_map(|entry| &mut entry.0) {
+        let keys = forms_of(id).into_iter().flat_map(|form| &form.keys);
+        for (own, default) in keys.filter_map(|own| Some((own, own.default?))) {
+            let table = numbers.as_table_mut().filter(|table| !table.contains_key(own.key));
+            table.map(|table| table.insert(own.key.to_owned(), default.into()));
+        }
     }
 }
 
@@ -148,21 +169,30 @@ fn asked<'a>(
 }
 
 /// An effect that is written as a formula, with the value of every constant of it.
-fn formula(entry: &EffectWire, line: &str, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), KeyFault> {
-    let formula = read(line, place.child("formula"))?;
+fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), KeyFault> {
+    let (mut values, key) = (entry.clone(), place.child(FORMULA));
+    let line = match values.remove(FORMULA) {
+        Some(Value::String(line)) => line,
+        other => {
+            let found = other.map_or_else(String::new, |value| value.to_string());
+            return Err(KeyFault::of(key, found, "expected a text in quotes", "write `name = formula` in quotes"));
+        }
+    };
+    let formula = read(&line, key)?;
+    let values: BTreeMap<String, f64> = reader::table(&values, place)?;
     let keys: Vec<NumberKey> =
         formula.parameters().iter().map(|own| NumberKey::required(own.key, "A constant of the formula.")).collect();
-    number_table::refuse_unknown(&entry.values, &keys, place)?;
-    number_table::refuse_incomplete(&entry.values, &keys, place)?;
+    number_table::refuse_unknown(&values, &keys, place)?;
+    number_table::refuse_incomplete(&values, &keys, place)?;
     for own in formula.parameters() {
-        let value = entry.values[own.key];
+        let value = values[own.key];
         if !own.holds(value) {
             let expected =
                 format!("expected a number from {} to {}", ShortNumber(own.lowest), ShortNumber(own.highest));
             return Err(KeyFault::of(place.child(own.key), ShortNumber(value), expected, "change the value"));
         }
     }
-    let values = formula.parameters().iter().map(|own| entry.values[own.key]).collect();
+    let values = formula.parameters().iter().map(|own| values[own.key]).collect();
     Ok((formula, values))
 }
 
@@ -174,40 +204,34 @@ pub fn read(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
     })
 }
 
-/// Refuses a formula over a signal that no trial of this scenario has: its moment would be zero.
-fn refuse_without(formula: &Formula, wire: &ScenarioWire, key: KeyPath) -> Result<(), KeyFault> {
-    let moves = wire.speed_and_sway.is_some();
-    let blows = wire.disturbance.wind.is_some_and(|wind| wind.speed.is_some());
-    let signals = [
-        (Regressor::Sway, moves, "sway velocity", "add `[speed-and-sway]`"),
-        (Regressor::Speed, moves, "speed", "add `[speed-and-sway]`"),
-        (Regressor::Wind, blows, "relative wind", "add `[disturbance.wind]` with `speed-m-s`"),
-        (Regressor::Propeller, false, "propeller revolutions", "simulate without this effect"),
-    ];
-    match signals.into_iter().find(|(channel, is_there, ..)| formula.uses(*channel) && !is_there) {
-        Some((_, _, signal, advice)) => {
-            let found = format!("`{}` needs {signal}, and the simulated ship has none", formula.id());
-            Err(KeyFault::value(key, found, "expected a formula over signals of the ship", advice))
-        }
-        None => Ok(()),
-    }
+/// Refuses a formula over a channel that the trials lack: its moment would be zero.
+fn refuse_without(formula: &Formula, lacking: &[Regressor], key: KeyPath) -> Result<(), KeyFault> {
+    let Some(channel) = lacking.iter().find(|channel| formula.uses(**channel)) else { return Ok(()) };
+    let (signal, advice) = match channel {
+        Regressor::Sway => ("sway velocity", "add `[speed-and-sway]`"),
+        Regressor::Speed => ("speed", "add `[speed-and-sway]`"),
+        Regressor::Wind => ("relative wind", "add `[disturbance.wind]` with `speed-m-s`"),
+        Regressor::Propeller => ("propeller revolutions", "leave the effect out"),
+    };
+    let found = format!("`{}` needs {signal}, and the simulated ship has none", formula.id());
+    Err(KeyFault::value(key, found, "expected a formula over signals of the ship", advice))
 }
 
 /// The ship with effects added to its response.
 ///
 /// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, for a
-/// parameter outside its range, and for a formula over signals that the trials do not have.
-pub fn added(ship: Ship, wire: &ScenarioWire) -> Result<Ship, KeyFault> {
-    let entries = &wire.effect;
+/// parameter outside its range, and for a formula over channels that the trials are `lacking`.
+pub fn added(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Result<Ship, KeyFault> {
     if entries.is_empty() {
         return Ok(ship);
     }
     limits::entries("effect", entries.len(), limits::MOST_EFFECTS)?;
     let list = KeyPath::dotted("effect");
-    let (formulas, listed): (Vec<_>, Vec<_>) =
-        entries.iter().enumerate().partition(|(_, entry)| entry.formula.is_some());
-    let asked = listed.into_iter().map(|(index, entry)| asked(entry.listed(&list.child(index))?, &list.child(index)));
-    let asked = asked.collect::<Result<Vec<_>, _>>()?;
+    let places = entries.iter().enumerate().map(|(index, entry)| (&entry.0, list.child(index)));
+    let (formulas, listed): (Vec<_>, Vec<_>) = places.partition(|(entry, _)| entry.contains_key(FORMULA));
+    let listed = listed.into_iter().map(|(entry, place)| Ok((reader::table(entry, &place)?, place)));
+    let listed = listed.collect::<Result<Vec<(NamedNumbers, KeyPath)>, KeyFault>>()?;
+    let asked = listed.iter().map(|(entry, place)| asked(entry, place)).collect::<Result<Vec<_>, _>>()?;
     let Model::Response(response) = &ship.model else {
         return Err(KeyFault::name(
             list,
@@ -245,10 +269,9 @@ pub fn added(ship: Ship, wire: &ScenarioWire) -> Result<Ship, KeyFault> {
         effects.push(effect);
         parameters.extend(settings.iter().map(|setting| setting.value));
     }
-    for (index, entry) in formulas {
-        let (line, place) = (entry.formula.as_deref().unwrap_or_default(), list.child(index));
-        let (formula, values) = formula(entry, line, &place)?;
-        refuse_without(&formula, wire, place.child("formula"))?;
+    for (entry, place) in formulas {
+        let (formula, values) = formula(entry, &place)?;
+        refuse_without(&formula, lacking, place.child(FORMULA))?;
         effects.push(Arc::new(formula.with_length(ship.particulars.map_or(1.0, |own| own.length))));
         parameters.extend(values);
     }
@@ -308,4 +331,19 @@ pub fn schema(_: &mut SchemaGenerator) -> Schema {
         "additionalProperties": { "type": "number" }
     });
     json_schema!({ "type": "array", "items": { "oneOf": effects.chain([formula]).collect::<Vec<_>>() } })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_an_effect_can_be_set() {
+        let text = "formula = \"a = c * r\"\nc = 1\nmoment_drift.rudder-deg-per-s = 0.5\n";
+        let mut entry: EffectWire = toml::from_str(text).expect("an entry");
+        let mut set = |key: &str| entry.set(KeyPath::dotted(key).parts(), 2.0);
+        assert_eq!(["c", "moment_drift.rudder-deg-per-s"].map(&mut set), [true, true]);
+        assert_eq!(["formula", "d", "moment_drift", "c.d", ""].map(&mut set), [false; 5]);
+        assert_eq!((&entry.0["c"], &entry.0["moment_drift"]["rudder-deg-per-s"]), (&2.0.into(), &2.0.into()));
+    }
 }

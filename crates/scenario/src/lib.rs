@@ -4,7 +4,7 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | what a file says, and how it is read | `wire`, `ship`, `effect`, `effect_wire`, `number_table`, `reader`, [`part`], [`words`] |
+//! | what a file says, and how it is read | `wire`, `ship`, `effect`, `number_table`, `reader`, [`part`], [`words`] |
 //! | what is wrong with it, and where | [`problem`], `locate`, [`failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
 //! | answers that were found elsewhere | [`answers`] |
@@ -18,7 +18,6 @@ pub mod cell;
 mod checks;
 mod draw;
 mod effect;
-mod effect_wire;
 pub mod failure;
 pub mod identity;
 mod key_words;

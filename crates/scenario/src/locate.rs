@@ -43,8 +43,7 @@ pub fn span(text: &str, path: &KeyPath, mark: AtFault) -> Range<usize> {
     place
 }
 
-/// The letter of a text in quotes that stands after `at` characters; all of it where escapes make it another one than is
-/// written.
+/// The letter of a text in quotes that stands after `at` characters; all of it where escapes make another text of it.
 fn within(text: &str, quoted: Range<usize>, said: &str, at: usize) -> Range<usize> {
     let Some(start) = text[quoted.clone()].find(said) else { return quoted };
     let from = quoted.start + start + said.chars().take(at).map(char::len_utf8).sum::<usize>();

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use ::ship::ships::Model;
-use ::ship::{Particulars, Ship, ShortNumber};
+use ::ship::{Particulars, Regressor, Ship, ShortNumber};
 use predict::motion::{Planar, PlanarShip};
 use simulate::{Assumption, Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
@@ -15,7 +15,7 @@ use crate::{effect, ship};
 
 /// Resolves everything about a trial.
 pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification, KeyFault> {
-    let ship = effect::added(ship::build(&wire.ship)?, wire)?;
+    let ship = effect::added(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
         gear: wire.steering_gear.of(&ship),
         helmsman: wire.helmsman,
@@ -58,6 +58,15 @@ pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification
         assumed,
         simulation,
     })
+}
+
+/// Channels that no trial of the scenario has.
+fn lacking(wire: &ScenarioWire) -> Vec<Regressor> {
+    let moves = wire.speed_and_sway.is_some();
+    let blows = wire.disturbance.wind.is_some_and(|wind| wind.speed.is_some());
+    let has =
+        [(Regressor::Sway, moves), (Regressor::Speed, moves), (Regressor::Wind, blows), (Regressor::Propeller, false)];
+    has.into_iter().filter(|(_, is_there)| !is_there).map(|(channel, _)| channel).collect()
 }
 
 /// What is steered: the ship, with speed and sway beside its yaw response where the scenario says so.

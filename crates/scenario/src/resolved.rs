@@ -17,7 +17,7 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     let mut wire: ScenarioWire = reader::document(document)?;
     effect::complete(&mut wire.effect);
     ship::complete(&mut wire.ship);
-    let ship = effect::added(ship::build(&wire.ship)?, &wire)?;
+    let ship = effect::added(ship::build(&wire.ship)?, &wire.effect, &[])?;
     wire.steering_gear = wire.steering_gear.of(&ship);
     wire.steering_gear.rate.get_or_insert(f64::INFINITY);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {

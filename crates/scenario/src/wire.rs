@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 use simulate::{BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear, numbers};
 
 use crate::draw::DrawWire;
-use crate::effect;
-use crate::effect_wire::EffectWire;
+use crate::effect::{self, EffectWire};
 use crate::method::IdentifierWire;
 use crate::number_table::NamedNumbers;
 use crate::predictions::PredictWire;

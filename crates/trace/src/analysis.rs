@@ -133,28 +133,21 @@ pub fn watched(
     let response = base.estimate.response;
     let time = candidates::ship_time(&trials, response.K_over_T);
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
-    let mut candidates = candidates::all(&records, &trials, time, &settings.selection);
-    refuse_lacking(&candidates, &settings.selection)?;
-    candidates.extend(empirical::candidates(&records, &trials, time).take(settings.monomials));
+    let candidates = candidates_of(&records, &trials, time, settings)?;
     let problem = FittedRecords::new(records, response.inverse_T, time);
-    let with_waves = settings.selection.allows("wave_yaw");
-    let fulls = full::fit(&problem, &base, &candidates, with_waves);
+    let fulls = full::fit(&problem, &base, &candidates, settings.selection.allows("wave_yaw"));
     let (full, structures) =
         structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square());
     let members = structures.members();
-    let parts = (&full.law, &members[..]);
-    let mut identification = fitted(&trials, &base, parts, &[], settings.thorough, time)?;
+    let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, (&full.law, &members), hulls, settings.thorough, time);
+    let (mut identification, mut no_nearer) = fit(&[])?;
     let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
-    // What is nothing but noise needs no hull.
-    let is_wanted = settings.hulls && !remainder.holds;
-    let hulls = if is_wanted { hulls::fit(&trials, &identification) } else { Vec::new() };
+    let hulls = if settings.hulls { hulls::fit(&trials, &identification, &remainder) } else { Vec::new() };
     if !hulls.is_empty() {
-        identification = fitted(&trials, &base, parts, &hulls, settings.thorough, time)?;
+        (identification, no_nearer) = fit(&hulls)?;
     }
-    let no_nearer = keep_nearest(&mut identification);
     let unseen = AveragedModel { members: &members, hulls: &hulls, law: &full.law, known: None, time };
-    let judged = validation.par_iter().map(|trial| unseen.compared(trial, &response));
-    let judged: Vec<RecordComparison> = judged.collect::<Result<_, _>>()?;
+    let judged = unseen.all_compared(&validation, &response)?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let folds = is_folded.then(|| leave_one_out(&trials, &problem, (&full, &structures), &hulls, watcher));
     let left_out = folds.unwrap_or_default();
@@ -188,7 +181,20 @@ pub fn watched(
     })
 }
 
-/// Base and average on the records that were fitted.
+/// The candidates of a request; fails where one that was asked for cannot be among them.
+fn candidates_of(
+    records: &[PreparedRecord],
+    trials: &[Trial],
+    time: f64,
+    settings: &Settings,
+) -> Result<Vec<Arc<Term>>, TraceError> {
+    let mut candidates = candidates::all(records, trials, time, &settings.selection);
+    refuse_lacking(&candidates, &settings.selection)?;
+    candidates.extend(empirical::candidates(records, trials, time).take(settings.monomials));
+    Ok(candidates)
+}
+
+/// Base and average on the records that were fitted, and whether the base is kept as no farther from them.
 fn fitted(
     trials: &[Trial],
     base: &Base,
@@ -196,7 +202,7 @@ fn fitted(
     hulls: &[HullEstimate],
     thorough: bool,
     time: f64,
-) -> Result<Vec<RecordComparison>, TraceError> {
+) -> Result<(Vec<RecordComparison>, bool), TraceError> {
     let response = &base.estimate.response;
     let of = |(number, trial): (usize, &Trial)| {
         let record = PreparedRecord::whole(trial);
@@ -211,7 +217,10 @@ fn fitted(
         }
         Ok(RecordComparison { name: trial.name().to_owned(), before, after })
     };
-    trials.par_iter().enumerate().map(of).collect()
+    let all: Result<Vec<RecordComparison>, TraceError> = trials.par_iter().enumerate().map(of).collect();
+    let mut all = all?;
+    let no_nearer = keep_nearest(&mut all);
+    Ok((all, no_nearer))
 }
 
 /// Where the average is no nearer to the fitted records than the base, the replay stays that of the base: a random

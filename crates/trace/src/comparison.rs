@@ -3,6 +3,7 @@
 
 use estimation::statistics::wilson;
 use identify::replay::{Replay, replay};
+use rayon::prelude::*;
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
@@ -128,6 +129,11 @@ impl AveragedModel<'_> {
         starts.push(before.replay.initial());
         let after = self.on(trial, &record, &starts, true)?;
         Ok(RecordComparison { name: trial.name().to_owned(), before, after })
+    }
+
+    /// The same on several.
+    pub fn all_compared(&self, trials: &[Trial], base: &FirstOrder) -> Result<Vec<RecordComparison>, TraceError> {
+        trials.par_iter().map(|trial| self.compared(trial, base)).collect()
     }
 
     /// Replays the average on a record from initial states near the `starts`.

@@ -5,10 +5,14 @@ use rayon::prelude::*;
 use trial::Trial;
 
 use crate::comparison::RecordComparison;
-use crate::remainder::squares;
+use crate::remainder::{Remainder, squares};
 
-/// The hulls that the records speak for, beside what the structures have left of them; none without length and speed.
-pub fn fit(trials: &[Trial], structures: &[RecordComparison]) -> Vec<HullEstimate> {
+/// The hulls that the records speak for, beside what the structures have left of them; none without length and speed, and
+/// where the structures leave nothing but noise.
+pub fn fit(trials: &[Trial], structures: &[RecordComparison], remainder: &Remainder) -> Vec<HullEstimate> {
+    if remainder.holds {
+        return Vec::new();
+    }
     let rows: usize = structures.iter().map(|one| one.after.errors.rows).sum();
     hull::members(trials, (squares(structures)[1] / rows as f64).sqrt())
 }

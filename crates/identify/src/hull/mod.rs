@@ -15,8 +15,6 @@
 
 mod moment;
 mod objective;
-#[cfg(test)]
-mod tests;
 mod track;
 
 use estimation::levenberg_marquardt::{End, Rules, minimise};
@@ -37,7 +35,7 @@ use track::{FEWEST, HullTrack};
 
 /// Why no hull is fitted.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum HullError {
+pub enum HullFitError {
     /// Length or speed are not declared.
     #[error("length and approach speed of the ship are not known")]
     Particulars,
@@ -113,8 +111,8 @@ pub struct HullEstimate {
 ///
 /// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings or begins while
 /// the ship gathers way, and where no values near the expected ones can be replayed.
-pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> Result<HullEstimate, HullError> {
-    let reference = trials.iter().find_map(HullReference::of).ok_or(HullError::Particulars)?;
+pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> Result<HullEstimate, HullFitError> {
+    let reference = trials.iter().find_map(HullReference::of).ok_or(HullFitError::Particulars)?;
     let track = |trial: &Trial| HullTrack::of(trial, &reference);
     let tracks = trials.iter().map(track).collect::<Result<Vec<HullTrack>, _>>()?;
     let mut problem = HullObjective::new(form, expected.to_vec(), &tracks);
@@ -127,17 +125,17 @@ pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> R
         found = minimise(&mut problem, at, &RULES);
     }
     if found.end == End::NotFinite {
-        return Err(HullError::NoReplay);
+        return Err(HullFitError::NoReplay);
     }
     let covariance = Cholesky::new(found.normal.matrix.clone()).map(|factor| factor.inverse());
-    let covariance = covariance.ok_or(HullError::NoReplay)?;
+    let covariance = covariance.ok_or(HullFitError::NoReplay)?;
     let left = problem.left(found.at.as_slice()).unwrap_or_default();
     let residual = |(trial, left): (&Trial, objective::Left)| HullResidual {
         name: trial.name().to_owned(),
         whole: left.whole.sqrt(),
         window: left.window.sqrt(),
     };
-    let moment = RandomMoment::of(&form.with(found.at.as_slice()).ok_or(HullError::NoReplay)?, &tracks, &left);
+    let moment = RandomMoment::of(&form.with(found.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &left);
     let moment = RandomMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
     let records = trials.iter().zip(left).map(residual).collect();
     let (values, objective) = (found.at, found.value);

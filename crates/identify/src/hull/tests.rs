@@ -15,7 +15,7 @@ use trial::{Channel, Columns, Origin, Trial};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
-use super::{HullError, HullEstimate, RandomMoment, fit, members};
+use super::{HullEstimate, HullFitError, RandomMoment, fit, members};
 
 const LENGTH: f64 = 7.0;
 const SPEED: f64 = 1.2;
@@ -164,11 +164,11 @@ fn records_that_tell_no_hull_are_refused() {
     };
     let slow = |columns: &mut Columns| columns.channels.get_mut(&Channel::Speed).expect("a speed").fill(0.5 * SPEED);
     let [bare, slow] = refused(slow);
-    assert_eq!(bare, Some(HullError::Particulars));
-    assert!(matches!(slow, Some(HullError::GathersWay { .. })), "{slow:?}");
+    assert_eq!(bare, Some(HullFitError::Particulars));
+    assert!(matches!(slow, Some(HullFitError::GathersWay { .. })), "{slow:?}");
     let short = |columns: &mut Columns| {
         columns.time.truncate(10);
         columns.channels.values_mut().for_each(|values| values.truncate(10));
     };
-    assert!(matches!(refused(short)[1], Some(HullError::Short { .. })));
+    assert!(matches!(refused(short)[1], Some(HullFitError::Short { .. })));
 }

@@ -2,7 +2,7 @@
 
 use trial::{Channel, Trial};
 
-use super::HullError;
+use super::HullFitError;
 
 /// Time between two rows that is fine enough, in L/U₀.
 const SPACING: f64 = 0.05;
@@ -67,11 +67,11 @@ pub(super) struct HullTrack {
 
 impl HullTrack {
     /// Fails for a record with too few headings, and for one that begins while the ship gathers way.
-    pub fn of(trial: &Trial, reference: &HullReference) -> Result<Self, HullError> {
-        let short = || HullError::Short { trial: trial.name().to_owned() };
+    pub fn of(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
+        let short = || HullFitError::Short { trial: trial.name().to_owned() };
         let track = Self::cut(trial, reference).ok_or_else(short)?;
         match track.start[0] < SLOW {
-            true => Err(HullError::GathersWay { trial: trial.name().to_owned(), share: track.start[0] }),
+            true => Err(HullFitError::GathersWay { trial: trial.name().to_owned(), share: track.start[0] }),
             false => Ok(track),
         }
     }

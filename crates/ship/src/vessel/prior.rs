@@ -11,7 +11,7 @@ mod particulars;
 pub use self::particulars::{HullParticulars, PARTICULARS, Particular, ParticularsError};
 
 use self::formulas::{FORMULAS, Formula, Spread};
-use self::particulars::{Form, RATIOS};
+use self::particulars::{HullDimensions, RATIOS};
 use super::mmg::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
 
 /// The prior of one coefficient.
@@ -80,7 +80,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
     given.check()?;
     let typical = RATIOS.map(|ratio| ratio.mean);
     let form = given.form(&typical);
-    let shifted: Vec<[Form; 2]> = RATIOS
+    let shifted: Vec<[HullDimensions; 2]> = RATIOS
         .iter()
         .enumerate()
         .map(|(place, ratio)| {
@@ -91,7 +91,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
             })
         })
         .collect();
-    let spread = |of: &dyn Fn(&Form) -> f64| -> f64 {
+    let spread = |of: &dyn Fn(&HullDimensions) -> f64| -> f64 {
         shifted.iter().map(|[above, below]| (0.5 * (of(above) - of(below))).powi(2)).sum()
     };
     let mut parameters = blank(&form);
@@ -110,7 +110,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
         *parameters.named(coefficient.key()).expect("every coefficient has its place") = coefficient.mean;
     }
     let assumed = PARTICULARS.iter().filter_map(|particular| {
-        let of = |form: &Form| particular.of_form.map_or(f64::NAN, |of| of(form));
+        let of = |form: &HullDimensions| particular.of_form.map_or(f64::NAN, |of| of(form));
         let formula = RATIOS.iter().find(|ratio| ratio.fills == particular.key)?.text;
         let missing = particular.get(given).is_none() && particular.of_form.is_some();
         missing.then(|| Assumed { key: particular.key, value: of(&form), sd: spread(&of).sqrt(), formula })
@@ -119,7 +119,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
 }
 
 /// The dimensions of a hull; its coefficients are still to be set.
-fn blank(form: &Form) -> Parameters {
+fn blank(form: &HullDimensions) -> Parameters {
     Parameters {
         Lpp: form.L,
         d: form.d,

@@ -168,10 +168,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     formulas(document, "`").for_each(|typed| page.say(format!("{typed}.")));
     table(&mut page, "Noise", tables::noise(document), "");
     table(&mut page, "Model", tables::parameters(document), &model(document));
-    if !document.ship.hulls.is_empty() {
-        table(&mut page, "The hull behind the response", tables::hulls(document), HULLS);
-    }
-    what_is_left(&mut page, document);
+    hulls_and_what_is_left(&mut page, document);
     table(&mut page, "Aliases and blind spots", aliases(document), "");
     page.part("Next trial");
     page.say(&trace.next_trial);
@@ -191,8 +188,13 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     page
 }
 
-/// What no effect explains.
-fn what_is_left(page: &mut Page, document: &TraceDocument) {
+/// The hulls, and what no effect explains.
+fn hulls_and_what_is_left(page: &mut Page, document: &TraceDocument) {
+    if !document.ship.hulls.is_empty() {
+        page.part("The hull behind the response");
+        page.table(tables::hulls(document));
+        page.say(HULLS);
+    }
     let unexplained = &document.trace.unexplained;
     if let Some(signature) = &unexplained.signature {
         page.part("What is left");

@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use super::particulars::Form;
+use super::particulars::HullDimensions;
 
 /// Standard deviation of a coefficient whose particulars are all known.
 #[derive(Debug, Clone, Copy)]
@@ -24,13 +24,13 @@ use Spread::{Absolute, Share};
 pub(super) struct Formula {
     pub key: &'static str,
     pub symbol: &'static str,
-    pub of: fn(&Form) -> f64,
+    pub of: fn(&HullDimensions) -> f64,
     pub spread: Spread,
     pub text: &'static str,
     pub source: &'static str,
 }
 
-impl Form {
+impl HullDimensions {
     /// Aspect ratio of the hull, k = 2 d/L.
     fn k(&self) -> f64 {
         2.0 * self.d / self.L
@@ -118,7 +118,7 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "mx",
         symbol: "m_x'",
-        of: Form::added_surge,
+        of: HullDimensions::added_surge,
         spread: Absolute(0.008),
         text: "m' f(C_b, L/B, d/B)",
         source: ZHOU,
@@ -126,7 +126,7 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "my",
         symbol: "m_y'",
-        of: Form::added_sway,
+        of: HullDimensions::added_sway,
         spread: Share(0.15),
         text: "m' f(C_b, L/B, d/B)",
         source: ZHOU,
@@ -145,7 +145,7 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "R0",
         symbol: "R_0'",
-        of: Form::resistance,
+        of: HullDimensions::resistance,
         spread: Share(0.3),
         text: "2 (1 − t_P) (1 − w_P0)² D_P² .18/(L d J²); without propeller-rps .018",
         source: PUBLISHED,
@@ -265,7 +265,7 @@ pub(super) const FORMULAS: &[Formula] = &[
     Formula {
         key: "wP0",
         symbol: "w_P0",
-        of: Form::wake,
+        of: HullDimensions::wake,
         spread: Absolute(0.08),
         text: ".5 C_b − .05",
         source: "Taylor",

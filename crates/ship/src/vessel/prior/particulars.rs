@@ -51,7 +51,7 @@ pub struct Particular {
     get: fn(&HullParticulars) -> Option<f64>,
     set: fn(&mut HullParticulars, f64),
     /// The same of a hull with nothing missing.
-    pub(super) of_form: Option<fn(&Form) -> f64>,
+    pub(super) of_form: Option<fn(&HullDimensions) -> f64>,
 }
 
 impl Particular {
@@ -194,7 +194,7 @@ pub(super) struct Ratio {
     pub sd: f64,
     /// What no ship goes beyond.
     range: [f64; 2],
-    of: fn(&Form) -> f64,
+    of: fn(&HullDimensions) -> f64,
     pub text: &'static str,
 }
 
@@ -283,7 +283,7 @@ const SHORTEST_SHIP: f64 = 30.0;
 
 /// A hull with no particular missing but the revolutions of the propeller.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Form {
+pub(super) struct HullDimensions {
     pub L: f64,
     pub U: f64,
     pub B: f64,
@@ -327,7 +327,7 @@ impl HullParticulars {
     }
 
     /// The hull, with these values of [`RATIOS`] where something is missing; the displacement goes before a ratio.
-    pub(super) fn form(&self, ratios: &[f64; 7]) -> Form {
+    pub(super) fn form(&self, ratios: &[f64; 7]) -> HullDimensions {
         let [length_beam, beam_draught, fullness, area, height, diameter, gravity] = *ratios;
         let (L, volume) = (self.length, self.volume());
         let full = self.block_coefficient.unwrap_or(fullness);
@@ -335,7 +335,7 @@ impl HullParticulars {
         let B = self.beam.or_else(by_volume).unwrap_or(L / length_beam);
         let d = self.draught.or(volume.map(|volume| volume / (L * B * full))).unwrap_or(B / beam_draught);
         let Cb = self.block_coefficient.or(volume.map(|volume| volume / (L * B * d))).unwrap_or(fullness);
-        Form {
+        HullDimensions {
             L,
             U: self.speed,
             B,
