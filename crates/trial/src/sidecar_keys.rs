@@ -127,8 +127,8 @@ impl<'de> Deserialize<'de> for ShipKey {
 
 impl<'de> Deserialize<'de> for ShipKeys {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Table;
-        impl<'de> Visitor<'de> for Table {
+        struct ShipTable;
+        impl<'de> Visitor<'de> for ShipTable {
             type Value = ShipKeys;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -146,7 +146,7 @@ impl<'de> Deserialize<'de> for ShipKeys {
                 Ok(keys)
             }
         }
-        deserializer.deserialize_map(Table)
+        deserializer.deserialize_map(ShipTable)
     }
 }
 
