@@ -1,4 +1,5 @@
-//! What an estimate or an analysis knows of a ship, as a prediction takes it.
+//! What an estimate or an analysis knows of a ship, as a prediction takes it. Longer than most: it reads all that fits,
+//! traces and hulls leave.
 
 use std::collections::BTreeMap;
 
@@ -71,8 +72,8 @@ impl<'a> RecordFacts<'a> {
     }
 
     /// The same with speed and drift: the hulls of an analysis of these records, or those that they speak for where
-    /// length and speed are known and all of them have a speed and begin on a steady approach; else two equations beside
-    /// the yaw response where they have speed or position. As it was where nothing can be fitted.
+    /// length and speed are known and all of them have a speed and begin on a steady approach; else two equations
+    /// beside the yaw response where they have speed or position. As it was where nothing can be fitted.
     pub fn with_motion(mut self, analysis: Option<&Analysis>) -> Self {
         let Some(length) = self.length else { return self };
         let has = |trial: &Trial, channel: Channel| trial.channel(channel).is_some();

@@ -7,8 +7,8 @@ use trial::Trial;
 use crate::comparison::RecordComparison;
 use crate::remainder::{Remainder, squares};
 
-/// The hulls that the records speak for, beside what the structures have left of them; none without length and speed, and
-/// where the structures leave nothing but noise.
+/// The hulls that the records speak for, beside what the structures have left of them; none without length and speed,
+/// and where the structures leave nothing but noise.
 pub fn fit(trials: &[Trial], structures: &[RecordComparison], remainder: &Remainder) -> Vec<HullEstimate> {
     if remainder.holds {
         return Vec::new();

@@ -9,10 +9,12 @@
 //!
 //! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
 //! or twenty numbers is the ship. They start large and follow what is left of every record, down to 1°, 0.2° and 0.1 U₀.
-//! A sway velocity is not fitted: logs do not say of which point of the ship it is. The covariance is the inverse of the second derivatives of J/2, so it holds the error
-//! of the form as far as that is another in every ship length. Firm priors are what lets one record tell so many
-//! coefficients; without them the fitted hull is unstable as often as not.
+//! A sway velocity is not fitted: logs do not say of which point of the ship it is.
+//!
+//! The covariance is the inverse of the second derivatives of J/2, so it holds the error of the form as far as that is
+//! another in every ship length. Firm priors are what lets one record tell so many coefficients; without them the fitted hull is unstable as often as not.
 
+mod error;
 mod moment;
 mod objective;
 mod track;
@@ -24,39 +26,14 @@ use rayon::prelude::*;
 use ship::Polyline;
 use ship::vessel::prime::{HullCoefficient, HullForm};
 use ship::vessel::scaled::ScaledHull;
-use thiserror::Error;
 use trial::Trial;
 
+pub use error::HullFitError;
 pub use moment::RandomMoment;
 pub use objective::HullDeviations;
 use objective::{HullObjective, variances};
 pub use track::HullReference;
-use track::{FEWEST, HullTrack};
-
-/// Why no hull is fitted.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum HullFitError {
-    /// Length or speed are not declared.
-    #[error("length and approach speed of the ship are not known")]
-    Particulars,
-    /// A record is too short.
-    #[error("{trial} has fewer than {FEWEST} headings")]
-    Short {
-        /// Name of the record.
-        trial: String,
-    },
-    /// A record does not begin on a steady approach, which the equations of a hull are about.
-    #[error("{trial} begins at {share:.2} of the approach speed")]
-    GathersWay {
-        /// Name of the record.
-        trial: String,
-        /// Speed in its first row over that of the approach.
-        share: f64,
-    },
-    /// No values near the expected ones can be replayed.
-    #[error("no hull near the expected one can be replayed")]
-    NoReplay,
-}
+use track::HullTrack;
 
 /// How a search proceeds.
 const RULES: Rules = Rules {

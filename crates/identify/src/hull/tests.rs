@@ -83,8 +83,8 @@ fn a_hull_of_the_form_comes_back() {
     assert!(found.moment.deviation < from_deg(0.1), "{:?}", found.moment);
 }
 
-/// KVLCC2 is of no polynomial form, and of the MMG one with another wake and propeller than expected: a 20/20 alone foretells
-/// her 10/10 within 2.5°, rms.
+/// KVLCC2 is of no polynomial form, and of the MMG one with another wake and propeller than expected: a 20/20 alone
+/// foretells her 10/10 within 2.5°, rms.
 #[test]
 fn a_hull_of_another_form_is_foreseen_as_well() {
     let ship = Mmg::at_speed(MODEL_L7, SPEED).expect("it balances");

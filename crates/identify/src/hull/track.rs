@@ -2,7 +2,7 @@
 
 use trial::{Channel, Trial};
 
-use super::HullFitError;
+use super::error::{FEWEST, HullFitError};
 
 /// Time between two rows that is fine enough, in L/U₀.
 const SPACING: f64 = 0.05;
@@ -12,9 +12,6 @@ const WINDOW: f64 = 3.5;
 
 /// Share of the approach speed below which a ship still gathers way at the start of a record.
 const SLOW: f64 = 0.7;
-
-/// Fewest headings that a record has to hold.
-pub(super) const FEWEST: usize = 20;
 
 /// What a hull is measured with.
 #[derive(Debug, Clone, Copy, PartialEq)]

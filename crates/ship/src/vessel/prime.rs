@@ -1,4 +1,4 @@
-//! A hull without dimension whose coefficients are to be found: surge, sway and yaw in units of L and U₀, in three forms.
+//! A hull without dimension whose coefficients are to be found: surge, sway and yaw in units of L and U₀, three forms.
 //!
 //! Lengths in L, speeds in the approach speed U₀, times in L/U₀; n is the rate of the propeller over that of the
 //! approach, δ the rudder, positive to starboard. Two forms are polynomials that name no part of the ship:

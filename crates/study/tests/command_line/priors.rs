@@ -1,4 +1,4 @@
-//! Particulars of a ship: as options, in a sidecar, in a scenario, and what they say about the coefficients of her hull.
+//! Particulars of a ship: as options, in a sidecar, in a scenario, and what they say of the coefficients of her hull.
 
 use serde_json::Value;
 
