@@ -8,11 +8,12 @@
 //!   + Σ ((θ − μ)/s)²
 //!
 //! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
-//! or twenty numbers is the ship. They start large and follow what is left of every record, down to 1°, 0.2° and 0.1 U₀.
+//! or twenty numbers is the ship. They start large and follow what is left of every record, to 1°, 0.2° and 0.1 U₀.
 //! A sway velocity is not fitted: logs do not say of which point of the ship it is.
 //!
 //! The covariance is the inverse of the second derivatives of J/2, so it holds the error of the form as far as that is
-//! another in every ship length. Firm priors are what lets one record tell so many coefficients; without them the fitted hull is unstable as often as not.
+//! another in every ship length. Firm priors are what lets one record tell so many coefficients; without
+//! them the fitted hull is unstable as often as not.
 
 mod error;
 mod moment;
@@ -131,8 +132,9 @@ pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> R
 /// A hull that leaves this many times what another model leaves takes no part.
 const FAR: f64 = 3.0;
 
-/// The hulls of all forms that records of one ship speak for: those that leave no more than three times what the best of
-/// them leaves of whole records, or another model (`rival`, rad; infinite without one). None where none can be fitted.
+/// The hulls of all forms that records of one ship speak for: those that leave no more than three times what the
+/// best of them leaves of whole records, or another model (`rival`, rad; infinite without one). None where none can
+/// be fitted.
 pub fn members(trials: &[Trial], rival: f64) -> Vec<HullEstimate> {
     let particulars = trials.iter().find_map(Trial::hull);
     let fitted = |form: &HullForm| fit(trials, form, &form.coefficients()).ok();
