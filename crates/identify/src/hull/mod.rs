@@ -87,8 +87,8 @@ pub struct HullEstimate {
 
 /// Fits a hull of a form about what is expected of its coefficients to records of one ship.
 ///
-/// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings or begins while
-/// the ship gathers way, and where no values near the expected ones can be replayed.
+/// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings or begins
+/// while the ship gathers way, and where no values near the expected ones can be replayed.
 pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> Result<HullEstimate, HullFitError> {
     let reference = trials.iter().find_map(HullReference::of).ok_or(HullFitError::Particulars)?;
     let track = |trial: &Trial| HullTrack::of(trial, &reference);
@@ -153,8 +153,8 @@ impl HullEstimate {
         ScaledHull { hull, length, speed, propeller }
     }
 
-    /// Variance of the heading of the replay of a record over time (s), rad²: by the covariance of the coefficients, and
-    /// by what the form has left of the records of the fit. `None` for a record that cannot be replayed.
+    /// Variance of the heading of the replay of a record over time (s), rad²: by the covariance of the coefficients,
+    /// and by what the form has left of the records of the fit. `None` for a record that cannot be replayed.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
         let track = HullTrack::of(trial, &self.reference).ok()?;
         let [time, mut variance] = variances(&self.form, &track, self.values.as_slice(), &self.covariance)?;
