@@ -26,7 +26,7 @@ use scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 pub struct ListRequest {
     /// What to list
     pub what: Listed,
-    /// For priors: sidecar of a record whose [ship] and [form] say what is known of the ship
+    /// For priors: sidecar of a record whose tables ship and form say what is known of the ship
     #[arg(long, value_name = "FILE.toml")]
     pub columns: Option<PathBuf>,
     /// For priors: what is known of the ship
