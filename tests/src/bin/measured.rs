@@ -252,6 +252,9 @@ fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool
     eprintln!("{}: {}{}", set.folder, records.join(", "), if without_wind { ", wind withheld" } else { "" });
     let path = |name: &&str| file(set, name, out);
     let sidecars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured");
+    // A sidecar of the whole set, else of each record.
+    let of_set = sidecars.join(format!("{}.trial.toml", set.folder));
+    let sidecars = if of_set.exists() { of_set } else { sidecars };
     let withheld = if without_wind { vec![Withheld::Wind] } else { Vec::new() };
     let [records, held_out] = [records, held_out].map(|names| names.iter().map(path).collect::<Outcome<Vec<_>>>());
     trace_files(records?, held_out?, withheld, Some(sidecars), out)
