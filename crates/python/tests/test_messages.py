@@ -23,7 +23,7 @@ from conftest import ZIGZAG
         (lambda path: kempf.fit(path, seed=-1), "seed = -1: expected a whole number from 0"),
         (lambda path: kempf.fit(3), "int: expected a record"),
         (lambda path: kempf.fit(path).plot("nothing"), 'expected "record" or "estimates"'),
-        (lambda path: kempf.trace(path, with_="magic"), "there is no such effect"),
+        (lambda path: kempf.trace(path, with_="magic"), "there is no effect `magic`"),
         (lambda path: kempf.trace(path, only="wind_moment", with_="wind_moment"), "cannot be used with"),
         (lambda path: kempf.trace(path, rule="mine"), "rule"),
         (lambda path: kempf.predict("no-such.json"), "no-such.json: there is no such file"),
