@@ -77,8 +77,6 @@ pub struct HullEstimate {
     pub values: DVector<f64>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
-    /// J at the end.
-    pub objective: f64,
     /// Its records.
     pub records: Vec<HullResidual>,
     /// What the form leaves of them, as a random moment.
@@ -116,17 +114,8 @@ pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> R
     let moment = RandomMoment::of(&form.with(found.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &left);
     let moment = RandomMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
     let records = trials.iter().zip(left).map(residual).collect();
-    let (values, objective) = (found.at, found.value);
-    Ok(HullEstimate {
-        form: form.clone(),
-        expected: expected.to_vec(),
-        reference,
-        values,
-        covariance,
-        objective,
-        records,
-        moment,
-    })
+    let (form, expected) = (form.clone(), expected.to_vec());
+    Ok(HullEstimate { form, expected, reference, values: found.at, covariance, records, moment })
 }
 
 /// A hull that leaves this many times what another model leaves takes no part.

@@ -1,5 +1,6 @@
 //! A record without dimension, as a hull is fitted to it.
 
+use estimation::statistics::upper_median;
 use trial::{Channel, Trial};
 
 use super::error::{FEWEST, HullFitError};
@@ -28,7 +29,9 @@ impl HullReference {
     /// That of a trial; `None` where its length or speed is not known.
     pub fn of(trial: &Trial) -> Option<Self> {
         let own = trial.particulars()?;
-        let propeller = trial.channel(Channel::PropellerRate).and_then(median).filter(|rate| *rate > 0.0);
+        let read = |rates: &[f64]| rates.iter().copied().filter(|rate| rate.is_finite()).collect::<Vec<f64>>();
+        let propeller = trial.channel(Channel::PropellerRate).and_then(|rates| upper_median(&mut read(rates)));
+        let propeller = propeller.filter(|rate| *rate > 0.0);
         Some(Self { length: own.length, speed: own.speed, propeller })
     }
 
@@ -146,10 +149,4 @@ fn filled(mut values: Vec<f64>) -> Option<Vec<f64>> {
         *value = last;
     }
     Some(values)
-}
-
-fn median(values: &[f64]) -> Option<f64> {
-    let mut read: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    read.sort_by(f64::total_cmp);
-    read.get(read.len() / 2).copied()
 }

@@ -10,7 +10,8 @@
 //! differs by side). What stands for "…" is N_rr r|r| + N_vv v|v| and Y_rr r|r| + Y_vv v|v| in the quadratic form, and
 //! terms of third order over u in the cubic one. The third form is the MMG model with its hull, propeller and rudder.
 //!
-//! Priors of the two polynomials are wide enough for the ships of [`crate::ships`], which the tests hold them to.
+//! Priors of the two polynomials are those that an independent fit to models of tankers was made with; no test holds
+//! them to other ships.
 
 use estimation::number::Real;
 
@@ -49,7 +50,7 @@ const fn within(key: &'static str, symbol: &'static str, [mean, sd]: [f64; 2], e
     HullCoefficient { key, symbol, mean, sd, ends }
 }
 
-/// Half of the side difference of rudders, rad: 1.7°.
+/// Standard deviation of δ_r, rad: 1.7°.
 const RUDDER_BIAS: f64 = 0.03;
 
 /// δ_r, which every form has.
@@ -117,7 +118,7 @@ const FREE: [&str; 23] = [
     "gammaR-port",
 ];
 
-/// Ends of those that make no ship beyond, in their order in files.
+/// Smallest and largest value of a free coefficient of the MMG model: beyond, there is no ship.
 fn ends_of(key: &str) -> [f64; 2] {
     match key {
         "R0" => [0.002, 0.2],
