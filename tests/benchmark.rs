@@ -12,7 +12,7 @@ fn root() -> PathBuf {
 }
 
 fn published() -> BenchDocument {
-    let path = root().join("results/bench/bench.json");
+    let path = root().join("results/published/bench/bench.json");
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }

@@ -1,5 +1,5 @@
 //! Ships that are on no list: what is simulated is what it is said to be, and single trials of it are traced. How often
-//! a trace is right is a matter of `results/unlisted`.
+//! a trace is right is a matter of `results/published/unlisted`.
 
 use std::path::Path;
 
@@ -89,7 +89,7 @@ fn any_number_of_threads_writes_the_same_page() {
 
 #[test]
 fn the_published_page_says_how_it_is_made() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results/unlisted/README.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results/published/unlisted/README.md");
     let published = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let (_, rest) = published.split_once("```text\n").expect("a command");
     assert_eq!(rest.lines().next(), Some(page::COMMAND));

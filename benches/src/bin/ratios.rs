@@ -13,7 +13,7 @@ use serde::Deserialize;
 
 /// Head of the report.
 const HEAD: &str = "# What the work costs\n\n\
-    Made by `cargo bench -p kempf-benches && cargo run --release -p kempf-benches --bin ratios -- results/performance`.\n\n\
+    Made by `cargo bench -p kempf-benches && cargo run --release -p kempf-benches --bin ratios -- results/published/performance`.\n\n\
     Times are those of criterion; ± is half of a 95 % interval, and that of a ratio is the worst case of both intervals.\n";
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -1,5 +1,5 @@
 //! Traces the measured records and writes what came out. Longer than most: every table of the page is made here.
-//! The records are not part of the project; the page goes into `results/measured`.
+//! The records are not part of the project; the page goes into `results/published/measured`.
 //!
 //! Run with the folder of the results as only argument; the records are looked for as [`kempf_tests::measured`] says.
 
@@ -110,7 +110,7 @@ const KEPT: [(&str, bool); 3] = [("zigzag_20_10_s", false), ("zigzag_20", false)
 
 fn main() -> ExitCode {
     let Some(results) = std::env::args_os().nth(1).map(PathBuf::from) else {
-        eprintln!("give the folder of the results, for instance results/measured");
+        eprintln!("give the folder of the results, for instance results/published/measured");
         return ExitCode::from(2);
     };
     if !folder().is_dir() {
@@ -203,10 +203,10 @@ fn pooled(set: &Set, scratch: &Path, table: &mut Table) -> Outcome<()> {
 const INTRODUCTION: &str = "# Measured records, traced
 
 What a first-order response lacks on measured records, found from one record and judged on others that were not fitted. The records
-are not part of the project; where they come from says [the book](../../docs/src/howto/public-trials.md). Made by
+are not part of the project; where they come from says [the book](../../../docs/src/howto/public-trials.md). Made by
 
 ```text
-cargo run --release -p kempf-tests --bin measured -- results/measured
+cargo run --release -p kempf-tests --bin measured -- results/published/measured
 ```
 
 A line is one analysis: `study trace` of one record, or of some together, with all others of its set held out; where all are fitted

@@ -1,4 +1,4 @@
-//! Traces records of ships that are on no list and writes what came out into `results/unlisted`.
+//! Traces records of ships that are on no list and writes what came out into `results/published/unlisted`.
 //!
 //! Run with the folder of the results as first argument; see [`kempf_tests::unlisted`].
 

@@ -13,7 +13,7 @@ use super::judged::{Judgement, NEAR, Named};
 use super::truths::{Kind, Truth};
 
 /// The command that makes the page.
-pub const COMMAND: &str = "cargo run --release -p kempf-tests --bin unlisted -- results/unlisted";
+pub const COMMAND: &str = "cargo run --release -p kempf-tests --bin unlisted -- results/published/unlisted";
 
 /// The page.
 pub fn markdown(truths: &[Truth], outcomes: &[Outcome]) -> String {

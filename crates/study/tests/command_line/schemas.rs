@@ -222,7 +222,7 @@ fn the_sample_of_a_style_and_the_published_benchmark_hold_to_theirs() {
     let style = of_repository("docs/src/reference/style.toml");
     hold("style", &style, &of_toml(&std::fs::read_to_string(&style).expect("a file")).expect("TOML"));
     assert!(!faults("style", &serde_json::json!({ "colour": 1 })).is_empty(), "a key that there is not");
-    let bench = of_repository("results/bench/bench.json");
+    let bench = of_repository("results/published/bench/bench.json");
     let document = serde_json::from_str(&std::fs::read_to_string(&bench).expect("a file")).expect("JSON");
     hold("bench", &bench, &document);
 }
