@@ -6,7 +6,8 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use ship::vessel::prime::PrimeHull;
 
-use super::objective::{Left, left_of_windows, replayed};
+use super::objective::{Left, left_of_windows};
+use super::replayed::replayed;
 use super::track::HullTrack;
 
 /// Correlation time, in L/U₀: what a form gets wrong changes with the manoeuvre and not with a gust.

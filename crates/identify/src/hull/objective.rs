@@ -3,11 +3,13 @@
 
 use estimation::levenberg_marquardt::{Normal, Objective};
 use estimation::number::{Dual, Real};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use ship::angle::DEGREE;
 use ship::vessel::prime::{HullCoefficient, HullForm, PrimeHull};
 
+use super::replayed::{Replayed, replayed};
 use super::track::HullTrack;
+use super::turn::HardTurn;
 
 /// Coefficients of the largest form, the yaw rate at the start, and room for one more.
 const DIRECTIONS: usize = 26;
@@ -18,9 +20,6 @@ const SHARES: [f64; 4] = [1.0, 0.4, 0.16, 0.06];
 
 /// A gain of less than this share ends that search.
 const NEGLIGIBLE: f64 = 1e-6;
-
-/// Longest step of the solver, in L/U₀.
-const LONGEST: f64 = 0.08;
 
 /// Standard deviations of what a hull of the right form leaves, because no form is right: they say how far each kind of
 /// reading is believed.
@@ -64,48 +63,7 @@ pub(super) struct HullObjective<'a> {
     starts: Vec<Starts>,
     /// Whether the starts were found once.
     is_begun: bool,
-}
-
-/// A window replayed: rows of states, each (ψ, u, v).
-pub(super) struct Replayed<R> {
-    pub rows: Vec<[R; 3]>,
-    end: [R; 3],
-}
-
-/// Steps a hull through rows `from..to` from (u, v, r), with a heading of zero at the first of them (Heun).
-pub(super) fn replayed<R: Real>(
-    hull: &PrimeHull<R>,
-    track: &HullTrack,
-    [from, to]: [usize; 2],
-    start: [R; 3],
-) -> Replayed<R> {
-    let mut state = start;
-    let mut heading = R::from(0.0);
-    let mut rows = Vec::with_capacity(to - from);
-    rows.push([heading, state[0], state[1]]);
-    let last = to.min(track.time.len() - 1);
-    for row in from + 1..=last {
-        let span = track.time[row] - track.time[row - 1];
-        let pieces = (span / LONGEST).ceil().max(1.0);
-        let step = span / pieces;
-        let between = |values: &[f64], share: f64| values[row - 1] + share * (values[row] - values[row - 1]);
-        for piece in 0..pieces as usize {
-            let rates = |state: [R; 3], piece: usize| {
-                let share = piece as f64 / pieces;
-                let rudder = R::from(between(&track.rudder, share));
-                hull.accelerations(state, rudder, between(&track.turning, share), between(&track.moment, share))
-            };
-            let first = rates(state, piece);
-            let ahead: [R; 3] = std::array::from_fn(|i| state[i] + first[i] * step);
-            let second = rates(ahead, piece + 1);
-            heading = heading + (state[2] + ahead[2]) * (0.5 * step);
-            state = std::array::from_fn(|i| state[i] + (first[i] + second[i]) * (0.5 * step));
-        }
-        if row < to {
-            rows.push([heading, state[0], state[1]]);
-        }
-    }
-    Replayed { rows, end: state }
+    turn: HardTurn,
 }
 
 /// What is left of the headings of a window, and how it grows with the yaw rate at its start.
@@ -201,7 +159,7 @@ impl<'a> HullObjective<'a> {
         let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
         let deviations = vec![FIRST; tracks.len()];
-        Self { form, coefficients, tracks, deviations, starts, is_begun: false }
+        Self { form, coefficients, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
     }
 
     /// Mean squares of what is left on every record; `None` where the values make no ship.
@@ -241,6 +199,12 @@ impl<'a> HullObjective<'a> {
         }
     }
 
+    /// Weight of a record: its length in L/U₀ over the number of records. The error of the form is another in every
+    /// ship length that is sailed, and the same in every record of alike manoeuvres.
+    fn weight(&self, track: &HullTrack) -> f64 {
+        track.duration() / self.tracks.len() as f64
+    }
+
     fn of_priors(&self, at: &[f64]) -> f64 {
         self.coefficients.iter().zip(at).map(|(own, value)| ((value - own.mean) / own.sd).powi(2)).sum()
     }
@@ -251,17 +215,18 @@ impl Objective for HullObjective<'_> {
         self.coefficients[unknown].ends
     }
 
-    /// Σ over records of their length in L/U₀ times mean squares over variances, and the priors: as if the error of the
-    /// form were another in every ship length that is sailed.
+    /// Σ over records of their weights times mean squares over variances, the priors, and the turn with the rudder hard over.
     fn value(&mut self, at: &[f64]) -> f64 {
-        let Some(left) = self.left(at) else { return f64::INFINITY };
+        let (Some(left), Some(hull)) = (self.left(at), self.form.with(at)) else { return f64::INFINITY };
         let of = |((track, left), believed): ((&HullTrack, Left), &HullDeviations)| {
             let HullDeviations { whole, window, speed } = *believed;
             let share = |square: f64, deviation: f64| square / (deviation * deviation);
             let headings = share(left.whole, whole) + share(left.window, window);
-            track.duration() * (headings + share(left.speed, speed))
+            self.weight(track) * (headings + share(left.speed, speed))
         };
-        self.of_priors(at) + self.tracks.iter().zip(left).zip(&self.deviations).map(of).sum::<f64>()
+        self.of_priors(at)
+            + self.turn.departure(&hull).powi(2)
+            + self.tracks.iter().zip(left).zip(&self.deviations).map(of).sum::<f64>()
     }
 
     fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64 {
@@ -275,9 +240,13 @@ impl Objective for HullObjective<'_> {
         let values: Vec<Dual<DIRECTIONS>> =
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
         let Some(hull) = self.form.with(&values) else { return f64::INFINITY };
+        let turn = self.turn.departure(&hull);
+        let by = DVector::from_column_slice(&turn.by[..at.len()]);
+        normal.matrix.ger(1.0, &by, &by, 1.0);
+        normal.gradient.axpy(-turn.value, &by, 1.0);
         for ((track, starts), believed) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
             let HullDeviations { whole, window, speed } = *believed;
-            let lengths = track.duration();
+            let lengths = self.weight(track);
             let read = track.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
             let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);
             let of_speed = Some(weight(speed, track.time.len() as f64));

@@ -76,6 +76,22 @@ impl HullTrack {
         }
     }
 
+    /// A rudder (rad) that is put over at once on a steady approach and held for `length` (L/U₀); no heading is read.
+    pub fn of_rudder(rudder: f64, length: f64) -> Self {
+        Self {
+            heading: vec![f64::NAN; 2],
+            rudder: vec![rudder; 2],
+            turning: vec![1.0; 2],
+            moment: vec![0.0; 2],
+            cuts: vec![0, 2],
+            whole: [0, 2],
+            start: [1.0, 0.0],
+            second: 1.0,
+            speed: None,
+            time: vec![0.0, length],
+        }
+    }
+
     fn cut(trial: &Trial, reference: &HullReference) -> Option<Self> {
         let rows: Vec<usize> = trial.observed_rows().collect();
         let (first, last) = (*rows.first()?, *rows.last()?);

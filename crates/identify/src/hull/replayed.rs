@@ -1,0 +1,52 @@
+//! The rudder of a record, or of a part of it, replayed through a hull.
+
+use estimation::number::Real;
+use ship::vessel::prime::PrimeHull;
+
+use super::track::HullTrack;
+
+/// Longest step of the solver, in L/U₀.
+const LONGEST: f64 = 0.08;
+
+/// A window replayed: rows of states, each (ψ, u, v).
+pub(super) struct Replayed<R> {
+    pub rows: Vec<[R; 3]>,
+    /// State at the first row after it.
+    pub end: [R; 3],
+}
+
+/// Steps a hull through rows `from..to` from (u, v, r), with a heading of zero at the first of them (Heun).
+pub(super) fn replayed<R: Real>(
+    hull: &PrimeHull<R>,
+    track: &HullTrack,
+    [from, to]: [usize; 2],
+    start: [R; 3],
+) -> Replayed<R> {
+    let mut state = start;
+    let mut heading = R::from(0.0);
+    let mut rows = Vec::with_capacity(to - from);
+    rows.push([heading, state[0], state[1]]);
+    let last = to.min(track.time.len() - 1);
+    for row in from + 1..=last {
+        let span = track.time[row] - track.time[row - 1];
+        let pieces = (span / LONGEST).ceil().max(1.0);
+        let step = span / pieces;
+        let between = |values: &[f64], share: f64| values[row - 1] + share * (values[row] - values[row - 1]);
+        for piece in 0..pieces as usize {
+            let rates = |state: [R; 3], piece: usize| {
+                let share = piece as f64 / pieces;
+                let rudder = R::from(between(&track.rudder, share));
+                hull.accelerations(state, rudder, between(&track.turning, share), between(&track.moment, share))
+            };
+            let first = rates(state, piece);
+            let ahead: [R; 3] = std::array::from_fn(|i| state[i] + first[i] * step);
+            let second = rates(ahead, piece + 1);
+            heading = heading + (state[2] + ahead[2]) * (0.5 * step);
+            state = std::array::from_fn(|i| state[i] + (first[i] + second[i]) * (0.5 * step));
+        }
+        if row < to {
+            rows.push([heading, state[0], state[1]]);
+        }
+    }
+    Replayed { rows, end: state }
+}
