@@ -3,10 +3,11 @@
 
 use estimation::levenberg_marquardt::{Normal, Objective};
 use estimation::number::{Dual, Real};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use ship::angle::DEGREE;
-use ship::vessel::prime::{HullCoefficient, HullForm, PrimeHull};
+use ship::vessel::prime::PrimeHull;
 
+use super::expected::ExpectedHull;
 use super::track::HullTrack;
 
 /// Coefficients of the largest form, the yaw rate at the start, and room for one more.
@@ -57,8 +58,7 @@ struct Starts {
 
 /// Records, a form and its priors.
 pub(super) struct HullObjective<'a> {
-    form: &'a HullForm,
-    coefficients: Vec<HullCoefficient>,
+    expected: &'a ExpectedHull,
     tracks: &'a [HullTrack],
     deviations: Vec<HullDeviations>,
     starts: Vec<Starts>,
@@ -196,18 +196,18 @@ pub(super) fn left_of_windows(hull: &PrimeHull<Dual<1>>, track: &HullTrack, rate
 }
 
 impl<'a> HullObjective<'a> {
-    pub fn new(form: &'a HullForm, coefficients: Vec<HullCoefficient>, tracks: &'a [HullTrack]) -> Self {
-        assert!(coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
+    pub fn new(expected: &'a ExpectedHull, tracks: &'a [HullTrack]) -> Self {
+        assert!(expected.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
         let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
         let deviations = vec![FIRST; tracks.len()];
-        Self { form, coefficients, tracks, deviations, starts, is_begun: false }
+        Self { expected, tracks, deviations, starts, is_begun: false }
     }
 
     /// Mean squares of what is left on every record; `None` where the values make no ship.
     pub fn left(&mut self, at: &[f64]) -> Option<Vec<Left>> {
         let values: Vec<Dual<1>> = at.iter().map(|&value| Dual::from(value)).collect();
-        let hull = self.form.with(&values)?;
+        let hull = self.expected.form.with(&values)?;
         let is_begun = std::mem::replace(&mut self.is_begun, true);
         let of = |(track, starts): (&HullTrack, &mut Starts)| {
             let mut left = Left::default();
@@ -241,14 +241,18 @@ impl<'a> HullObjective<'a> {
         }
     }
 
-    fn of_priors(&self, at: &[f64]) -> f64 {
-        self.coefficients.iter().zip(at).map(|(own, value)| ((value - own.mean) / own.sd).powi(2)).sum()
+    /// Λ (μ − θ), and (θ − μ)ᵀ Λ (θ − μ).
+    fn of_priors(&self, at: &[f64]) -> (DVector<f64>, f64) {
+        let left = self.expected.mean() - DVector::from_column_slice(at);
+        let pull = &self.expected.precision * &left;
+        let square = pull.dot(&left);
+        (pull, square)
     }
 }
 
 impl Objective for HullObjective<'_> {
     fn bounds(&self, unknown: usize) -> [f64; 2] {
-        self.coefficients[unknown].ends
+        self.expected.coefficients[unknown].ends
     }
 
     /// Σ over records of their length in L/U₀ times mean squares over variances, and the priors: as if the error of the
@@ -261,20 +265,15 @@ impl Objective for HullObjective<'_> {
             let headings = share(left.whole, whole) + share(left.window, window);
             track.duration() * (headings + share(left.speed, speed))
         };
-        self.of_priors(at) + self.tracks.iter().zip(left).zip(&self.deviations).map(of).sum::<f64>()
+        self.of_priors(at).1 + self.tracks.iter().zip(left).zip(&self.deviations).map(of).sum::<f64>()
     }
 
     fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64 {
         let value = self.value(at);
-        *normal = Normal::zeros(at.len());
-        for (place, own) in self.coefficients.iter().enumerate() {
-            let inverse = own.sd.powi(-2);
-            normal.matrix[(place, place)] = inverse;
-            normal.gradient[place] = (own.mean - at[place]) * inverse;
-        }
+        *normal = Normal { matrix: self.expected.precision.clone(), gradient: self.of_priors(at).0 };
         let values: Vec<Dual<DIRECTIONS>> =
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
-        let Some(hull) = self.form.with(&values) else { return f64::INFINITY };
+        let Some(hull) = self.expected.form.with(&values) else { return f64::INFINITY };
         for ((track, starts), believed) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
             let HullDeviations { whole, window, speed } = *believed;
             let lengths = track.duration();
@@ -346,18 +345,18 @@ fn of_headings(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: usize
 /// Times, in L/U₀, and variances of the heading of a whole replay where the coefficients have this covariance, rad².
 /// `None` where the values make no ship.
 pub(super) fn variances(
-    form: &HullForm,
+    expected: &ExpectedHull,
     track: &HullTrack,
     values: &[f64],
     covariance: &DMatrix<f64>,
 ) -> Option<[Vec<f64>; 2]> {
-    let rate = HullObjective::new(form, form.coefficients(), std::slice::from_ref(track)).begin(values)?;
+    let rate = HullObjective::new(expected, std::slice::from_ref(track)).begin(values)?;
     let unknowns = values.len();
     let variables: Vec<Dual<DIRECTIONS>> =
         values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
     let [u, v] = track.start.map(Dual::from);
     let start = [u, v, Dual::variable(rate, unknowns, 1.0)];
-    let Replayed { rows, .. } = replayed(&form.with(&variables)?, track, track.whole, start);
+    let Replayed { rows, .. } = replayed(&expected.form.with(&variables)?, track, track.whole, start);
     let (columns, _) = of_headings(&rows, &track.heading, unknowns);
     let by = columns.columns(0, unknowns);
     let spread = by * covariance;
