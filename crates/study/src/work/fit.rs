@@ -14,6 +14,7 @@ use scenario::failure::Failure;
 use ship::angle::to_deg;
 use trial::{Channel, Trial, ZigZag};
 
+use super::earlier::{self, EarlierModel};
 use super::every_scale::{self, PREFERRED_METHODS};
 use super::single_records;
 use crate::completed::ALL;
@@ -88,19 +89,21 @@ impl FitResult {
     }
 }
 
-/// Identifies the records together by every method and replays the answers on `others`.
+/// Identifies the records together by every method and replays the answers on `others`; the hull about what `priors`
+/// left.
 ///
-/// Fails when the records cannot be brought to one scale, and when no method can identify them: that is wrong input,
-/// not a result.
+/// Fails when the records cannot be brought to one scale, when no method can identify them, and when there are priors and
+/// no hull can be fitted: that is wrong input, not a result.
 pub fn fit(
-    records: &[Trial],
-    others: &[Trial],
+    [records, others]: [&[Trial]; 2],
     methods: &[Named],
+    priors: &[EarlierModel],
     quiet: bool,
     warnings: &mut Vec<String>,
 ) -> Result<FitResult, Failure> {
     let together = scales::together(records, others)?;
     let (trials, others) = (&together.trials[..], &together.others[..]);
+    earlier::check(priors, trials, warnings)?;
     let ship = scales::particulars(trials);
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
         .par_iter()
@@ -131,7 +134,7 @@ pub fn fit(
         trial_entry(trial, &zigzag)
     };
     let records: Vec<TrialEntry> = records.iter().map(of_record).collect();
-    let shown = RecordFacts::of(trials).with_motion(None);
+    let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
     warn_of_no_track(&shown, warnings);
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
@@ -142,6 +145,7 @@ pub fn fit(
         zigzag: records[0].zigzag.clone(),
         trials: records,
         ships: answers.iter().filter_map(ship_of).collect(),
+        prior: earlier::entry(priors, trials, &shown, warnings),
         scales: every_scale::compared(methods, &answers, &together),
         scaling: together.sentence(),
         length_m: ship.map(|ship| ship.length),
