@@ -172,8 +172,8 @@ pub struct FitRequest {
         hide_possible_values = true
     )]
     pub methods: Vec<String>,
-    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json: where the fit of her hull
-    /// begins, widened; can be given several times
+    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json: where the fit of her
+    /// hull begins, widened; can be given several times
     #[arg(long = "prior", value_name = "MODEL.json")]
     pub priors: Vec<PathBuf>,
     /// Also ask another program: it is started, and reads and writes lines of JSON
@@ -270,8 +270,8 @@ pub struct TraceRequest {
     /// ship are known and the structures leave more than noise
     #[arg(long)]
     pub without_hull: bool,
-    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json: where the fit of her hull
-    /// begins, widened; can be given several times
+    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json: where the fit of her
+    /// hull begins, widened; can be given several times
     #[arg(long = "prior", value_name = "MODEL.json", conflicts_with = "without_hull")]
     pub priors: Vec<PathBuf>,
     /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`

@@ -1,25 +1,27 @@
 //! Hulls of three degrees of freedom beside the structures: what averages them when the records are not first order.
 
-use identify::hull::{self, EarlierHull, HullEstimate};
+use identify::hull::{self, HullEstimate};
 use rayon::prelude::*;
 use trial::Trial;
 
 use crate::comparison::RecordComparison;
 use crate::remainder::{Remainder, squares};
+use crate::settings::Settings;
 
-/// The hulls that the records speak for, about what earlier trials told of the ship, beside what the structures have left
-/// of them; none without length and speed. Without earlier trials none where the structures leave nothing but noise.
+/// The hulls that the records speak for, about what earlier trials told of the ship, beside what the structures have
+/// left of them; none without length and speed. Without earlier trials none where the structures leave nothing but
+/// noise.
 pub fn fit(
     trials: &[Trial],
-    earlier: &[EarlierHull],
+    settings: &Settings,
     structures: &[RecordComparison],
     remainder: &Remainder,
 ) -> Vec<HullEstimate> {
-    if remainder.holds && earlier.is_empty() {
+    if !settings.hulls || remainder.holds && settings.earlier.is_empty() {
         return Vec::new();
     }
     let rows: usize = structures.iter().map(|one| one.after.errors.rows).sum();
-    hull::members(trials, earlier, (squares(structures)[1] / rows as f64).sqrt())
+    hull::members(trials, &settings.earlier, (squares(structures)[1] / rows as f64).sqrt())
 }
 
 /// The same hulls fitted to other records.

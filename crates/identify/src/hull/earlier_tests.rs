@@ -49,8 +49,8 @@ fn near(found: [f64; 2], expected: [f64; 2]) {
     assert!((0..2).all(|end| (found[end] - expected[end]).abs() < 1e-9), "{found:?} {expected:?}");
 }
 
-/// A trial of precision 100 told 99 beside what was expected before it; of that counts 1/f², and what was expected counts
-/// once.
+/// A trial of precision 100 told 99 beside what was expected before it; of that counts 1/f², and what was expected
+/// counts once.
 #[test]
 fn what_trials_told_is_widened_and_what_was_expected_counts_once() {
     let one = earlier(SHIP, "quadratic");

@@ -1,5 +1,5 @@
-//! What is expected of the coefficients of a hull before its records are seen: what its form or its particulars say, and
-//! what earlier trials have told of her, or of a ship like her.
+//! What is expected of the coefficients of a hull before its records are seen: what its form or its particulars say,
+//! and what earlier trials have told of her, or of a ship like her.
 //!
 //! An earlier trial left values θ₁ with a covariance C₁; before it μ₁ was expected with the precision Λ₁, a diagonal
 //! matrix. What the trial itself told has the precision D₁ = C₁⁻¹ − Λ₁ and the vector h₁ = C₁⁻¹ θ₁ − Λ₁ μ₁. Expected of
@@ -8,10 +8,10 @@
 //! Λ = Λ₀ + Σ D₁/f², Λ μ = Λ₀ μ₀ + Σ (h₁ + D₁ s)/f²
 //!
 //! with what her own particulars say, μ₀ and Λ₀, counted once however many trials there are; s = μ₀ − μ₁ is the
-//! difference that the formulas make of other particulars, and f widens by the likeness of the ships ([`Likeness`]): a
-//! power prior (Ibrahim and Chen 2000, doi:10.1214/ss/1009212673) of power 1/f². Where the earlier trial told nothing,
-//! the prior is that of the particulars. Coefficients have no dimension, so scale changes none of them at the same Froude
-//! number.
+//! difference that the formulas make of other particulars, and f widens by the likeness of the ships ([`Likeness`]):
+//! a power prior (Ibrahim and Chen 2000, doi:10.1214/ss/1009212673) of power 1/f². Where the earlier trial told
+//! nothing, the prior is that of the particulars. Coefficients have no dimension, so scale changes none of them at
+//! the same Froude number.
 
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
@@ -93,8 +93,8 @@ impl Likeness {
     }
 }
 
-/// Whether two ships sail at so different Froude numbers, by more than a tenth, that coefficients of one say less of the
-/// other: waves and squat are others.
+/// Whether two ships sail at so different Froude numbers, by more than a tenth, that coefficients of one say less of
+/// the other: waves and squat are others.
 pub fn is_other_froude_number(earlier: &HullParticulars, ship: &HullParticulars) -> bool {
     (earlier.froude_number() / ship.froude_number() - 1.0).abs() > FROUDE
 }
@@ -154,8 +154,8 @@ fn diagonal(coefficients: &[HullCoefficient]) -> DMatrix<f64> {
 }
 
 impl EarlierHull {
-    /// D/f² and (h + D s)/f² of the trials of this hull, in the places of the coefficients of another ship. `None` where
-    /// its covariance is none.
+    /// D/f² and (h + D s)/f² of the trials of this hull, in the places of the coefficients of another ship. `None`
+    /// where its covariance is none.
     ///
     /// What belongs to a trial is not told; nor at another scale what depends on friction.
     fn told(&self, expected: &ExpectedHull, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
@@ -196,7 +196,8 @@ impl EarlierHull {
         Some((matrix, all))
     }
 
-    /// What was expected before the earlier trials, moved by the difference that the formulas make of other particulars.
+    /// What was expected before the earlier trials, moved by the difference that the formulas make of other
+    /// particulars.
     fn carried(&self, expected: &ExpectedHull, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
         // What is known of one ship only is no difference.
         let filled = self.particulars.filled_from(ship);

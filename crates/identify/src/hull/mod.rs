@@ -129,9 +129,9 @@ pub fn refusal(trials: &[Trial]) -> Option<HullFitError> {
 /// A hull that leaves this many times what another model leaves takes no part.
 const FAR: f64 = 3.0;
 
-/// The hulls of all forms that records of one ship speak for, about what earlier trials told of her: those that leave no
-/// more than three times what the best of them leaves of whole records, or another model (`rival`, rad; infinite without
-/// one). None where none can be fitted.
+/// The hulls of all forms that records of one ship speak for, about what earlier trials told of her: those that leave
+/// no more than three times what the best of them leaves of whole records, or another model (`rival`, rad; infinite
+/// without one). None where none can be fitted.
 pub fn members(trials: &[Trial], earlier: &[EarlierHull], rival: f64) -> Vec<HullEstimate> {
     let expected = ExpectedHull::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
     let found: Vec<HullEstimate> = expected.par_iter().filter_map(|own| fit(trials, own).ok()).collect();
@@ -157,6 +157,11 @@ impl HullEstimate {
         let left = self.mean_square();
         variance.iter_mut().for_each(|own| *own += left);
         Polyline::new(time.into_iter().map(|t| t * track.second).collect(), variance).ok()
+    }
+
+    /// The records against what was expected of the ship; `None` where they tell nothing new.
+    pub fn check(&self) -> Option<ExpectationCheck> {
+        ExpectationCheck::of(&self.expected, &self.values, &self.covariance)
     }
 
     /// Mean square of what it leaves of whole records, rad².

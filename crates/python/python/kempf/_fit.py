@@ -229,7 +229,7 @@ def fit(
         that raises has no answer, and its ``reason`` says why
     :param seed: seed of the methods that draw at random
     :param prior: what earlier trials of the same ship, her model or a sister left, results of this function or of
-        :func:`kempf.trace` or paths of their files: where the fit of her hull begins. ``result.document["prior"]`` says
+        :func:`kempf.trace` or paths of their files: where the fit of her hull begins. ``result.document["earlier_trials"]`` says
         whether the records contradict it
 
     Raises :class:`kempf.KempfError` where a record cannot be read, and where no method can identify the records; a

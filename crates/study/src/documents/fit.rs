@@ -11,7 +11,7 @@ use ship::Particulars;
 use ship::angle::to_deg;
 use trial::{Quantity, Trial, ZigZag, ZigZagError, imo};
 
-use super::prior::PriorEntry;
+use super::prior::EarlierTrials;
 use super::scales::ScalesEntry;
 use super::verdict::VerdictEntry;
 use crate::records::file_of;
@@ -90,7 +90,7 @@ pub struct FitDocument {
     pub ships: BTreeMap<String, IdentifiedShip>,
     /// What earlier trials of `--prior` say of the hull, and whether the records contradict them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prior: Option<PriorEntry>,
+    pub earlier_trials: Option<EarlierTrials>,
     /// Where the records are of several scales: which terms scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<ScalesEntry>,

@@ -1,4 +1,5 @@
-//! `prior` of `fit.json` and `trace.json`: the models of earlier trials, and whether the records contradict them.
+//! `earlier_trials` of `fit.json` and `trace.json`: the models of earlier trials, and whether the records contradict
+//! them.
 
 use identify::hull::ExpectationCheck;
 use report::number::{fixed, significant};
@@ -11,7 +12,7 @@ const MOVED: f64 = 1.0;
 
 /// What `--prior` gave.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PriorEntry {
+pub struct EarlierTrials {
     /// The models.
     pub models: Vec<PriorModelEntry>,
     /// The check of every hull, the nearest to the records first; empty where no hull is near enough to take part.
@@ -75,7 +76,7 @@ impl PriorCheckEntry {
     }
 }
 
-impl PriorEntry {
+impl EarlierTrials {
     /// One sentence for screen and page.
     pub fn sentence(&self) -> String {
         let model = |own: &PriorModelEntry| {
@@ -118,7 +119,7 @@ impl PriorEntry {
 mod tests {
     use super::*;
 
-    fn entry(p_value: f64) -> PriorEntry {
+    fn entry(p_value: f64) -> EarlierTrials {
         let check = ExpectationCheck {
             chi_square: 41.3,
             degrees_of_freedom: 9,
@@ -134,7 +135,7 @@ mod tests {
             speed_m_s: 7.97,
         };
         let conflict = check.is_conflict();
-        PriorEntry { models: vec![model], hulls: vec![PriorCheckEntry::of("mmg", &check)], conflict }
+        EarlierTrials { models: vec![model], hulls: vec![PriorCheckEntry::of("mmg", &check)], conflict }
     }
 
     #[test]
@@ -152,7 +153,7 @@ mod tests {
         assert!(
             sentence.starts_with("prior: fit.json (a ship of another draught-m, deviations × 3); the records agree")
         );
-        let without = PriorEntry { hulls: Vec::new(), conflict: false, ..entry(0.3) };
+        let without = EarlierTrials { hulls: Vec::new(), conflict: false, ..entry(0.3) };
         assert!(without.sentence().contains("no part"));
     }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
 use super::missing_moment::MissingMomentEntry;
-use super::prior::PriorEntry;
+use super::prior::EarlierTrials;
 use crate::records::names;
 
 /// Name of the file.
@@ -28,7 +28,7 @@ pub struct TraceDocument {
     pub ship: IdentifiedShip,
     /// What earlier trials of `--prior` say of the hull, and whether the records contradict them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prior: Option<PriorEntry>,
+    pub earlier_trials: Option<EarlierTrials>,
     /// How records of several scales were brought to one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<String>,

@@ -36,7 +36,7 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
         behind += &format!("\nleft: {signature}");
     }
     behind += &odd(document);
-    behind += &document.prior.as_ref().map_or_else(String::new, |prior| format!("\n{}", prior.sentence()));
+    behind += &document.earlier_trials.as_ref().map_or_else(String::new, |prior| format!("\n{}", prior.sentence()));
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
@@ -195,7 +195,7 @@ fn hulls_and_what_is_left(page: &mut Page, document: &TraceDocument) {
     if !document.ship.hulls.is_empty() {
         page.part("The hull behind the response");
         page.table(tables::hulls(document));
-        page.say(document.prior.as_ref().map_or_else(String::new, |prior| text(&prior.sentence())));
+        page.say(document.earlier_trials.as_ref().map_or_else(String::new, |prior| text(&prior.sentence())));
         page.say(HULLS);
     }
     let unexplained = &document.trace.unexplained;

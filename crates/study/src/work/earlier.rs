@@ -12,7 +12,7 @@ use ship::vessel::prior::HullParticulars;
 use trial::{Trial, file};
 
 use super::predict::{StoredShips, ships_of, text_of};
-use crate::documents::prior::{PriorCheckEntry, PriorEntry, PriorModelEntry};
+use crate::documents::prior::{EarlierTrials, PriorCheckEntry, PriorModelEntry};
 use crate::records::file_of;
 
 /// A model of earlier trials: its hulls.
@@ -70,8 +70,8 @@ pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
     models.iter().flat_map(|model| model.hulls.iter().cloned()).collect()
 }
 
-/// Fails where models of earlier trials are given and no hull can be fitted to the records; warns where the ships sail at
-/// other Froude numbers.
+/// Fails where models of earlier trials are given and no hull can be fitted to the records; warns where the ships
+/// sail at other Froude numbers.
 pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<String>) -> Result<(), Failure> {
     if models.is_empty() {
         return Ok(());
@@ -103,10 +103,10 @@ pub fn entry(
     trials: &[Trial],
     facts: &RecordFacts,
     warnings: &mut Vec<String>,
-) -> Option<PriorEntry> {
+) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
     let checks = facts.checks();
-    let entry = PriorEntry {
+    let entry = EarlierTrials {
         models: models.iter().map(|model| model.entry(&ship)).collect(),
         hulls: checks.iter().map(|(form, check)| PriorCheckEntry::of(form, check)).collect(),
         conflict: checks.first().is_some_and(|(_, check)| check.is_conflict()),

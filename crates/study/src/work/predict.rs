@@ -61,7 +61,8 @@ pub(super) fn text_of(path: &Path) -> Result<String, Failure> {
     file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
 }
 
-/// The ships in the text of a `fit.json` or `trace.json`, which messages call `shown`. Fails when it is no such document.
+/// The ships in the text of a `fit.json` or `trace.json`, which messages call `shown`. Fails when it is no such
+/// document.
 pub(super) fn ships_of(shown: &str, text: &str) -> Result<StoredShips, Failure> {
     let refuse = |problem: String| Failure::about(shown, problem);
     let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));

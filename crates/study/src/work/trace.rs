@@ -82,8 +82,8 @@ pub const STOPPED: &str = "stopped before every record was looked at as if it ha
 
 /// Analyses the records together; `others` are held out. The hull is fitted about what `priors` left.
 ///
-/// Fails when the records cannot be brought to one scale, when the base cannot be fitted, when what is asked for cannot be
-/// in the model, and when there are priors and no hull can be fitted.
+/// Fails when the records cannot be brought to one scale, when the base cannot be fitted, when what is asked for
+/// cannot be in the model, and when there are priors and no hull can be fitted.
 pub fn trace(
     [records, others]: [&[Trial]; 2],
     settings: &Settings,
@@ -134,7 +134,7 @@ pub fn trace(
     let ship = known::of_analysis(&analysis, &shown);
     warnings.extend(ship.rudder_logged_late().map(rudder_logged_late));
     let document = TraceDocument {
-        prior: earlier::entry(priors, &trials, &shown, warnings),
+        earlier_trials: earlier::entry(priors, &trials, &shown, warnings),
         ship,
         records: entries,
         missing_moment: moments,

@@ -54,8 +54,8 @@ impl HullParticulars {
         PARTICULARS.iter().filter(|own| is_of_hull(own.key)).filter(differs).map(|own| own.key).collect()
     }
 
-    /// The same ship with what is missing from another, at her own length. Nothing that stands already changes. Mass and
-    /// revolutions are of the water and of the trial; they are not taken over.
+    /// The same ship with what is missing from another, at her own length. Nothing that stands already changes. Mass
+    /// and revolutions are of the water and of the trial; they are not taken over.
     #[must_use]
     pub fn filled_from(&self, other: &Self) -> Self {
         let ratio = self.length / other.length;
