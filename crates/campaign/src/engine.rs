@@ -254,7 +254,7 @@ impl TrialQuestion<'_> {
         let indices = &document.model.indices;
         // Effects may ask for a speed and a sway.
         let known =
-            |facts: &RecordFacts| Some(known::of_analysis(analysis, &facts.clone().with_motion(Some(analysis))));
+            |facts: &RecordFacts| Some(known::of_analysis(analysis, &facts.clone().with_motion(Some(analysis), &[])));
         StudyRow {
             heading_rmse_deg: finite(to_deg(misfit(analysis, self.trials))),
             validation_rmse_deg: validation.as_ref().and_then(|on| finite(to_deg(on.errors.heading))),

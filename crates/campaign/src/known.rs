@@ -1,10 +1,8 @@
 //! What an estimate or an analysis knows of a ship, as a prediction takes it. Longer than most: it reads all that fits,
 //! traces and hulls leave.
 
-use std::collections::BTreeMap;
-
 use identify::estimate::{Estimate, Uncertainty};
-use identify::hull::{self, HullEstimate, HullReference};
+use identify::hull::{self, EarlierHull, ExpectationCheck, HullEstimate, HullReference};
 use identify::replay::{Replay, replay};
 use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
@@ -14,7 +12,7 @@ use predict::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
 use ship::Particulars;
 use ship::angle::{from_deg, to_deg};
 use ship::vessel::prime::{HullCoefficient, HullForm};
-use ship::vessel::prior::{HullParticulars, PARTICULARS};
+use ship::vessel::prior::PARTICULARS;
 use trace::Analysis;
 use trace::analysis::Plausible;
 use trace::document::RecordNoiseEntry;
@@ -43,6 +41,8 @@ pub struct RecordFacts<'a> {
     speed: Option<f64>,
     motion: Option<Planar>,
     hulls: Vec<StoredHull>,
+    /// Forms of the hulls that earlier trials are in, with the records against these; the nearest first.
+    checks: Vec<(&'static str, ExpectationCheck)>,
     /// Why there is no track, from records with a speed or positions.
     no_track: Option<String>,
 }
@@ -61,6 +61,7 @@ impl<'a> RecordFacts<'a> {
             speed: particular(|own| own.speed),
             motion: None,
             hulls: Vec::new(),
+            checks: Vec::new(),
             no_track: None,
         }
     }
@@ -71,21 +72,28 @@ impl<'a> RecordFacts<'a> {
         self.no_track.as_deref()
     }
 
+    /// The records against what earlier trials told of the ship, for every form of hull; the nearest first.
+    pub fn checks(&self) -> &[(&'static str, ExpectationCheck)] {
+        &self.checks
+    }
+
     /// The same with speed and drift: the hulls of an analysis of these records, or those that they speak for where
-    /// length and speed are known and all of them have a speed and begin on a steady approach; else two equations
-    /// beside the yaw response where they have speed or position. As it was where nothing can be fitted.
-    pub fn with_motion(mut self, analysis: Option<&Analysis>) -> Self {
+    /// length and speed are known and all of them begin on a steady approach and have a speed, unless earlier trials
+    /// told her hull; else two equations beside the yaw response where they have speed or position. As it was where
+    /// nothing can be fitted.
+    pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
         let Some(length) = self.length else { return self };
         let has = |trial: &Trial, channel: Channel| trial.channel(channel).is_some();
         let has_speed =
             |trial: &Trial| has(trial, Channel::Speed) || has(trial, Channel::Surge) && has(trial, Channel::Sway);
-        let fitted =
-            || if self.trials.iter().all(has_speed) { hull::members(self.trials, f64::INFINITY) } else { Vec::new() };
+        let tells_hull = !earlier.is_empty() || self.trials.iter().all(has_speed);
+        let fitted = || if tells_hull { hull::members(self.trials, earlier, f64::INFINITY) } else { Vec::new() };
         let known = analysis.map(|analysis| analysis.hulls.clone()).filter(|hulls| !hulls.is_empty());
         let mut hulls = known.unwrap_or_else(fitted);
         hulls.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
-        let particulars = self.trials.iter().find_map(Trial::hull).unwrap_or_default();
-        self.hulls = hulls.iter().map(|hull| stored(hull, hulls.len(), &particulars)).collect();
+        self.hulls = hulls.iter().map(|hull| stored(hull, hulls.len())).collect();
+        let after_trials = hulls.iter().filter(|hull| hull.expected.has_trials);
+        self.checks = after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect();
         let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
         let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
         if self.hulls.is_empty() && self.trials.iter().all(is_told) {
@@ -148,8 +156,9 @@ impl<'a> RecordFacts<'a> {
     }
 }
 
-/// A fitted hull as a file holds it, one of so many; the particulars are those of the ship of the records.
-fn stored(hull: &HullEstimate, of: usize, particulars: &HullParticulars) -> StoredHull {
+/// A fitted hull as a file holds it, one of so many.
+fn stored(hull: &HullEstimate, of: usize) -> StoredHull {
+    let expected = &hull.expected;
     let coefficient = |(own, value): (&HullCoefficient, &f64)| StoredCoefficient {
         key: own.key.to_owned(),
         symbol: own.symbol.to_owned(),
@@ -157,16 +166,17 @@ fn stored(hull: &HullEstimate, of: usize, particulars: &HullParticulars) -> Stor
         expected: own.mean,
         expected_sd: own.sd,
     };
-    let given = PARTICULARS.iter().filter_map(|own| Some((own.key.to_owned(), own.get(particulars)?)));
+    let particulars = expected.particulars.filter(|_| matches!(expected.form, HullForm::Mmg(..))).unwrap_or_default();
+    let given = PARTICULARS.iter().filter_map(|own| Some((own.key.to_owned(), own.get(&particulars)?)));
     let HullReference { length, speed, propeller } = hull.reference;
     StoredHull {
-        form: hull.form.as_str().to_owned(),
+        form: expected.form.as_str().to_owned(),
         weight: 1.0 / of as f64,
         length_m: length,
         speed_m_s: speed,
         propeller_per_s: propeller,
-        particulars: if matches!(hull.form, HullForm::Mmg(..)) { given.collect() } else { BTreeMap::new() },
-        coefficients: hull.expected.iter().zip(hull.values.iter()).map(coefficient).collect(),
+        particulars: given.collect(),
+        coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
         covariance: rows_of(&hull.covariance),
         moment: RandomYawMoment {
             deviation_rudder_rad: hull.moment.deviation,
@@ -471,7 +481,7 @@ mod tests {
     fn zig_zags_of_a_tanker_tell_her_circle() {
         let zig_zags = ["zig-zag:10/10", "zig-zag:-20/20"].map(|kind| tanker(&kind.parse().expect("known")));
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
-        let facts = RecordFacts::of(&zig_zags).with_motion(None);
+        let facts = RecordFacts::of(&zig_zags).with_motion(None, &[]);
         let known = of_estimate(&estimate, &facts).expect("a covariance");
         assert!(facts.no_track().is_none() && !known.hulls.is_empty() && known.motion.is_none());
         let kind: Manoeuvre = "turning-circle:35".parse().expect("known");

@@ -23,6 +23,7 @@ pub mod collect;
 pub mod curves;
 pub mod design;
 pub mod disk;
+pub mod earlier;
 pub mod engine;
 pub mod files;
 pub mod folder;

@@ -5,7 +5,8 @@
 use ship::Particulars;
 use ship::angle::to_deg;
 use ship::particulars::{USUAL_K_OVER_T_PRIME, USUAL_K_PRIME, USUAL_T_PRIME, usual_rudder_rate_deg_s};
-use trial::{Quantity, Trial, ZigZag};
+use ship::vessel::prior::{HullParticulars, USUAL_FROUDE_NUMBER};
+use trial::{Channel, Quantity, Trial, ZigZag};
 
 use crate::estimate::{Estimate, Uncertainty};
 
@@ -15,11 +16,19 @@ const ERRORS: f64 = 2.0;
 /// Share by which the rate of a rudder that is read off a record may be off.
 const READ: f64 = 0.05;
 
+/// Times by which the largest speed of a record and its approach speed may differ: a ship that gathers way or rides a
+/// current stays within, one at the scale of another does not.
+const OTHER_SPEED: f64 = 1.8;
+
 /// What is unusual of an estimate and of the records it is from, in one sentence; `None` where nothing is.
 ///
-/// The records have to be zig-zags: a turn alone hardly tells K′ = K L/U, T′ = T U/L and K′/T′. `ship` belongs to the
-/// clock of the estimate, `records` have their own.
+/// Length and speed that contradict each other or the record go before all else. For the rest the records have to be
+/// zig-zags: a turn alone hardly tells K′ = K L/U, T′ = T U/L and K′/T′. `ship` belongs to the clock of the estimate,
+/// `records` have their own.
 pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Trial]) -> Option<String> {
+    if let Some(scale) = records.iter().find_map(other_scale) {
+        return Some(scale);
+    }
     let zigzags: Option<Vec<ZigZag>> = records.iter().map(|record| ZigZag::of(record).ok()).collect();
     let zigzags = zigzags?;
     let indices = ship.map(|ship| unusual_indices(estimate, ship));
@@ -36,6 +45,26 @@ pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Tria
              shows them",
             found.join(", ")
         )
+    })
+}
+
+/// Why length and speed of a record are not of one scale, with the cure.
+fn other_scale(record: &Trial) -> Option<String> {
+    let Particulars { length, speed } = record.particulars()?;
+    let cure = "length and speed have to be of one scale and that of the record, both of the ship or both of the model";
+    let froude = HullParticulars { length, speed, ..HullParticulars::default() }.froude_number();
+    let [low, high] = USUAL_FROUDE_NUMBER;
+    if !(low..=high).contains(&froude) {
+        return Some(format!(
+            "{length} m at {speed:.3} m/s is a Froude number of {froude:.3} (ships have {low} to {high}): {cure}"
+        ));
+    }
+    let speeds = record.channel(Channel::Speed)?.iter().copied().filter(|own| own.is_finite());
+    let largest = speeds.fold(0.0, f64::max);
+    let is_other = largest > 0.0 && !(1.0 / OTHER_SPEED..=OTHER_SPEED).contains(&(largest / speed));
+    is_other.then(|| {
+        let name = record.name();
+        format!("{name} sails at {largest:.3} m/s at most, and {speed:.3} m/s is given as its approach speed: {cure}")
     })
 }
 
@@ -62,6 +91,7 @@ mod tests {
     use super::*;
     use crate::testing::Case;
     use crate::{Identifier, output_error};
+    use trial::Columns;
 
     const YUKUN: Particulars = Particulars { length: 105.0, speed: 8.59 };
 
@@ -88,6 +118,27 @@ mod tests {
             case.period_s = 1.0 / quicker;
         };
         assert_eq!(told(model, smaller), None);
+    }
+
+    /// A model of 7 m given as her ship of 320 m, by length alone or by both.
+    #[test]
+    fn a_model_given_as_her_ship_is_suspected() {
+        let cure = "both of the ship or both of the model";
+        let slow = told(Particulars { length: 320.0, speed: 1.18 }, |_| {}).expect("a Froude number of 0.021");
+        assert!(slow.contains("Froude number of 0.021 (ships have 0.025 to 0.6)") && slow.contains(cure), "{slow}");
+        let model = Case::default().trial().with_particulars(Particulars { length: 320.0, speed: 7.97 });
+        let channels = [Channel::Heading, Channel::Rudder].map(|own| (own, model.channel(own).expect("one").to_vec()));
+        let speed = (Channel::Speed, vec![1.18; model.time().len()]);
+        let columns = Columns {
+            time: model.time().to_vec(),
+            channels: channels.into_iter().chain([speed]).collect(),
+            unknown: Vec::new(),
+        };
+        let record = Trial::new("model", model.origin().clone(), columns).expect("a record");
+        let given = |length, speed| other_scale(&record.clone().with_particulars(Particulars { length, speed }));
+        let other = given(320.0, 7.97).expect("another speed");
+        assert!(other.starts_with("model sails at 1.180 m/s at most, and 7.970 m/s is given") && other.contains(cure));
+        assert_eq!(given(7.0, 1.18), None);
     }
 
     #[test]

@@ -89,6 +89,11 @@ impl StoredHull {
         if are_same { Ok(form) } else { Err(refused()) }
     }
 
+    /// Refuses what no file of this program holds: another form, other coefficients, a covariance that is none.
+    pub fn check(&self) -> Result<(), PredictError> {
+        DrawableHull::new(self).map(drop)
+    }
+
     /// The values of the coefficients.
     pub fn values(&self) -> Vec<f64> {
         self.coefficients.iter().map(|own| own.value).collect()

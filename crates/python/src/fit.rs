@@ -12,6 +12,7 @@ use study::work;
 use trial::Trial;
 
 use crate::curve::{ReplayArrays, curve};
+use crate::earlier::{ModelText, earlier};
 use crate::own::{OwnMethods, PyIdentifier};
 use crate::record::{PyRecord, read_warnings, trials};
 use crate::wait::patiently;
@@ -42,7 +43,8 @@ impl PyFit {
     }
 }
 
-/// Identifies records by the named methods, or by the usual ones, and by functions of the caller's own.
+/// Identifies records by the named methods, or by the usual ones, and by functions of the caller's own; `priors` are
+/// models of earlier trials.
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,
@@ -51,12 +53,14 @@ pub fn fit(
     methods: Vec<String>,
     own: OwnMethods,
     seed: Option<u64>,
+    priors: Vec<ModelText>,
 ) -> PyResult<PyFit> {
     // The document has what reading warned of, as that of the command; Python has been told before.
     let mut warnings = [read_warnings(&records), read_warnings(&validate)].concat();
     let told = warnings.len();
     let (records, others) = (trials(&records), trials(&validate));
     patiently(py, move || {
+        let priors = earlier(&priors)?;
         let mut methods = work::fit::methods(&methods, &[], seed)?;
         for (label, function) in own {
             name::label(&label).map_err(|unfit| Failure::input(format!("own: a label is {label:?}; {unfit}")))?;
@@ -66,7 +70,7 @@ pub fn fit(
             methods.push((label, Box::new(PyIdentifier(function))));
         }
         warn_of_repetition(&records, &others, &mut warnings);
-        let done = work::fit::fit(&records, &others, &methods, true, &mut warnings)?;
+        let done = work::fit::fit([&records, &others], &methods, &priors, true, &mut warnings)?;
         warnings.drain(..told);
         warnings.extend(done.document.of_methods(true));
         Ok(PyFit {

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | records | `record` |
 //! | what is asked of them | `find`, `fit`, `trace`, `predict`, `bench` |
+//! | models of earlier trials | `earlier` |
 //! | functions of Python as methods | `own` |
 //! | scenarios | `scene`, `simulate`, `run` |
 //! | work that is waited for, and Ctrl-C | `wait` |
@@ -14,6 +15,7 @@
 mod asked;
 mod bench;
 mod curve;
+mod earlier;
 mod find;
 mod fit;
 mod own;

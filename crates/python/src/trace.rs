@@ -10,6 +10,7 @@ use study::work;
 
 use crate::asked::request;
 use crate::curve::{ReplayArrays, curve};
+use crate::earlier::{ModelText, earlier};
 use crate::record::{PyRecord, trials};
 use crate::wait::patiently;
 
@@ -37,13 +38,14 @@ impl PyTrace {
     }
 }
 
-/// Analyses records; `words` are options of the command line.
+/// Analyses records; `words` are options of the command line, `priors` models of earlier trials.
 #[pyfunction]
 pub fn trace(
     py: Python<'_>,
     records: Vec<Py<PyRecord>>,
     validate: Vec<Py<PyRecord>>,
     words: Vec<String>,
+    priors: Vec<ModelText>,
 ) -> PyResult<PyTrace> {
     let (records, others) = (trials(&records), trials(&validate));
     patiently(py, move || {
@@ -52,7 +54,13 @@ pub fn trace(
         let (records, others) = (work::trace::without(&asked, records), work::trace::without(&asked, others));
         let mut warnings = Vec::new();
         warn_of_repetition(&records, &others, &mut warnings);
-        let traced = work::trace::trace(&records, &others, &work::trace::settings(&asked)?, true, &mut warnings)?;
+        let traced = work::trace::trace(
+            [&records, &others],
+            &work::trace::settings(&asked)?,
+            &earlier(&priors)?,
+            true,
+            &mut warnings,
+        )?;
         let text = document::text(&traced.document).map_err(Failure::work)?;
         let records = traced.curves()?.records;
         Ok(PyTrace { text, warnings, records })

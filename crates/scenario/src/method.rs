@@ -195,7 +195,8 @@ fn tracing(wire: &TraceWire, formulas: Vec<Arc<Formula>>) -> Result<::trace::Set
     if monomials > empirical::all().len() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }
-    let settings = ::trace::Settings { probability, rule, monomials, selection, thorough: false, hulls: false };
+    let usual = ::trace::Settings { thorough: false, ..::trace::Settings::default() };
+    let settings = ::trace::Settings { probability, rule, monomials, selection, ..usual };
     settings.check()?;
     Ok(settings)
 }

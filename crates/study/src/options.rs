@@ -172,6 +172,10 @@ pub struct FitRequest {
         hide_possible_values = true
     )]
     pub methods: Vec<String>,
+    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json: where the fit of her
+    /// hull begins, widened; can be given several times
+    #[arg(long = "prior", value_name = "MODEL.json")]
+    pub priors: Vec<PathBuf>,
     /// Also ask another program: it is started, and reads and writes lines of JSON
     #[arg(long = "external", value_name = "LABEL=COMMAND")]
     pub external: Vec<NamedCommand>,
@@ -266,6 +270,10 @@ pub struct TraceRequest {
     /// ship are known and the structures leave more than noise
     #[arg(long)]
     pub without_hull: bool,
+    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json: where the fit of her
+    /// hull begins, widened; can be given several times
+    #[arg(long = "prior", value_name = "MODEL.json", conflicts_with = "without_hull")]
+    pub priors: Vec<PathBuf>,
     /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
     #[arg(
         long, value_name = "NAME", default_value = Rule::default().as_str(),

@@ -6,18 +6,25 @@ use trial::Trial;
 
 use crate::comparison::RecordComparison;
 use crate::remainder::{Remainder, squares};
+use crate::settings::Settings;
 
-/// The hulls that the records speak for, beside what the structures have left of them; none without length and speed,
-/// and where the structures leave nothing but noise.
-pub fn fit(trials: &[Trial], structures: &[RecordComparison], remainder: &Remainder) -> Vec<HullEstimate> {
-    if remainder.holds {
+/// The hulls that the records speak for, about what earlier trials told of the ship, beside what the structures have
+/// left of them; none without length and speed. Without earlier trials none where the structures leave nothing but
+/// noise.
+pub fn fit(
+    trials: &[Trial],
+    settings: &Settings,
+    structures: &[RecordComparison],
+    remainder: &Remainder,
+) -> Vec<HullEstimate> {
+    if !settings.hulls || remainder.holds && settings.earlier.is_empty() {
         return Vec::new();
     }
     let rows: usize = structures.iter().map(|one| one.after.errors.rows).sum();
-    hull::members(trials, (squares(structures)[1] / rows as f64).sqrt())
+    hull::members(trials, &settings.earlier, (squares(structures)[1] / rows as f64).sqrt())
 }
 
 /// The same hulls fitted to other records.
 pub fn refitted(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
-    hulls.par_iter().filter_map(|own| hull::fit(trials, &own.form, &own.expected).ok()).collect()
+    hulls.par_iter().filter_map(|own| hull::fit(trials, &own.expected).ok()).collect()
 }

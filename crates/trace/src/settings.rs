@@ -1,6 +1,7 @@
 //! What a trace is asked, and why there may be none.
 
 use identify::IdentifyError;
+use identify::hull::EarlierHull;
 use identify::settings::SettingsError;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -47,6 +48,8 @@ pub struct Settings {
     pub thorough: bool,
     /// Whether hulls of three degrees of freedom are fitted where the structures leave more than noise.
     pub hulls: bool,
+    /// Hulls that earlier trials of the ship, or of one like her, left: what is expected of hers.
+    pub earlier: Vec<EarlierHull>,
 }
 
 impl Default for Settings {
@@ -58,6 +61,7 @@ impl Default for Settings {
             selection: Selection::default(),
             thorough: true,
             hulls: false,
+            earlier: Vec::new(),
         }
     }
 }

@@ -34,6 +34,9 @@ struct Set {
     wind: bool,
     /// The column of directions that was interpolated across north.
     wrapped: Option<&'static str>,
+    /// Folder and records of earlier trials of the same hull: every record alone is traced once more with what they
+    /// left as a prior.
+    prior: Option<(&'static str, &'static [&'static str])>,
 }
 
 impl Set {
@@ -70,6 +73,7 @@ const SETS: [Set; 4] = [
         circles: &[],
         wind: false,
         wrapped: None,
+        prior: Some(("kvlcc2_marin", &["zigzag_20", "zigzag_-20"])),
     },
     Set {
         name: "KVLCC2, MARIN, full-scale values",
@@ -79,6 +83,7 @@ const SETS: [Set; 4] = [
         circles: &["turning_35"],
         wind: false,
         wrapped: None,
+        prior: None,
     },
     Set {
         name: "Esso Osaka, 3 m model outdoors",
@@ -93,6 +98,7 @@ const SETS: [Set; 4] = [
         ],
         wind: true,
         wrapped: None,
+        prior: None,
     },
     Set {
         name: "Boat of 3.6 m, Fuzhou",
@@ -102,6 +108,7 @@ const SETS: [Set; 4] = [
         circles: &["turnningdata_xy"],
         wind: false,
         wrapped: Some("zcourse"),
+        prior: None,
     },
 ];
 
@@ -144,6 +151,7 @@ fn run(results: &Path) -> Outcome<()> {
         let mut table = errors_table();
         let alone = each_alone(set, scratch.path(), results, &mut table)?;
         pooled(set, scratch.path(), &mut table)?;
+        with_prior(set, scratch.path(), &mut table)?;
         let _ = writeln!(page, "{}", table.to_markdown());
         if alone.len() > 1 {
             let _ = writeln!(page, "{STABILITY}\n\n{}", stability::table(&alone).to_markdown());
@@ -200,6 +208,33 @@ fn pooled(set: &Set, scratch: &Path, table: &mut Table) -> Outcome<()> {
     Ok(())
 }
 
+/// Lines for the records traced alone with a prior from trials of the same hull elsewhere, and the geometric mean of
+/// their ratios.
+fn with_prior(set: &Set, scratch: &Path, table: &mut Table) -> Outcome<()> {
+    let Some((folder, records)) = set.prior else { return Ok(()) };
+    let source = SETS.iter().find(|set| set.folder == folder).ok_or("a prior is of a set")?;
+    let out = scratch.join(format!("{folder}-prior"));
+    trace_some(source, records, &[], false, &out)?;
+    let prior = [out.join("trace.json")];
+    let mut logarithms = vec![[0.0; 3]; 0];
+    for &record in set.records {
+        let out = scratch.join(format!("{record}-with-prior"));
+        let document = trace_after(set, ([record].as_slice(), &set.beside(record)), &prior, false, &out)?;
+        logarithms.push(ratios(&document).map(f64::ln));
+        table.push(line(format!("{record}, prior from {folder}: {}", records.join(", ")), &document));
+    }
+    let mean = |place: usize| {
+        let sum: f64 = logarithms.iter().map(|all| all[place]).sum();
+        significant((sum / logarithms.len() as f64).exp(), 2)
+    };
+    let mut row = vec![format!("geometric mean of the {} with a prior", logarithms.len())];
+    row.extend([""; 4].map(String::from));
+    row.extend([0, 1, 2].map(mean));
+    row.extend([""; 2].map(String::from));
+    table.push(row);
+    Ok(())
+}
+
 const INTRODUCTION: &str = "# Measured records, traced
 
 What a first-order response lacks on measured records, found from one record and judged on others that were not fitted. The records
@@ -213,7 +248,8 @@ A line is one analysis: `study trace` of one record, or of some together, with a
 together, each is left out in turn, and where there is one zig-zag, a turning circle is held out. *heading*: error of the recorded
 rudder replayed over the whole record, before (the best first-order base) and after (the average of the structures). *windows*: the
 same restarted every 20 and 60 s. On held-out records only initial states are fitted; errors of several records are root mean squares
-over them, as the ratio after over before. *band*: share of the measured headings of the held-out records inside the 95 % band, and
+over them, as the ratio after over before. *Prior*: the hull is fitted about what `study trace` of the records named left, with
+`--prior`. *band*: share of the measured headings of the held-out records inside the 95 % band, and
 mean width of the band. Effects are named with their probability, the most probable first; *or* stands before those that the records
 cannot tell from it.
 
@@ -249,7 +285,19 @@ fn errors_table() -> Table {
 
 /// Runs `study trace` on some records of a set, others held out, and reads `trace.json`.
 fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool, out: &Path) -> Outcome<Document> {
-    eprintln!("{}: {}{}", set.folder, records.join(", "), if without_wind { ", wind withheld" } else { "" });
+    trace_after(set, (records, held_out), &[], without_wind, out)
+}
+
+/// The same with models of earlier trials as priors.
+fn trace_after(
+    set: &Set,
+    (records, held_out): (&[&str], &[&str]),
+    priors: &[PathBuf],
+    without_wind: bool,
+    out: &Path,
+) -> Outcome<Document> {
+    let prior = if priors.is_empty() { "" } else { ", with a prior" };
+    eprintln!("{}: {}{}{prior}", set.folder, records.join(", "), if without_wind { ", wind withheld" } else { "" });
     let path = |name: &&str| file(set, name, out);
     let sidecars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured");
     // A sidecar of the whole set, else of each record.
@@ -257,7 +305,7 @@ fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool
     let sidecars = if of_set.exists() { of_set } else { sidecars };
     let withheld = if without_wind { vec![Withheld::Wind] } else { Vec::new() };
     let [records, held_out] = [records, held_out].map(|names| names.iter().map(path).collect::<Outcome<Vec<_>>>());
-    trace_files(records?, held_out?, withheld, Some(sidecars), out)
+    trace_files([records?, held_out?, priors.to_vec()], withheld, Some(sidecars), out)
 }
 
 /// The file of a record; a copy beside the results where directions have to be left out of it.
@@ -271,10 +319,9 @@ fn file(set: &Set, record: &str, out: &Path) -> Outcome<PathBuf> {
     Ok(copy)
 }
 
-/// Runs `study trace` on some files and reads `trace.json`.
+/// Runs `study trace` on some files, others held out, with models as priors, and reads `trace.json`.
 fn trace_files(
-    trials: Vec<PathBuf>,
-    validate: Vec<PathBuf>,
+    [trials, validate, priors]: [Vec<PathBuf>; 3],
     without: Vec<Withheld>,
     columns: Option<PathBuf>,
     out: &Path,
@@ -297,6 +344,7 @@ fn trace_files(
         effect: Vec::new(),
         effects: None,
         without_hull: false,
+        priors,
         rule: Rule::default(),
         style: PageFigureOptions {
             style: FigureOptions { paper: None, dpi: 600.0, style: None },
@@ -326,32 +374,42 @@ fn pooled_error(records: &[&BeforeAfter], of: impl Fn(&BeforeAfter) -> Option<f6
     (square / records.len() as f64).sqrt()
 }
 
+/// Errors of the held-out records, after over before: whole replays, windows of 20 and of 60 s.
+fn ratios(document: &Document) -> [f64; 3] {
+    let held_out: Vec<&BeforeAfter> = document.error.validation.iter().chain(&document.error.leave_one_out).collect();
+    let ratio = |of: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
+        let [before, after] =
+            [pooled_error(&held_out, |record| of(&record.before)), pooled_error(&held_out, |record| of(&record.after))];
+        after / before
+    };
+    let window = |length: &'static str| move |errors: &ErrorsEntry| errors.horizon_rmse_deg.get(length).copied()?;
+    [ratio(&heading), ratio(&window("20")), ratio(&window("60"))]
+}
+
+fn heading(errors: &ErrorsEntry) -> Option<f64> {
+    Some(errors.heading_rmse_deg)
+}
+
 /// One line of the table.
 fn line(label: String, document: &Document) -> Vec<String> {
     let error = &document.error;
     let fitted: Vec<&BeforeAfter> = error.identification.iter().collect();
     let held_out: Vec<&BeforeAfter> = error.validation.iter().chain(&error.leave_one_out).collect();
-    let heading = |errors: &ErrorsEntry| Some(errors.heading_rmse_deg);
-    let window = |length: &'static str| move |errors: &ErrorsEntry| errors.horizon_rmse_deg.get(length).copied()?;
-    let ratio = |of: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
-        let [before, after] =
-            [pooled_error(&held_out, |record| of(&record.before)), pooled_error(&held_out, |record| of(&record.after))];
-        significant(after / before, 2)
-    };
     let mean = |of: fn(&ErrorsEntry) -> Option<f64>| {
         held_out.iter().map(|record| of(&record.after).unwrap_or(f64::NAN)).sum::<f64>() / held_out.len() as f64
     };
     let before = pooled_error(&fitted, |record| heading(&record.before));
     let after = pooled_error(&fitted, |record| heading(&record.after));
+    let [whole, short, long] = ratios(document).map(|ratio| significant(ratio, 2));
     vec![
         label,
         named(document),
         significant(before, 3),
         significant(after, 3),
         significant(after / before, 2),
-        ratio(&heading),
-        ratio(&window("20")),
-        ratio(&window("60")),
+        whole,
+        short,
+        long,
         fixed(100.0 * mean(|errors| errors.band_coverage_95), 0),
         significant(mean(|errors| errors.band_width_95_deg), 2),
     ]
@@ -377,7 +435,7 @@ fn closed_loop(scratch: &Path) -> Outcome<Table> {
         fs::write(&path, record.table(&text))?;
         eprintln!("{}", record.name);
         let out = scratch.join(record.name);
-        let row = match trace_files(vec![path], Vec::new(), Vec::new(), None, &out) {
+        let row = match trace_files([vec![path], Vec::new(), Vec::new()], Vec::new(), None, &out) {
             Err(error) => {
                 // Without the name of a file that is gone when this is read.
                 let error = error.to_string();

@@ -5,7 +5,7 @@
 //! speed) and run on. Minimised is
 //!
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of the speed where it was recorded]
-//!   + Σ ((θ − μ)/s)² + ((r L/U − 0.65)/0.2)² in a turn with 35° of rudder
+//!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.65)/0.2)² in a turn with 35° of rudder
 //!
 //! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
 //! or twenty numbers is the ship. They start large and follow what is left of every record, to 1°, 0.2° and 0.1 U₀.
@@ -18,7 +18,9 @@
 //! another in every ship length of a record. Firm priors are what lets one record tell so many coefficients; without
 //! them the fitted hull is unstable as often as not.
 
+mod conflict;
 mod error;
+mod expected;
 mod moment;
 mod objective;
 mod replayed;
@@ -30,11 +32,12 @@ use estimation::number::Real;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 use ship::Polyline;
-use ship::vessel::prime::{HullCoefficient, HullForm};
 use ship::vessel::scaled::ScaledHull;
 use trial::Trial;
 
+pub use conflict::ExpectationCheck;
 pub use error::HullFitError;
+pub use expected::{EarlierHull, ExpectedHull, Likeness, is_other_froude_number};
 pub use moment::RandomMoment;
 pub use objective::HullDeviations;
 use objective::{HullObjective, variances};
@@ -72,10 +75,8 @@ pub struct HullResidual {
 /// A hull with what is known of its coefficients.
 #[derive(Debug, Clone)]
 pub struct HullEstimate {
-    /// The form.
-    pub form: HullForm,
-    /// What was expected.
-    pub expected: Vec<HullCoefficient>,
+    /// The form, and what was expected of its coefficients.
+    pub expected: ExpectedHull,
     /// Length, speed and propeller that it is measured with.
     pub reference: HullReference,
     /// The coefficients.
@@ -88,16 +89,17 @@ pub struct HullEstimate {
     pub moment: RandomMoment,
 }
 
-/// Fits a hull of a form about what is expected of its coefficients to records of one ship.
+/// Fits a hull about what is expected of its coefficients to records of one ship.
 ///
 /// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings or begins
 /// while the ship gathers way, and where no values near the expected ones can be replayed.
-pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> Result<HullEstimate, HullFitError> {
+pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, HullFitError> {
     let reference = trials.iter().find_map(HullReference::of).ok_or(HullFitError::Particulars)?;
     let track = |trial: &Trial| HullTrack::of(trial, &reference);
     let tracks = trials.iter().map(track).collect::<Result<Vec<HullTrack>, _>>()?;
-    let mut problem = HullObjective::new(form, expected.to_vec(), &tracks);
-    let mut at = DVector::from_iterator(expected.len(), expected.iter().map(|own| own.mean));
+    let form = &expected.form;
+    let mut problem = HullObjective::new(expected, &tracks);
+    let mut at = expected.mean();
     let mut found = minimise(&mut problem, at, &RULES);
     // Each record is believed the more the nearer the hull has come: the way down avoids far minima.
     for _ in 0..REWEIGHED {
@@ -119,20 +121,25 @@ pub fn fit(trials: &[Trial], form: &HullForm, expected: &[HullCoefficient]) -> R
     let moment = RandomMoment::of(&form.with(found.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &left);
     let moment = RandomMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
     let records = trials.iter().zip(left).map(residual).collect();
-    let (form, expected) = (form.clone(), expected.to_vec());
-    Ok(HullEstimate { form, expected, reference, values: found.at, covariance, records, moment })
+    let expected = expected.clone();
+    Ok(HullEstimate { expected, reference, values: found.at, covariance, records, moment })
+}
+
+/// Why no hull can be fitted to some records of one ship; `None` where one can.
+pub fn refusal(trials: &[Trial]) -> Option<HullFitError> {
+    let Some(reference) = trials.iter().find_map(HullReference::of) else { return Some(HullFitError::Particulars) };
+    trials.iter().find_map(|trial| HullTrack::of(trial, &reference).err())
 }
 
 /// A hull that leaves this many times what another model leaves takes no part.
 const FAR: f64 = 3.0;
 
-/// The hulls of all forms that records of one ship speak for: those that leave no more than three times what the
-/// best of them leaves of whole records, or another model (`rival`, rad; infinite without one). None where none can
-/// be fitted.
-pub fn members(trials: &[Trial], rival: f64) -> Vec<HullEstimate> {
-    let particulars = trials.iter().find_map(Trial::hull);
-    let fitted = |form: &HullForm| fit(trials, form, &form.coefficients()).ok();
-    let found: Vec<HullEstimate> = HullForm::of_ship(particulars.as_ref()).par_iter().filter_map(fitted).collect();
+/// The hulls of all forms that records of one ship speak for, about what earlier trials told of her: those that leave
+/// no more than three times what the best of them leaves of whole records, or another model (`rival`, rad; infinite
+/// without one). None where none can be fitted.
+pub fn members(trials: &[Trial], earlier: &[EarlierHull], rival: f64) -> Vec<HullEstimate> {
+    let expected = ExpectedHull::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
+    let found: Vec<HullEstimate> = expected.par_iter().filter_map(|own| fit(trials, own).ok()).collect();
     let left = |hull: &HullEstimate| hull.mean_square().sqrt();
     let least = found.iter().map(left).fold(rival, f64::min);
     found.into_iter().filter(|hull| left(hull) <= FAR * least).collect()
@@ -143,7 +150,7 @@ impl HullEstimate {
     pub fn ship<R: Real>(&self) -> ScaledHull<R> {
         let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
         let HullReference { length, speed, propeller } = self.reference;
-        let hull = self.form.with(&values).expect("it was replayed");
+        let hull = self.expected.form.with(&values).expect("it was replayed");
         ScaledHull { hull, length, speed, propeller }
     }
 
@@ -151,10 +158,15 @@ impl HullEstimate {
     /// and by what the form has left of the records of the fit. `None` for a record that cannot be replayed.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
         let track = HullTrack::of(trial, &self.reference).ok()?;
-        let [time, mut variance] = variances(&self.form, &track, self.values.as_slice(), &self.covariance)?;
+        let [time, mut variance] = variances(&self.expected, &track, self.values.as_slice(), &self.covariance)?;
         let left = self.mean_square();
         variance.iter_mut().for_each(|own| *own += left);
         Polyline::new(time.into_iter().map(|t| t * track.second).collect(), variance).ok()
+    }
+
+    /// The records against what was expected of the ship; `None` where they tell nothing new.
+    pub fn check(&self) -> Option<ExpectationCheck> {
+        ExpectationCheck::of(&self.expected, &self.values, &self.covariance)
     }
 
     /// Mean square of what it leaves of whole records, rad².
@@ -163,5 +175,7 @@ impl HullEstimate {
     }
 }
 
+#[cfg(test)]
+mod earlier_tests;
 #[cfg(test)]
 mod tests;

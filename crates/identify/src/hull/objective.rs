@@ -5,8 +5,9 @@ use estimation::levenberg_marquardt::{Normal, Objective};
 use estimation::number::{Dual, Real};
 use nalgebra::{DMatrix, DVector};
 use ship::angle::DEGREE;
-use ship::vessel::prime::{HullCoefficient, HullForm, PrimeHull};
+use ship::vessel::prime::PrimeHull;
 
+use super::expected::ExpectedHull;
 use super::replayed::{Replayed, replayed};
 use super::track::HullTrack;
 use super::turn::HardTurn;
@@ -56,8 +57,7 @@ struct Starts {
 
 /// Records, a form and its priors.
 pub(super) struct HullObjective<'a> {
-    form: &'a HullForm,
-    coefficients: Vec<HullCoefficient>,
+    expected: &'a ExpectedHull,
     tracks: &'a [HullTrack],
     deviations: Vec<HullDeviations>,
     starts: Vec<Starts>,
@@ -154,18 +154,18 @@ pub(super) fn left_of_windows(hull: &PrimeHull<Dual<1>>, track: &HullTrack, rate
 }
 
 impl<'a> HullObjective<'a> {
-    pub fn new(form: &'a HullForm, coefficients: Vec<HullCoefficient>, tracks: &'a [HullTrack]) -> Self {
-        assert!(coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
+    pub fn new(expected: &'a ExpectedHull, tracks: &'a [HullTrack]) -> Self {
+        assert!(expected.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
         let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
         let deviations = vec![FIRST; tracks.len()];
-        Self { form, coefficients, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
+        Self { expected, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
     }
 
     /// Mean squares of what is left on every record; `None` where the values make no ship.
     pub fn left(&mut self, at: &[f64]) -> Option<Vec<Left>> {
         let values: Vec<Dual<1>> = at.iter().map(|&value| Dual::from(value)).collect();
-        let hull = self.form.with(&values)?;
+        let hull = self.expected.form.with(&values)?;
         let is_begun = std::mem::replace(&mut self.is_begun, true);
         let of = |(track, starts): (&HullTrack, &mut Starts)| {
             let mut left = Left::default();
@@ -205,41 +205,40 @@ impl<'a> HullObjective<'a> {
         track.duration() / self.tracks.len() as f64
     }
 
-    fn of_priors(&self, at: &[f64]) -> f64 {
-        self.coefficients.iter().zip(at).map(|(own, value)| ((value - own.mean) / own.sd).powi(2)).sum()
+    /// Λ (μ − θ), and (θ − μ)ᵀ Λ (θ − μ).
+    fn of_priors(&self, at: &[f64]) -> (DVector<f64>, f64) {
+        let left = self.expected.mean() - DVector::from_column_slice(at);
+        let pull = &self.expected.precision * &left;
+        let square = pull.dot(&left);
+        (pull, square)
     }
 }
 
 impl Objective for HullObjective<'_> {
     fn bounds(&self, unknown: usize) -> [f64; 2] {
-        self.coefficients[unknown].ends
+        self.expected.coefficients[unknown].ends
     }
 
     /// Σ over records of their weights times mean squares over variances, the priors, and the turn with the rudder hard over.
     fn value(&mut self, at: &[f64]) -> f64 {
-        let (Some(left), Some(hull)) = (self.left(at), self.form.with(at)) else { return f64::INFINITY };
+        let (Some(left), Some(hull)) = (self.left(at), self.expected.form.with(at)) else { return f64::INFINITY };
         let of = |((track, left), believed): ((&HullTrack, Left), &HullDeviations)| {
             let HullDeviations { whole, window, speed } = *believed;
             let share = |square: f64, deviation: f64| square / (deviation * deviation);
             let headings = share(left.whole, whole) + share(left.window, window);
             self.weight(track) * (headings + share(left.speed, speed))
         };
-        self.of_priors(at)
+        self.of_priors(at).1
             + self.turn.departure(&hull).powi(2)
             + self.tracks.iter().zip(left).zip(&self.deviations).map(of).sum::<f64>()
     }
 
     fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64 {
         let value = self.value(at);
-        *normal = Normal::zeros(at.len());
-        for (place, own) in self.coefficients.iter().enumerate() {
-            let inverse = own.sd.powi(-2);
-            normal.matrix[(place, place)] = inverse;
-            normal.gradient[place] = (own.mean - at[place]) * inverse;
-        }
+        *normal = Normal { matrix: self.expected.precision.clone(), gradient: self.of_priors(at).0 };
         let values: Vec<Dual<DIRECTIONS>> =
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
-        let Some(hull) = self.form.with(&values) else { return f64::INFINITY };
+        let Some(hull) = self.expected.form.with(&values) else { return f64::INFINITY };
         let turn = self.turn.departure(&hull);
         let by = DVector::from_column_slice(&turn.by[..at.len()]);
         normal.matrix.ger(1.0, &by, &by, 1.0);
@@ -315,18 +314,18 @@ fn of_headings(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: usize
 /// Times, in L/U₀, and variances of the heading of a whole replay where the coefficients have this covariance, rad².
 /// `None` where the values make no ship.
 pub(super) fn variances(
-    form: &HullForm,
+    expected: &ExpectedHull,
     track: &HullTrack,
     values: &[f64],
     covariance: &DMatrix<f64>,
 ) -> Option<[Vec<f64>; 2]> {
-    let rate = HullObjective::new(form, form.coefficients(), std::slice::from_ref(track)).begin(values)?;
+    let rate = HullObjective::new(expected, std::slice::from_ref(track)).begin(values)?;
     let unknowns = values.len();
     let variables: Vec<Dual<DIRECTIONS>> =
         values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
     let [u, v] = track.start.map(Dual::from);
     let start = [u, v, Dual::variable(rate, unknowns, 1.0)];
-    let Replayed { rows, .. } = replayed(&form.with(&variables)?, track, track.whole, start);
+    let Replayed { rows, .. } = replayed(&expected.form.with(&variables)?, track, track.whole, start);
     let (columns, _) = of_headings(&rows, &track.heading, unknowns);
     let by = columns.columns(0, unknowns);
     let spread = by * covariance;

@@ -15,22 +15,22 @@ use trial::{Channel, Columns, Origin, Trial};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
-use super::{HullEstimate, HullFitError, RandomMoment, fit, members};
+use super::{ExpectedHull, HullEstimate, HullFitError, RandomMoment, fit, members};
 
-const LENGTH: f64 = 7.0;
-const SPEED: f64 = 1.2;
+pub(super) const LENGTH: f64 = 7.0;
+pub(super) const SPEED: f64 = 1.2;
 
 /// A quadratic hull that is not the expected one.
-const TRUTH: [f64; 18] =
-    [-3.6, -1.9, 1.05, -0.7, -0.45, -0.14, 0.4, 0.0, 0.01, 0.08, 0.5, 1.7, 0.08, 0.08, -2.0, 1.0, -1.2, 0.1];
+pub(super) const TRUTH: [f64; 18] =
+    [-2.6, -1.8, 1.05, -0.7, -0.45, -0.14, 0.4, 0.0, 0.01, 0.08, 0.5, 1.7, 0.08, 0.08, -1.0, -0.4, -0.9, 0.1];
 
-fn hull() -> ScaledHull {
-    let hull = HullForm::Quadratic.with(&TRUTH).expect("a ship");
+pub(super) fn hull(truth: &[f64; 18]) -> ScaledHull {
+    let hull = HullForm::Quadratic.with(truth).expect("a ship");
     ScaledHull { hull, length: LENGTH, speed: SPEED, propeller: None }
 }
 
 /// A zig-zag at 8 Hz, in which `moment` (as rudder angle over the number of the row, rad) acts beside the rudder.
-fn record(ship: &dyn Dynamics, [angle, change]: [f64; 2], moment: impl Fn(usize) -> f64) -> Trial {
+pub(super) fn record(ship: &dyn Dynamics, [angle, change]: [f64; 2], moment: impl Fn(usize) -> f64) -> Trial {
     let (step, rate) = (0.125, from_deg(15.0));
     let mut state = vec![0.0; ship.dimension()];
     ship.approach(0.0, 0.0, &mut state);
@@ -60,26 +60,26 @@ fn record(ship: &dyn Dynamics, [angle, change]: [f64; 2], moment: impl Fn(usize)
 }
 
 fn records(moment: impl Fn(usize) -> f64 + Copy) -> Vec<Trial> {
-    [[10.0, 10.0], [-20.0, 20.0], [30.0, 20.0]].map(|angles| record(&hull(), angles, moment)).into()
+    [[10.0, 10.0], [-20.0, 20.0], [30.0, 20.0]].map(|angles| record(&hull(&TRUTH), angles, moment)).into()
 }
 
 fn quadratic(trials: &[Trial]) -> HullEstimate {
-    fit(trials, &HullForm::Quadratic, &HullForm::Quadratic.coefficients()).expect("a fit")
+    fit(trials, &ExpectedHull::of_form(HullForm::Quadratic)).expect("a fit")
 }
 
 /// All come back to within 2.5 standard deviations, and the moment of the rudder to within 15 %.
 #[test]
 fn a_hull_of_the_form_comes_back() {
     let found = quadratic(&records(|_| 0.0));
-    for (place, (own, truth)) in found.expected.iter().zip(TRUTH).enumerate() {
+    for (place, (own, truth)) in found.expected.coefficients.iter().zip(TRUTH).enumerate() {
         let (value, sd) = (found.values[place], found.covariance[(place, place)].sqrt());
         assert!((value - truth).abs() < 2.5 * sd, "{}: {value} ± {sd}, {truth}", own.symbol);
         assert!(own.key != "Nd" || (value / truth - 1.0).abs() < 0.15, "{}: {value} {truth}", own.symbol);
     }
     for left in &found.records {
-        assert!(to_deg(left.whole) < 0.1, "{}: {}°", left.name, to_deg(left.whole));
+        assert!(to_deg(left.whole) < 0.2, "{}: {}°", left.name, to_deg(left.whole));
     }
-    assert!(found.moment.deviation < from_deg(0.1), "{:?}", found.moment);
+    assert!(found.moment.deviation < from_deg(0.15), "{:?}", found.moment);
 }
 
 /// KVLCC2 is of no polynomial form, and of the MMG one with another wake and propeller than expected: a 20/20 alone
@@ -90,11 +90,12 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
     let [fitted, other] = [20.0, 10.0].map(|angle| record(&ship, [angle, angle], |_| 0.0));
     let dimensions = HullParticulars { length: LENGTH, speed: SPEED, beam: Some(1.27), ..HullParticulars::default() };
     for form in HullForm::of_ship(Some(&dimensions)) {
-        let estimate = fit(std::slice::from_ref(&fitted), &form, &form.coefficients()).expect("a fit");
+        let expected = ExpectedHull::of_form(form);
+        let estimate = fit(std::slice::from_ref(&fitted), &expected).expect("a fit");
         let tracks = [HullTrack::of(&other, &estimate.reference).expect("a record")];
-        let mut problem = HullObjective::new(&form, form.coefficients(), &tracks);
+        let mut problem = HullObjective::new(&expected, &tracks);
         let left = to_deg(problem.left(estimate.values.as_slice()).expect("a ship")[0].whole.sqrt());
-        assert!(left < 2.5, "{}: {left}", form.as_str());
+        assert!(left < 2.5, "{}: {left}", expected.form.as_str());
     }
 }
 
@@ -103,7 +104,7 @@ fn the_mirrored_records_give_the_mirrored_hull() {
     let trials = records(|_| 0.0);
     let mirrored: Vec<Trial> = trials.iter().map(in_the_mirror).collect();
     let (one, other) = (quadratic(&trials), quadratic(&mirrored));
-    for (place, own) in one.expected.iter().enumerate() {
+    for (place, own) in one.expected.coefficients.iter().enumerate() {
         let side = if ["b", "delta_r"].contains(&own.key) { -1.0 } else { 1.0 };
         let [value, other] = [one.values[place], side * other.values[place]];
         assert!((value - other).abs() < 1e-3 * own.sd, "{}: {value} {other}", own.symbol);
@@ -139,17 +140,17 @@ fn a_random_moment_is_found_again() {
 
 #[test]
 fn the_hulls_that_records_speak_for_are_near_them() {
-    let found = members(&records(|_| 0.0), f64::INFINITY);
+    let found = members(&records(|_| 0.0), &[], f64::INFINITY);
     // All three forms are fitted; the quadratic one is the truth, and what leaves three times as much is left out.
     let left: Vec<f64> = found.iter().map(|hull| hull.mean_square().sqrt()).collect();
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!(found[0].form == HullForm::Quadratic && left.iter().all(|own| *own <= 3.0 * least), "{left:?}");
-    assert!(members(&records(|_| 0.0), 1e-9).is_empty(), "another model that leaves nothing");
+    assert!(found[0].expected.form == HullForm::Quadratic && left.iter().all(|own| *own <= 3.0 * least), "{left:?}");
+    assert!(members(&records(|_| 0.0), &[], 1e-9).is_empty(), "another model that leaves nothing");
 }
 
 #[test]
 fn records_that_tell_no_hull_are_refused() {
-    let form = HullForm::Quadratic;
+    let expected = ExpectedHull::of_form(HullForm::Quadratic);
     let refused = |change: fn(&mut Columns)| {
         let trial = &records(|_| 0.0)[0];
         let channels = [Channel::Heading, Channel::Speed].map(|own| (own, trial.channel(own).expect("one").to_vec()));
@@ -159,7 +160,7 @@ fn records_that_tell_no_hull_are_refused() {
         change(&mut columns);
         let bare = Trial::new("bare", trial.origin().clone(), columns).expect("a record");
         let known = bare.clone().with_particulars(Particulars { length: LENGTH, speed: SPEED });
-        [bare, known].map(|trial| fit(&[trial], &form, &form.coefficients()).err())
+        [bare, known].map(|trial| fit(&[trial], &expected).err())
     };
     let slow = |columns: &mut Columns| columns.channels.get_mut(&Channel::Speed).expect("a speed").fill(0.5 * SPEED);
     let [bare, slow] = refused(slow);

@@ -13,7 +13,7 @@ from ._options import strings, warn, whole
 from ._own import Estimator, natives_of
 from ._quantity import Quantity, number
 from ._record import Record, natives
-from ._result import Result
+from ._result import Model, Result, models
 
 
 @dataclass(frozen=True)
@@ -115,6 +115,8 @@ class RecordEntry:
 class FitResult(Result):
     """Answers of the methods to the same records; ``result["output-error"]`` is one of them."""
 
+    _model = "fit.json"
+
     #: Answers in the order of the methods.
     methods: tuple[Method, ...]
     #: Records that were fitted.
@@ -214,6 +216,7 @@ def fit(
     methods: Union[str, Iterable[str], None] = None,
     own: Optional[Mapping[str, Estimator]] = None,
     seed: Optional[int] = None,
+    prior: Union[Model, Iterable[Model]] = (),
 ) -> FitResult:
     """Identifies K (1/s), T (s) and δ_r (deg) of T r' + r = K (δ + δ_r), as ``study fit`` does.
 
@@ -225,6 +228,9 @@ def fit(
         (:class:`kempf.Record`) and returns K (1/s), T (s), δ_r (deg) and, where it knows one, their covariance. One
         that raises has no answer, and its ``reason`` says why
     :param seed: seed of the methods that draw at random
+    :param prior: what earlier trials of the same ship, her model or a sister left, results of this function or of
+        :func:`kempf.trace` or paths of their files: where the fit of her hull begins. ``result.document["earlier_trials"]`` says
+        whether the records contradict it
 
     Raises :class:`kempf.KempfError` where a record cannot be read, and where no method can identify the records; a
     method that fails alone says why in its ``reason``. Ctrl-C returns at once, and the computation it leaves behind
@@ -247,7 +253,7 @@ def fit(
     0.10010 [0.09991, 0.10028]
     """
     native = _kempf.fit(
-        natives(records), natives(validate), strings(methods), natives_of(own), whole("seed", seed)
+        natives(records), natives(validate), strings(methods), natives_of(own), whole("seed", seed), models(prior)
     )
     warn(native.warnings)
     return _result(native)

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
 from . import _kempf, _table
-from ._fit import FitResult
-from ._kempf import KempfError
 from ._options import strings, warn, words
 from ._quantity import number
 from ._record import natives
-from ._result import Result
-from ._trace import TraceResult
+from ._result import Model, Result, models
 
 #: Endings of the names of figures, with their units.
 UNITS = {"_deg_s": "deg/s", "_deg": "deg", "_m_s": "m/s", "_lengths": "L", "_s": "s", "_m": "m", "_kn": "kn"}
@@ -163,9 +159,6 @@ class PredictResult(Result):
         return _plot.intervals([(what, *spoken(name), figure) for what, name, figure in self._rows()])
 
 
-Model = Union[FitResult, TraceResult, str, "os.PathLike[str]"]
-
-
 def predict(
     model: Union[Model, Iterable[Model]],
     manoeuvres: Union[str, Iterable[str], None] = None,
@@ -196,7 +189,6 @@ def predict(
     Raises :class:`kempf.KempfError` for a model that cannot be read, and where hardly any drawn ship comes to the end
     of a manoeuvre. Ctrl-C returns at once, and the computation it leaves behind ends by itself.
     """
-    models = [model] if isinstance(model, (Result, str, os.PathLike)) else list(model)
     asked = words(
         manoeuvre=strings(manoeuvres),
         method=method,
@@ -206,7 +198,7 @@ def predict(
         speed_m_s=speed_m_s,
         speed_kn=speed_kn,
     )
-    text, warnings = _kempf.predict([_model(one) for one in models], natives(replay), asked)
+    text, warnings = _kempf.predict(models(model), natives(replay), asked)
     warn(warnings)
     document = json.loads(text)
 
@@ -223,17 +215,4 @@ def predict(
         imo=tuple(Criterion(**{name: one[name] for name in criteria}) for one in document["imo"]),
         warnings=tuple(warnings),
         _text=text,
-    )
-
-
-def _model(model: Model) -> tuple[str, Optional[str]]:
-    """The name of a model, and its text where it is no file."""
-    if isinstance(model, FitResult):
-        return "fit.json", model._text
-    if isinstance(model, TraceResult):
-        return "trace.json", model._text
-    if isinstance(model, (str, os.PathLike)):
-        return os.fspath(model), None
-    raise KempfError(
-        f"{type(model).__name__}: expected a result of kempf.fit or kempf.trace, or the path of their file"
     )

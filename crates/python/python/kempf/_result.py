@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, ClassVar, Iterable, Optional, Sequence, Union
 
 from . import _table
+from ._kempf import KempfError
 from ._record import PathLike
 
 
@@ -17,6 +19,8 @@ class Result:
     #: What a person should know; the same was said as :class:`kempf.KempfWarning`.
     warnings: tuple[str, ...]
     _text: str
+    #: What messages call its document, where that is a model of a ship.
+    _model: ClassVar[Optional[str]] = None
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -38,3 +42,22 @@ class Result:
 
     def _repr_html_(self) -> str:
         return _table.page(*self._table())
+
+
+#: What is known of a ship: a result of :func:`kempf.fit` or :func:`kempf.trace`, or the path of its file.
+Model = Union[Result, str, "os.PathLike[str]"]
+
+
+def models(given: Union[Model, Iterable[Model]]) -> list[tuple[str, Optional[str]]]:
+    """The names of one model or several, each with its text where it is no file."""
+    return [_named(one) for one in ([given] if isinstance(given, (Result, str, os.PathLike)) else given)]
+
+
+def _named(model: Model) -> tuple[str, Optional[str]]:
+    if isinstance(model, Result) and model._model is not None:
+        return model._model, model._text
+    if isinstance(model, (str, os.PathLike)):
+        return os.fspath(model), None
+    raise KempfError(
+        f"{type(model).__name__}: expected a result of kempf.fit or kempf.trace, or the path of their file"
+    )

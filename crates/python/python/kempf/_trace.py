@@ -12,7 +12,7 @@ from ._kempf import KempfError
 from ._options import strings, warn, words
 from ._quantity import Quantity, number
 from ._record import Record, natives
-from ._result import Result
+from ._result import Model, Result, models
 
 Ids = Union[str, Iterable[str]]
 
@@ -98,6 +98,8 @@ class Errors:
 class TraceResult(Result):
     """What a first-order ship lacks in these records, and what it is worth."""
 
+    _model = "trace.json"
+
     #: The result in one sentence.
     headline: str
     #: ``"clean"``, ``"traced"`` or ``"unexplained"``.
@@ -179,6 +181,7 @@ def trace(
     without: Ids = (),
     effects: Mapping[str, str] = {},
     rule: str = "posterior",
+    prior: Union[Model, Iterable[Model]] = (),
 ) -> TraceResult:
     """Closes the loop on records, as ``study trace`` does: fits a first-order ship, weighs the structures of
     effects that it may lack, names those that are probable, and says what they are worth.
@@ -193,6 +196,7 @@ def trace(
         ``{"bank": "c * tanh(k * psi)"}``
     :param rule: how structures are weighed: ``"posterior"``, by their likelihood under the priors of the coefficients,
         or ``"bic"``
+    :param prior: what earlier trials of the same ship, her model or a sister left, as in :func:`kempf.fit`
 
     Raises :class:`kempf.KempfError` where a record cannot be read, where no first-order ship fits it, and for an effect
     that there is not. Ctrl-C returns at once, and the computation it leaves behind ends by itself.
@@ -205,7 +209,7 @@ def trace(
         effect=[f"{name} = {formula}" for name, formula in effects.items()],
         rule=rule,
     )
-    native = _kempf.trace(natives(records), natives(validate), asked)
+    native = _kempf.trace(natives(records), natives(validate), asked, models(prior))
     warn(native.warnings)
     return _result(native)
 

@@ -145,6 +145,16 @@ pub fn meaning(key: &str) -> Option<&'static str> {
     })
 }
 
+/// Whether a coefficient belongs to a trial and not to the ship, which has another in the next one.
+pub fn is_of_trial(key: &str) -> bool {
+    key == BIAS.key
+}
+
+/// Whether a coefficient depends on friction, which is another at another scale: resistance and wake (Reynolds).
+pub fn is_of_friction(key: &str) -> bool {
+    matches!(key, "x0" | "k" | "R0" | "wP0")
+}
+
 /// What a hull is made of.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HullForm {

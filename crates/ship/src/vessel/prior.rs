@@ -6,9 +6,10 @@
 //! added in quadrature.
 
 mod formulas;
+mod likeness;
 mod particulars;
 
-pub use self::particulars::{HullParticulars, PARTICULARS, Particular, ParticularsError};
+pub use self::particulars::{HullParticulars, PARTICULARS, Particular, ParticularsError, USUAL_FROUDE_NUMBER};
 
 use self::formulas::{FORMULAS, Formula, Spread};
 use self::particulars::{HullDimensions, RATIOS};

@@ -15,6 +15,7 @@ use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{curve_tables, fit_page};
+use crate::work::earlier::EarlierModel;
 use crate::work::fit::{fit, methods};
 
 /// Identifies the records, prints the table, writes `fit.json`, the curves, figures, `report.md` and `report.html`.
@@ -22,6 +23,7 @@ use crate::work::fit::{fit, methods};
 /// Fails when a record cannot be read, and when no method can identify the records.
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let methods = methods(&request.methods, &request.external, common.seed)?;
+    let priors = EarlierModel::of_files(&request.priors)?;
     let mut warnings = Vec::new();
     let trials = read_all(&request.trials, &request.reading, &mut warnings)?;
     let others = read_others(&request.validate, &request.reading, &mut warnings)?;
@@ -34,7 +36,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     for (label, outside) in outside {
         early.iter().for_each(|folder| keep_log(outside, label, folder));
     }
-    let fit = fit(&trials, &others, &methods, common.quiet, &mut warnings)?;
+    let fit = fit([&trials, &others], &methods, &priors, common.quiet, &mut warnings)?;
     let folder = early.map_or_else(hold, Ok)?;
     documents::keep_with_curves(&folder, FIT, &fit.document, &fit.curves())?;
     show(&folder, folder.path(), theme.as_ref(), common)

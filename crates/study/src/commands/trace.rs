@@ -16,6 +16,7 @@ use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::trace_page;
+use crate::work::earlier::EarlierModel;
 use crate::work::steady;
 use crate::work::trace::{STOPPED, settings, trace, without};
 
@@ -25,11 +26,12 @@ use crate::work::trace::{STOPPED, settings, trace, without};
 /// Fails when a record cannot be read, and when the base cannot be fitted.
 pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let (theme, settings) = (request.style.theme()?, settings(request)?);
+    let priors = EarlierModel::of_files(&request.priors)?;
     let mut warnings = Vec::new();
     let trials = without(request, read_all(&request.trials, &request.reading, &mut warnings)?);
     let others = without(request, read_others(&request.validate, &request.reading, &mut warnings)?);
     warn_of_repetition(&trials, &others, &mut warnings);
-    let traced = trace(&trials, &others, &settings, common.quiet, &mut warnings)?;
+    let traced = trace([&trials, &others], &settings, &priors, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
     traced.write(&folder)?;
     show(&folder, folder.path(), theme.as_ref(), common, &warnings)?;

@@ -11,6 +11,7 @@ use ship::Particulars;
 use ship::angle::to_deg;
 use trial::{Quantity, Trial, ZigZag, ZigZagError, imo};
 
+use super::prior::EarlierTrials;
 use super::scales::ScalesEntry;
 use super::verdict::VerdictEntry;
 use crate::records::file_of;
@@ -87,6 +88,9 @@ pub struct FitDocument {
     /// What every method with a covariance knows of the ship, for `study predict`; SI units and radians.
     #[serde(default)]
     pub ships: BTreeMap<String, IdentifiedShip>,
+    /// What earlier trials of `--prior` say of the hull, and whether the records contradict them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub earlier_trials: Option<EarlierTrials>,
     /// Where the records are of several scales: which terms scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<ScalesEntry>,

@@ -8,6 +8,7 @@ pub mod error;
 pub mod find;
 pub mod fit;
 pub mod missing_moment;
+pub mod prior;
 pub mod scales;
 pub mod trace;
 pub mod truth;

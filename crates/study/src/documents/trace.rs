@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
 use super::missing_moment::MissingMomentEntry;
+use super::prior::EarlierTrials;
 use crate::records::names;
 
 /// Name of the file.
@@ -25,6 +26,9 @@ pub struct TraceDocument {
     pub missing_moment: Vec<MissingMomentEntry>,
     /// What is known of the ship, for `study predict`; SI units and radians.
     pub ship: IdentifiedShip,
+    /// What earlier trials of `--prior` say of the hull, and whether the records contradict them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub earlier_trials: Option<EarlierTrials>,
     /// How records of several scales were brought to one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<String>,

@@ -9,6 +9,7 @@ use trial::Quantity;
 
 use super::{fit_figures, method_table, scale_tables};
 use crate::documents::fit::{FitCurves, FitDocument, ZigZagEntry};
+use crate::documents::prior::EarlierTrials;
 use crate::documents::verdict::VerdictEntry;
 use crate::scales::scale_name;
 use crate::work::every_scale::PREFERRED_METHODS;
@@ -148,7 +149,9 @@ pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
         ([only], Some(record)) => format!("{}: {rows} rows, {:.1} s", record.name, only.duration_s),
         (several, _) => format!("{} records together: {rows} rows", several.len()),
     };
-    document.scaling.as_ref().map_or_else(|| head.clone(), |sentence| format!("{head}\n{sentence}"))
+    let prior = document.earlier_trials.as_ref().map(EarlierTrials::sentence);
+    let sentences = document.scaling.iter().cloned().chain(prior);
+    sentences.fold(head, |head, sentence| format!("{head}\n{sentence}"))
 }
 
 /// Which record is meant where several have the same name, why methods failed, and the characteristics of the records.

@@ -3,6 +3,7 @@
 use ::trace::document::{Outcome, ParameterEntry};
 use predict::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
+use report::markdown::text;
 use report::number::{fixed, significant};
 use report::{Page, PageFigure, Table};
 use ship::ShortNumber;
@@ -35,6 +36,7 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
         behind += &format!("\nleft: {signature}");
     }
     behind += &odd(document);
+    behind += &document.earlier_trials.as_ref().map_or_else(String::new, |prior| format!("\n{}", prior.sentence()));
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
@@ -193,6 +195,7 @@ fn hulls_and_what_is_left(page: &mut Page, document: &TraceDocument) {
     if !document.ship.hulls.is_empty() {
         page.part("The hull behind the response");
         page.table(tables::hulls(document));
+        page.say(document.earlier_trials.as_ref().map_or_else(String::new, |prior| text(&prior.sentence())));
         page.say(HULLS);
     }
     let unexplained = &document.trace.unexplained;

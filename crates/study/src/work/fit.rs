@@ -14,6 +14,7 @@ use scenario::failure::Failure;
 use ship::angle::to_deg;
 use trial::{Channel, Trial, ZigZag};
 
+use super::earlier::{self, EarlierModel};
 use super::every_scale::{self, PREFERRED_METHODS};
 use super::single_records;
 use crate::completed::ALL;
@@ -88,19 +89,21 @@ impl FitResult {
     }
 }
 
-/// Identifies the records together by every method and replays the answers on `others`.
+/// Identifies the records together by every method and replays the answers on `others`; the hull about what `priors`
+/// left.
 ///
-/// Fails when the records cannot be brought to one scale, and when no method can identify them: that is wrong input,
-/// not a result.
+/// Fails when the records cannot be brought to one scale, when no method can identify them, and when there are priors
+/// and no hull can be fitted: that is wrong input, not a result.
 pub fn fit(
-    records: &[Trial],
-    others: &[Trial],
+    [records, others]: [&[Trial]; 2],
     methods: &[Named],
+    priors: &[EarlierModel],
     quiet: bool,
     warnings: &mut Vec<String>,
 ) -> Result<FitResult, Failure> {
     let together = scales::together(records, others)?;
     let (trials, others) = (&together.trials[..], &together.others[..]);
+    earlier::check(priors, trials, warnings)?;
     let ship = scales::particulars(trials);
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
         .par_iter()
@@ -119,19 +122,8 @@ pub fn fit(
     }
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|own| own.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| suspicion(estimate, ship, records)));
-    let of_record = |trial: &Trial| {
-        let zigzag = ZigZag::of(trial);
-        if zigzag.as_ref().is_ok_and(|zigzag| zigzag.begins_at_reversal) {
-            warnings.push(format!(
-                "{}: the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier, \
-                 with --from",
-                file_of(trial).0
-            ));
-        }
-        trial_entry(trial, &zigzag)
-    };
-    let records: Vec<TrialEntry> = records.iter().map(of_record).collect();
-    let shown = RecordFacts::of(trials).with_motion(None);
+    let records: Vec<TrialEntry> = records.iter().map(|trial| of_record(trial, warnings)).collect();
+    let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
     warn_of_no_track(&shown, warnings);
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
@@ -142,6 +134,7 @@ pub fn fit(
         zigzag: records[0].zigzag.clone(),
         trials: records,
         ships: answers.iter().filter_map(ship_of).collect(),
+        earlier_trials: earlier::entry(priors, trials, &shown, warnings),
         scales: every_scale::compared(methods, &answers, &together),
         scaling: together.sentence(),
         length_m: ship.map(|ship| ship.length),
@@ -151,6 +144,19 @@ pub fn fit(
         methods: entries,
     };
     Ok(FitResult { together, answers, document })
+}
+
+/// A record with its characteristics.
+fn of_record(trial: &Trial, warnings: &mut Vec<String>) -> TrialEntry {
+    let zigzag = ZigZag::of(trial);
+    if zigzag.as_ref().is_ok_and(|zigzag| zigzag.begins_at_reversal) {
+        warnings.push(format!(
+            "{}: the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier, with \
+             --from",
+            file_of(trial).0
+        ));
+    }
+    trial_entry(trial, &zigzag)
 }
 
 /// Which answer is to be taken.

@@ -46,16 +46,52 @@ fn mixture_of(models: &[StoredModel], particulars: Option<Particulars>) -> Resul
     ShipMixture::new(models.iter().map(of).collect::<Result<_, _>>()?)
 }
 
+/// The ships in the text of a document.
+pub(super) enum StoredShips {
+    /// Of every method of a fit with a covariance, and the method to take.
+    Fit(BTreeMap<String, IdentifiedShip>, Option<String>),
+    /// Of a trace.
+    Trace(Box<IdentifiedShip>),
+}
+
+/// The text of a model. Fails when it cannot be read.
+pub(super) fn text_of(path: &Path) -> Result<String, Failure> {
+    name::of_file(path)?;
+    let shown = file::called(path).display().to_string();
+    file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
+}
+
+/// The ships in the text of a `fit.json` or `trace.json`, which messages call `shown`. Fails when it is no such
+/// document.
+pub(super) fn ships_of(shown: &str, text: &str) -> Result<StoredShips, Failure> {
+    let refuse = |problem: String| Failure::about(shown, problem);
+    let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
+    let value: Value =
+        serde_json::from_str(text).map_err(|error| refuse(format!("this is no JSON ({error}); {EXPECTED}")))?;
+    let schema = value["schema"].as_str().and_then(|schema| schema.split_once('/'));
+    let (command, key) = match schema {
+        Some(("fit", _)) => ("fit", "ships"),
+        Some(("trace", _)) => ("trace", "ship"),
+        _ => return Err(refuse(format!("schema = {}; {EXPECTED}", value["schema"]))),
+    };
+    let known = value.get(key).cloned().ok_or_else(|| {
+        refuse(format!("it has no `{key}`, as an older program wrote it; make it again with `study {command}`"))
+    })?;
+    if command == "trace" {
+        return Ok(StoredShips::Trace(serde_json::from_value(known).map_err(unread)?));
+    }
+    let ships: BTreeMap<String, IdentifiedShip> = serde_json::from_value(known).map_err(unread)?;
+    let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id)).map(str::to_owned);
+    Ok(StoredShips::Fit(ships, verdict))
+}
+
 impl StoredModel {
     /// What is known of the ship in a file, as a request asks for it.
     ///
     /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Self, Failure> {
         let shown = file::called(path).display().to_string();
-        name::of_file(path)?;
-        let text =
-            file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))?;
-        Self::of_document(&shown, &text, request.method.as_deref(), request.calm, warnings)
+        Self::of_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
     }
 
     /// What is known of the ship in the text of a `fit.json` or `trace.json`; of several methods the named one, or the
@@ -69,29 +105,15 @@ impl StoredModel {
         calm: bool,
         warnings: &mut Vec<String>,
     ) -> Result<Self, Failure> {
-        let refuse = |problem: String| Failure::about(shown, problem);
-        let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
-        let value: Value =
-            serde_json::from_str(text).map_err(|error| refuse(format!("this is no JSON ({error}); {EXPECTED}")))?;
-        let schema = value["schema"].as_str().and_then(|schema| schema.split_once('/'));
-        let (command, key) = match schema {
-            Some(("fit", _)) => ("fit", "ships"),
-            Some(("trace", _)) => ("trace", "ship"),
-            _ => return Err(refuse(format!("schema = {}; {EXPECTED}", value["schema"]))),
-        };
-        let known = value.get(key).cloned().ok_or_else(|| {
-            refuse(format!("it has no `{key}`, as an older program wrote it; make it again with `study {command}`"))
-        })?;
-        let (known, method) = if command == "fit" {
-            let mut ships: BTreeMap<String, IdentifiedShip> = serde_json::from_value(known).map_err(unread)?;
-            let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id));
-            let id = method(shown, &ships, asked.or(verdict))?;
-            if asked.is_none() {
-                warnings.push(format!("{shown}: the answer of {id} is used; --method names another"));
+        let (known, method) = match ships_of(shown, text)? {
+            StoredShips::Trace(known) => (*known, String::from("trace")),
+            StoredShips::Fit(mut ships, verdict) => {
+                let id = method(shown, &ships, asked.or(verdict.as_deref()))?;
+                if asked.is_none() {
+                    warnings.push(format!("{shown}: the answer of {id} is used; --method names another"));
+                }
+                (ships.remove(&id).expect("it was found there"), id)
             }
-            (ships.remove(&id).expect("it was found there"), id)
-        } else {
-            (serde_json::from_value(known).map_err(unread)?, String::from("trace"))
         };
         if known.leans_on_sway() {
             warnings.push(format!(
@@ -103,7 +125,7 @@ impl StoredModel {
             warnings.push(format!("{shown}: {}; she is steered without it", rudder_logged_late(late)));
         }
         let known = if calm { known.in_calm() } else { Ok(known) };
-        Ok(Self { known: known.map_err(|error| refuse(error.to_string()))?, file: shown.to_owned(), method })
+        Ok(Self { known: known.map_err(|error| Failure::about(shown, error))?, file: shown.to_owned(), method })
     }
 }
 

@@ -11,6 +11,7 @@ use indicatif::ProgressBar;
 use scenario::failure::Failure;
 use trial::{Channel, Trial};
 
+use super::earlier::{self, EarlierModel};
 use super::planned;
 use crate::documents::curves::{self, TraceCurves};
 use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
@@ -79,18 +80,20 @@ impl Watcher for TraceWatch {
 /// What is said where a person did not wait for the checks.
 pub const STOPPED: &str = "stopped before every record was looked at as if it had been held out; all else is there";
 
-/// Analyses the records together; `others` are held out.
+/// Analyses the records together; `others` are held out. The hull is fitted about what `priors` left.
 ///
-/// Fails when the records cannot be brought to one scale, when the base cannot be fitted, and when what is asked for
-/// cannot be in the model.
+/// Fails when the records cannot be brought to one scale, when the base cannot be fitted, when what is asked for
+/// cannot be in the model, and when there are priors and no hull can be fitted.
 pub fn trace(
-    records: &[Trial],
-    others: &[Trial],
+    [records, others]: [&[Trial]; 2],
     settings: &Settings,
+    priors: &[EarlierModel],
     quiet: bool,
     warnings: &mut Vec<String>,
 ) -> Result<TraceResult, Failure> {
     let together = scales::together(records, others)?;
+    earlier::check(priors, &together.trials, warnings)?;
+    let settings = &Settings { earlier: earlier::hulls(priors), ..settings.clone() };
     let watch =
         TraceWatch { quiet, busy: progress::busy("searching for what the model lacks", quiet), steps: OnceLock::new() };
     let analysis = ::trace::watched(&together.trials, &together.others, settings, &watch);
@@ -98,7 +101,7 @@ pub fn trace(
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let scales = together.sentence();
     let RescaledRecords { trials, others: held_out, .. } = together;
-    let shown = RecordFacts::of(&trials).with_motion(Some(&analysis));
+    let shown = RecordFacts::of(&trials).with_motion(Some(&analysis), &settings.earlier);
     warn_of_no_track(&shown, warnings);
     warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
     let all = records.iter().chain(others);
@@ -131,6 +134,7 @@ pub fn trace(
     let ship = known::of_analysis(&analysis, &shown);
     warnings.extend(ship.rudder_logged_late().map(rudder_logged_late));
     let document = TraceDocument {
+        earlier_trials: earlier::entry(priors, &trials, &shown, warnings),
         ship,
         records: entries,
         missing_moment: moments,

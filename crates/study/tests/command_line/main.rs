@@ -6,6 +6,7 @@ mod benchmark;
 mod book;
 mod commands;
 mod desk;
+mod earlier;
 mod formulas;
 mod logs;
 mod monte_carlo;

@@ -269,13 +269,13 @@ pub(super) const RATIOS: [Ratio; 7] = [
 
 /// Froude numbers of displacement ships that are steered. A model that is declared with the length of her ship, or a
 /// ship with that of her model, has another.
-const FROUDE: [f64; 2] = [0.025, 0.6];
+pub const USUAL_FROUDE_NUMBER: [f64; 2] = [0.025, 0.6];
 /// Advance ratios of propellers that drive a ship ahead.
 const ADVANCE: [f64; 2] = [0.1, 1.3];
 /// How far displacement and C_b L B d may differ, as a share.
 const DISPLACEMENT_TOLERANCE: f64 = 0.05;
 
-const GRAVITY: f64 = 9.81;
+pub(super) const GRAVITY: f64 = 9.81;
 const SEA_WATER: f64 = 1025.0;
 const FRESH_WATER: f64 = 1000.0;
 /// What is shorter is a model and floats in fresh water, m.
@@ -363,9 +363,15 @@ impl HullParticulars {
             }
         }
         let form = &self.form(&RATIOS.map(|ratio| ratio.mean));
-        let froude = form.U / (GRAVITY * form.L).sqrt();
         let cure = "length and speed have to be of one scale: both of the ship, or both of the model";
-        within("speed-m-s", "the Froude number of length-m and speed-m-s".into(), froude, FROUDE, "1", cure)?;
+        within(
+            "speed-m-s",
+            "the Froude number of length-m and speed-m-s".into(),
+            self.froude_number(),
+            USUAL_FROUDE_NUMBER,
+            "1",
+            cure,
+        )?;
         for Ratio { name, fills, range, of, .. } in RATIOS {
             let cure = "all lengths have to be of one ship and one scale, in metres";
             within(fills, format!("{name} ({fills})"), of(form), range, "1", cure)?;

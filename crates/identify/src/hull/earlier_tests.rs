@@ -1,0 +1,178 @@
+//! What earlier trials tell of the next: made-up numbers, and KVLCC2 as she is simulated.
+
+use nalgebra::{DMatrix, DVector};
+use ship::ships::kvlcc2::MODEL_L7;
+use ship::vessel::mmg::Mmg;
+use ship::vessel::prime::HullForm;
+use ship::vessel::prior::HullParticulars;
+use trial::{Channel, Columns, Trial};
+
+use super::objective::HullObjective;
+use super::tests::{LENGTH, SPEED, TRUTH, hull, record};
+use super::track::HullTrack;
+use super::{EarlierHull, ExpectedHull, HullEstimate, Likeness, fit};
+
+const SHIP: HullParticulars = HullParticulars {
+    length: LENGTH,
+    speed: SPEED,
+    beam: Some(1.27),
+    draught: Some(0.455),
+    block_coefficient: Some(0.81),
+    rudder_area: None,
+    rudder_height: None,
+    propeller_diameter: None,
+    propeller_rate: None,
+    displacement: None,
+    x_g: None,
+};
+
+/// A hull whose every coefficient is a deviation above what was expected, known to a tenth of a deviation.
+fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
+    let form = HullForm::of_ship(Some(&particulars)).into_iter().find(|own| own.as_str() == form).expect("known");
+    let own = form.coefficients();
+    let values = DVector::from_iterator(own.len(), own.iter().map(|one| one.mean + one.sd));
+    let variances = DVector::from_iterator(own.len(), own.iter().map(|one| (0.1 * one.sd).powi(2)));
+    EarlierHull { form, particulars, values, covariance: DMatrix::from_diagonal(&variances) }
+}
+
+/// What is expected of a coefficient after earlier trials: how far from what her particulars say, and its deviation,
+/// both in deviations of that.
+fn after(ship: &HullParticulars, form: &str, all: &[EarlierHull], key: &str) -> [f64; 2] {
+    let expected = ExpectedHull::of_ship(Some(ship), all);
+    let expected = expected.into_iter().find(|own| own.form.as_str() == form).expect("known");
+    let place = expected.coefficients.iter().position(|own| own.key == key).expect("known");
+    let (own, generic) = (expected.coefficients[place], expected.form.coefficients()[place]);
+    [(own.mean - generic.mean) / generic.sd, own.sd / generic.sd]
+}
+
+fn near(found: [f64; 2], expected: [f64; 2]) {
+    assert!((0..2).all(|end| (found[end] - expected[end]).abs() < 1e-9), "{found:?} {expected:?}");
+}
+
+/// A trial of precision 100 told 99 beside what was expected before it; of that counts 1/f², and what was expected
+/// counts once.
+#[test]
+fn what_trials_told_is_widened_and_what_was_expected_counts_once() {
+    let one = earlier(SHIP, "quadratic");
+    let counted = |told: f64, heights: f64| [heights / (1.0 + told), (1.0 + told).powf(-0.5)];
+    let told = 99.0 / 2.25;
+    near(after(&SHIP, "quadratic", std::slice::from_ref(&one), "Nv"), counted(told, 100.0 / 2.25));
+    near(after(&SHIP, "quadratic", &[one.clone(), one.clone()], "Nv"), counted(2.0 * told, 200.0 / 2.25));
+    near(after(&SHIP, "quadratic", std::slice::from_ref(&one), "delta_r"), [0.0, 1.0]);
+    near(after(&SHIP, "cubic", &[one], "Nv"), [0.0, 1.0]);
+}
+
+#[test]
+fn another_scale_tells_less_and_nothing_of_friction() {
+    let large = HullParticulars { length: 320.0, speed: 8.11, beam: Some(58.0), draught: Some(20.8), ..SHIP };
+    let one = earlier(large, "quadratic");
+    let found = after(&SHIP, "quadratic", std::slice::from_ref(&one), "Nv");
+    near(found, [100.0 / 4.0 / (1.0 + 99.0 / 4.0), (1.0_f64 + 99.0 / 4.0).powf(-0.5)]);
+    near(after(&SHIP, "quadratic", &[one], "x0"), [0.0, 1.0]);
+    assert_eq!(Likeness::of(&large, &SHIP), Likeness::OtherScale);
+    assert_eq!(Likeness::of(&SHIP, &SHIP), Likeness::Same);
+}
+
+/// The departure from what the particulars say is carried to another draught, and what the formulas say of the draught
+/// with it. Of N_r every spread is a share of the mean or absolute, so its departure is compared in the unit itself.
+#[test]
+fn another_draught_moves_what_is_expected_by_the_formulas() {
+    let ballast = HullParticulars { draught: Some(0.3), block_coefficient: Some(0.78), ..SHIP };
+    assert_eq!(Likeness::of(&SHIP, &ballast), Likeness::OtherHull);
+    let of = |ship: &HullParticulars, all: &[EarlierHull]| {
+        let expected = ExpectedHull::of_ship(Some(ship), all).into_iter().find(|own| own.form.as_str() == "mmg");
+        *expected.expect("known").coefficients.iter().find(|own| own.key == "Nr").expect("known")
+    };
+    let (full, light) = (of(&SHIP, &[]), of(&ballast, &[]));
+    let found = of(&ballast, &[earlier(SHIP, "mmg")]);
+    let (told, own) = (full.sd.powi(-2) / 9.0, light.sd.powi(-2));
+    // 100 (θ − μ₁) of the trial, 99 of it about the mean of the ballast.
+    let departure = 100.0 * told * full.sd / (own + 99.0 * told);
+    assert!((found.mean - light.mean - departure).abs() < 1e-9, "{found:?} {light:?} {departure}");
+    assert!((light.mean - full.mean).abs() > 0.1 * full.sd, "the formulas say something of the draught");
+}
+
+/// What is known of one ship alone is no difference: it is taken for the other.
+#[test]
+fn particulars_that_are_missing_are_those_of_the_earlier_ship() {
+    let bare = HullParticulars { length: LENGTH, speed: SPEED, ..HullParticulars::default() };
+    let of = |ship: &HullParticulars| {
+        let all = ExpectedHull::of_ship(Some(ship), &[earlier(SHIP, "mmg")]);
+        all.into_iter().find(|own| own.form.as_str() == "mmg").expect("known").mean()
+    };
+    assert!((of(&bare) - of(&SHIP)).amax() < 1e-12);
+}
+
+fn left_by(estimate: &HullEstimate) -> EarlierHull {
+    EarlierHull {
+        form: estimate.expected.form.clone(),
+        particulars: SHIP,
+        values: estimate.values.clone(),
+        covariance: estimate.covariance.clone(),
+    }
+}
+
+fn quadratic(all: &[EarlierHull]) -> ExpectedHull {
+    ExpectedHull::of_ship(Some(&SHIP), all).remove(0)
+}
+
+/// Mean square heading error of the replays of other records, rad².
+fn error_on(estimate: &HullEstimate, others: &[Trial]) -> f64 {
+    let track = |trial: &Trial| HullTrack::of(trial, &estimate.reference).expect("a record");
+    let tracks: Vec<HullTrack> = others.iter().map(track).collect();
+    let mut problem = HullObjective::new(&estimate.expected, &tracks);
+    let left = problem.left(estimate.values.as_slice()).expect("a ship");
+    left.iter().map(|own| own.whole).sum::<f64>() / left.len() as f64
+}
+
+fn half_of(trial: &Trial) -> Trial {
+    let rows = trial.time().len() / 2;
+    let of = |channel: Channel| (channel, trial.channel(channel).expect("recorded")[..rows].to_vec());
+    let channels = [Channel::Rudder, Channel::Heading, Channel::Speed].map(of);
+    let columns = Columns { time: trial.time()[..rows].to_vec(), channels: channels.into(), unknown: Vec::new() };
+    let ship = trial.particulars().expect("declared");
+    Trial::new("half", trial.origin().clone(), columns).expect("a record").with_particulars(ship)
+}
+
+/// KVLCC2, of which no form is true: with a prior from her 10/10 and 20/20, half of a 15/15 foretells three other
+/// zig-zags as well as the whole 15/15 does without, over all forms; for the worst of them to within 30 %.
+#[test]
+fn half_a_trial_after_two_tells_as_much_as_a_whole_one() {
+    let ship = Mmg::at_speed(MODEL_L7, SPEED).expect("it balances");
+    let sailed = |angles: [f64; 2]| record(&ship, angles, |_| 0.0);
+    let two = [sailed([10.0, 10.0]), sailed([-20.0, 20.0])];
+    let third = sailed([15.0, 15.0]);
+    let others = [[20.0, 10.0], [-15.0, 10.0], [25.0, 20.0]].map(sailed);
+    let mut squares = [0.0; 2];
+    for (place, expected) in ExpectedHull::of_ship(Some(&SHIP), &[]).iter().enumerate() {
+        let earlier = left_by(&fit(&two, expected).expect("a fit"));
+        let whole = fit(std::slice::from_ref(&third), expected).expect("a fit");
+        let after_trials = ExpectedHull::of_ship(Some(&SHIP), &[earlier]).swap_remove(place);
+        let half = fit(&[half_of(&third)], &after_trials).expect("a fit");
+        let [half_square, whole_square] = [&half, &whole].map(|own| error_on(own, &others));
+        squares = [squares[0] + half_square, squares[1] + whole_square];
+        let ratio = (half_square / whole_square).sqrt();
+        assert!(ratio < 1.3, "{}: {ratio}", expected.form.as_str());
+        let check = half.check().expect("a record tells something");
+        assert!(!check.is_conflict(), "{}: {check:?}", expected.form.as_str());
+    }
+    assert!(squares[0] <= squares[1], "{squares:?}");
+}
+
+/// The ship herself agrees with her earlier trials; one of another N_v, N_r and N_δ does not.
+#[test]
+fn another_ship_contradicts_the_prior() {
+    let sailed = |ship: &dyn ship::Dynamics, angles: [f64; 2]| record(ship, angles, |_| 0.0);
+    let two = [sailed(&hull(&TRUTH), [10.0, 10.0]), sailed(&hull(&TRUTH), [-20.0, 20.0])];
+    let expected = quadratic(&[left_by(&fit(&two, &quadratic(&[])).expect("a fit"))]);
+    let check = |truth: &[f64; 18]| {
+        let found = fit(&[sailed(&hull(truth), [15.0, 15.0])], &expected).expect("a fit");
+        found.check().expect("a record tells something")
+    };
+    let own = check(&TRUTH);
+    assert!(own.p_value > 0.05, "{own:?}");
+    let mut other = TRUTH;
+    (other[0], other[1], other[2]) = (-1.8, -2.6, 0.6);
+    let found = check(&other);
+    assert!(found.is_conflict() && found.moved[0].1.abs() > 1.0, "{found:?}");
+}

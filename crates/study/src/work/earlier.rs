@@ -1,0 +1,116 @@
+//! Models of earlier trials that `--prior` names: read, and held against the records.
+
+use std::path::PathBuf;
+
+use campaign::earlier::hulls_of;
+use campaign::known::RecordFacts;
+use identify::hull::{self, EarlierHull, Likeness, is_other_froude_number};
+use predict::IdentifiedShip;
+use report::number::fixed;
+use scenario::failure::Failure;
+use ship::vessel::prior::HullParticulars;
+use trial::{Trial, file};
+
+use super::predict::{StoredShips, ships_of, text_of};
+use crate::documents::prior::{EarlierTrials, PriorCheckEntry, PriorModelEntry};
+use crate::records::file_of;
+
+/// A model of earlier trials: its hulls.
+#[derive(Debug, Clone)]
+pub struct EarlierModel {
+    file: String,
+    hulls: Vec<EarlierHull>,
+}
+
+impl EarlierModel {
+    /// The models of some files. Fails when one cannot be read, and as [`of_document`](Self::of_document) does.
+    pub fn of_files(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
+        let of = |path: &PathBuf| {
+            let shown = file::called(path).display().to_string();
+            Self::of_document(&shown, &text_of(path)?)
+        };
+        paths.iter().map(of).collect()
+    }
+
+    /// The model in the text of a `fit.json` or `trace.json`; `shown` is what messages call it.
+    ///
+    /// Fails when the text is no such document, and when it holds no hull.
+    pub fn of_document(shown: &str, text: &str) -> Result<Self, Failure> {
+        let ships = match ships_of(shown, text)? {
+            StoredShips::Fit(ships, _) => ships.into_values().collect(),
+            StoredShips::Trace(ship) => vec![*ship],
+        };
+        let known: Option<IdentifiedShip> = ships.into_iter().find(|ship| !ship.hulls.is_empty());
+        let known = known.ok_or_else(|| {
+            let what = "it holds no hull, which a prior is made from; fit records of a known length and approach speed, with a \
+                        speed column, that begin on a steady approach";
+            Failure::about(shown, what)
+        })?;
+        let hulls = hulls_of(&known).map_err(|error| Failure::about(shown, error))?;
+        Ok(Self { file: shown.to_owned(), hulls })
+    }
+
+    /// Its ship beside that of the records.
+    fn entry(&self, ship: &HullParticulars) -> PriorModelEntry {
+        let own = self.hulls[0].particulars;
+        let likeness = Likeness::of(&own, ship);
+        PriorModelEntry {
+            file: self.file.clone(),
+            likeness: likeness.as_str().to_owned(),
+            factor: likeness.factor(),
+            differing: ship.differing(&own).into_iter().map(str::to_owned).collect(),
+            length_m: own.length,
+            speed_m_s: own.speed,
+        }
+    }
+}
+
+/// The hulls of all models.
+pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
+    models.iter().flat_map(|model| model.hulls.iter().cloned()).collect()
+}
+
+/// Fails where models of earlier trials are given and no hull can be fitted to the records; warns where the ships
+/// sail at other Froude numbers.
+pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<String>) -> Result<(), Failure> {
+    if models.is_empty() {
+        return Ok(());
+    }
+    if let Some(error) = hull::refusal(trials) {
+        let what = "--prior cannot be used";
+        let cure = "give length and approach speed (--length-m, --speed-m-s, or [ship] in a sidecar) and a record from its \
+                    steady approach on, or leave --prior out";
+        return Err(Failure::about(file_of(&trials[0]).0, format!("{what}: {error}; {cure}")));
+    }
+    let Some(ship) = trials.iter().find_map(Trial::hull) else { return Ok(()) };
+    for model in models {
+        let own = model.hulls[0].particulars;
+        if is_other_froude_number(&own, &ship) {
+            let [one, other] = [own, ship].map(|ship| fixed(ship.froude_number(), 3));
+            warnings.push(format!(
+                "--prior {}: its ship sailed at a Froude number of {one}, that of the records at {other}; coefficients change with \
+                 it, so prefer trials of about the same",
+                model.file
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// What is said of the models beside the records; `None` without any. The warning of a conflict is among `warnings`.
+pub fn entry(
+    models: &[EarlierModel],
+    trials: &[Trial],
+    facts: &RecordFacts,
+    warnings: &mut Vec<String>,
+) -> Option<EarlierTrials> {
+    let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
+    let checks = facts.checks();
+    let entry = EarlierTrials {
+        models: models.iter().map(|model| model.entry(&ship)).collect(),
+        hulls: checks.iter().map(|(form, check)| PriorCheckEntry::of(form, check)).collect(),
+        conflict: checks.first().is_some_and(|(_, check)| check.is_conflict()),
+    };
+    warnings.extend(entry.warning());
+    Some(entry)
+}

@@ -1,0 +1,111 @@
+//! `--prior`: models of earlier trials, of the same ship, another one, and none.
+
+use serde_json::Value;
+use ship::angle::{from_deg, to_deg};
+use simulate::{Manoeuvre, Recording, Simulation, SteeringGear, StreamKey, Vessel};
+
+use crate::desk::{Desk, zig_zag_csv};
+
+const KVLCC2: [&str; 4] = ["--length-m", "320", "--speed-m-s", "7.97"];
+
+/// A zig-zag of a ship of the registry without noise, with its speed; a row every 4 s.
+fn record(ship: &str, angle_deg: f64, change_deg: f64) -> String {
+    let ship = ship::ships::find(ship).expect("it is in the registry");
+    let manoeuvre = Manoeuvre::zig_zag(from_deg(angle_deg), from_deg(change_deg));
+    let simulation = Simulation {
+        gear: SteeringGear::with_rate(from_deg(2.34)),
+        recording: Recording { period: 4.0, duration: Some(1200.0), ..Recording::default() },
+        ..Simulation::new(Vessel::ship(&ship), manoeuvre)
+    };
+    let truth = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a manoeuvre").truth;
+    let speed = truth.speed.as_ref().expect("a hull has a speed");
+    let mut text = String::from("t_s,heading_deg,rudder_deg,speed_m_s\n");
+    for (row, speed) in speed.iter().enumerate() {
+        let [heading, rudder] = [truth.heading[row], truth.rudder[row]].map(to_deg);
+        text += &format!("{},{heading:.4},{rudder:.4},{speed:.4}\n", truth.time[row]);
+    }
+    text
+}
+
+/// A desk with a fit of one zig-zag of KVLCC2, `f/fit.json`, and another one, `next.csv`.
+fn with_model() -> Desk {
+    let desk = Desk::new();
+    desk.file("first.csv", record("kvlcc2", 20.0, 20.0));
+    desk.file("next.csv", record("kvlcc2", 10.0, 10.0));
+    desk.run(&[&["fit", "first.csv", "--method", "output-error", "--out", "f", "--quiet"][..], &KVLCC2].concat())
+        .is_done();
+    desk
+}
+
+fn sd(json: &Value, key: &str, name: &str) -> f64 {
+    let hulls = json["ships"]["output-error"]["hulls"].as_array().expect("hulls");
+    let quadratic = hulls.iter().find(|own| own["form"] == "quadratic").expect("it is near");
+    let own = quadratic["coefficients"].as_array().expect("a list").iter().find(|own| own["key"] == key);
+    own.expect("a coefficient")[name].as_f64().expect("a number")
+}
+
+/// The same ship agrees, what is expected is firmer than without; one of another scale is widened more; the bias of the
+/// rudder is expected as ever.
+#[test]
+fn a_model_of_the_same_ship_is_what_is_expected() {
+    let desk = with_model();
+    let fit = ["fit", "next.csv", "--method", "output-error", "--prior", "f/fit.json", "--out", "g"];
+    let run = desk.run(&[&fit[..], &KVLCC2].concat());
+    let said = &run.is_done().out;
+    assert!(said.contains("prior: f/fit.json (the same ship, deviations × 1.5); the records agree with it"), "{said}");
+    let (before, after) = (desk.json("f/fit.json"), desk.json("g/fit.json"));
+    assert_eq!(before["earlier_trials"], Value::Null);
+    let entry = &after["earlier_trials"];
+    assert_eq!((&entry["models"][0]["likeness"], &entry["conflict"]), (&"same-ship".into(), &false.into()), "{entry}");
+    assert!(sd(&after, "Nv", "expected_sd") < 0.8 * sd(&before, "Nv", "expected_sd"));
+    assert_eq!(sd(&after, "delta_r", "expected_sd"), sd(&before, "delta_r", "expected_sd"));
+    assert_ne!(sd(&after, "Nv", "expected"), sd(&before, "Nv", "expected"));
+    // A model of her, 7 m long, at another Froude number.
+    let model = ["--length-m", "7", "--speed-m-s", "0.9", "--out", "h"];
+    let run = desk.run(&[&fit[..6], &model].concat());
+    assert!(run.is_done().out.contains("(a ship of another length, deviations × 2)"), "{}", run.out);
+    assert!(run.err.contains("Froude number of 0.142, that of the records at 0.109"), "{}", run.err);
+}
+
+/// A trace takes the prior too, and its page and document say so.
+#[test]
+fn a_trace_takes_a_prior() {
+    let desk = with_model();
+    let trace = ["trace", "next.csv", "--prior", "f/fit.json", "--out", "t", "--figures", "none"];
+    let run = desk.run(&[&trace[..], &KVLCC2].concat());
+    assert!(run.is_done().out.contains("\nprior: f/fit.json (the same ship"), "{}", run.out);
+    let json = desk.json("t/trace.json");
+    assert!(json["earlier_trials"]["hulls"][0]["p_value"].is_f64() && json["prior"]["rule"] == "posterior");
+    assert!(desk.text("t/report.md").contains("prior: f/fit.json"));
+}
+
+/// The Mariner is no KVLCC2: one warning, with the coefficients that moved.
+#[test]
+fn another_ship_is_a_conflict() {
+    let desk = with_model();
+    desk.file("mariner.csv", record("mariner", 20.0, 20.0));
+    let fit = ["fit", "mariner.csv", "--method", "output-error", "--prior", "f/fit.json", "--out", "g"];
+    let run = desk.run(&[&fit[..], &["--length-m", "160.9", "--speed-kn", "15"]].concat());
+    let warning = "--prior f/fit.json: the records contradict it";
+    assert_eq!(run.is_done().err.matches(warning).count(), 1, "{}", run.err);
+    assert!(run.err.contains(" sd") && run.err.contains("make sure that it is the same ship"), "{}", run.err);
+    assert_eq!(desk.json("g/fit.json")["earlier_trials"]["conflict"], true);
+}
+
+#[test]
+fn a_prior_that_cannot_be_used_is_refused() {
+    let desk = with_model();
+    desk.file("zz.csv", zig_zag_csv());
+    desk.run(&["fit", "zz.csv", "--method", "output-error", "--out", "z", "--quiet"]).is_done();
+    let fit = |prior: &str, more: &[&str]| desk.run(&[&["fit", "next.csv", "--prior", prior], more].concat());
+    fit("z/fit.json", &KVLCC2).is_refused(2, &["z/fit.json: it holds no hull", "a speed column"]);
+    fit("none.json", &KVLCC2).is_refused(2, &["none.json"]);
+    fit("next.csv", &KVLCC2).is_refused(2, &["next.csv: this is no JSON", "fit.json or trace.json"]);
+    let needed = ["next.csv: --prior cannot be used: length and approach speed", "--length-m", "[ship]"];
+    fit("f/fit.json", &[]).is_refused(2, &needed);
+    let text = desk.text("f/fit.json").replace("\"key\": \"Nv\"", "\"key\": \"magic\"");
+    desk.file("odd.json", text);
+    fit("odd.json", &KVLCC2).is_refused(2, &["odd.json: the hull `", "fit or trace the record again"]);
+    desk.run(&["trace", "next.csv", "--prior", "f/fit.json", "--without-hull"])
+        .is_refused(2, &["--prior", "--without-hull"]);
+}
