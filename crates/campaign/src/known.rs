@@ -2,13 +2,14 @@
 //! traces and hulls leave.
 
 use identify::estimate::{Estimate, Uncertainty};
-use identify::hull::{self, EarlierHull, ExpectationCheck, HullEstimate, HullReference};
+use identify::hull::{self, EarlierHull, ExpectationCheck, ExpectedHull, HullEstimate, HullReference};
 use identify::replay::{Replay, replay};
 use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
 use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
 use predict::motion::{self, Planar};
 use predict::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
+use rayon::prelude::*;
 use ship::Particulars;
 use ship::angle::{from_deg, to_deg};
 use ship::vessel::prime::{HullCoefficient, HullForm};
@@ -72,7 +73,13 @@ impl<'a> RecordFacts<'a> {
         self.no_track.as_deref()
     }
 
-    /// The records against what earlier trials told of the ship, for every form of hull; the nearest first.
+    /// The hulls of the ship, the nearest first.
+    pub fn hulls(&self) -> &[StoredHull] {
+        &self.hulls
+    }
+
+    /// The records against what earlier trials told of the ship, for every form of hull that they left, whether it is
+    /// near enough to take part or not; the nearest first.
     pub fn checks(&self) -> &[(&'static str, ExpectationCheck)] {
         &self.checks
     }
@@ -92,8 +99,7 @@ impl<'a> RecordFacts<'a> {
         let mut hulls = known.unwrap_or_else(fitted);
         hulls.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
         self.hulls = hulls.iter().map(|hull| stored(hull, hulls.len())).collect();
-        let after_trials = hulls.iter().filter(|hull| hull.expected.has_trials);
-        self.checks = after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect();
+        self.checks = checks(self.trials, earlier);
         let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
         let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
         if self.hulls.is_empty() && self.trials.iter().all(is_told) {
@@ -154,6 +160,18 @@ impl<'a> RecordFacts<'a> {
         let squares: Vec<f64> = self.zigzags.iter().zip(replays).filter_map(square).collect();
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).max(0.0).sqrt()
     }
+}
+
+/// The records against what earlier trials told of every form of hull, the nearest first.
+fn checks(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<(&'static str, ExpectationCheck)> {
+    if earlier.is_empty() {
+        return Vec::new();
+    }
+    let expected = ExpectedHull::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
+    let after_trials = expected.par_iter().filter(|own| own.has_trials);
+    let mut hulls: Vec<HullEstimate> = after_trials.filter_map(|own| hull::fit(trials, own).ok()).collect();
+    hulls.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
+    hulls.iter().filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect()
 }
 
 /// A fitted hull as a file holds it, one of so many.

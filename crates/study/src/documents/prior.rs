@@ -10,14 +10,18 @@ use ship::vessel::prime::meaning;
 const NAMED: usize = 3;
 const MOVED: f64 = 1.0;
 
+/// What is said where no hull can be fitted near the models.
+const NOT_NEAR: &str = "no hull near it can be replayed over the records";
+
 /// What `--prior` gave.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct EarlierTrials {
     /// The models.
     pub models: Vec<PriorModelEntry>,
-    /// The check of every hull, the nearest to the records first; empty where no hull is near enough to take part.
+    /// The check of every hull that the models have, the nearest to the records first; empty where none near them can be
+    /// replayed over the records.
     pub hulls: Vec<PriorCheckEntry>,
-    /// Whether the nearest hull contradicts the models.
+    /// Whether the records contradict the models: the nearest hull does, or there is none.
     pub conflict: bool,
 }
 
@@ -52,17 +56,20 @@ pub struct PriorCheckEntry {
     /// Coefficients of the ship by their keys, with their shift in standard deviations of what was expected; the
     /// farthest first.
     pub moved: Vec<(String, f64)>,
+    /// Whether it is near enough to the records, beside other hulls, to be one of the answer.
+    pub takes_part: bool,
 }
 
 impl PriorCheckEntry {
     /// Of the hull of a form.
-    pub fn of(form: &str, check: &ExpectationCheck) -> Self {
+    pub fn of(form: &str, check: &ExpectationCheck, takes_part: bool) -> Self {
         Self {
             form: form.to_owned(),
             chi_square: check.chi_square,
             degrees_of_freedom: check.degrees_of_freedom,
             p_value: check.p_value,
             moved: check.moved.iter().map(|(key, shift)| ((*key).to_owned(), *shift)).collect(),
+            takes_part,
         }
     }
 
@@ -89,29 +96,31 @@ impl EarlierTrials {
         };
         let models = self.models.iter().map(model).collect::<Vec<_>>().join(", ");
         let found = match self.hulls.first() {
-            None => String::from("no hull near it is near the records, so it has no part in the answer"),
+            None => String::from(NOT_NEAR),
             Some(nearest) if self.conflict => format!("the records contradict it ({})", nearest.numbers()),
             Some(nearest) => format!("the records agree with it ({})", nearest.numbers()),
         };
-        format!("prior: {models}; {found}")
+        let has_part = self.hulls.iter().any(|own| own.takes_part);
+        let no_part = if has_part { "" } else { "; it has no part in the answer, other hulls are nearer" };
+        format!("prior: {models}; {found}{no_part}")
     }
 
     /// The warning of a conflict.
     pub fn warning(&self) -> Option<String> {
-        let nearest = self.hulls.first().filter(|_| self.conflict)?;
+        if !self.conflict {
+            return None;
+        }
+        let files = self.models.iter().map(|own| own.file.as_str()).collect::<Vec<_>>().join(", ");
+        let cure = "make sure that it is the same ship in the same condition, or leave it out";
+        let Some(nearest) = self.hulls.first() else { return Some(format!("--prior {files}: {NOT_NEAR}; {cure}")) };
         let moved = nearest.moved.iter().filter(|(_, shift)| shift.abs() >= MOVED).take(NAMED);
         let moved = moved.map(|(key, shift)| {
             let means = meaning(key).map_or_else(String::new, |means| format!(" ({means})"));
             format!("{key} by {} sd{means}", fixed(*shift, 1))
         });
         let moved = moved.collect::<Vec<_>>().join(", ");
-        let files = self.models.iter().map(|own| own.file.as_str()).collect::<Vec<_>>().join(", ");
         let what = if moved.is_empty() { String::new() } else { format!("; farthest from it: {moved}") };
-        Some(format!(
-            "--prior {files}: the records contradict it ({}){what}; make sure that it is the same ship in the same condition, or \
-             leave it out",
-            nearest.numbers()
-        ))
+        Some(format!("--prior {files}: the records contradict it ({}){what}; {cure}", nearest.numbers()))
     }
 }
 
@@ -135,7 +144,7 @@ mod tests {
             speed_m_s: 7.97,
         };
         let conflict = check.is_conflict();
-        EarlierTrials { models: vec![model], hulls: vec![PriorCheckEntry::of("mmg", &check)], conflict }
+        EarlierTrials { models: vec![model], hulls: vec![PriorCheckEntry::of("mmg", &check, true)], conflict }
     }
 
     #[test]
@@ -153,7 +162,8 @@ mod tests {
         assert!(
             sentence.starts_with("prior: fit.json (a ship of another draught-m, deviations × 3); the records agree")
         );
-        let without = EarlierTrials { hulls: Vec::new(), conflict: false, ..entry(0.3) };
-        assert!(without.sentence().contains("no part"));
+        let without = EarlierTrials { hulls: Vec::new(), conflict: true, ..entry(0.3) };
+        assert!(without.sentence().contains("it has no part in the answer"));
+        assert!(without.warning().expect("a conflict").starts_with("--prior fit.json: no hull near it"));
     }
 }

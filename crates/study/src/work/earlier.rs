@@ -106,10 +106,11 @@ pub fn entry(
 ) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
     let checks = facts.checks();
+    let is_member = |form: &str| facts.hulls().iter().any(|own| own.form == form);
     let entry = EarlierTrials {
         models: models.iter().map(|model| model.entry(&ship)).collect(),
-        hulls: checks.iter().map(|(form, check)| PriorCheckEntry::of(form, check)).collect(),
-        conflict: checks.first().is_some_and(|(_, check)| check.is_conflict()),
+        hulls: checks.iter().map(|(form, check)| PriorCheckEntry::of(form, check, is_member(form))).collect(),
+        conflict: checks.first().is_none_or(|(_, check)| check.is_conflict()),
     };
     warnings.extend(entry.warning());
     Some(entry)
