@@ -72,7 +72,7 @@ enum Command {
     Report(With<report::ReportRequest>),
     /// Write one page over all published studies of a folder
     Overview(With<overview::OverviewRequest>),
-    /// Make all published results of a folder anew, with one program, and say what changed; goes on where it was stopped
+    /// Make all published results of a folder with one program, and say what changed; goes on where it was stopped
     Publish(With<publish::PublishRequest>),
     /// Look at the machine and the terminal: versions, threads, instruction sets, whether files can be written
     Doctor(Common),

@@ -62,15 +62,15 @@ pub struct PublishRequest {
 }
 
 /// What became of a study or a program: its state, and why where it was skipped.
-type Outcome = (PublicationState, Option<String>);
+type PublicationOutcome = (PublicationState, Option<String>);
 
-const MADE: Outcome = (PublicationState::Made, None);
-const CURRENT: Outcome = (PublicationState::Current, None);
+const MADE: PublicationOutcome = (PublicationState::Made, None);
+const CURRENT: PublicationOutcome = (PublicationState::Current, None);
 
 /// Makes what is missing or was made by another program, says what changed, and has it checked.
 ///
-/// Fails at once when the folder holds no `publish.toml` and when it is interrupted; in the end when something cannot be
-/// made, was skipped or does not pass a check.
+/// Fails at once when the folder holds no `publish.toml` and when it is interrupted; in the end when something cannot
+/// be made, was skipped or does not pass a check.
 pub fn run(request: &PublishRequest, common: &Common) -> Result<(), Failure> {
     if common.seed.is_some() || common.out.is_some() {
         return Err(Failure::input("`study publish` takes neither --seed nor --out: scenarios and folder decide"));
@@ -179,7 +179,7 @@ impl<'a> Publication<'a> {
     fn make(&self) -> Result<Vec<PublicationEntry>, Failure> {
         let is_asked = |name: &&String| self.request.only.is_empty() || self.request.only.contains(name);
         let mut entries = Vec::new();
-        let mut see = |name: &String, outcome: Result<Outcome, Failure>| {
+        let mut see = |name: &String, outcome: Result<PublicationOutcome, Failure>| {
             if outcome.is_err() && interrupt::is_asked() {
                 return outcome.map(drop);
             }
@@ -203,7 +203,7 @@ impl<'a> Publication<'a> {
     }
 
     /// Runs a study, or what is missing of it, and draws it, unless this program has done so.
-    fn study(&self, name: &str, path: &Path) -> Result<Outcome, Failure> {
+    fn study(&self, name: &str, path: &Path) -> Result<PublicationOutcome, Failure> {
         let scenario = Scenario::read(path, None)?;
         let place = self.published().join(name);
         let own = Manifest::new(&scenario, Shard::WHOLE);
@@ -237,7 +237,7 @@ impl<'a> Publication<'a> {
     }
 
     /// Has a program work in a folder of its own, which takes the place of the old one when all went well.
-    fn program(&self, own: &PublishedProgram) -> Result<Outcome, Failure> {
+    fn program(&self, own: &PublishedProgram) -> Result<PublicationOutcome, Failure> {
         let place = self.published().join(&own.name);
         let stamp = ProgramStamp { commands: own.commands.clone(), wall_time_s: 0.0, program: ProgramRevision::own() };
         let is_of = |stored: ProgramStamp| ProgramStamp { wall_time_s: 0.0, ..stored } == stamp;
@@ -310,7 +310,7 @@ fn remove_folder(path: &Path) -> Result<(), Failure> {
     if disk::is_there(path).on("look for", path)? { fs::remove_dir_all(path).on("remove", path) } else { Ok(()) }
 }
 
-fn entry(name: &str, outcome: Result<Outcome, Failure>, changes: PublicationChanges) -> PublicationEntry {
+fn entry(name: &str, outcome: Result<PublicationOutcome, Failure>, changes: PublicationChanges) -> PublicationEntry {
     let (state, reason) =
         outcome.unwrap_or_else(|failure| (PublicationState::Failed, Some(failure.message.replace('\n', " "))));
     PublicationEntry {
