@@ -5,7 +5,7 @@ use std::fs;
 
 use study::work::publication::{ProgramStamp, published_files};
 
-use crate::desk::{Desk, killed, of_repository};
+use crate::desk::{Desk, interrupted, of_repository};
 
 /// A study of some trials of each of its two cells.
 fn study(replicates: u32, noise_deg: f64) -> String {
@@ -103,7 +103,7 @@ fn what_is_missing_or_fails_is_said_and_the_rest_is_made() {
     desk.file("results/publish.toml", PLAN);
     desk.run(&WHOLE).is_refused(1, &["not whole", "words: `grep -q Little. results/README.md` failed"]);
     for (arguments, said) in [
-        (&["publish", "--only", "tow"][..], "did you mean `two`"),
+        (&["publish", "--only", "twos"][..], "did you mean `two`"),
         (&["publish", "scenarios"], "there is no publish.toml"),
         (&["publish", "--seed", "3"], "neither --seed nor --out"),
     ] {
@@ -115,12 +115,14 @@ fn what_is_missing_or_fails_is_said_and_the_rest_is_made() {
 
 #[cfg(unix)]
 #[test]
-fn a_publication_that_was_killed_goes_on() {
+fn a_publication_that_was_stopped_goes_on() {
     let desk = desk();
-    desk.file("scenarios/two.toml", study(4000, 0.2));
-    let begun = desk.path("results/published/two/unfinished");
-    let stored = || fs::read_dir(&begun).is_ok_and(|files| files.count() > 2);
-    killed(desk.start_until(&WHOLE, stored));
+    desk.file("scenarios/two.toml", study(10_000, 0.2));
+    let begun = desk.path("results/published/two/unfinished/manifest.toml");
+    let run = desk.start_until(&WHOLE, || begun.exists());
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let (run, _) = interrupted(run);
+    assert!(run.code == Some(1) && run.err.contains("the same command goes on from there"), "{}", run.err);
     assert!(!desk.path("results/published/two/report.md").exists());
     let one = desk.bytes("results/published/one/manifest.toml");
     let run = desk.run(&["publish", "--data", "records"]);
