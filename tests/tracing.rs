@@ -263,7 +263,8 @@ fn nothing_is_named_where_nothing_is_missing() {
     add("gusts", &|s| {
         s.disturbances.gusts = Some(GaussMarkov { sd: from_deg(0.5), correlation_time: 20.0 });
     });
-    // Noise that is not white is taken for an effect in some trials (`results/published/undeclared`), white noise in none.
+    // Noise that is not white is taken for an effect in some trials (`results/published/undeclared`), white noise in
+    // none.
     let mut mistaken = Vec::new();
     for (name, simulation) in cases {
         for replicate in 0..4 {

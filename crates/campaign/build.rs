@@ -1,5 +1,5 @@
-//! What a manifest says of the program, known when it is built: the revision of its source, whether that had been
-//! changed since, and the versions of the crates that decide the numbers.
+//! What a manifest says of the program, known when it is built: the last revision in which its source changed, whether
+//! that had been changed since, and the versions of the crates that decide the numbers.
 
 use std::fs;
 use std::path::Path;
@@ -7,6 +7,9 @@ use std::process::Command;
 
 /// Crates whose version is part of a result's identity.
 const NUMERIC: [&str; 5] = ["nalgebra", "rand", "rand_distr", "realfft", "statrs"];
+
+/// What the program is made from.
+const SOURCE: [&str; 3] = ["crates", "Cargo.toml", "Cargo.lock"];
 
 fn main() {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -27,12 +30,11 @@ fn main() {
     if let Some(log) = git(&root, &["rev-parse", "--git-path", "logs/HEAD"]) {
         println!("cargo::rerun-if-changed={}", root.join(log).display());
     }
-    if let Some(revision) = git(&root, &["rev-parse", "HEAD"]) {
+    // Revisions that change pages, scenarios or results alone are of the same program.
+    if let Some(revision) = git(&root, &[&["log", "-1", "--format=%H", "--"][..], &SOURCE].concat()) {
         println!("cargo::rustc-env=KEMPF_GIT_REVISION={revision}");
     }
-    if git(&root, &["status", "--porcelain", "--untracked-files=no", "--", "crates", "Cargo.toml", "Cargo.lock"])
-        .is_some()
-    {
+    if git(&root, &[&["status", "--porcelain", "--untracked-files=no", "--"][..], &SOURCE].concat()).is_some() {
         println!("cargo::rustc-env=KEMPF_GIT_DIRTY=1");
     }
 }

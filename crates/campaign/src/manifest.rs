@@ -29,7 +29,7 @@ pub struct Manifest {
     pub design_sha256: String,
     /// Version of the program.
     pub version: String,
-    /// Git revision of the program's source, where it was built in a repository.
+    /// The last git revision in which the program's source changed, where it was built in a repository.
     pub git_revision: Option<String>,
     /// Whether that source had been changed since.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -63,6 +63,30 @@ pub struct Machine {
     pub wall_time_s: f64,
 }
 
+/// Which program made something: what is published is of one.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct ProgramRevision {
+    /// Its version.
+    pub version: String,
+    /// The last revision in which its source changed, where it was built in a repository.
+    pub git_revision: Option<String>,
+    /// Whether that source had been changed since.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub git_dirty: bool,
+}
+
+impl ProgramRevision {
+    /// That of this program.
+    pub fn own() -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            git_revision: option_env!("KEMPF_GIT_REVISION").map(str::to_owned),
+            git_dirty: option_env!("KEMPF_GIT_DIRTY").is_some(),
+        }
+    }
+}
+
 /// Version and revision of the program: "0.2.0 (revision 1a2b3c4d5e)", with a word where its source had been changed.
 pub fn version() -> String {
     let number = env!("CARGO_PKG_VERSION");
@@ -80,15 +104,16 @@ const REPEAT: &str = "# `study manifest.toml --out DIR` runs this study again.\n
 impl Manifest {
     /// The manifest of a scenario that is about to run.
     pub fn new(scenario: &Scenario, shard: Shard) -> Self {
+        let ProgramRevision { version, git_revision, git_dirty } = ProgramRevision::own();
         Self {
             name: scenario.name.clone(),
             seed: scenario.seed,
             shard,
             scenario_sha256: scenario.sha256.clone(),
             design_sha256: scenario.design_sha256.clone(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            git_revision: option_env!("KEMPF_GIT_REVISION").map(str::to_owned),
-            git_dirty: option_env!("KEMPF_GIT_DIRTY").is_some(),
+            version,
+            git_revision,
+            git_dirty,
             machine: Machine {
                 target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
                 threads: rayon::current_num_threads(),
@@ -102,17 +127,10 @@ impl Manifest {
         }
     }
 
-    /// Whether another manifest is of the same scenario, run by the same version: all but the machine, the revision and
-    /// what came out.
-    pub fn is_of_the_run(&self, other: &Self) -> bool {
-        let of = |manifest: &Self| Self {
-            machine: other.machine.clone(),
-            git_revision: None,
-            git_dirty: false,
-            sha256: BTreeMap::new(),
-            ..manifest.clone()
-        };
-        of(self) == of(other)
+    /// The program that ran it.
+    pub fn program(&self) -> ProgramRevision {
+        let Self { version, git_revision, git_dirty, .. } = self.clone();
+        ProgramRevision { version, git_revision, git_dirty }
     }
 
     /// The manifest of the whole study, from that of a shard and the wall time of all of them together, s.

@@ -142,22 +142,6 @@ fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
     })
 }
 
-/// Manifest and times of what was published in a folder without its rows, where those that have been run now are the
-/// same bytes: then a run on another machine changes nothing of what is published.
-fn reproduced(
-    folder: &Path,
-    own: &Manifest,
-    sha256: &BTreeMap<String, String>,
-) -> Result<Option<(Manifest, Vec<u8>)>, Failure> {
-    let path = folder.join(TIMINGS);
-    let Some(published) = Manifest::read(&folder.join(MANIFEST)).ok().flatten() else { return Ok(None) };
-    let is_same =
-        published.is_of_the_run(own) && sha256.iter().all(|(name, hash)| published.sha256.get(name) == Some(hash));
-    let times = disk::read(&path, LARGEST_TEXT).on("read", &path)?;
-    let is_theirs = |times: &Vec<u8>| published.sha256.get(TIMINGS) == Some(&hex(&Sha256::digest(times)));
-    Ok(times.filter(|times| is_same && is_theirs(times)).map(|times| (published, times)))
-}
-
 /// Makes a folder that holds rows with this SHA-256 a finished study: design, showcases, times, and the manifest last.
 /// What is returned is what was written, and need not be read again.
 pub fn finish(
@@ -173,14 +157,9 @@ pub fn finish(
         let text = text.on("describe", &folder.path().join(name))?;
         sha256.insert(name.to_owned(), folder.keep(name, text + "\n")?);
     }
-    let (manifest, times) = match reproduced(folder.path(), manifest, &sha256)? {
-        Some(published) => published,
-        None => {
-            let times = timings.to_text(&design)?;
-            sha256.insert(TIMINGS.to_owned(), folder.keep(TIMINGS, &times)?);
-            (Manifest { sha256, ..manifest.clone() }, times)
-        }
-    };
+    let times = timings.to_text(&design)?;
+    sha256.insert(TIMINGS.to_owned(), folder.keep(TIMINGS, &times)?);
+    let manifest = Manifest { sha256, ..manifest.clone() };
     // Last, since it makes the folder a finished study.
     manifest.write(folder)?;
     // As they are written: to the nanosecond.

@@ -9,11 +9,15 @@ use resvg::usvg::{Options, Tree};
 
 use crate::error::ReportError;
 use crate::fonts;
+use crate::indexed::IndexedImage;
 
 const POINTS_PER_INCH: f64 = 72.0;
 const METRES_PER_INCH: f64 = 0.0254;
 /// No side of an image may be longer, pixels.
 const LONGEST_SIDE: u32 = 20_000;
+
+/// How hard PNGs are packed: the hardest.
+const LEVEL: u8 = 9;
 
 /// A drawing that is ready to be written.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +49,7 @@ impl Drawing {
         (side(self.width), side(self.height))
     }
 
-    /// The drawing as a PNG of 8-bit RGB with its resolution in pixels per metre.
+    /// The drawing as a PNG of at most 256 colours with its resolution in pixels per metre.
     ///
     /// Fails with [`ReportError::TooLarge`] when a side is longer than 20 000 pixels.
     pub fn png(&self) -> Result<Vec<u8>, ReportError> {
@@ -67,17 +71,13 @@ impl Drawing {
     fn encode(&self, pixmap: Pixmap) -> Result<Vec<u8>, ReportError> {
         let (width, height) = (pixmap.width(), pixmap.height());
         // The page is opaque, so the alpha channel says nothing and the colours are not premultiplied.
-        let mut pixels = pixmap.take();
-        let count = pixels.len() / 4;
-        (0..count).for_each(|pixel| pixels.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel));
-        pixels.truncate(3 * count);
+        let IndexedImage { palette, pixels } = IndexedImage::of(&pixmap.take());
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, width, height);
-        encoder.set_color(png::ColorType::Rgb);
-        // Level 4 packs a tenth smaller and takes twice as long.
-        encoder.set_deflate_compression(png::DeflateCompression::Level(2));
-        // Flat areas and thin lines pack better unfiltered: measured a fifth smaller and faster than adaptive
-        // filtering.
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_palette(palette);
+        encoder.set_deflate_compression(png::DeflateCompression::Level(LEVEL));
+        // Places in a palette are no quantities: a difference between neighbours says nothing.
         encoder.set_filter(png::Filter::NoFilter);
         let per_metre = (self.dpi / METRES_PER_INCH).round() as u32;
         let dims = png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter };
@@ -128,7 +128,8 @@ mod tests {
     #[test]
     fn text_reaches_the_pixels() {
         let bytes = sample().png().unwrap();
-        let decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+        let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+        decoder.set_transformations(png::Transformations::EXPAND);
         let mut reader = decoder.read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();

@@ -48,6 +48,7 @@ mod changes;
 mod clip;
 mod dimension;
 mod fonts;
+mod indexed;
 mod layout;
 mod legend;
 mod lines;

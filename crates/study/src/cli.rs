@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use std::sync::LazyLock;
 
 use crate::commands::{
-    bench, check, doctor, find, fit, list, merge, overview, predict, report, run, schema, score, shell, sidecar,
-    simulate, trace,
+    bench, check, doctor, find, fit, list, merge, overview, predict, publish, report, run, schema, score, shell,
+    sidecar, simulate, trace,
 };
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
 use crate::{failures, screen, threads};
@@ -72,6 +72,8 @@ enum Command {
     Report(With<report::ReportRequest>),
     /// Write one page over all published studies of a folder
     Overview(With<overview::OverviewRequest>),
+    /// Make all published results of a folder with one program, and say what changed; goes on where it was stopped
+    Publish(With<publish::PublishRequest>),
     /// Look at the machine and the terminal: versions, threads, instruction sets, whether files can be written
     Doctor(Common),
     /// Print the JSON schema of a file, for editors and programs
@@ -176,6 +178,7 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         Command::Score(own) => own.work(score::run),
         Command::Bench(own) => own.work(bench::run),
         Command::Report(own) => own.work(report::run),
+        Command::Publish(own) => own.work(publish::run),
         Command::Merge(own) => own.work(merge::run),
         Command::Find(own) => own.answer(find::run),
         Command::Sidecar(own) => own.answer(sidecar::run),

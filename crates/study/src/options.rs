@@ -431,6 +431,8 @@ pub enum Described {
     SidecarAnswer,
     /// What `overview` says
     Overview,
+    /// What `publish` says
+    Publish,
     /// What `doctor` says
     Doctor,
     /// What `completions` says

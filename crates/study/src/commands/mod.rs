@@ -10,6 +10,7 @@ pub mod list;
 pub mod merge;
 pub mod overview;
 pub mod predict;
+pub mod publish;
 pub mod report;
 pub mod run;
 pub mod schema;

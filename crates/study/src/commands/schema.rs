@@ -16,8 +16,8 @@ use std::path::Path;
 
 use crate::documents;
 use crate::documents::answers::{
-    CheckAnswer, CommandAnswer, CompletionsAnswer, DoctorAnswer, ListAnswer, ManAnswer, OverviewAnswer, ShardAnswer,
-    SidecarAnswer, SimulateAnswer, StudyAnswer, Versioned,
+    CheckAnswer, CommandAnswer, CompletionsAnswer, DoctorAnswer, ListAnswer, ManAnswer, OverviewAnswer, PublishAnswer,
+    ShardAnswer, SidecarAnswer, SimulateAnswer, StudyAnswer, Versioned,
 };
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
@@ -65,6 +65,7 @@ pub fn schema(what: Described) -> Schema {
         Described::Simulate => answer::<SimulateAnswer>(),
         Described::SidecarAnswer => answer::<SidecarAnswer>(),
         Described::Overview => answer::<OverviewAnswer>(),
+        Described::Publish => answer::<PublishAnswer>(),
         Described::Doctor => answer::<DoctorAnswer>(),
         Described::Completions => answer::<CompletionsAnswer>(),
         Described::Man => answer::<ManAnswer>(),

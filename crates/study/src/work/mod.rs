@@ -5,6 +5,8 @@ pub mod every_scale;
 pub mod fit;
 mod planned;
 pub mod predict;
+pub mod publication;
+pub mod publication_changes;
 pub mod simulate;
 pub mod single_records;
 pub mod steady;

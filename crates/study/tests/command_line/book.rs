@@ -1,5 +1,6 @@
 //! What the README and the book tell a reader to type is typed here, page by page, in a folder with the scenarios of
-//! the repository. The info string of a block says what becomes of it:
+//! the repository, in which git then sees nothing but the files that a reader was told to write. The info string of a
+//! block says what becomes of it:
 //!
 //! | block | here |
 //! |---|---|
@@ -101,12 +102,24 @@ impl Scratch {
         for name in ["scenarios", "examples"].iter().filter(|name| of_repository(name).is_dir()) {
             copy(&of_repository(name), &folder.path().join(name));
         }
+        fs::copy(of_repository(".gitignore"), folder.path().join(".gitignore")).expect("a copy");
         let programs = folder.path().join(".programs");
         fs::create_dir(&programs).expect("a folder");
         std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_study"), programs.join("study")).expect("a link");
         let others = std::env::var_os("PATH").unwrap_or_default();
         let path = std::env::join_paths([programs].into_iter().chain(std::env::split_paths(&others)));
-        Self { path: path.expect("a search path"), folder }
+        let scratch = Self { path: path.expect("a search path"), folder };
+        let begin = "git init -q && echo .programs >> .git/info/exclude && git add -A";
+        scratch.run(&format!("if command -v git; then {begin}; fi")).expect("a repository");
+        scratch
+    }
+
+    /// What git sees of all that was done, the files that a page has written left out; empty without git.
+    fn left(&self, written: &[&str]) -> Result<String, String> {
+        let look = "git diff --name-only && git ls-files --others --exclude-standard";
+        let seen = self.run(&format!("if command -v git > /dev/null; then {look}; fi"))?;
+        let is_of_page = |line: &&str| written.contains(line);
+        Ok(seen.lines().filter(|line| !is_of_page(line)).collect::<Vec<_>>().join(", "))
     }
 
     fn shell(&self, command: &str) -> Command {
@@ -134,11 +147,12 @@ impl Scratch {
 /// Works through a page; the first thing that is wrong ends it. What was not run is said.
 fn work_through(page: &str) -> Result<Vec<String>, String> {
     let scratch = Scratch::new();
-    let mut left_out = Vec::new();
+    let (mut left_out, mut written) = (Vec::new(), Vec::new());
     // Of the last block of commands; none where it was not run.
     let mut printed = None;
-    for block in blocks(page) {
-        let Block { language, mark, line, text } = &block;
+    let blocks = blocks(page);
+    for block in &blocks {
+        let Block { language, mark, line, text } = block;
         if !LANGUAGES.contains(&language.as_str()) {
             return Err(format!("{line}: a block of {language:?}; expected one of {}", LANGUAGES.join(", ")));
         }
@@ -153,7 +167,7 @@ fn work_through(page: &str) -> Result<Vec<String>, String> {
                 printed = None;
             }
             ("sh", "" | "needs") => {
-                let of_each = commands(&block)
+                let of_each = commands(block)
                     .into_iter()
                     .map(|(line, command)| scratch.run(&command).map_err(|error| format!("{line}: {error}")));
                 printed = Some(of_each.collect::<Result<String, String>>()?);
@@ -172,11 +186,15 @@ fn work_through(page: &str) -> Result<Vec<String>, String> {
                 let path = scratch.folder.path().join(value);
                 fs::create_dir_all(path.parent().expect("it is in the folder")).expect("a folder");
                 fs::write(path, text).expect("a file");
+                written.push(value);
             }
             _ => return Err(format!("{line}: nobody knows the mark {mark:?}")),
         }
     }
-    Ok(left_out)
+    match scratch.left(&written)? {
+        left if left.is_empty() => Ok(left_out),
+        left => Err(format!("git sees what was left: {left}; give it a name in .gitignore")),
+    }
 }
 
 /// The README, the pages of the book, of the examples and of the crates.
@@ -226,6 +244,8 @@ fn a_page_that_is_wrong_is_found() {
         ("```bash\ntrue\n```\n", "2: a block of \"bash\""),
         ("```csv,file=a.csv\nx\n```\n", "2: a reader is not told that this is \"a.csv\""),
         ("```sh,skip\ntrue\n```\n", "2: nobody knows the mark \"skip\""),
+        ("```sh\ntouch new.txt scenarios/new.csv\n```\n", "git sees what was left: new.txt, scenarios/new.csv"),
+        ("```sh\nrm scenarios/yukun.toml\n```\n", "git sees what was left: scenarios/yukun.toml"),
     ] {
         let fault = work_through(page).expect_err("it is wrong");
         assert!(fault.starts_with(said), "{fault}");

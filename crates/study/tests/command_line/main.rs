@@ -16,6 +16,7 @@ mod pages;
 mod predictions;
 mod priors;
 mod programs;
+mod publications;
 mod records;
 mod reference;
 mod scales;

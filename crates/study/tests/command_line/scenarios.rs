@@ -396,23 +396,3 @@ fn every_scenario_of_the_repository_is_right() {
     // Notes under a scenario are indented.
     assert_eq!(run.is_done().out.lines().filter(|line| !line.starts_with(' ')).count(), files.len());
 }
-
-/// Published results are those of the scenarios as they are, and the page over them is what the command makes.
-#[test]
-fn published_results_belong_to_the_scenarios() {
-    let desk = Desk::new();
-    let results = of_repository("results");
-    for entry in std::fs::read_dir(of_repository("scenarios")).expect("the folder is there") {
-        let path = entry.expect("readable").path();
-        let Some(name) = path.file_name().and_then(|name| name.to_str()?.strip_suffix(".toml")) else { continue };
-        let manifest = results.join(name).join("manifest.toml");
-        let manifest = std::fs::read_to_string(&manifest).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let manifest: toml::Table = manifest.parse().expect("it is TOML");
-        let scenario = std::fs::read_to_string(&path).expect("it was just listed");
-        assert!(manifest["scenario"].as_str() == Some(&scenario), "{name} was changed after its results were made");
-    }
-    std::fs::create_dir(desk.path("page")).expect("a new folder");
-    desk.run(&["overview", &results.display().to_string(), "--out", "page", "--quiet"]).is_done();
-    let made = std::fs::read_to_string(results.join("README.md")).expect("there is a page");
-    assert!(made.as_bytes() == desk.bytes("page/README.md"), "run `study overview results` again");
-}
