@@ -4,7 +4,8 @@
 
 STUDY is the program. Results and screenshots go to FOLDER: every page at the width of a phone and of a laptop, light and
 dark, and as it is printed. Fails with one line for whatever is wrong: an error on the console, a page wider than the
-screen, a serious finding of axe-core, a table that does not sort, a switch that hides nothing, values that are not told.
+screen, a serious finding of axe-core, a table that does not sort, a switch that hides nothing, values that are not told, a
+page of a trace whose first figure is far down, a part that does not open, a wide table that does not say so.
 """
 
 import base64
@@ -52,7 +53,10 @@ def browser(profile: str) -> webdriver.Chrome:
     for option in [*OPTIONS, f"--user-data-dir={profile}"]:
         options.add_argument(option)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+    driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+    # All parts open, a page is long, and a busy machine slow.
+    driver.set_script_timeout(120)
+    return driver
 
 
 def look(driver: webdriver.Chrome, size: tuple[int, int], scheme: str) -> None:
@@ -63,6 +67,28 @@ def look(driver: webdriver.Chrome, size: tuple[int, int], scheme: str) -> None:
     )
     features = [{"name": "prefers-color-scheme", "value": scheme}]
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+
+
+def begins(driver: webdriver.Chrome) -> str | None:
+    """The first figure of a trace begins on the first screen, and every part is closed."""
+    top = driver.execute_script("return document.querySelector('main figure').getBoundingClientRect().top / innerHeight")
+    if top > 1.0:
+        return f"the first figure is {top:.1f} screens down"
+    return "a part is open" if driver.find_elements(By.CSS_SELECTOR, "main details[open]") else None
+
+
+def unfolds(driver: webdriver.Chrome) -> str | None:
+    """Opens one part with a key and the others; what is wider than the screen says so."""
+    parts = driver.find_elements(By.CSS_SELECTOR, "main details > summary")
+    if parts:
+        parts[0].send_keys(Keys.ENTER)
+        if not driver.find_elements(By.CSS_SELECTOR, "main details[open]"):
+            return "a part does not open"
+    driver.execute_script("for (const part of document.querySelectorAll('details')) part.open = true")
+    wide = """return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(
+        [...document.querySelectorAll('.table, .plot')].filter(
+            box => box.scrollWidth > box.clientWidth + 1 && !box.classList.contains('wide')).length))))"""
+    return "something wide does not say so" if driver.execute_script(wide) else None
 
 
 def sorts(driver: webdriver.Chrome) -> str | None:
@@ -129,6 +155,9 @@ def main() -> None:
                         driver.get(page.as_uri())
                         place = f"{name}, {width}, {scheme}"
                         driver.save_screenshot(str(folder / f"{name}-{width}-{scheme}.png"))
+                        late = begins(driver) if name == "trace" else None
+                        faults = [late, unfolds(driver)]
+                        wrong += [f"{place}: {fault}" for fault in faults if fault]
                         if driver.execute_script("return document.documentElement.scrollWidth > innerWidth"):
                             wrong.append(f"{place}: wider than the screen")
                         # What it looks for depends on the width and the colours alone, one at a time.

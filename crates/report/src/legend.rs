@@ -12,6 +12,8 @@ use crate::theme::Theme;
 pub(crate) enum KeySample {
     Nothing,
     Line(Stroke),
+    /// An area, as a piece of it.
+    Area(Stroke),
     Dots(Paint),
     Marker(Look),
     LineAndMarker(Stroke, Look),
@@ -43,6 +45,7 @@ impl KeyEntry {
         match self.sample {
             KeySample::Line(stroke) => Some(Ink { colour: stroke.colour, dash: Some(stroke.dash) }),
             KeySample::LineAndMarker(stroke, look) => Some(Ink { colour: look.colour, dash: Some(stroke.dash) }),
+            KeySample::Area(stroke) => Some(Ink::of(stroke.colour)),
             KeySample::Dots(colour) => Some(Ink::of(colour)),
             KeySample::Marker(look) => Some(Ink::of(look.colour)),
             KeySample::Nothing | KeySample::Upright(_) | KeySample::Hull(_) => None,
@@ -53,7 +56,9 @@ impl KeyEntry {
         match self.sample {
             KeySample::Nothing => 0.0,
             KeySample::Dots(_) | KeySample::Marker(_) | KeySample::Upright(_) => 1.6 * theme.small_font,
-            KeySample::Line(_) | KeySample::LineAndMarker(..) | KeySample::Hull(_) => 2.9 * theme.small_font,
+            KeySample::Line(_) | KeySample::Area(_) | KeySample::LineAndMarker(..) | KeySample::Hull(_) => {
+                2.9 * theme.small_font
+            }
         }
     }
 
@@ -77,7 +82,9 @@ impl KeyEntry {
         let centre = ((x + end) / 2.0, middle);
         match self.sample {
             KeySample::Nothing => {}
-            KeySample::Line(stroke) => scene.line(Layer::Note, [(x, middle), (end, middle)], stroke),
+            KeySample::Line(stroke) | KeySample::Area(stroke) => {
+                scene.line(Layer::Note, [(x, middle), (end, middle)], stroke);
+            }
             KeySample::Dots(colour) => scene.disc(Layer::Note, centre, theme.dot * 1.2, colour, 1.0),
             KeySample::Marker(look) => scene.marker(Layer::Note, centre, theme.marker, &look),
             KeySample::LineAndMarker(stroke, look) => {

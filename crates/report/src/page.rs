@@ -28,6 +28,8 @@ impl PageFigure {
 pub enum PageBlock {
     /// A headline, read as it is, and its level, 1 for the page itself.
     Headline(usize, String),
+    /// A headline of a part that a browser shows when it is asked for.
+    Folded(String),
     /// A paragraph of Markdown.
     Prose(String),
     /// A list, every entry Markdown.
@@ -36,6 +38,17 @@ pub enum PageBlock {
     Table(Table),
     /// A figure.
     Figure(Box<PageFigure>),
+}
+
+impl PageBlock {
+    /// Level of a headline.
+    fn level(&self) -> Option<usize> {
+        match self {
+            Self::Headline(level, _) => Some(*level),
+            Self::Folded(_) => Some(2),
+            _ => None,
+        }
+    }
 }
 
 /// Blocks in reading order.
@@ -54,6 +67,20 @@ impl Page {
     /// Adds a headline of a part.
     pub fn part(&mut self, title: impl Into<String>) {
         self.blocks.push(PageBlock::Headline(2, title.into()));
+    }
+
+    /// Adds a headline of a part that a browser shows when it is asked for; elsewhere it is a part as any other.
+    pub fn folded_part(&mut self, title: impl Into<String>) {
+        self.blocks.push(PageBlock::Folded(title.into()));
+    }
+
+    /// Titles of the parts that a browser shows when it is asked for.
+    pub fn folded(&self) -> Vec<&str> {
+        let titles = self.blocks.iter().filter_map(|block| match block {
+            PageBlock::Folded(title) => Some(title.as_str()),
+            _ => None,
+        });
+        titles.collect()
     }
 
     /// Adds a headline below that of a part.
@@ -103,13 +130,9 @@ impl Page {
     pub fn without_figures(self) -> Self {
         let mut blocks: Vec<PageBlock> = Vec::new();
         for block in self.blocks.into_iter().rev() {
-            let has_content = |level: usize| match blocks.last() {
-                Some(PageBlock::Headline(next, _)) => *next > level,
-                next => next.is_some(),
-            };
-            let stays = match block {
-                PageBlock::Figure(_) => false,
-                PageBlock::Headline(level, _) => has_content(level),
+            let stays = match (&block, block.level()) {
+                (PageBlock::Figure(_), _) => false,
+                (_, Some(level)) => blocks.last().is_some_and(|next| next.level().is_none_or(|next| next > level)),
                 _ => true,
             };
             blocks.extend(stays.then_some(block));
@@ -118,17 +141,19 @@ impl Page {
         Self { blocks }
     }
 
-    /// As Markdown (the GitHub flavour). HTML in it is shown and not obeyed.
+    /// As Markdown (the GitHub flavour), every figure with its number and caption. HTML in it is shown and not obeyed.
     pub fn to_markdown(&self) -> String {
+        let mut number = 0;
         let block = |block: &PageBlock| match block {
             PageBlock::Headline(level, title) => format!("{} {title}\n", "#".repeat(*level), title = text(title)),
+            PageBlock::Folded(title) => format!("## {}\n", text(title)),
             PageBlock::Prose(prose) => format!("{prose}\n"),
             PageBlock::List(entries) => entries.iter().map(|entry| format!("- {entry}\n")).collect(),
             PageBlock::Table(table) => table.to_markdown(),
             PageBlock::Figure(figure) => {
                 let PageFigure { stem, caption, .. } = figure.as_ref();
-                let caption = text(caption);
-                format!("![{caption}]({stem}.png)\n\n*{caption}*\n")
+                number += 1;
+                format!("![Figure {number}]({stem}.png)\n\n*Figure {number}. {}*\n", text(caption))
             }
         };
         prose(&self.blocks.iter().map(block).collect::<Vec<String>>().join("\n"))
@@ -137,7 +162,9 @@ impl Page {
     /// For a terminal: words and tables.
     pub fn to_text(&self) -> String {
         let block = |block: &PageBlock| match block {
-            PageBlock::Headline(_, words) | PageBlock::Prose(words) => Some(format!("{words}\n")),
+            PageBlock::Headline(_, words) | PageBlock::Folded(words) | PageBlock::Prose(words) => {
+                Some(format!("{words}\n"))
+            }
             PageBlock::List(entries) => Some(entries.join("\n") + "\n"),
             PageBlock::Table(table) => Some(table.to_text()),
             PageBlock::Figure(_) => None,
@@ -170,8 +197,8 @@ mod tests {
         page.table(table);
         page.figures([PageFigure::new("fit", "a*b", Panels::default())]);
         page.list(["one".to_owned(), "two".to_owned()]);
-        let markdown = "# Trial [1]\\(x) a\\_b\n\na\\*b\n\n\\<b>c\n\n## Numbers\n\n| K   |\n| --- |\n| 0.1 |\n\n![a\\*b](fit.png)\n\n\
-                        *a\\*b*\n\n- one\n- two\n";
+        let markdown = "# Trial [1]\\(x) a\\_b\n\na\\*b\n\n\\<b>c\n\n## Numbers\n\n| K   |\n| --- |\n| 0.1 |\n\n![Figure 1](fit.png)\n\n\
+                        *Figure 1. a\\*b*\n\n- one\n- two\n";
         assert_eq!(page.to_markdown(), markdown);
         assert!(page.to_text().ends_with("Numbers\n\nK\n───\n0.1\n\none\ntwo\n"), "{}", page.to_text());
         assert!(page.to_latex().contains("toprule") && page.drawings().count() == 1);
@@ -188,8 +215,9 @@ mod tests {
         page.part("Told");
         page.subpart("There");
         page.say("words");
-        page.part("Further figures");
+        page.folded_part("Further figures");
         page.figures(figure());
+        assert_eq!(page.folded(), ["Further figures"]);
         assert_eq!(page.without_figures().to_markdown(), "# Trial\n\n## Told\n\n### There\n\nwords\n");
     }
 }

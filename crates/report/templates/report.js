@@ -39,6 +39,30 @@ for (const table of document.querySelectorAll("table")) {
     });
   });
 }
+// Folded parts: open where a link leads into one, all of them on paper, and the contents where there is room beside.
+for (const contents of document.querySelectorAll("nav details")) contents.open = matchMedia("(min-width: 80rem)").matches;
+const reveal = () => {
+  const target = document.getElementById(decodeURI(location.hash).slice(1));
+  const part = target && target.closest("main details");
+  if (!part) return;
+  part.open = true;
+  target.scrollIntoView();
+};
+addEventListener("hashchange", reveal);
+reveal();
+let unfolded = [];
+addEventListener("beforeprint", () => {
+  unfolded = [...document.querySelectorAll("main details:not([open])")];
+  for (const part of unfolded) part.open = true;
+});
+addEventListener("afterprint", () => {
+  for (const part of unfolded) part.open = false;
+});
+// What is wider than the screen says so.
+const widths = new ResizeObserver(seen => {
+  for (const { target } of seen) target.classList.toggle("wide", target.scrollWidth > target.clientWidth + 1);
+});
+for (const box of document.querySelectorAll(".table, .plot")) widths.observe(box);
 // Figures: a switch for every name of the key, the values under the pointer or the arrow keys, zoom by buttons.
 const digits = (value, step) => {
   const decimals = Math.min(9, Math.max(0, 1 - Math.floor(Math.log10(Math.abs(step) || 1))));

@@ -25,7 +25,7 @@ use crate::hulls;
 use crate::leave_one_out::leave_one_out;
 use crate::model::Term;
 use crate::record::PreparedRecord;
-use crate::remainder::{Remainder, squares};
+use crate::remainder::{Innovations, Remainder, innovations, squares};
 use crate::report;
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
@@ -258,6 +258,12 @@ pub struct Plausible {
 }
 
 impl Analysis {
+    /// Innovations of the most probable structure on every fitted record.
+    pub fn innovations(&self) -> Vec<Innovations> {
+        let best = self.structures.all.first();
+        best.map_or_else(Vec::new, |best| innovations(&self.problem, &best.fit.residual, &self.full.law))
+    }
+
     /// The members of the average as predictions take them.
     pub fn plausible(&self) -> Vec<Plausible> {
         let of = |(weight, fit): (f64, &StructureFit)| {

@@ -6,6 +6,7 @@ use trial::Trial;
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::FittedRecords;
 use crate::full::Full;
+use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayErrors;
 use crate::shapes::{self, Empirical};
 use crate::signature::{Signature, signature};
@@ -17,6 +18,25 @@ pub fn squares(all: &[RecordComparison]) -> [f64; 2] {
     let square = |errors: &ReplayErrors| errors.heading.powi(2) * errors.rows as f64;
     let before = all.iter().map(|one| square(&one.before.errors)).sum();
     [before, all.iter().map(|one| square(&one.after.errors)).sum()]
+}
+
+/// What is new in every heading of a record, given those before it and the noise, over its standard deviation: numbers
+/// that are normal, white and of unit variance where model and noise describe the record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Innovations {
+    /// Time, s.
+    pub time: Vec<f64>,
+    /// Usual time between them, s.
+    pub spacing: f64,
+    /// Innovations, in standard deviations.
+    pub values: Vec<f64>,
+}
+
+impl Innovations {
+    /// On an even clock.
+    pub fn series(&self) -> GappedSeries {
+        GappedSeries::new(&self.time, &self.values, self.spacing)
+    }
 }
 
 /// What the structures leave.
@@ -47,7 +67,8 @@ impl Remainder {
     ) -> Self {
         let Some(best) = structures.all.first() else { return Self { holds: true, signature: None, empirical: None } };
         let is_held = |one: &RecordComparison| one.after.coverage().is_none_or(|own| own.is_held());
-        let holds = holds(problem, &best.fit.residual, &full.law) && identification.iter().all(is_held);
+        let innovations = innovations(problem, &best.fit.residual, &full.law);
+        let holds = are_noise(&innovations) && identification.iter().all(is_held);
         let [before, after] = squares(identification);
         let share = (after / before).sqrt();
         let is_noise = holds && !full.law.is_of_model() && !full.law.is_random_moment();
@@ -80,17 +101,22 @@ impl Remainder {
 /// Probability below which innovations are not those of the law.
 const IMPROBABLE: f64 = 1e-4;
 
-/// Whether a law describes the residual (rad) of every record: what is new in every heading, given those before it, is
-/// white (Ljung and Box 1978), of one variance, and without a single surprise.
-fn holds(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> bool {
+/// The residuals (rad) of all records, made white by a law.
+pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Vec<Innovations> {
     let weights = problem.weights(law);
-    let (mut even, mut series) = (1.0_f64, Vec::new());
-    for (number, (record, residual)) in problem.records.iter().zip(residual).enumerate() {
-        let mut white = residual.clone();
-        weights.apply(number, &mut [&mut white]);
-        let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
-        even = even.min(evenness(&white));
-        series.push(GappedSeries::new(&time, &white, record.spacing));
-    }
+    let of = |(number, (record, residual)): (usize, (&PreparedRecord, &Vec<f64>))| {
+        let mut values = residual.clone();
+        weights.apply(number, &mut [&mut values]);
+        let time = record.observed.iter().map(|&row| record.time[row]).collect();
+        Innovations { time, spacing: record.spacing, values }
+    };
+    problem.records.iter().zip(residual).enumerate().map(of).collect()
+}
+
+/// Whether innovations are those of their law: white (Ljung and Box 1978), of one variance, and without a single
+/// surprise.
+fn are_noise(all: &[Innovations]) -> bool {
+    let even = all.iter().map(|own| evenness(&own.values)).fold(1.0, f64::min);
+    let series: Vec<GappedSeries> = all.iter().map(Innovations::series).collect();
     whiteness(&series).p_value.min(even * series.len() as f64) > IMPROBABLE
 }

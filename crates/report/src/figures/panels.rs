@@ -252,7 +252,7 @@ impl Layer {
         Some(match &self.kind {
             LayerKind::Line(pen) => KeySample::Line(pen.stroke(theme)),
             LayerKind::Band(_, colour, _) => {
-                KeySample::Line(Stroke { opacity: shade, ..Stroke::solid(*colour, 0.8 * theme.small_font) })
+                KeySample::Area(Stroke { opacity: shade, ..Stroke::solid(*colour, 0.8 * theme.small_font) })
             }
             LayerKind::Record if self.curve.finite().next().is_none() => return None,
             LayerKind::Record => record_sample(theme, &self.curve),

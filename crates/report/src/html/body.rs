@@ -28,6 +28,10 @@ const LINKS: [&str; 3] = ["https://", "http://", "mailto:"];
 /// What is known while a page is read from top to bottom.
 struct BodyReader<'a, 'm> {
     images: &'a dyn Fn(&str) -> Images,
+    /// Titles of the parts that are closed at first.
+    folded: &'a [&'a str],
+    /// Whether such a part is being read, and whether its headline is.
+    fold: (bool, bool),
     room: Room,
     out: Vec<Event<'m>>,
     headings: Vec<PageHeading>,
@@ -42,11 +46,13 @@ struct BodyReader<'a, 'm> {
 }
 
 /// The body of a page.
-pub(super) fn of(markdown: &str, images: &dyn Fn(&str) -> Images) -> Body {
+pub(super) fn of(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> Images) -> Body {
     let events: Vec<Event> =
         Parser::new_ext(markdown, Options::ENABLE_TABLES | Options::ENABLE_STRIKETHROUGH).collect();
     let mut reader = BodyReader {
         images,
+        folded,
+        fold: (false, false),
         room: Room::new(),
         out: Vec::with_capacity(events.len()),
         headings: Vec::new(),
@@ -80,6 +86,14 @@ fn words(events: &[Event], start: usize) -> (String, usize) {
     (text, events.len())
 }
 
+/// The words of a paragraph that is emphasis from end to end, and the place behind it.
+fn emphasis(events: &[Event], place: usize) -> Option<(String, usize)> {
+    let is_begun = matches!(events.get(place)?, Event::Start(Tag::Paragraph))
+        && matches!(events.get(place + 1)?, Event::Start(Tag::Emphasis));
+    let (text, behind) = is_begun.then(|| words(events, place + 1))?;
+    matches!(events.get(behind)?, Event::End(TagEnd::Paragraph)).then_some((text, behind + 1))
+}
+
 impl<'m> BodyReader<'_, 'm> {
     fn read(&mut self, events: Vec<Event<'m>>) {
         let mut place = 0;
@@ -98,13 +112,21 @@ impl<'m> BodyReader<'_, 'm> {
             }
             place += 1;
         }
+        self.end_fold();
+    }
+
+    /// Ends a part that is closed at first, where one is being read.
+    fn end_fold(&mut self) {
+        if std::mem::take(&mut self.fold).0 {
+            self.html("</details>\n");
+        }
     }
 
     fn html(&mut self, html: impl Into<CowStr<'m>>) {
         self.out.push(Event::Html(html.into()));
     }
 
-    /// A paragraph that is an image and nothing else, and the paragraph after it that repeats its caption.
+    /// A paragraph that is an image and nothing else, and the paragraph of emphasis after it, which is its caption.
     fn figure(&mut self, events: &[Event], place: usize) -> Option<usize> {
         let (Event::Start(Tag::Paragraph), Event::Start(Tag::Image { dest_url, .. })) =
             (&events[place], events.get(place + 1)?)
@@ -112,18 +134,16 @@ impl<'m> BodyReader<'_, 'm> {
             return None;
         };
         let stem = dest_url.strip_suffix(".png").filter(|stem| !stem.contains(['/', '\\', ':']))?;
-        let (caption, behind) = words(events, place + 1);
+        let (name, behind) = words(events, place + 1);
         if !matches!(events.get(behind)?, Event::End(TagEnd::Paragraph)) {
             return None;
         }
-        let images = (self.images)(stem);
-        let figure = self.room.figure(dest_url, &caption, &images);
-        self.html(figure);
         let next = behind + 1;
-        let is_image = matches!(events.get(next + 1), Some(Event::Start(Tag::Image { .. })));
-        let repeats = matches!(events.get(next), Some(Event::Start(Tag::Paragraph))) && !is_image;
-        let (text, end) = if repeats { words(events, next) } else { (String::new(), next) };
-        Some(if repeats && text.trim() == caption.trim() { end } else { next })
+        let (caption, end) = emphasis(events, next).unwrap_or_else(|| (name.clone(), next));
+        let images = (self.images)(stem);
+        let figure = self.room.figure(dest_url, [&name, &caption], &images);
+        self.html(figure);
+        Some(end)
     }
 
     fn heading(&mut self, level: HeadingLevel, text: String) {
@@ -139,7 +159,13 @@ impl<'m> BodyReader<'_, 'm> {
             number += 1;
         }
         let level = level as u8;
-        self.html(format!("<h{level} id=\"{}\">", escaped(&id)));
+        let is_folded = level == 2 && self.folded.contains(&text.as_str());
+        if level <= 2 {
+            self.end_fold();
+            self.fold = (is_folded, is_folded);
+        }
+        let open = if is_folded { "<details>\n<summary>" } else { "" };
+        self.html(format!("{open}<h{level} id=\"{}\">", escaped(&id)));
         self.section = text.clone();
         self.headings.push(PageHeading { level, id, text });
     }
@@ -162,7 +188,10 @@ impl<'m> BodyReader<'_, 'm> {
 
     fn event(&mut self, event: Event<'m>) {
         match event {
-            Event::End(TagEnd::Heading(level)) => self.html(format!("</h{}>\n", level as u8)),
+            Event::End(TagEnd::Heading(level)) => {
+                let close = if std::mem::take(&mut self.fold.1) { "</summary>" } else { "" };
+                self.html(format!("</h{}>{close}\n", level as u8));
+            }
             Event::Start(Tag::Table(alignments)) => {
                 self.alignments = alignments;
                 let section = escaped(&self.section);

@@ -40,32 +40,37 @@ impl Images {
     }
 }
 
-/// The room that is left for figures.
-pub(super) struct Room(usize);
+/// The room that is left for figures, bytes, and the figures that were placed.
+pub(super) struct Room {
+    bytes: usize,
+    figures: usize,
+}
 
 impl Room {
     pub(super) fn new() -> Self {
-        Self(ROOM)
+        Self { bytes: ROOM, figures: 0 }
     }
 
-    /// The figure with its caption; `file` is where its PNG is.
-    pub(super) fn figure(&mut self, file: &str, caption: &str, images: &Images) -> String {
-        let drawn = images.svg.as_deref().and_then(|svg| inline(svg, caption));
+    /// The figure with its name and its caption, which stands in the page once; `file` is where its PNG is.
+    pub(super) fn figure(&mut self, file: &str, [name, caption]: [&str; 2], images: &Images) -> String {
+        let id = format!("caption-{}", self.figures + 1);
+        let drawn = images.svg.as_deref().and_then(|svg| inline(svg, &id));
         let drawn = drawn.filter(|drawn| drawn.len() <= LARGEST_DRAWING);
+        let (file, name, caption) = (escaped(file), escaped(name), escaped(caption));
+        let name = if name == caption { "" } else { &name };
         let pixels = || {
             let encoded = STANDARD.encode(images.png.as_deref()?);
-            let caption = escaped(caption);
-            Some(format!("<img src=\"data:image/png;base64,{encoded}\" alt=\"{caption}\">"))
+            Some(format!("<img src=\"data:image/png;base64,{encoded}\" alt=\"{name}\">"))
         };
-        let fitting = |image: &String| image.len() <= self.0;
+        let fitting = |image: &String| image.len() <= self.bytes;
         let image = drawn.filter(fitting).or_else(|| pixels().filter(fitting));
-        let (file, caption) = (escaped(file), escaped(caption));
         match image {
             Some(image) => {
-                self.0 -= image.len();
+                self.bytes -= image.len();
+                self.figures += 1;
                 format!(
-                    "<figure>\n<div class=\"plot\" role=\"group\" tabindex=\"0\" aria-label=\"Figure: {caption}\">{image}\
-                     </div>\n<figcaption>{caption}</figcaption>\n</figure>\n"
+                    "<figure>\n<div class=\"plot\" role=\"group\" tabindex=\"0\" aria-labelledby=\"{id}\">{image}</div>\n\
+                     <figcaption id=\"{id}\">{caption}</figcaption>\n</figure>\n"
                 )
             }
             None => format!("<p>Figure: <a href=\"{file}\">{caption}</a></p>\n"),
@@ -73,14 +78,14 @@ impl Room {
     }
 }
 
-/// An SVG document as an element of a page: without the size and the name space that only a file needs.
+/// An SVG document as an element of a page, with the caption of an id: without the size and the name space that only a
+/// file needs.
 fn inline(svg: &str, caption: &str) -> Option<String> {
     let (head, shapes) = svg.split_once('>')?;
     let attribute = |name: &str| Some(head.split_once(&format!(" {name}=\""))?.1.split_once('"')?.0);
     let (view, width) = (attribute("viewBox")?, attribute("width")?);
     Some(format!(
-        "<svg viewBox=\"{view}\" style=\"max-width:{width}\" role=\"img\" aria-label=\"{}\">{}",
-        escaped(caption),
+        "<svg viewBox=\"{view}\" style=\"max-width:{width}\" role=\"img\" aria-labelledby=\"{caption}\">{}",
         shapes.trim_start()
     ))
 }

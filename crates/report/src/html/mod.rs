@@ -29,13 +29,14 @@ struct Page<'a> {
 
 /// The page of a report in Markdown (the GitHub flavour, tables included).
 ///
-/// `images` finds the drawing of a figure `![caption](stem.png)` by its stem; where it has none, or where the page
-/// would grow beyond what can be mailed, a link to the file stands in its place. HTML in the Markdown is shown, not
-/// obeyed.
+/// `images` finds the drawing of a figure `![name](stem.png)` by its stem; where it has none, or where the page would
+/// grow beyond what can be mailed, a link to the file stands in its place. A paragraph of nothing but emphasis below it
+/// is its caption. Parts whose titles are among `folded` are closed until a reader opens them. HTML in the Markdown is
+/// shown, not obeyed.
 ///
 /// Fails with [`ReportError::Page`] when the page cannot be filled in.
-pub fn page(markdown: &str, images: &dyn Fn(&str) -> Images) -> Result<String, ReportError> {
-    let body = body::of(markdown, images);
+pub fn page(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> Images) -> Result<String, ReportError> {
+    let body = body::of(markdown, folded, images);
     let contents: Vec<PageHeading> = body.headings.iter().filter(|one| matches!(one.level, 2 | 3)).cloned().collect();
     let title = body.headings.first().map_or("Report", |first| &first.text);
     let page = Page { title, style: STYLE, script: SCRIPT, contents: &contents, body: &body.html };

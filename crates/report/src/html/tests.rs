@@ -21,7 +21,7 @@ fn images(stem: &str) -> Images {
 }
 
 fn made(markdown: &str) -> String {
-    page(markdown, &images).expect("a page")
+    page(markdown, &["Last"], &images).expect("a page")
 }
 
 #[test]
@@ -54,7 +54,8 @@ fn every_name_is_given_once() {
 #[test]
 fn figures_stand_with_their_caption_once() {
     let page = made(PAGE);
-    assert_eq!(page.matches("<figcaption>A curve of ψ</figcaption>").count(), 1);
+    assert_eq!(page.matches(">A curve of ψ</figcaption>").count(), 1);
+    assert_eq!(page.matches("A curve of ψ").count(), 1, "neither beside it nor as the name of the image");
     assert!(!page.contains("<em>A curve of ψ</em>") && page.contains("<p>Words.</p>"));
     assert!(page.contains("<svg viewBox=\"0 0 9 9\"") && !page.contains("xmlns"));
     assert!(page.contains("<a href=\"gone.png\">Gone</a>"));
@@ -73,4 +74,15 @@ fn a_page_can_be_mailed() {
     assert!(page.len() < 2_000_000, "{}", page.len());
     assert_eq!(page.matches("<figure>").count(), 1);
     assert_eq!(page.matches("<a href=\"huge.png\">One of many</a>").count(), 4);
+}
+
+#[test]
+fn a_part_that_is_folded_ends_with_the_next_part() {
+    let page = made("# A study\n\n## First\n\nOne.\n\n## Last\n\nTwo.\n\n### Below\n\nThree.\n\n## Behind\n\nFour.\n");
+    let part = page.split("<details>\n<summary>").last().and_then(|rest| rest.split("</details>").next());
+    let part = part.expect("a folded part");
+    assert!(part.starts_with("<h2 id=\"last\">Last</h2></summary>") && part.contains("Three."), "{page}");
+    assert!(!part.contains("One.") && !part.contains("Four."), "{page}");
+    let last = made("# A study\n\n## Last\n\nTwo.\n");
+    assert_eq!(last.matches("<details>").count(), last.matches("</details>").count());
 }

@@ -1,9 +1,10 @@
-//! The curves of a trace beside `trace.json`: every record with the replays before and after, and the moment that the
-//! base lacks. They are written after the analysis, and figures are drawn from what is read back.
+//! The curves of a trace beside `trace.json`: every record with the replays before and after, its innovations, and the
+//! moment that the base lacks. They are written after the analysis, and figures are drawn from what is read back.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use ::trace::Innovations;
 use ::trace::comparison::RecordComparison;
 use campaign::curves::degrees;
 use identify::replay::Replay;
@@ -22,6 +23,9 @@ pub struct TracedRecord {
     pub replays: [Replay; 2],
     /// Half the width of the 95 % band of the second at its rows, rad.
     pub band: Option<Vec<f64>>,
+    /// Times, s, of the innovations of the most probable structure, and these in standard deviations, where it was
+    /// fitted.
+    pub innovations: Option<[Vec<f64>; 2]>,
 }
 
 /// All curves of a trace.
@@ -60,6 +64,18 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
     columns.text()
 }
 
+/// Columns of [`innovations`].
+const INNOVATIONS: [&str; 2] = ["t_s", "innovation_sd"];
+
+/// The table of the innovations of a record.
+pub fn innovations(own: &Innovations) -> String {
+    let mut columns = CurveTable::default();
+    for (name, values) in INNOVATIONS.into_iter().zip([&own.time, &own.values]) {
+        columns.push(name, values.clone());
+    }
+    columns.text()
+}
+
 /// The record of a table. `None` where the table is not one of [`table`].
 fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
     let columns = CurveTable::read(text)?;
@@ -87,7 +103,7 @@ fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
     let band = rows(String::from("after_half_width95_deg"));
     let origin = Origin::Measured { file: entry.file.clone(), sha256: String::new() };
     let trial = Trial::new(&entry.name, origin, Channels { time, channels, unknown: Vec::new() }).ok()?;
-    Some(TracedRecord { trial, replays, band })
+    Some(TracedRecord { trial, replays, band, innovations: None })
 }
 
 /// What a table of a trace holds. Fails when it is not what the analysis wrote; `place` is where it is.
@@ -115,7 +131,13 @@ impl TraceCurves {
         let columns = |name: &str| table(name).and_then(|(text, place)| read(&text, &place, CurveTable::read));
         let records = document.records.iter().map(|entry| {
             let (text, place) = table(&entry.curves)?;
-            read(&text, &place, |text| record(entry, text))
+            let own = read(&text, &place, |text| record(entry, text))?;
+            let numbers = |name: &String| {
+                let columns = columns(name)?;
+                Ok(INNOVATIONS.map(|name| columns.get(name).cloned().unwrap_or_default()))
+            };
+            let innovations = entry.innovations.as_ref().map(numbers).transpose()?;
+            Ok(TracedRecord { innovations, ..own })
         });
         let moments =
             document.missing_moment.iter().map(|entry| Ok([columns(&entry.moment)?, columns(&entry.curves)?]));

@@ -14,6 +14,9 @@ use crate::records::names;
 /// Name of the file.
 pub const TRACE: &str = "trace.json";
 
+/// Records whose names are a title; one more stands there, too.
+const TITLED: usize = 2;
+
 /// `trace.json`: words, tables and figures are made from it and from the curves that it names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TraceDocument {
@@ -45,6 +48,9 @@ pub struct RecordEntry {
     pub held_out: bool,
     /// The table of the record and its replays.
     pub curves: String,
+    /// The table of its innovations, where it was fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub innovations: Option<String>,
     /// Length of its ship, where it is known, m.
     pub length_m: Option<f64>,
     /// Approach speed of its ship, where it is known, m/s.
@@ -90,10 +96,14 @@ impl TraceDocument {
         self.records.iter().map(|record| record.name.clone()).collect()
     }
 
-    /// Names of the fitted records.
+    /// Names of the fitted records, of many the first.
     pub fn title(&self) -> String {
         let fitted = self.records.iter().filter(|record| !record.held_out);
-        fitted.map(|record| record.name.as_str()).collect::<Vec<_>>().join(", ")
+        let names: Vec<&str> = fitted.map(|record| record.name.as_str()).collect();
+        match names.len().saturating_sub(TITLED) {
+            0 | 1 => names.join(", "),
+            more => format!("{} and {more} more", names[..TITLED].join(", ")),
+        }
     }
 
     /// Errors on all records, `(fitted, judged)`: a judged record was held out, or left out in turn.

@@ -23,20 +23,29 @@ const FILES: &str = "`fit.json` has all of it with all digits: the records with 
                      method with its estimates, intervals, warnings and diagnostics, and what is known of the ship for \
                      `study predict`.";
 
+/// Stem of the figure that begins the page: every answer replayed on the first record.
+const FIRST: &str = "replays";
+
 /// `report.md` with its figures.
 pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     let mut page = Page::titled("Identification");
     if let Some(words) = verdict(document) {
-        page.say(text(&words));
+        let (first, rest) = words.split_once('\n').unwrap_or((&words, ""));
+        page.say(format!("**{}**", text(first)));
+        page.words(rest);
     }
     page.words(&headline(document, curves));
+    let mut figures = fit_figures::figures(document, curves);
+    // The answers over the first record tell most; every other figure can wait.
+    let first = figures.iter().position(|figure| figure.stem == FIRST).map(|place| figures.remove(place));
+    page.figures(first);
     page.part("Methods");
     page.table(answers(document, curves));
     page.say(MODEL);
     page.say(FILES);
     let notes = notes(document, curves);
     if !notes.trim().is_empty() {
-        page.part("Records");
+        page.folded_part("Records");
         let entry = |line: &str| {
             let place = if line.starts_with("  ") { "  - " } else { "- " };
             format!("{place}{}", text(line.trim()))
@@ -46,7 +55,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     }
     let scales = scales(document);
     if !scales.is_empty() {
-        page.part("Without dimension");
+        page.folded_part("Without dimension");
         for (words, table) in scales {
             page.say(words);
             table.into_iter().for_each(|table| page.table(table));
@@ -54,12 +63,16 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     }
     for (title, entries) in [("Warnings", document.ranked_warnings()), ("Notes", document.notes())] {
         if !entries.is_empty() {
-            page.part(title);
+            if title == "Notes" {
+                page.folded_part(title)
+            } else {
+                page.part(title)
+            }
             page.list(entries.iter().map(|entry| text(entry)));
         }
     }
-    page.part("Figures");
-    page.figures(fit_figures::figures(document, curves));
+    page.folded_part("Figures");
+    page.figures(figures);
     page
 }
 

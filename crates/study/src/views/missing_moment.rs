@@ -29,6 +29,7 @@ fn percent(share: Option<f64>) -> String {
     match share {
         None => String::from("nothing to explain"),
         Some(share) if share > 0.99 => String::from("explains more than 99 %"),
+        Some(share) if share < 0.01 => String::from("explains less than 1 %"),
         Some(share) => format!("explains {:.0} %", 100.0 * share),
     }
 }

@@ -25,7 +25,7 @@ pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> R
         None => page.without_figures(),
     };
     let markdown = page.to_markdown();
-    let browser = html::page(&markdown, &|stem| Images::written(folder.path(), stem));
+    let browser = html::page(&markdown, &page.folded(), &|stem| Images::written(folder.path(), stem));
     folder.write(REPORT, markdown)?;
     folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
 }

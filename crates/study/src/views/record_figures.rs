@@ -32,8 +32,8 @@ pub fn rudder(name: &str, curve: PlotCurve, height: f64) -> (PanelRow, Vec<Layer
     (PanelRow::zeroed(Ruler::rudder(), height), vec![Layer::line(name, curve, Pen::new(RUDDER))])
 }
 
-/// Heading with models, residuals and rudder over one time axis.
-pub fn over_time(title: String, heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOverTime>) -> Panels {
+/// The heading of a record with models of it, and what these leave: the layers of two panels.
+pub fn heading_and_residual(heading: PlotCurve, models: Vec<ModelOverTime>) -> [Vec<Layer>; 2] {
     let mut upper = vec![Layer::new("recorded heading", heading, LayerKind::Record)];
     let mut middle = Vec::new();
     // A band that is wider than everything else is cut at the frame: it would flatten the record.
@@ -52,6 +52,12 @@ pub fn over_time(title: String, heading: PlotCurve, rudder_deg: PlotCurve, model
         upper.push(heading.within(0.0));
         middle.push(residual.within(0.0));
     }
+    [upper, middle]
+}
+
+/// Heading with models, residuals and rudder over one time axis.
+pub fn over_time(title: String, heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOverTime>) -> Panels {
+    let [upper, middle] = heading_and_residual(heading, models);
     let residual = PanelRow::zeroed(Ruler::new("residual [°]", Division::Angle), 0.14);
     let rows = vec![
         (PanelRow::new(Ruler::heading(), 0.28), upper),

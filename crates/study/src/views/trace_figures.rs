@@ -1,10 +1,11 @@
 //! Figures of a trace, from its document and its curves: every record with the model before and after, errors on
-//! records that were not fitted, the evidence, the moment that the base lacks, and the residuals from several sides.
+//! records that were not fitted, the evidence, the innovations, the moment that the base lacks, and the residuals from
+//! several sides.
 
 use ::trace::document::{BeforeAfter, ErrorsEntry, Outcome};
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use campaign::curves::{curve, degrees, phase_curve, phase_of};
-use estimation::residuals::{GappedSeries, SpectralLine, autocorrelation, spectrum};
+use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
 use identify::replay::Replay;
 use report::figures::{
     AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler, Stack,
@@ -16,14 +17,11 @@ use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
-use super::missing_moment;
 use super::record_figures::{ModelOverTime, over_time, phase_plane};
 use super::trace_tables::{horizon, term};
+use super::{innovation_figure, missing_moment};
 use crate::documents::curves::{TraceCurves, TracedRecord};
 use crate::documents::trace::{RecordEntry, TraceDocument, slugs, suffix};
-
-/// Lags of the autocorrelation, at least where the record has them and at most.
-const LAGS: [usize; 2] = [60, 4000];
 
 /// Lines of a spectrum whose frequencies differ by no more than this factor are averaged into one.
 const LINE: f64 = 1.06;
@@ -38,12 +36,26 @@ pub fn records(document: &TraceDocument, curves: &TraceCurves) -> [Vec<PageFigur
         let name = &entry.name;
         let ratio = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
         let held = if entry.held_out { ", held out" } else { "" };
-        let data = record_fit(record, errors, format!("{name}{held}: heading error after / before {ratio}"));
+        let data =
+            record_fit(record, errors, format!("{name}{held}: error of the heading × {ratio} over the whole replay"));
         let caption = format!("{name}{held}: heading, residual and rudder, with the 95 % band of the model after.");
         let figure = PageFigure::new(format!("record{}", suffix(&names, number)), caption, data);
         figures[usize::from(entry.held_out)].push(figure);
     }
     figures
+}
+
+/// The innovations of every fitted record.
+pub fn innovations(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
+    let names = document.names();
+    let figure = |(number, record): (usize, &TracedRecord)| {
+        innovation_figure::figure(
+            format!("innovations{}", suffix(&names, number)),
+            &names[number],
+            record.innovations.as_ref()?,
+        )
+    };
+    curves.records.iter().enumerate().filter_map(figure).collect()
 }
 
 /// The moment that the base lacks on every fitted record.
@@ -74,7 +86,7 @@ pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
         figures.push(PageFigure::new(format!("phase{suffix}"), caption, data));
         if !held_out {
             let caption = format!(
-                "{name}: the residual against time, heading, yaw rate and rudder, its spectrum and autocorrelation."
+                "{name}: the residual of the whole replay against heading, yaw rate and rudder, and its spectrum."
             );
             figures.push(PageFigure::new(format!("residual{suffix}"), caption, residual(record, name)));
         }
@@ -87,9 +99,10 @@ fn models(record: &TracedRecord) -> [(CurveOrigin, &Replay); 2] {
     [(CurveOrigin::Before, before), (CurveOrigin::After, after)]
 }
 
-/// A record with the models before and after.
-fn record_fit(record: &TracedRecord, errors: &BeforeAfter, title: String) -> Panels {
-    let (trial, after) = (&record.trial, &record.replays[1]);
+/// The models before and after of a record over time, the latter with its band; `rms` are their errors, degrees, where
+/// they are to be said.
+pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<ModelOverTime> {
+    let after = &record.replays[1];
     // The ends of the band about some headings.
     let about = |band: &[f64], middle: &dyn Fn(usize) -> f64| {
         [-1.0, 1.0].map(|side| {
@@ -98,16 +111,29 @@ fn record_fit(record: &TracedRecord, errors: &BeforeAfter, title: String) -> Pan
         })
     };
     let band = record.band.as_ref().map(|own| [about(own, &|row| after.heading[row]), about(own, &|_| 0.0)]);
-    let rms = [errors.before.heading_rmse_deg, errors.after.heading_rmse_deg];
-    let model = |((origin, replay), rms): ((CurveOrigin, &Replay), f64)| ModelOverTime {
+    let model = |(number, (origin, replay)): (usize, (CurveOrigin, &Replay))| ModelOverTime {
         band: band.clone().filter(|_| origin == CurveOrigin::After),
         origin,
         heading: curve(&replay.time, &replay.heading),
         residual: curve(&replay.time, &replay.residual),
-        rms_deg: Some(rms),
+        rms_deg: rms.map(|rms| rms[number]),
     };
+    models(record).into_iter().enumerate().map(model).collect()
+}
+
+/// A record with the models before and after.
+fn record_fit(record: &TracedRecord, errors: &BeforeAfter, title: String) -> Panels {
+    let trial = &record.trial;
+    let rms = [errors.before.heading_rmse_deg, errors.after.heading_rmse_deg];
     let (heading, rudder) = (curve(trial.time(), trial.heading()), curve(trial.time(), trial.rudder()));
-    over_time(title, heading, rudder, models(record).into_iter().zip(rms).map(model).collect())
+    over_time(title, heading, rudder, models_over_time(record, Some(rms)))
+}
+
+/// The ratio of the heading errors of some records, after over before.
+pub fn ratio<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> f64 {
+    let square =
+        |of: fn(&BeforeAfter) -> &ErrorsEntry| all.clone().map(|one| of(one).heading_rmse_deg.powi(2)).sum::<f64>();
+    (square(|one| &one.after) / square(|one| &one.before)).sqrt()
 }
 
 /// Errors on records that were not fitted, from zero, so that a ratio can be seen; `None` where there are none.
@@ -125,8 +151,12 @@ pub fn held_out(document: &TraceDocument) -> Option<PageFigure> {
     };
     let mut columns = vec![column(String::from("whole replay [°]"), &|own| Some(own.heading_rmse_deg))];
     columns.extend(HORIZONS.map(|length| column(format!("every {length:.0} s [°]"), &move |own| horizon(own, length))));
+    let count = judged.len();
+    let records = if count == 1 { "record that was" } else { "records that were" };
+    let title =
+        format!("Heading error × {:.2} on {count} {records} not fitted", ratio(judged.iter().map(|one| one.errors)));
     let data = NamedRows {
-        title: Some(String::from("Error of the heading on records that were not fitted")),
+        title: Some(title),
         names: judged.iter().map(|one| format!("{}, {}", one.name, one.used)).collect(),
         columns,
         note: None,
@@ -226,7 +256,7 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
     Some(PageFigure::new("overshoots", caption, NamedRows { title, names, columns: vec![column], note: None }))
 }
 
-/// The residual before and after from all sides.
+/// The residual before and after from several sides.
 fn residual(record: &TracedRecord, name: &str) -> Panels {
     let trial: &Trial = &record.trial;
     let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);
@@ -245,32 +275,18 @@ fn residual(record: &TracedRecord, name: &str) -> Panels {
     };
     let series = |replay: &Replay| GappedSeries::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
     let period = ZigZag::of(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
-    let rows = series(&record.replays[0]).values.len();
-    let band = 1.96 / (rows as f64).sqrt();
-    let lags = |replay: &Replay| {
-        let series = series(replay);
-        // A little more than a period, which shows at its lag what the manoeuvre repeats.
-        let wanted = period.map_or(rows / 3, |period| (1.1 * period / series.spacing) as usize);
-        let points = autocorrelation(&series, wanted.clamp(LAGS[0], LAGS[1]).min(rows / 2)).into_iter();
-        let (lags, values): (Vec<f64>, Vec<f64>) =
-            points.map(|one| (one.lag as f64 * series.spacing, one.value)).unzip();
-        PlotCurve::new(lags, values)
-    };
     let frequency = Ruler::new("frequency [Hz]", Division::Factors);
     let density = Ruler::new("power [°²/Hz]", Division::Factors);
     let spectrum = stack(frequency, density, true, &|replay| power(&series(replay)));
-    let mut correlation = stack(Ruler::decimal("lag [s]"), Ruler::decimal("autocorrelation"), true, &lags);
-    correlation.rows[0].levels = vec![-band, band];
-    let marks = |at: Option<f64>| at.map(|at| AxisLine { at, label: String::from("period") }).into_iter().collect();
+    let mark = period.map(|period| AxisLine { at: period.recip(), label: String::from("period") });
     let stacks = vec![
-        against("time [s]", &|replay| replay.time.clone()),
         against("heading [°]", &|replay| degrees(&replay.heading)),
         against("yaw rate [°/s]", &|replay| degrees(&replay.yaw_rate)),
         against("rudder [°]", &|replay| degrees(&trial.rudder()[first..first + replay.time.len()])),
-        Stack { marks: marks(period.map(f64::recip)), ..spectrum },
-        Stack { marks: marks(period), ..correlation },
+        Stack { marks: mark.into_iter().collect(), ..spectrum },
     ];
-    Panels { title: Some(name.to_owned()), stacks, ..Panels::default() }
+    let title = format!("{name}: residual of the whole replay");
+    Panels { title: Some(title), stacks, ..Panels::default() }
 }
 
 /// Points of a cloud, not more than a figure can show.

@@ -11,6 +11,7 @@ use ship::vessel::prime::meaning;
 
 use super::record_figures::steady_turns;
 use super::trace_figures as figures;
+use super::trace_hero;
 use super::trace_tables as tables;
 use crate::documents::curves::TraceCurves;
 use crate::documents::trace::TraceDocument;
@@ -113,9 +114,12 @@ fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
     parameters.iter().filter(|own| own.at_bound).map(of).collect()
 }
 
-const JUDGED: &str = "Nothing but the initial state is fitted to a record here. *Held out*: no number above depends \
-                      on the record. *Left out*: base and model are fitted to the other records. *Every 20 s*: the \
-                      replay begins anew so often.";
+const JUDGED: &str = "Nothing but the initial state is fitted to a record here. *Held out*: the record took no part in the \
+                      analysis. *Left out*: base and model are fitted to the other records.";
+
+const ERRORS: &str = "*Heading*: the recorded rudder replayed over the whole record. *Every 20 s*: the replay begins anew so \
+                      often. *After/before* is the ratio of the errors of the whole replay. ΔBIC, below, weighs every \
+                      heading given those before it: it may fall where a whole replay gains nothing.";
 
 const EVIDENCE: &str = "The probability of an effect is the weight of all structures that have it. ΔBIC is −2 log of \
                         the ratio of the evidence with the effect to that without: negative where the effect helps. \
@@ -130,56 +134,36 @@ const HULLS: &str = "Hulls of three degrees of freedom, fitted about what the di
 const CANDIDATES: &str = "Visibility is the expected square of the size of an effect over its error beside all other \
                           candidates: what is small here cannot be seen in these records.";
 
-/// `report.md` with its figures; `turns` are the steady turns of the model.
+/// `report.md` with its figures; `turns` are the steady turns of the model. The finding, the figure that shows it and
+/// what it is worth on other records come first; what they rest on is folded.
 pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
-    let trace = &document.trace;
     let mut page = Page::titled(format!("Trace of {}", document.title()));
-    let table = |page: &mut Page, title: &str, table: Table, words: &str| {
-        page.part(title);
-        page.table(table);
-        page.say(words);
-    };
-    page.say(format!("**{}**", trace.headline));
+    page.say(format!("**{}**", document.trace.headline));
     page.say(document.scales.as_ref().map_or_else(String::new, |scales| format!("{scales}.")));
     let [of_fitted, of_held_out] = figures::records(document, curves);
-    page.figures(of_fitted);
-    let (fitted, judged) = document.errors();
-    if !judged.is_empty() {
-        table(&mut page, "Records that were not fitted", tables::errors(&judged), JUDGED);
-        page.figures(figures::held_out(document));
-        page.figures(of_held_out);
+    let mut records = of_fitted.into_iter().chain(of_held_out);
+    let first = trace_hero::figure(document, curves).or_else(|| records.next());
+    page.figures(first);
+    if let Some(figure) = figures::held_out(document) {
+        page.part("Records that were not fitted");
+        page.figures([figure]);
+        page.say(JUDGED);
     }
-    page.part("Evidence");
-    page.figures([figures::evidence(document)]);
-    table(&mut page, "Structures", tables::structures(document), EVIDENCE);
-    page.say(format!(
-        "{} candidates; prior probability of an effect {}, of a moment of time in one record {}; rule: {}.",
-        trace.prior.candidates,
-        significant(trace.prior.probability, 2),
-        significant(trace.prior.probability_of_time, 2),
-        trace.prior.rule,
-    ));
-    if !trace.effects.is_empty() {
-        table(&mut page, "Effects", tables::effects(document), "");
-    }
-    for effect in &trace.effects {
-        page.say(format!("**{} ({})**: `{}`. {}", effect.id, effect.form, effect.equation, effect.evidence));
-    }
-    table(&mut page, "Fitted records", tables::errors(&fitted), "");
-    table(&mut page, "Candidates", tables::candidates(document), CANDIDATES);
-    formulas(document, "`").for_each(|typed| page.say(format!("{typed}.")));
-    table(&mut page, "Noise", tables::noise(document), "");
-    table(&mut page, "Model", tables::parameters(document), &model(document));
-    hulls_and_what_is_left(&mut page, document);
-    table(&mut page, "Aliases and blind spots", aliases(document), "");
+    what_is_left(&mut page, document);
     page.part("Next trial");
-    page.say(&trace.next_trial);
+    page.say(&document.trace.next_trial);
+    page.folded_part("Every record");
+    page.table(all_errors(document));
+    page.say(ERRORS);
+    page.figures(records);
+    evidence(&mut page, document, curves);
+    model_and_noise(&mut page, document);
     let moments = figures::moments(document, curves);
     if !moments.is_empty() {
-        page.part("The yaw moment that the base lacks");
+        page.folded_part("The yaw moment that the base lacks");
         page.figures(moments);
     }
-    page.part("Further figures");
+    page.folded_part("Further figures");
     page.figures(figures::overshoots(document, curves));
     page.figures(turns.map(|(curves, seen)| {
         let caption = "Steady yaw rate against rudder of the model, an unstable branch dashed; thin: ships that the records \
@@ -187,22 +171,70 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
         PageFigure::new("steady", caption, steady_turns(curves, *seen))
     }));
     page.figures(figures::further(document, curves));
+    settings(&mut page, document);
     page
 }
 
-/// The hulls, and what no effect explains.
-fn hulls_and_what_is_left(page: &mut Page, document: &TraceDocument) {
+/// What speaks for and against every effect, and whether what is left is noise.
+fn evidence(page: &mut Page, document: &TraceDocument, curves: &TraceCurves) {
+    let trace = &document.trace;
+    let table = |page: &mut Page, title: &str, table: Table, words: &str| {
+        page.subpart(title);
+        page.table(table);
+        page.say(words);
+    };
+    page.folded_part("Evidence");
+    page.figures([figures::evidence(document)]);
+    page.say(EVIDENCE);
+    page.figures(figures::innovations(document, curves));
+    if !trace.effects.is_empty() {
+        table(page, "Effects", tables::effects(document), "");
+    }
+    for effect in &trace.effects {
+        page.say(format!("**{} ({})**: `{}`. {}", effect.id, effect.form, effect.equation, effect.evidence));
+    }
+    table(page, "Structures", tables::structures(document), "");
+    table(page, "Candidates", tables::candidates(document), CANDIDATES);
+    formulas(document, "`").for_each(|typed| page.say(format!("{typed}.")));
+    table(page, "Aliases and blind spots", aliases(document), "");
+}
+
+/// The parameters, the noise and the hulls.
+fn model_and_noise(page: &mut Page, document: &TraceDocument) {
+    page.folded_part("Model");
+    page.table(tables::parameters(document));
+    page.say(model(document));
+    page.subpart("Noise");
+    page.table(tables::noise(document));
     if !document.ship.hulls.is_empty() {
-        page.part("The hull behind the response");
+        page.subpart("The hull behind the response");
         page.table(tables::hulls(document));
         page.say(document.earlier_trials.as_ref().map_or_else(String::new, |prior| text(&prior.sentence())));
         page.say(HULLS);
     }
+}
+
+/// How the structures were weighed.
+fn settings(page: &mut Page, document: &TraceDocument) {
+    let prior = &document.trace.prior;
+    page.folded_part("Settings");
+    page.say(format!(
+        "{} candidates; prior probability of an effect {}, of a moment of time in one record {}; named from a probability of \
+         {}; rule: {}.",
+        prior.candidates,
+        significant(prior.probability, 2),
+        significant(prior.probability_of_time, 2),
+        significant(prior.named_from, 2),
+        prior.rule,
+    ));
+}
+
+/// The noise, and what no effect explains.
+fn what_is_left(page: &mut Page, document: &TraceDocument) {
+    page.part("What is left");
+    page.say(format!("Noise: {}.", noise(document)));
     let unexplained = &document.trace.unexplained;
-    if let Some(signature) = &unexplained.signature {
-        page.part("What is left");
-        page.say(format!("{signature}."));
-    }
+    page.say(unexplained.signature.as_ref().map_or_else(String::new, |signature| format!("{signature}.")));
     if let Some(own) = &unexplained.empirical {
         let values: Vec<String> = own.parameters.iter().map(tables::value).collect();
         page.say(format!(

@@ -14,6 +14,7 @@ use trial::{Channel, Trial};
 use super::earlier::{self, EarlierModel};
 use super::planned;
 use crate::documents::curves::{self, TraceCurves};
+use crate::documents::missing_moment::MissingMomentEntry;
 use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
 use crate::documents::{self, missing_moment};
 use crate::interrupt;
@@ -106,11 +107,13 @@ pub fn trace(
     warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
     let all = records.iter().chain(others);
     let names = names(trials.iter().chain(&held_out).map(Trial::name));
+    let innovations = analysis.innovations();
     let entry = |((number, own), name): ((usize, &Trial), &String)| RecordEntry {
         name: name.clone(),
         file: file_of(own).0.to_owned(),
         held_out: number >= trials.len(),
         curves: format!("replay{}.csv", suffix(&names, number)),
+        innovations: innovations.get(number).map(|_| format!("innovations{}.csv", suffix(&names, number))),
         length_m: own.particulars().map(|ship| ship.length),
         speed_m_s: own.particulars().map(|ship| ship.speed),
     };
@@ -119,18 +122,10 @@ pub fn trace(
     let compared = trials.iter().chain(&held_out).zip(comparisons);
     let tables = compared.map(|(trial, comparison)| curves::table(trial, comparison));
     let mut tables: Vec<(String, String)> = entries.iter().map(|entry| entry.curves.clone()).zip(tables).collect();
-    let explains = analysis.structures.members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
-    let mut moments = Vec::new();
-    let slugs = slugs(&names);
-    for (number, missing) in analysis.missing_moments().iter().enumerate() {
-        let Some(missing) = missing else { continue };
-        let stem = format!("missing-moment-{}", slugs[number]);
-        let words = [entries[number].file.as_str(), &names[number], &stem];
-        let entry = missing_moment::entry(missing, words, analysis.document.verdict, explains);
-        tables.push((entry.moment.clone(), missing_moment::over_time(missing)));
-        tables.push((entry.curves.clone(), missing_moment::over_channels(missing)));
-        moments.push(entry);
-    }
+    let innovations = entries.iter().zip(&innovations);
+    tables.extend(innovations.filter_map(|(entry, own)| Some((entry.innovations.clone()?, curves::innovations(own)))));
+    let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
+    tables.extend(curves_of_moments);
     let ship = known::of_analysis(&analysis, &shown);
     warnings.extend(ship.rudder_logged_late().map(rudder_logged_late));
     let document = TraceDocument {
@@ -142,6 +137,26 @@ pub fn trace(
         trace: ::trace::Document { next_trial: next_trial(&analysis, &trials), ..analysis.document },
     };
     Ok(TraceResult { document, tables })
+}
+
+/// The moments that the base lacks on the fitted records, and their tables under the names of their files.
+fn missing_moments(
+    analysis: &Analysis,
+    entries: &[RecordEntry],
+    slugs: &[String],
+) -> (Vec<MissingMomentEntry>, Vec<(String, String)>) {
+    let explains = analysis.structures.members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
+    let (mut moments, mut tables) = (Vec::new(), Vec::new());
+    for ((record, slug), missing) in entries.iter().zip(slugs).zip(analysis.missing_moments()) {
+        let Some(missing) = missing else { continue };
+        let stem = format!("missing-moment-{slug}");
+        let words = [record.file.as_str(), &record.name, &stem];
+        let entry = missing_moment::entry(&missing, words, analysis.document.verdict, explains);
+        tables.push((entry.moment.clone(), missing_moment::over_time(&missing)));
+        tables.push((entry.curves.clone(), missing_moment::over_channels(&missing)));
+        moments.push(entry);
+    }
+    (moments, tables)
 }
 
 /// Why there is no trace of some records.

@@ -72,16 +72,26 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     let errors = &json["error"]["identification"][0];
     assert!(errors["after"]["heading_rmse_deg"].as_f64() < errors["before"]["heading_rmse_deg"].as_f64());
     let report = desk.text("run-trace/report.md");
-    for part in ["Records that were not fitted", "Evidence", "Effects", "Candidates", "Noise", "Model", "Next trial"] {
-        assert!(report.contains(&format!("## {part}")), "{part}");
+    let parts =
+        ["Records that were not fitted", "What is left", "Next trial", "Every record", "Evidence", "Model", "Settings"];
+    let found: Vec<usize> = parts.iter().filter_map(|part| report.find(&format!("\n## {part}\n"))).collect();
+    assert!(found.len() == parts.len() && found.is_sorted(), "{found:?}");
+    for part in ["Effects", "Candidates", "Noise"] {
+        assert!(report.contains(&format!("\n### {part}\n")), "{part}");
     }
-    for figure in ["record", "residual", "evidence", "record-other", "held-out", "phase"] {
+    let figures = ["hero", "record", "residual", "evidence", "innovations", "record-other", "held-out", "phase"];
+    for figure in figures {
         assert!(desk.path(&format!("run-trace/{figure}.png")).exists(), "{figure}");
         assert!(report.contains(&format!("({figure}.png)")), "{figure}");
     }
     let page = include_str!("../../../../docs/src/reference/results.md");
-    let tables =
-        [("replay", 100), ("replay-other", 100), ("missing-moment-run", 100), ("missing-moment-run-curves", 20)];
+    let tables = [
+        ("replay", 100),
+        ("replay-other", 100),
+        ("innovations", 100),
+        ("missing-moment-run", 100),
+        ("missing-moment-run-curves", 20),
+    ];
     for (file, rows) in tables {
         let table = desk.text(&format!("run-trace/{file}.csv"));
         let head = table.lines().next().unwrap_or_default();
@@ -94,6 +104,36 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
         }
         assert!(table.lines().count() > rows, "{file}.csv: {head}");
     }
+}
+
+/// Whoever opens the page reads the finding with both ratios and sees it before any table; what it rests on is closed
+/// at first, and a caption stands there once.
+#[test]
+fn the_page_begins_with_the_finding_and_its_figure() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv_of(&second_order()));
+    desk.file("other.csv", zig_zag_csv_of(&second_order()));
+    desk.run(&["trace", "run.csv", "--validate", "other.csv", "--out", "t", "--quiet"]).is_done();
+    let report = desk.text("t/report.md");
+    let mut paragraphs = report.split("\n\n");
+    let (title, headline) = (paragraphs.next().unwrap_or_default(), paragraphs.next().unwrap_or_default());
+    assert!(title.starts_with("# Trace of run"), "{title}");
+    for part in
+        ["**The first-order response lacks second_order", " (× 0.", "held out × 0.", "; in windows of 60 s × 0."]
+    {
+        assert!(headline.contains(part), "{part}: {headline}");
+    }
+    assert_eq!(paragraphs.next(), Some("![Figure 1](hero.png)"));
+    let [caption, table, held_out] = ["*Figure 1. ", "\n| ", "(held-out.png)"].map(|what| report.find(what));
+    assert!(caption < held_out && held_out < table && caption.is_some(), "{caption:?} {held_out:?} {table:?}");
+    let page = desk.text("t/report.html");
+    let (shown, folded) = page.split_once("<main").and_then(|(_, main)| main.split_once("<details>")).expect("parts");
+    assert_eq!(shown.matches("<figure>").count(), 2, "the finding, and the records that were held out");
+    assert!(!shown.contains("<table") && folded.contains(">Evidence</h2></summary>"));
+    let caption = "Left: a record that was fitted.";
+    assert_eq!((report.matches(caption).count(), page.matches(caption).count()), (1, 1));
+    desk.run(&["trace", "run.csv", "--out", "alone", "--quiet"]).is_done();
+    assert!(desk.text("alone/report.md").contains("![Figure 1](record.png)") && !desk.path("alone/hero.png").exists());
 }
 
 /// Everything shown is made from `trace.json` and the tables beside it.

@@ -1,0 +1,173 @@
+//! Whether model and noise describe a record: the innovations of its headings as a normal Q–Q plot with the band that
+//! chance leaves, and their autocorrelation with the test of whiteness. What acts on the ship is no part of it.
+
+use estimation::residuals::{GappedSeries, autocorrelation, whiteness};
+use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
+use report::number::significant;
+use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, SOLID};
+use report::{PageFigure, PlotCurve};
+use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::function::beta::beta_reg;
+
+/// Fewest innovations that are judged.
+const FEWEST: usize = 8;
+
+/// Lags of the test of whiteness, which are those of [`whiteness`].
+const LAGS: usize = 20;
+
+/// Probability below which innovations are called not white: the one below which a trace says that its noise does not
+/// describe what is left.
+const IMPROBABLE: f64 = 1e-4;
+
+/// Places between the ends at which the band is drawn, and places at either end that are all drawn.
+const PLACES: usize = 150;
+const ENDS: usize = 20;
+
+/// Probability that the i-th smallest of n uniform numbers is below x: that of a beta distribution of i and n + 1 − i
+/// (David and Nagaraja 2003, 2.1).
+fn below(rank: usize, count: usize, x: f64) -> f64 {
+    if x <= 0.0 || x >= 1.0 { x.clamp(0.0, 1.0) } else { beta_reg(rank as f64, (count + 1 - rank) as f64, x) }
+}
+
+/// Quantile of the i-th smallest of n standard normal numbers.
+fn order_quantile(rank: usize, count: usize, probability: f64) -> f64 {
+    let (mut low, mut high) = (-9.0, 9.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        match below(rank, count, Normal::standard().cdf(middle)) < probability {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Where the i-th smallest of n normal numbers is expected (Blom 1958).
+fn expected(rank: usize, count: usize) -> f64 {
+    Normal::standard().inverse_cdf((rank as f64 - 0.375) / (count as f64 + 0.25))
+}
+
+/// Ranks that are drawn, smallest first.
+fn ranks(count: usize) -> Vec<usize> {
+    let step = count.div_ceil(PLACES);
+    (1..=count).filter(|rank| *rank <= ENDS || *rank + ENDS > count || rank % step == 0).collect()
+}
+
+/// The figure of the innovations of a record at times (s), in standard deviations of the noise that was found; `None`
+/// where they are few.
+pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Option<PageFigure> {
+    let mut intervals: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    intervals.sort_by(f64::total_cmp);
+    let spacing = intervals.get(intervals.len() / 2).copied().unwrap_or_default();
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    if time.len() != values.len() || sorted.len() < FEWEST || spacing <= 0.0 {
+        return None;
+    }
+    sorted.sort_by(f64::total_cmp);
+    let series = GappedSeries::new(time, values, spacing);
+    let p_value = whiteness(std::slice::from_ref(&series)).p_value;
+    let judged = match p_value < IMPROBABLE {
+        true => format!("innovations are not white, p < {IMPROBABLE}"),
+        false => format!("innovations white with p = {}", significant(p_value, 2)),
+    };
+    let title = format!("{name}: {judged} (Ljung–Box, {} lags)", lags(sorted.len()));
+    let caption = format!(
+        "{name}: innovations, what is new in every heading given those before it, over the standard deviation of the noise. \
+         Left: on the line they are normal and as large as the noise that was found; the band holds each of them with 95 %. \
+         Right: their autocorrelation; of white innovations 95 % lies between the dashed lines.",
+    );
+    let stacks = vec![quantiles(&sorted), correlation(&series)];
+    Some(PageFigure::new(stem, caption, Panels { title: Some(title), stacks, ..Panels::default() }))
+}
+
+/// Lags of so many values.
+fn lags(count: usize) -> usize {
+    LAGS.min(count / 4)
+}
+
+/// Sorted numbers over where normal ones are expected.
+fn quantiles(sorted: &[f64]) -> Stack {
+    let count = sorted.len();
+    let outside = (1..=count)
+        .filter(|&rank| !(0.025..=0.975).contains(&below(rank, count, Normal::standard().cdf(sorted[rank - 1]))))
+        .count();
+    let ranks = ranks(count);
+    let across: Vec<f64> = ranks.iter().map(|&rank| expected(rank, count)).collect();
+    let over = |y: Vec<f64>| PlotCurve::new(across.clone(), y);
+    let end = |probability| over(ranks.iter().map(|&rank| order_quantile(rank, count, probability)).collect());
+    let dots = LayerKind::Dots(HEADING);
+    let layers = vec![
+        Layer::band("95 % band, point by point", [end(0.025), end(0.975)], RECORD, 0.3),
+        Layer::line("normal, as large as the noise", over(across.clone()), Pen { dash: DASHED, ..Pen::new(INK) }),
+        Layer::new("innovations", over(ranks.iter().map(|&rank| sorted[rank - 1]).collect()), dots),
+    ];
+    let row = PanelRow::zeroed(Ruler::decimal("innovation [sd]"), 0.32);
+    let mut stack = Stack::over(Ruler::decimal("normal quantile [sd]"), vec![(row, layers)]);
+    (stack.is_half, stack.zero) = (true, true);
+    stack.panels[0].head = Some(format!("{outside} of {count} outside the band"));
+    stack
+}
+
+/// The autocorrelation with the ends between which 95 % of that of white numbers lie.
+fn correlation(series: &GappedSeries) -> Stack {
+    let count = series.values.len();
+    let lags = lags(count);
+    let points = autocorrelation(series, lags);
+    let bound = 1.96 / (count as f64).sqrt();
+    let outside = points.iter().filter(|one| one.value.abs() > bound).count();
+    let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };
+    let places = points.iter().map(|one| (one.lag as f64 * series.spacing, one.value, None)).collect();
+    let row = PanelRow { levels: vec![-bound, bound], ..PanelRow::zeroed(Ruler::decimal("autocorrelation"), 0.32) };
+    let thin = Pen::new(HEADING).width(0.6);
+    let mut stack =
+        Stack::over(Ruler::decimal("lag [s]"), vec![(row, vec![Layer::marks("", look, places).joined(thin)])]);
+    stack.is_half = true;
+    stack.panels[0].head = Some(format!("{outside} of {} lags outside ±1.96/√n", points.len()));
+    stack
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The only one of one number has the quantiles of a normal; the smallest of n is above x where all are: (1 − Φ)ⁿ.
+    #[test]
+    fn the_band_is_that_of_order_statistics() {
+        assert!((order_quantile(1, 1, 0.975) - 1.959_964).abs() < 1e-5);
+        let smallest = order_quantile(1, 50, 0.025);
+        let above = Normal::standard().sf(smallest).powi(50);
+        assert!((above - 0.975).abs() < 1e-6, "{above}");
+        assert!((order_quantile(50, 50, 0.975) + smallest).abs() < 1e-6, "the largest mirrors it");
+    }
+
+    fn stacks(values: &[f64]) -> (String, Vec<Stack>) {
+        let time = (0..values.len()).map(|row| 0.5 * row as f64).collect();
+        let figure = figure("innovations".into(), "run", &[time, values.to_vec()]).expect("many");
+        let report::figures::Plot::Panels(panels) = figure.plot else { panic!("panels") };
+        (panels.title.expect("a title"), panels.stacks)
+    }
+
+    #[test]
+    fn normal_white_numbers_lie_inside_and_others_do_not() {
+        let count = 101;
+        // The quantiles themselves, in an order without a pattern.
+        let normal: Vec<f64> = (0..count).map(|row| expected(1 + row * 37 % count, count)).collect();
+        let (title, good) = stacks(&normal);
+        assert_eq!(good[0].panels[0].head.as_deref(), Some("0 of 101 outside the band"), "{title}");
+        let twice: Vec<f64> = normal.iter().map(|value| 2.0 * value).collect();
+        let head = stacks(&twice).1[0].panels[0].head.clone().unwrap_or_default();
+        let outside: usize = head.split(' ').next().and_then(|own| own.parse().ok()).expect("a number");
+        assert!(outside > 50, "{head}");
+        let mut slow = normal.clone();
+        slow.sort_by(f64::total_cmp);
+        let (title, coloured) = stacks(&slow);
+        assert_eq!(title, "run: innovations are not white, p < 0.0001 (Ljung–Box, 20 lags)");
+        assert_eq!(coloured[1].panels[0].head.as_deref(), Some("20 of 20 lags outside ±1.96/√n"));
+    }
+
+    #[test]
+    fn few_numbers_are_not_judged() {
+        assert!(figure(String::new(), "run", &[vec![0.0, 1.0], vec![0.1, 0.2]]).is_none());
+        assert!(ranks(5000).len() < 200 && ranks(9).len() == 9);
+    }
+}
