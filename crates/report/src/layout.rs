@@ -152,7 +152,7 @@ impl Sheet {
     }
 
     fn row_title(&self, side: &AxisSide, height: f64) -> Vec<String> {
-        wrap(&side.title, self.theme.label_font, false, 1.1 * height)
+        wrap(&side.title, self.theme.label_font, false, height)
     }
 
     fn tick_length(&self) -> f64 {

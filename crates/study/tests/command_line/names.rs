@@ -14,7 +14,8 @@ fn a_study_is_called_by_a_name_and_not_by_a_path() {
         desk.file(name, yukun());
         desk.run(&[name]).is_refused(2, &["its results cannot be called", "rename the file"]);
     }
-    let manifest = std::fs::read_to_string(of_repository("results/published/noise/manifest.toml")).expect("it is there");
+    let manifest =
+        std::fs::read_to_string(of_repository("results/published/noise/manifest.toml")).expect("it is there");
     let absolute = desk.path("absolute").display().to_string();
     for name in ["../../escaped", absolute.as_str(), "..", ""] {
         desk.file("a/b/manifest.toml", manifest.replace("name = \"noise\"", &format!("name = \"{name}\"")));
