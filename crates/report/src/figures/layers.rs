@@ -125,7 +125,8 @@ fn columns(stack: &Stack, theme: &Theme) -> usize {
     }
 }
 
-/// The ends of some layers along one axis; of one that is cut where the data are wild, every value is a thing of its own.
+/// The ends of some layers along one axis; where the axis is cut if the data are wild, every value is a thing of its
+/// own.
 fn extents<'a>(
     layers: impl Iterator<Item = &'a Layer>,
     of: fn((f64, f64)) -> f64,
@@ -281,7 +282,7 @@ fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine, 
     scene.text_on_ground(Height::Note, (place, y), text.anchor(anchor));
 }
 
-/// What a small multiple says of what it does not show: how much of its cloud lies outside, or how far a cut line goes.
+/// What a small multiple says of what it does not show: how many of its dots lie outside, or how far a cut line goes.
 fn corner(place: &Panel, scene: &mut Canvas, theme: &Theme, panel: &LayeredPanel) {
     let Some(layer) = panel.layers.first() else { return };
     let rect = place.rect;
@@ -290,7 +291,7 @@ fn corner(place: &Panel, scene: &mut Canvas, theme: &Theme, panel: &LayeredPanel
         let note = match (layer.curve.finite().count(), outside().count()) {
             (0, _) => String::from("no estimate"),
             (_, 0) => return,
-            (all, count) => format!("{count} of {all} beyond the axes"),
+            (_, count) => format!("{count} beyond the axes"),
         };
         let text = TextLine::new(note, theme.small_font).anchor(Anchor::End);
         let at = (rect.right() - 0.4 * theme.small_font, rect.bottom() - 0.5 * theme.small_font);

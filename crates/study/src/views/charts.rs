@@ -87,8 +87,9 @@ const WORTHLESS: f64 = 100.0;
 const EXACT: f64 = 1e-4;
 
 /// The methods that can be compared in some cells, and whether they are held against a first-order response that is
-/// only the nearest to the ship. Nothing where K and T are not one thing in all cells and the study is about predictions,
-/// and where intervals would be of a response that is no truth. A trace is held against the ship's own K and T.
+/// only the nearest to the ship. Nothing where K and T are not one thing in all cells and the study is about
+/// predictions, and where intervals would be of a response that is no truth. A trace is held against the ship's own K
+/// and T.
 pub fn comparable<'a>(
     design: &Design,
     measure: ErrorMeasure,

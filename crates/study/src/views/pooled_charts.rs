@@ -166,20 +166,23 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
     Some((rows, design.methods[summary.reference].label.clone()))
 }
 
-/// How often 90 % intervals of predictions hold, cell by cell and method by method, and how wide they are: the mean over
-/// the figures, and as a bar the lowest and the highest of them; nothing without predictions.
+/// How often 90 % intervals of predictions hold, cell by cell and method by method, and how wide they are: the mean
+/// over the figures, and as a bar the lowest and the highest share and the middle half of the widths; nothing without
+/// predictions.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
-    let dot = |of: Of, cell: usize, method: usize| {
+    let dot = |of: Of, outer: usize, (cell, method): (usize, usize)| {
         let lines = summary.predictions.iter().filter(|line| (line.cell, line.method) == (cell, method));
-        let shares: Vec<f64> = lines.map(of).collect();
-        let ends = [shares.iter().copied().reduce(f64::min)?, shares.iter().copied().reduce(f64::max)?];
+        let mut shares: Vec<f64> = lines.map(of).collect();
+        shares.sort_by(f64::total_cmp);
+        let last = shares.len().checked_sub(1)?;
+        let cut = last * outer / 100;
         let mean = shares.iter().sum::<f64>() / shares.len() as f64;
         let origin = origin(design, method);
-        Some(RowItem::below(origin.label(), origin.look(), mean, Some(ends)))
+        Some(RowItem::below(origin.label(), origin.look(), mean, Some([shares[cut], shares[last - cut]])))
     };
-    let column = |x: Ruler, of: Of, reference: Option<Reference95>| {
-        let row = |cell: usize| (0..design.methods.len()).filter_map(|method| dot(of, cell, method)).collect();
+    let column = |x: Ruler, of: Of, outer: usize, reference: Option<Reference95>| {
+        let row = |cell: usize| (0..design.methods.len()).filter_map(|method| dot(of, outer, (cell, method))).collect();
         RowsColumn { x, rows: (0..design.cells.len()).map(row).collect(), reference, ..RowsColumn::default() }
     };
     let inside = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
@@ -188,9 +191,16 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
         title: None,
         names: design.cells.iter().map(|cell| cell.labels.join(", ")).collect(),
         columns: vec![
-            column(Ruler::decimal("90 % intervals that hold [%]"), inside, Some(Reference95::line(90.0))),
-            column(Ruler::new("their width [% of the value]", Division::Factors), width, None),
+            column(
+                Ruler::new("90 % intervals that hold [%]", Division::Percent),
+                inside,
+                0,
+                Some(Reference95::line(90.0)),
+            ),
+            column(Ruler::new("their width [% of the value]", Division::Factors), width, 25, None),
         ],
-        note: Some("Markers: mean over the figures. Bars: from the lowest to the highest of them.".to_owned()),
+        note: Some(String::from(
+            "Markers: mean over the figures. Bars: from the lowest to the highest of them, of widths the middle half.",
+        )),
     })
 }

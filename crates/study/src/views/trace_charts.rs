@@ -4,18 +4,16 @@ use std::collections::BTreeSet;
 
 use report::PlotCurve;
 use report::figures::{
-    CellMap, Division, Layer, LayerKind, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, Plot, RowItem, RowKind,
-    RowsColumn, Ruler, Shades, Stack,
+    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
+    Shades, Stack,
 };
 use report::palette::{CurveOrigin, DASHED, DOTTED, Dash, INK, Look, Marker, SOLID};
 use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
-use campaign::statistics::{Statistic, distinct, grouped, share};
+use campaign::statistics::{distinct, grouped, share};
 use campaign::summary::{CALIBRATION, CalibrationBin, TraceSummary};
-
-use super::charts::origin;
 
 /// Name of the row of ships that lack nothing, and of the column of trials in which nothing was named.
 const NOTHING: &str = "nothing";
@@ -84,70 +82,31 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     }
 }
 
-/// What one of several traces names over all ships whose effects are known, per cent of the trials.
-struct RuleShares {
-    /// The rule, and the setting of it where its label goes on behind a comma.
-    label: (String, String),
-    look: Look,
-    /// Something that is not missing was named.
-    wrong: Statistic,
-    /// Exactly what is missing was named, of the ships that lack something.
-    exact: Option<Statistic>,
-}
-
-/// Several traces against each other: exact names over false ones, the settings of a rule joined; only the false ones
-/// where no ship lacks anything. Nothing for a single trace.
-pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Plot> {
-    let of_rule = |(method, own): (usize, Vec<&TraceSummary>)| {
-        let of = |count: fn(&TraceSummary) -> u64, lacks: bool| {
+/// Several traces against each other over all ships whose effects are known: trials in which something that is not
+/// missing was named, and, of the ships that lack something, trials in which exactly that was. Nothing for one trace.
+pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
+    let of_rule = |(method, own): &(usize, Vec<&TraceSummary>)| {
+        let mark = |name: &str, origin: CurveOrigin, count: fn(&TraceSummary) -> u64, lacks: bool| {
             let own = || own.iter().filter(|line| !line.is_hull() && (!lacks || !line.missing.is_empty()));
-            share(own().map(|line| count(line)).sum(), own().map(|line| line.trials).sum())
+            let share = share(own().map(|line| count(line)).sum(), own().map(|line| line.trials).sum())?.times(100.0);
+            Some(RowItem::new(name, RowKind::Mark(origin.look(), share.value, share.ci95)))
         };
-        let origin = origin(design, method);
-        let (rule, setting) = origin.label().split_once(", ").unwrap_or((origin.label(), ""));
-        Some(RuleShares {
-            label: (rule.to_owned(), setting.to_owned()),
-            look: origin.look(),
-            wrong: of(|line| line.wrong, false)?.times(100.0),
-            exact: of(|line| line.exact, true).map(|share| share.times(100.0)),
-        })
+        let items = [
+            mark("exactly what is missing was named", CurveOrigin::After, |line| line.exact, true),
+            mark("a false name was given", CurveOrigin::Before, |line| line.wrong, false),
+        ];
+        (design.methods[*method].label.clone(), items.into_iter().flatten().collect::<Vec<_>>())
     };
-    let rules: Vec<RuleShares> = grouped(lines, |line| line.method).into_iter().filter_map(of_rule).collect();
-    let x = Ruler::decimal("trials with a false name [%]");
-    if rules.len() < 2 {
-        return None;
-    }
-    if rules.iter().all(|rule| rule.exact.is_none()) {
-        let item =
-            |rule: &RuleShares| vec![RowItem::new("", RowKind::Mark(rule.look, rule.wrong.value, rule.wrong.ci95))];
-        let name = |RuleShares { label: (rule, setting), .. }: &RuleShares| match setting.as_str() {
-            "" => rule.clone(),
-            setting => format!("{rule}, {setting}"),
-        };
-        let column = RowsColumn { x, rows: rules.iter().map(item).collect(), zero: true, ..RowsColumn::default() };
-        return Some(
-            NamedRows { names: rules.iter().map(name).collect(), columns: vec![column], ..NamedRows::default() }.into(),
-        );
-    }
-    let settings = distinct(rules.iter().map(|rule| rule.label.1.clone()).filter(|setting| !setting.is_empty()));
-    let series = grouped(&rules, |rule| rule.label.0.clone());
-    let layers = series.into_iter().enumerate().flat_map(|(number, (name, rules))| trade_off(number, &name, &rules));
-    let row = PanelRow::new(Ruler::new("what is missing named exactly [%]", Division::Percent), 0.42);
-    let along = (!settings.is_empty()).then(|| format!("Along a line: {}.", settings.join(", ")));
-    Some(Panels { names_aside: true, note: along, ..Panels::of(Stack::over(x, vec![(row, layers.collect())])) }.into())
-}
-
-/// One rule with its settings: a line through its shares, and their intervals both ways.
-fn trade_off(number: usize, name: &str, rules: &[&RuleShares]) -> Vec<Layer> {
-    let look = CurveOrigin::Series { label: name.to_owned(), number }.look();
-    let points = rules.iter().filter_map(|rule| Some((rule.wrong, rule.exact?)));
-    let across = |(wrong, exact): (Statistic, Statistic)| {
-        let ends = PlotCurve::new(wrong.ci95?.to_vec(), vec![exact.value; 2]);
-        Some(Layer::new("", ends, LayerKind::Line(Pen::new(look.colour).width(0.8))))
-    };
-    let marks = points.clone().map(|(wrong, exact)| (wrong.value, exact.value, exact.ci95)).collect();
-    let pen = Pen { dash: look.dash, ..Pen::new(look.colour) };
-    points.filter_map(across).chain([Layer::marks(name, look, marks).joined(pen)]).collect()
+    let rules = grouped(lines, |line| line.method);
+    let (names, rows): (_, Vec<_>) = rules.iter().map(of_rule).unzip();
+    let x = Ruler::new("trials [%]", Division::Percent);
+    let is_known = rows.iter().all(|row| !row.is_empty());
+    (rules.len() > 1 && is_known).then(|| NamedRows {
+        names,
+        columns: vec![RowsColumn { x, rows, ..RowsColumn::default() }],
+        note: Some(String::from("Bars: 95 % intervals.")),
+        ..NamedRows::default()
+    })
 }
 
 /// Smallest expected likelihood ratio that is drawn.
@@ -269,15 +228,16 @@ mod tests {
         };
         let lines =
             [line(0, &["wave_yaw"], 1, 1), line(0, &[], 2, 0), line(1, &["wave_yaw"], 0, 0), line(1, &[], 2, 0)];
-        let Some(Plot::Panels(data)) = rules(&design, &lines) else { panic!("no figure") };
-        let marks = data.stacks[0].panels[0].layers.last().expect("a rule");
-        assert_eq!(
-            (marks.name.as_deref(), &marks.curve.x[..], &marks.curve.y[..]),
-            (Some("bic"), &[25.0, 0.0][..], &[50.0, 0.0][..])
-        );
-        assert_eq!(data.note.as_deref(), Some("Along a line: 0.5, 0.9."));
-        let nothing = [line(0, &[], 1, 1), line(1, &[], 2, 0)];
-        assert!(matches!(rules(&design, &nothing), Some(Plot::Rows(_))));
+        let values = |lines: &[TraceSummary]| {
+            let value = |item: &RowItem| match item.kind {
+                RowKind::Mark(_, value, _) => value,
+                _ => f64::NAN,
+            };
+            let rows = rules(&design, lines).expect("two rules").columns.remove(0).rows;
+            rows.iter().map(|row| row.iter().map(value).collect()).collect::<Vec<Vec<f64>>>()
+        };
+        assert_eq!(values(&lines), [[50.0, 25.0], [0.0, 0.0]]);
+        assert_eq!(values(&[line(0, &[], 1, 1), line(1, &[], 2, 0)]), [[50.0], [0.0]]);
         assert!(rules(&design, &lines[..2]).is_none());
     }
 
