@@ -222,7 +222,8 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     for (index, (place, panel)) in sheet.grid_within(grid, (from, width)).iter().zip(&stack.panels).enumerate() {
         let row = &stack.rows[if stack.across.is_some() { 0 } else { index / count }];
         background(place, &mut sheet.scene, &theme, stack, row);
-        stack.marks.iter().for_each(|mark| draw_mark(place, &mut sheet.scene, &theme, mark, &panel.layers));
+        let beside = (index < count).then_some(&panel.layers[..]);
+        stack.marks.iter().for_each(|mark| draw_mark(place, &mut sheet.scene, &theme, mark, beside));
         for layer in &panel.layers {
             dots += draw_layer(sheet, place, layer, &theme, outside);
         }
@@ -264,21 +265,33 @@ fn background(place: &Panel, scene: &mut Canvas, theme: &Theme, stack: &Stack, r
     }
 }
 
-/// A line across the frame, its name beside the end of it that is further from what is drawn.
-fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine, layers: &[Layer]) {
+/// Places that are tried for a name, and looked at along a piece of a line.
+const STEPS: usize = 12;
+
+/// A line across the frame; over the first row its name is beside it where it is furthest from the other layers.
+fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine, named: Option<&[Layer]>) {
     panel.vertical(scene, Height::Grid, mark.at, Stroke::solid(INK, theme.thin).dashed(SHORT_DASH));
+    let Some(layers) = named else { return };
     let text = TextLine::new(mark.label.as_str(), theme.small_font);
     let Some(x) = panel.across(mark.at).filter(|x| panel.rect.contains((*x, panel.rect.y))) else { return };
     let gap = 0.4 * theme.small_font;
     let is_right = x + gap + text.width() < panel.rect.right();
     let (place, anchor) = if is_right { (x + gap, Anchor::Start) } else { (x - gap, Anchor::End) };
     let (first, last) = if is_right { (x, place + text.width()) } else { (place - text.width(), x) };
-    let points = layers.iter().flat_map(|layer| layer.curve.finite()).filter_map(|pair| panel.place(pair));
-    let near: Vec<f64> = points.filter(|(x, _)| (first..=last).contains(x)).map(|(_, y)| y).collect();
+    let mut near: Vec<f64> = Vec::new();
+    for layer in layers {
+        let places: Vec<PagePoint> = layer.curve.finite().filter_map(|pair| panel.place(pair)).collect();
+        for pair in places.windows(2) {
+            let steps = (0..=STEPS).map(|step| step as f64 / STEPS as f64);
+            let [(x, y), (to, up)] = [pair[0], pair[1]];
+            let on = steps.map(|share| (x + share * (to - x), y + share * (up - y)));
+            near.extend(on.filter(|(x, _)| (first..=last).contains(x)).map(|(_, y)| y));
+        }
+    }
     let free = |y: f64| near.iter().map(|own| (own - y).abs()).fold(f64::INFINITY, f64::min);
     let ends = [panel.rect.y + 1.2 * theme.small_font, panel.rect.bottom() - 0.6 * theme.small_font];
-    let middle = 0.5 * (ends[0] + ends[1]);
-    let y = [ends[1], middle].into_iter().fold(ends[0], |best, y| if free(y) > free(best) { y } else { best });
+    let between = (1..=STEPS).map(|step| ends[0] + (ends[1] - ends[0]) * step as f64 / STEPS as f64);
+    let y = between.fold(ends[0], |best, y| if free(y) > free(best) { y } else { best });
     scene.text_on_ground(Height::Note, (place, y), text.anchor(anchor));
 }
 

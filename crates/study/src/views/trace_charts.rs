@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use report::PlotCurve;
 use report::figures::{
-    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
-    Shades, Stack,
+    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace,
+    RowsColumn, Ruler, Shades, Stack,
 };
 use report::palette::{CurveOrigin, DASHED, DOTTED, Dash, INK, Look, Marker, SOLID};
 use scenario::HULL;
@@ -82,6 +82,9 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     }
 }
 
+/// Share of the pitch of the rows by which two shares of a rule stand beside the middle of their row.
+const ASIDE: f64 = 0.16;
+
 /// Several traces against each other over all ships whose effects are known: trials in which something that is not
 /// missing was named, and, of the ships that lack something, trials in which exactly that was. Nothing for one trace.
 pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
@@ -92,14 +95,18 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
             Some(RowItem::new(name, RowKind::Mark(origin.look(), share.value, share.ci95)))
         };
         let items = [
-            mark("exactly what is missing was named", CurveOrigin::After, |line| line.exact, true),
-            mark("a false name was given", CurveOrigin::Before, |line| line.wrong, false),
+            mark("exactly what is missing", CurveOrigin::After, |line| line.exact, true),
+            mark("something that is not", CurveOrigin::Before, |line| line.wrong, false),
         ];
-        (design.methods[*method].label.clone(), items.into_iter().flatten().collect::<Vec<_>>())
+        let mut items: Vec<RowItem> = items.into_iter().flatten().collect();
+        if let [exact, wrong] = &mut items[..] {
+            (exact.place, wrong.place) = (RowPlace::Aside(-ASIDE), RowPlace::Aside(ASIDE));
+        }
+        (design.methods[*method].label.clone(), items)
     };
     let rules = grouped(lines, |line| line.method);
     let (names, rows): (_, Vec<_>) = rules.iter().map(of_rule).unzip();
-    let x = Ruler::new("trials [%]", Division::Percent);
+    let x = Ruler::new("trials that name it [%]", Division::Percent);
     let is_known = rows.iter().all(|row| !row.is_empty());
     (rules.len() > 1 && is_known).then(|| NamedRows {
         names,
