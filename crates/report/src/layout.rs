@@ -152,7 +152,7 @@ impl Sheet {
     }
 
     fn row_title(&self, side: &AxisSide, height: f64) -> Vec<String> {
-        wrap(&side.title, self.theme.label_font, false, 1.1 * height)
+        wrap(&side.title, self.theme.label_font, false, height)
     }
 
     fn tick_length(&self) -> f64 {
@@ -225,7 +225,7 @@ impl Sheet {
                     head.draw(&mut self.scene, (rect.x, rect.y - above * theme.small_font), room, &theme);
                 }
                 let marks = fitting_ticks(&across.axis, width, &theme);
-                self.frame(&rect, &marks, &ticks);
+                self.frame(&rect, &marks, &ticks, !across.axis.is_columns());
                 self.axis_breaks(&rect, across, side);
                 if column == 0 {
                     self.vertical_labels(&rect, &ticks, side);
@@ -250,16 +250,17 @@ impl Sheet {
         panels
     }
 
-    fn frame(&mut self, rect: &Rect, x: &Ticks, y: &Ticks) {
+    /// The frame with its ticks, over grid lines unless the cells of a map have lines of their own.
+    fn frame(&mut self, rect: &Rect, x: &Ticks, y: &Ticks, gridded: bool) {
         let stroke = Stroke::solid(INK, self.theme.thin);
         let grid = Stroke::solid(GRID, 0.8 * self.theme.thin);
         let (long, short) = (self.tick_length(), 0.55 * self.tick_length());
         let across = |f: f64| rect.x + f * rect.w;
         let up = |f: f64| rect.bottom() - f * rect.h;
-        for (f, _) in &x.major {
+        for (f, _) in x.major.iter().filter(|_| gridded) {
             self.scene.line(Layer::Grid, [(across(*f), rect.y), (across(*f), rect.bottom())], grid);
         }
-        for (f, _) in &y.major {
+        for (f, _) in y.major.iter().filter(|_| gridded) {
             self.scene.line(Layer::Grid, [(rect.x, up(*f)), (rect.right(), up(*f))], grid);
         }
         let ends = |ticks: &Ticks| -> Vec<(f64, f64)> {

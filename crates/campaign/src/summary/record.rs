@@ -31,6 +31,8 @@ pub struct IndexErrors {
     pub high_size: Option<Statistic>,
     /// Share of quoted 95 % intervals that hold the truth.
     pub coverage: Option<Statistic>,
+    /// Median width of the quoted 95 % intervals.
+    pub width: Option<Statistic>,
     /// Share of answers that quote an interval.
     pub quoting: Option<Statistic>,
     /// Standard deviation over the Cramér–Rao bound: the root mean square of the bounds of the trials.

@@ -216,8 +216,9 @@ impl Running {
         for (place, index) in self.indices.iter_mut().enumerate() {
             let truth = truths[place];
             let bound = row.bound_of_truth().zip(truth).map(|(sd, truth)| 100.0 * sd[place] / truth.abs());
-            let held = intervals[place].zip(truth).map(|([low, high], truth)| low <= truth && truth <= high);
-            index.add(row.replicate, errors[place], bound, held, answers[place]);
+            let error = |end: f64, truth: f64| 100.0 * (end - truth) / truth.abs();
+            let interval = intervals[place].zip(truth).map(|(ends, truth)| ends.map(|end| error(end, truth)));
+            index.add((row.replicate, errors[place]), bound, interval, answers[place]);
         }
         row.heading_rmse_deg.into_iter().for_each(|error| self.heading.add(error));
         row.validation_rmse_deg.into_iter().for_each(|error| self.validation.add(error));
@@ -284,12 +285,21 @@ struct IndexSums {
     /// Sum of the squared bounds, per cent, and their number.
     bounds: (f64, f64),
     answered: u64,
+    /// Widths of the quoted intervals, per cent.
+    widths: ErrorSample,
     quoted: u64,
     held: u64,
 }
 
 impl IndexSums {
-    fn add(&mut self, replicate: u64, error: Option<f64>, bound: Option<f64>, held: Option<bool>, value: Option<f64>) {
+    /// Adds the error of a trial, the bound and the errors of the ends of the interval, all per cent, and the answer.
+    fn add(
+        &mut self,
+        (replicate, error): (u64, Option<f64>),
+        bound: Option<f64>,
+        interval: Option<[f64; 2]>,
+        value: Option<f64>,
+    ) {
         if let Some(error) = error {
             self.sample.add(error);
             self.sums.add(replicate, error);
@@ -304,8 +314,11 @@ impl IndexSums {
             (*sum, *square) = (*sum + away, *square + away * away);
             self.answered += 1;
         }
-        self.quoted += u64::from(held.is_some());
-        self.held += u64::from(held == Some(true));
+        if let Some([low, high]) = interval {
+            self.quoted += 1;
+            self.held += u64::from(low <= 0.0 && 0.0 <= high);
+            self.widths.add(high - low);
+        }
     }
 
     /// The mean of the answers; its interval from two of them on.
@@ -336,6 +349,7 @@ impl IndexSums {
             median_size: sizes.figure(0.5),
             high_size: sizes.figure(0.9),
             coverage: share(self.held, self.quoted),
+            width: self.widths.ordered().figure(0.5),
             quoting: if self.quoted > 0 { share(self.quoted, self.answered) } else { None },
             sd_over_bound: sd.zip(bound).map(|(sd, bound)| sd.times(1.0 / bound)),
         }

@@ -70,6 +70,7 @@ fn figures_are_those_of_the_errors() {
     near(record.k.sd_over_bound, sd);
     near(record.t.sd_over_bound, 0.1 * sd);
     near(record.k.quoting, 1.0);
+    near(record.k.width, 4.0);
     near(record.heading_rmse_deg, 0.5);
     assert_eq!((record.trials, record.failed(), record.evaluations), (7, 0, Some(7.0)));
     assert_eq!(record.validation_rmse_deg, None);

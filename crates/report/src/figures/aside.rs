@@ -10,16 +10,17 @@ use crate::theme::Theme;
 /// Free space between the frame and a name, in small-font sizes.
 const GAP: f64 = 0.8;
 
-fn text(layer: &Layer, line: &str, theme: &Theme) -> TextLine {
+fn text(layer: &Layer, theme: &Theme) -> TextLine {
     let colour = if layer.is_quiet() { RECORD } else { layer.colour() };
-    TextLine { bold: !layer.is_quiet(), ..TextLine::new(line, theme.small_font).colour(colour) }
+    let name = layer.name.as_deref().unwrap_or_default();
+    TextLine { bold: !layer.is_quiet(), ..TextLine::new(name, theme.small_font).colour(colour) }
 }
 
 /// Width of the names with what keeps them clear of the frame, points.
 pub(super) fn room(data: &Panels, theme: &Theme) -> f64 {
     let layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
-    let named = layers.filter(|_| data.names_aside).filter_map(|layer| Some((layer, layer.name.as_ref()?)));
-    let widths = named.flat_map(|(layer, name)| name.split('\n').map(|line| text(layer, line, theme).width()));
+    let named = layers.filter(|layer| data.names_aside && layer.name.is_some());
+    let widths = named.map(|layer| text(layer, theme).width());
     widths.reduce(f64::max).map_or(0.0, |width| width + GAP * theme.small_font)
 }
 
@@ -39,41 +40,37 @@ pub(super) fn names<'a>(panel: &Panel, scene: &mut Canvas, theme: &Theme, layers
         .filter(|layer| layer.name.is_some())
         .map(|layer| (layer, anchor(panel, layer)))
         .partition(|(_, anchor)| anchor.is_some());
-    let mut labels: Vec<(PagePoint, &Layer, Vec<&str>)> = (named.into_iter())
-        .filter_map(|(layer, anchor)| Some((anchor?, layer, layer.name.as_deref()?.split('\n').collect())))
-        .collect();
+    let mut labels: Vec<(PagePoint, &Layer)> =
+        named.into_iter().filter_map(|(layer, anchor)| Some((anchor?, layer))).collect();
     labels.sort_by(|one, other| one.0.1.total_cmp(&other.0.1));
     let line = 1.2 * theme.small_font;
-    let wanted: Vec<(f64, f64)> = labels.iter().map(|(at, _, lines)| (at.1, lines.len() as f64 * line)).collect();
-    let middles = spread(&wanted, [panel.rect.y - 0.5 * line, panel.rect.bottom() + 0.5 * line]);
+    let wanted: Vec<f64> = labels.iter().map(|(at, _)| at.1).collect();
+    let middles = spread(&wanted, line, [panel.rect.y - 0.5 * line, panel.rect.bottom() + 0.5 * line]);
     let right = panel.rect.right();
-    for ((from, layer, lines), middle) in labels.iter().zip(middles) {
+    for ((from, layer), middle) in labels.iter().zip(middles) {
         let knee = right + 0.4 * theme.small_font;
         let thin = Stroke { opacity: 0.6, ..Stroke::solid(layer.colour(), theme.thin) };
         scene.line(Height::Grid, [*from, (right, middle), (knee, middle)], thin);
-        for (number, words) in lines.iter().enumerate() {
-            let text = text(layer, words, theme);
-            let y = middle + (number as f64 - 0.5 * (lines.len() - 1) as f64) * line + text.centring();
-            scene.text(Height::Note, (knee + 0.3 * theme.small_font, y), text);
-        }
+        let text = text(layer, theme);
+        scene.text(Height::Note, (knee + 0.3 * theme.small_font, middle + text.centring()), text);
     }
     outside.into_iter().map(|(layer, _)| layer).collect()
 }
 
-/// Middles of labels of some heights, clear of each other and as near as may be to the wanted ones, which are in order.
-fn spread(wanted: &[(f64, f64)], [top, bottom]: [f64; 2]) -> Vec<f64> {
+/// Middles of labels of one height, clear of each other and as near as may be to the wanted ones, which are in order.
+fn spread(wanted: &[f64], height: f64, [top, bottom]: [f64; 2]) -> Vec<f64> {
     let mut free = top;
     let mut tops: Vec<f64> = Vec::with_capacity(wanted.len());
-    for (middle, height) in wanted {
+    for middle in wanted {
         tops.push((middle - 0.5 * height).max(free));
         free = tops[tops.len() - 1] + height;
     }
     let mut limit = bottom;
-    for (top, (_, height)) in tops.iter_mut().zip(wanted).rev() {
+    for top in tops.iter_mut().rev() {
         *top = top.min(limit - height);
         limit = *top;
     }
-    tops.iter().zip(wanted).map(|(top, (_, height))| top + 0.5 * height).collect()
+    tops.iter().map(|top| top + 0.5 * height).collect()
 }
 
 #[cfg(test)]
@@ -82,7 +79,7 @@ mod tests {
 
     #[test]
     fn labels_keep_their_order_and_their_distance() {
-        let of = |wanted: &[f64]| spread(&wanted.iter().map(|y| (*y, 5.0)).collect::<Vec<_>>(), [-2.5, 102.5]);
+        let of = |wanted: &[f64]| spread(wanted, 5.0, [-2.5, 102.5]);
         assert_eq!(of(&[10.0, 11.0, 50.0]), [10.0, 15.0, 50.0]);
         assert_eq!(of(&[97.0, 98.0, 99.0]), [90.0, 95.0, 100.0]);
         assert_eq!(of(&[-5.0]), [0.0]);

@@ -1,6 +1,6 @@
 //! Draws [`Panels`]: axes over their layers, the layers, and what has to be said of what lies outside.
 
-use super::panels::{AxisLine, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
+use super::panels::{AxisLine, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Ruler, Stack};
 use super::reach::{Extents, INTERVALS, robust};
 use super::shared::{ACROSS_PAD, PAD, asides, record, shaded, zero_line, zero_upright};
 use super::{aside, equal};
@@ -32,8 +32,28 @@ struct Unshown {
     names: Vec<String>,
 }
 
+/// The figure as it fits a narrow page: names in a key, one for all that the figure is not about, and more than two
+/// panels side by side as small multiples.
+fn narrowed(data: &Panels) -> Panels {
+    let mut data = data.clone();
+    let layers = data.stacks.iter_mut().flat_map(|stack| &mut stack.panels).flat_map(|panel| &mut panel.layers);
+    for layer in layers.filter(|layer| data.names_aside && layer.is_quiet()) {
+        layer.name = Some(String::from("other methods"));
+    }
+    data.names_aside = false;
+    for stack in data.stacks.iter_mut().filter(|own| own.across.is_none() && own.rows.len() == 1 && own.x.len() > 2) {
+        stack.across = Some(3);
+        stack.x.truncate(1);
+    }
+    data
+}
+
 /// Draws the stacks below each other, half ones in two columns unless the figure is narrow.
 pub(super) fn panels(data: &Panels, theme: &Theme) -> Drawing {
+    if theme.is_narrow() { drawn(&narrowed(data), theme) } else { drawn(data, theme) }
+}
+
+fn drawn(data: &Panels, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
     let mut outside = Unshown::default();
@@ -105,8 +125,13 @@ fn columns(stack: &Stack, theme: &Theme) -> usize {
     }
 }
 
-/// The ends of some layers along one axis.
-fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, of: fn((f64, f64)) -> f64, vertical: bool) -> Extents {
+/// The ends of some layers along one axis; where the axis is cut if the data are wild, every value is a thing of its
+/// own.
+fn extents<'a>(
+    layers: impl Iterator<Item = &'a Layer>,
+    of: fn((f64, f64)) -> f64,
+    (vertical, ruler): (bool, &Ruler),
+) -> Extents {
     let mut found = Extents::default();
     for layer in layers {
         let values: Vec<f64> = layer.curves().flat_map(PlotCurve::finite).map(of).collect();
@@ -118,6 +143,9 @@ fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, of: fn((f64, f64)) -> f6
                 values.into_iter().for_each(|value| found.add([value]));
                 let ends = marks.intervals.iter().flatten().flatten().filter(|_| vertical);
                 found.soft.extend(ends.map(|end| (*end, INTERVALS)));
+            }
+            (LayerKind::Line(_) | LayerKind::Band(..), None) if ruler.reach.is_some() => {
+                values.into_iter().for_each(|value| found.add([value]));
             }
             (_, None) => found.add(values),
         }
@@ -141,9 +169,9 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
     };
     let mut side = |column: usize| {
         let own = layers(&|index| index % count == column);
-        let mut data = extents(own.into_iter(), |pair| pair.0, false);
-        data.fixed.extend(stack.marks.iter().map(|mark| mark.at));
         let ruler = &stack.x[if stack.across.is_some() { 0 } else { column }];
+        let mut data = extents(own.into_iter(), |pair| pair.0, (false, ruler));
+        data.fixed.extend(stack.marks.iter().map(|mark| mark.at));
         let (axis, cut) = ruler.axis(&data, across_pad(stack));
         is_cut |= cut;
         AxisSide::new(axis, ruler.title.clone())
@@ -152,7 +180,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
     let rows: Vec<(AxisSide, f64)> = (stack.rows.iter().enumerate())
         .map(|(number, row)| {
             let own = layers(&|index| index / count == number);
-            let mut data = extents(own.into_iter(), |pair| pair.1, true);
+            let mut data = extents(own.into_iter(), |pair| pair.1, (true, &row.y));
             data.fixed.extend(row.levels.iter().copied());
             data.fixed.extend(row.reference.iter().flat_map(|own| [own.value, own.band[0], own.band[1]]));
             let (axis, cut) = row.y.axis(&data, PAD);
@@ -183,7 +211,8 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     }
     outside.is_cut |= cut;
     let head = |panel: &LayeredPanel| {
-        let sample = panel.layers.first().filter(|_| stack.across.is_some()).and_then(|own| own.sample(&theme, 1.0));
+        let is_one = |own: &&Layer| stack.across.is_some() && !matches!(own.kind, LayerKind::Marks(_));
+        let sample = panel.layers.first().filter(is_one).and_then(|own| own.sample(&theme, 1.0));
         panel.head.as_ref().map(|head| KeyEntry::new(sample.unwrap_or(KeySample::Nothing), head.clone()))
     };
     grid.heads = stack.panels.iter().map(head).collect();
@@ -193,6 +222,8 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     for (index, (place, panel)) in sheet.grid_within(grid, (from, width)).iter().zip(&stack.panels).enumerate() {
         let row = &stack.rows[if stack.across.is_some() { 0 } else { index / count }];
         background(place, &mut sheet.scene, &theme, stack, row);
+        let beside = (index < count).then_some(&panel.layers[..]);
+        stack.marks.iter().for_each(|mark| draw_mark(place, &mut sheet.scene, &theme, mark, beside));
         for layer in &panel.layers {
             dots += draw_layer(sheet, place, layer, &theme, outside);
         }
@@ -232,21 +263,39 @@ fn background(place: &Panel, scene: &mut Canvas, theme: &Theme, stack: &Stack, r
     if let Some(reference) = &row.reference {
         reference.horizontal(place, scene, theme);
     }
-    stack.marks.iter().for_each(|mark| draw_mark(place, scene, theme, mark));
 }
 
-/// A line across the frame, its name beside its upper end.
-fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine) {
+/// Places that are tried for a name, and looked at along a piece of a line.
+const STEPS: usize = 12;
+
+/// A line across the frame; over the first row its name is beside it where it is furthest from the other layers.
+fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine, named: Option<&[Layer]>) {
     panel.vertical(scene, Height::Grid, mark.at, Stroke::solid(INK, theme.thin).dashed(SHORT_DASH));
+    let Some(layers) = named else { return };
     let text = TextLine::new(mark.label.as_str(), theme.small_font);
     let Some(x) = panel.across(mark.at).filter(|x| panel.rect.contains((*x, panel.rect.y))) else { return };
     let gap = 0.4 * theme.small_font;
     let is_right = x + gap + text.width() < panel.rect.right();
     let (place, anchor) = if is_right { (x + gap, Anchor::Start) } else { (x - gap, Anchor::End) };
-    scene.text_on_ground(Height::Note, (place, panel.rect.y + 1.2 * theme.small_font), text.anchor(anchor));
+    let (first, last) = if is_right { (x, place + text.width()) } else { (place - text.width(), x) };
+    let mut near: Vec<f64> = Vec::new();
+    for layer in layers {
+        let places: Vec<PagePoint> = layer.curve.finite().filter_map(|pair| panel.place(pair)).collect();
+        for pair in places.windows(2) {
+            let steps = (0..=STEPS).map(|step| step as f64 / STEPS as f64);
+            let [(x, y), (to, up)] = [pair[0], pair[1]];
+            let on = steps.map(|share| (x + share * (to - x), y + share * (up - y)));
+            near.extend(on.filter(|(x, _)| (first..=last).contains(x)).map(|(_, y)| y));
+        }
+    }
+    let free = |y: f64| near.iter().map(|own| (own - y).abs()).fold(f64::INFINITY, f64::min);
+    let ends = [panel.rect.y + 1.2 * theme.small_font, panel.rect.bottom() - 0.6 * theme.small_font];
+    let between = (1..=STEPS).map(|step| ends[0] + (ends[1] - ends[0]) * step as f64 / STEPS as f64);
+    let y = between.fold(ends[0], |best, y| if free(y) > free(best) { y } else { best });
+    scene.text_on_ground(Height::Note, (place, y), text.anchor(anchor));
 }
 
-/// What a small multiple says of what it does not show: how much of its cloud lies outside, or how far a cut line goes.
+/// What a small multiple says of what it does not show: how many of its dots lie outside, or how far a cut line goes.
 fn corner(place: &Panel, scene: &mut Canvas, theme: &Theme, panel: &LayeredPanel) {
     let Some(layer) = panel.layers.first() else { return };
     let rect = place.rect;
@@ -255,12 +304,14 @@ fn corner(place: &Panel, scene: &mut Canvas, theme: &Theme, panel: &LayeredPanel
         let note = match (layer.curve.finite().count(), outside().count()) {
             (0, _) => String::from("no estimate"),
             (_, 0) => return,
-            (all, count) => format!("{count} of {all} outside"),
+            (_, count) => format!("{count} beyond the axes"),
         };
         let text = TextLine::new(note, theme.small_font).anchor(Anchor::End);
         let at = (rect.right() - 0.4 * theme.small_font, rect.bottom() - 0.5 * theme.small_font);
         scene.text_on_ground(Height::Note, at, text);
-    } else if let Some(peak) = outside().map(|(_, y)| y.abs()).reduce(f64::max) {
+    } else if let LayerKind::Line(_) = layer.kind
+        && let Some(peak) = outside().map(|(_, y)| y.abs()).reduce(f64::max)
+    {
         let text = TextLine::new(format!("cut, reaches {}°", significant(peak, 2)), theme.small_font);
         let at = (rect.right(), rect.y - 0.45 * theme.small_font);
         scene.text(Height::Note, at, text.anchor(Anchor::End));

@@ -15,7 +15,7 @@ mod zigzag_trial;
 pub use cells::{CellMap, MapCell, Outline, Shades};
 pub use panels::{AxisLine, Division, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Ruler, Stack};
 pub use reach::AxisReach;
-pub use rows::{NamedRows, RowItem, RowKind, RowsColumn};
+pub use rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 pub use shared::Reference95;
 pub use stored::{
     CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, ReplayCurves,

@@ -33,6 +33,17 @@ pub enum RowKind {
     Violin(Look, Vec<(f64, f64)>, [f64; 5]),
 }
 
+/// Where something stands in its row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RowPlace {
+    /// So far below the middle, as a share of the pitch of the rows.
+    Aside(f64),
+    /// On a line of its own below those before it.
+    Below,
+    /// On the line of what stands before it.
+    Beside,
+}
+
 /// One thing in a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowItem {
@@ -40,9 +51,8 @@ pub struct RowItem {
     pub name: Option<String>,
     /// What it is.
     pub kind: RowKind,
-    /// Share of the pitch of the rows by which it stands below the middle of its row; `None`: marks of one row stand
-    /// below each other.
-    pub aside: Option<f64>,
+    /// Where it stands in its row.
+    pub place: RowPlace,
     /// Whether it may be cut where it leaves the range of everything else by more than that range.
     pub soft: bool,
     /// A number written at the right end of the row.
@@ -53,12 +63,12 @@ impl RowItem {
     /// Something in the middle of its row that sets the axis.
     pub fn new(name: impl Into<String>, kind: RowKind) -> Self {
         let name = Some(name.into()).filter(|name| !name.is_empty());
-        Self { name, kind, aside: Some(0.0), soft: false, text: None }
+        Self { name, kind, place: RowPlace::Aside(0.0), soft: false, text: None }
     }
 
     /// A mark that stands below those before it in its row.
     pub fn below(name: impl Into<String>, look: Look, value: f64, interval: Option<[f64; 2]>) -> Self {
-        Self { aside: None, ..Self::new(name, RowKind::Mark(look, value, interval)) }
+        Self { place: RowPlace::Below, ..Self::new(name, RowKind::Mark(look, value, interval)) }
     }
 
     /// The same, cut where it runs far off.
@@ -76,7 +86,7 @@ impl RowItem {
     }
 
     fn is_stacked(&self) -> bool {
-        self.aside.is_none()
+        self.place == RowPlace::Below
     }
 
     fn sample(&self, theme: &Theme) -> KeySample {
@@ -98,7 +108,12 @@ impl RowItem {
             RowKind::Thin(ends) | RowKind::Thick(ends) => ends.to_vec(),
             RowKind::Bar(_, value) => vec![0.0, *value],
             RowKind::Limit(value) => vec![*value],
-            RowKind::Violin(_, _, quantiles) => vec![quantiles[0], quantiles[4]],
+            RowKind::Violin(_, _, quantiles) => {
+                // The middle of a distribution is seen before its ends are.
+                let rooms = [(1, BOXES), (2, MEDIANS), (3, BOXES)];
+                data.soft.extend(rooms.map(|(place, room)| (quantiles[place], room)));
+                vec![quantiles[0], quantiles[4]]
+            }
         };
         match self.soft {
             true => data.soft.extend(ends.into_iter().map(|end| (end, INTERVALS))),
@@ -106,6 +121,10 @@ impl RowItem {
         }
     }
 }
+
+/// Share of the range of usual distributions by which the median of another may widen an axis, and its quartiles.
+const MEDIANS: f64 = 4.0;
+const BOXES: f64 = 2.5;
 
 /// All rows over one axis.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -169,7 +188,8 @@ pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
     for (panel, column) in panels.iter().zip(&data.columns) {
         beyond |= draw(panel, &mut sheet.scene, theme, (column, pitch));
     }
-    let arrows = beyond.then_some("Arrows: beyond the axis.");
+    let is_said = data.note.as_ref().is_some_and(|note| note.contains("Arrows"));
+    let arrows = (beyond && !is_said).then_some("Arrows: beyond the axis.");
     let note: Vec<&str> = data.note.as_deref().into_iter().chain(arrows).collect();
     if !note.is_empty() {
         sheet.note(&note.join(" "));
@@ -224,13 +244,13 @@ fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (column, pitch): (&Row
     for (row, items) in column.rows.iter().enumerate() {
         let Some(middle) = panel.up(row as f64) else { continue };
         let stacked = items.iter().filter(|item| item.is_stacked()).count();
-        let mut line = 0.0;
+        let mut line = -0.5 * (stacked + 1) as f64;
         for item in items {
-            let aside = match item.aside {
-                Some(share) => share * pitch,
-                None => (line - 0.5 * (stacked - 1) as f64) * 0.62 * theme.tick_font,
-            };
             line += if item.is_stacked() { 1.0 } else { 0.0 };
+            let aside = match item.place {
+                RowPlace::Aside(share) => share * pitch,
+                RowPlace::Below | RowPlace::Beside => line * 0.62 * theme.tick_font,
+            };
             beyond |= draw_item(panel, scene, theme, (item, middle + aside, pitch), stacked < 2);
         }
         if is_estimated && !items.iter().any(RowItem::is_value) {

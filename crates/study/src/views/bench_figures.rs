@@ -77,9 +77,9 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         }
     };
     Some(NamedRows {
-        title: None,
+        title: Some(format!("{}: score over that of {}", capital(field), results.reference)),
         names: others.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
-        note: Some(format!("Score over that of {} in the same case.", results.reference)),
+        note: Some(String::from("Medians over the cases with 95 % intervals. Left of the line is better.")),
     })
 }

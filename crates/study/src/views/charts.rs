@@ -17,7 +17,7 @@ use campaign::summary::{Performance, Summary};
 pub enum ErrorMeasure {
     /// Root mean square errors of K and T.
     Rms,
-    /// Coverage of their intervals.
+    /// Coverage of their intervals, and their width.
     Coverage,
     /// Trials without an answer.
     Failures,
@@ -40,23 +40,28 @@ impl ErrorMeasure {
     }
 
     fn panels(self) -> usize {
-        if matches!(self, Self::Rms | Self::Coverage) { 2 } else { 1 }
+        match self {
+            Self::Rms => 2,
+            Self::Coverage => 4,
+            Self::Failures | Self::Validation => 1,
+        }
     }
 
-    fn ruler(self, title: String) -> Ruler {
-        let is_log = matches!(self, Self::Rms | Self::Validation);
+    fn ruler(self, panel: usize, title: String) -> Ruler {
+        let is_log = matches!(self, Self::Rms | Self::Validation) || self == Self::Coverage && panel > 1;
         Ruler::new(title, if is_log { Division::Factors } else { Division::Decimal })
     }
 
     /// The figure of one panel.
     pub fn of(self, record: &Performance, panel: usize) -> Option<Statistic> {
-        let errors = if panel == 0 { &record.k } else { &record.t };
+        let errors = if panel.is_multiple_of(2) { &record.k } else { &record.t };
         match self {
             Self::Rms => errors.rms,
             // What a few answers quote says nothing of a method.
             Self::Coverage => {
                 let often = errors.quoting.is_some_and(|share| share.value >= OFTEN);
-                errors.coverage.filter(|_| often).map(|share| share.times(100.0))
+                let figure = if panel > 1 { errors.width } else { errors.coverage.map(|share| share.times(100.0)) };
+                figure.filter(|_| often)
             }
             Self::Failures => record.failure_rate.map(|share| share.times(100.0)),
             Self::Validation => record.validation_rmse_deg,
@@ -64,8 +69,8 @@ impl ErrorMeasure {
     }
 
     /// What its values are held against; `trials` stand behind each of them.
-    fn reference(self, trials: u64) -> Option<Reference95> {
-        (self == Self::Coverage && trials > 0).then(|| {
+    fn reference(self, panel: usize, trials: u64) -> Option<Reference95> {
+        (self == Self::Coverage && panel < 2 && trials > 0).then(|| {
             let reach = Z95 * (95.0 * 5.0 / trials as f64).sqrt();
             Reference95 { value: 95.0, band: [95.0 - reach, (95.0 + reach).min(100.0)] }
         })
@@ -81,6 +86,35 @@ const WORTHLESS: f64 = 100.0;
 /// Error below which an answer is exact, per cent.
 const EXACT: f64 = 1e-4;
 
+/// The methods that can be compared in some cells, and whether they are held against a first-order response that is
+/// only the nearest to the ship. Nothing where K and T are not one thing in all cells and the study is about
+/// predictions, and where intervals would be of a response that is no truth. A trace is held against the ship's own K
+/// and T.
+pub fn comparable<'a>(
+    design: &Design,
+    measure: ErrorMeasure,
+    mut cells: impl Iterator<Item = &'a CellFacts>,
+) -> Option<(Vec<usize>, bool)> {
+    let is_trace = |method: &usize| design.methods[*method].id == TRACE;
+    let of_indices = matches!(measure, ErrorMeasure::Rms | ErrorMeasure::Coverage);
+    let is_nearest = of_indices && cells.any(|cell| cell.is_nearest);
+    let mut methods: Vec<usize> = (0..design.methods.len()).collect();
+    let to_nearest = is_nearest && !methods.iter().all(is_trace);
+    if is_nearest && design.predicts || to_nearest && measure == ErrorMeasure::Coverage {
+        return None;
+    }
+    methods.retain(|method| !to_nearest || !is_trace(method));
+    Some((methods, to_nearest))
+}
+
+/// Titles of the axes of root mean square errors of K and of T.
+pub fn rms_title(symbol: &str, to_nearest: bool) -> String {
+    match to_nearest {
+        true => format!("rms of {symbol} less that of the nearest first-order response [%]"),
+        false => format!("rms error of {symbol} [%]"),
+    }
+}
+
 /// A measure in the cells of one figure, as it can be compared there.
 struct ComparedMethods<'a> {
     design: &'a Design,
@@ -95,22 +129,10 @@ struct ComparedMethods<'a> {
 }
 
 impl<'a> ComparedMethods<'a> {
-    /// `None` where nothing can be compared: intervals of a response that is only the nearest one hold no truth.
+    /// `None` where nothing can be compared.
     fn new(design: &'a Design, summary: &'a Summary, measure: ErrorMeasure, groups: &[ChartGroup]) -> Option<Self> {
         let cells = || groups.iter().flat_map(|group| &group.cells).map(|&cell| &design.cells[cell]);
-        let is_trace = |method: &usize| design.methods[*method].id == TRACE;
-        let of_indices = matches!(measure, ErrorMeasure::Rms | ErrorMeasure::Coverage);
-        let mut methods: Vec<usize> = (0..design.methods.len()).collect();
-        let mut to_nearest = of_indices && cells().any(|cell| cell.is_nearest);
-        if to_nearest && !methods.iter().all(is_trace) {
-            // A trace is held against the ship's own K and T.
-            methods.retain(|method| !is_trace(method));
-        } else {
-            to_nearest = false;
-        }
-        if to_nearest && measure == ErrorMeasure::Coverage {
-            return None;
-        }
+        let (mut methods, to_nearest) = comparable(design, measure, cells())?;
         let is_bounded = measure == ErrorMeasure::Rms && cells().all(|cell| cell.bound_percent2.is_some());
         let over_bound = is_bounded && !cells().any(|cell| cell.is_nearest);
         if measure == ErrorMeasure::Failures {
@@ -121,12 +143,13 @@ impl<'a> ComparedMethods<'a> {
 
     /// Titles of the panels.
     fn titles(&self) -> Vec<String> {
-        let of_both = |words: &str| ["K", "T"].map(|symbol| words.replace('#', symbol)).to_vec();
+        let of_both = |words: &str| ["K", "T"].map(|symbol| words.replace('#', symbol));
         match self.measure {
-            ErrorMeasure::Rms if self.over_bound => of_both("rms error of # over the Cramér–Rao bound"),
-            ErrorMeasure::Rms if self.to_nearest => of_both("# less that of the nearest first-order response, rms [%]"),
-            ErrorMeasure::Rms => of_both("rms error of # [%]"),
-            ErrorMeasure::Coverage => of_both("95 % intervals that hold # [%]"),
+            ErrorMeasure::Rms if self.over_bound => of_both("rms error of # over the bound").to_vec(),
+            ErrorMeasure::Rms => ["K", "T"].map(|symbol| rms_title(symbol, self.to_nearest)).to_vec(),
+            ErrorMeasure::Coverage => {
+                [of_both("95 % intervals that hold # [%]"), of_both("median interval width of # [%]")].concat()
+            }
             ErrorMeasure::Failures => vec!["trials without answer [%]".to_owned()],
             ErrorMeasure::Validation => vec!["median error of a heading not seen [°]".to_owned()],
         }
@@ -161,10 +184,10 @@ impl<'a> ComparedMethods<'a> {
         if self.over_bound { Some(1.0) } else { self.bound(cell, panel).filter(|_| !self.to_nearest) }
     }
 
-    fn reference(&self, groups: &[ChartGroup]) -> Option<Reference95> {
+    fn reference(&self, panel: usize, groups: &[ChartGroup]) -> Option<Reference95> {
         let cells = groups.iter().flat_map(|group| &group.cells);
         let records = cells.filter_map(|&cell| self.summary.record(cell, 0));
-        self.measure.reference(records.map(|record| record.trials).min().unwrap_or(0))
+        self.measure.reference(panel, records.map(|record| record.trials).min().unwrap_or(0))
     }
 
     /// What is said under a figure some of whose values are drawn elsewhere.
@@ -268,10 +291,10 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
     let (least, most) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
     let is_wide = values.iter().all(|value| *value >= 0.0) && most > WIDE * least;
     let across = Ruler::new(design.axes[x].clone(), if is_wide { Division::Factors } else { Division::Decimal });
-    let height = if groups.len() == 1 { 0.3 } else { 0.24 };
-    let row = |title: &String| PanelRow {
-        reference: compared.reference(groups),
-        ..PanelRow::new(measure.ruler(title.clone()), height)
+    let height = if groups.len() == 1 && titles.len() < 3 { 0.3 } else { 0.24 };
+    let row = |(panel, title): (usize, &String)| PanelRow {
+        reference: compared.reference(panel, groups),
+        ..PanelRow::new(measure.ruler(panel, title.clone()), height)
     };
     let panel = |panel: usize, group: &ChartGroup| {
         let at = |cell: usize| design.cells[cell].values[x];
@@ -296,7 +319,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
     let marks = design.words.output.marks.iter().filter(|mark| mark.axis == design.axes[x]);
     let stack = Stack {
         x: vec![across; groups.len()],
-        rows: titles.iter().map(row).collect(),
+        rows: titles.iter().enumerate().map(row).collect(),
         panels: (0..titles.len()).flat_map(|row| groups.iter().map(move |group| panel(row, group))).collect(),
         marks: marks.map(|mark| AxisLine { at: mark.at, label: mark.label.clone() }).collect(),
         ..Stack::default()
@@ -319,8 +342,8 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
             compared.methods.iter().filter_map(dot).chain(bound).collect()
         };
         RowsColumn {
-            x: measure.ruler(title),
-            reference: compared.reference(part),
+            x: measure.ruler(panel, title),
+            reference: compared.reference(panel, part),
             rows: group.cells.iter().map(of).collect(),
             ..RowsColumn::default()
         }

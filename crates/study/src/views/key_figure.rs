@@ -1,17 +1,20 @@
-//! The figure that stands for a study: its finding above it, the last of its rows of panels (T before K), the methods
-//! it is about in colour and the others grey, methods with one line as one.
+//! The figure that stands for a study: its finding above it, T alone where a figure shows errors of K and of T, the
+//! methods it is about in colour and the others grey.
 
-use campaign::statistics::distinct;
-use report::figures::{Layer, LayerKind, LayeredPanel, NamedRows, Panels, Plot, RowItem, RowKind};
-use report::palette::QUIET;
-use report::{CurveOrigin, PlotCurve};
+use report::figures::{Layer, LayerKind, NamedRows, Panels, Pen, Plot, RowItem, RowKind, RowPlace, Stack};
+use report::palette::{Look, Marker, QUIET};
+use report::{CurveOrigin, palette::SOLID};
+
+/// How a method is drawn that the figure is not about.
+const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
 
 /// A chart as the figure that stands for a study; `about` are the names of the methods it is about, none: all.
 pub fn of_chart(mut plot: Plot, about: &[String]) -> Plot {
     match &mut plot {
         Plot::Panels(data) => of_panels(data, about),
         Plot::Rows(data) => of_rows(data, about),
-        Plot::Cells(_) | Plot::ZigZag(_) => {}
+        Plot::Cells(data) => data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), about)),
+        Plot::ZigZag(_) => {}
     }
     plot
 }
@@ -21,80 +24,111 @@ fn is_quiet(name: Option<&String>, about: &[String]) -> bool {
     !about.is_empty() && name.is_some_and(|name| is_method(name) && !about.contains(name))
 }
 
+/// Whether an axis is of errors or intervals of K.
+fn is_of_k(title: &str) -> bool {
+    title.contains(" K ")
+}
+
 fn of_panels(data: &mut Panels, about: &[String]) {
-    data.names_aside = true;
     for stack in &mut data.stacks {
-        let last = stack.rows.len().saturating_sub(1);
-        let heads: Vec<Option<String>> = stack.panels.iter_mut().map(|panel| panel.head.take()).collect();
-        stack.rows.drain(..last);
-        stack.panels.drain(..last * stack.x.len());
-        stack.panels.iter_mut().zip(heads).for_each(|(panel, head)| panel.head = head);
-        stack.rows.iter_mut().for_each(|row| row.height = 0.3);
-        merge(&mut stack.panels, about);
+        if stack.across.is_some() {
+            // Small multiples are of one method each.
+            stack.panels.retain(|panel| !is_quiet(panel.head.as_ref(), about));
+            continue;
+        }
+        data.names_aside = true;
+        keep_t(stack);
         for panel in &mut stack.panels {
             for layer in &mut panel.layers {
-                let first = layer.name.as_ref().and_then(|name| name.split('\n').next()).map(str::to_owned);
-                if is_quiet(first.as_ref(), about)
+                if is_quiet(layer.name.as_ref(), about)
                     && let LayerKind::Marks(marks) = &mut layer.kind
                 {
                     marks.look.colour = QUIET;
-                    marks.joined = marks.joined.map(|pen| report::figures::Pen { colour: QUIET, ..pen.width(0.7) });
+                    marks.joined = marks.joined.map(|pen| Pen { colour: QUIET, ..pen.width(0.7) });
                 }
             }
             // What the figure is about stands over the rest.
-            panel.layers.sort_by_key(|layer| !matches!(&layer.kind, LayerKind::Marks(own) if own.look.colour == QUIET));
+            let is_quiet = |layer: &Layer| matches!(&layer.kind, LayerKind::Marks(own) if own.look.colour == QUIET);
+            panel.layers.sort_by_key(|layer| !is_quiet(layer));
         }
     }
+}
+
+/// Leaves the rows of K out, and hands their heads on.
+fn keep_t(stack: &mut Stack) {
+    let across = stack.x.len();
+    let heads: Vec<Option<String>> = stack.panels.iter_mut().map(|panel| panel.head.take()).collect();
+    let is_kept: Vec<bool> = stack.rows.iter().map(|row| !is_of_k(&row.y.title)).collect();
+    let mut row = 0..;
+    stack.panels.retain(|_| row.next().is_some_and(|panel| is_kept[panel / across]));
+    stack.rows.retain(|row| !is_of_k(&row.y.title));
+    stack.panels.iter_mut().zip(heads).for_each(|(panel, head)| panel.head = head);
+    stack.rows.iter_mut().for_each(|row| row.height = 0.3);
 }
 
 fn of_rows(data: &mut NamedRows, about: &[String]) {
-    data.columns.drain(..data.columns.len().saturating_sub(1));
-    for RowItem { name, kind, .. } in data.columns.iter_mut().flat_map(|column| &mut column.rows).flatten() {
-        if let RowKind::Mark(look, ..) = kind
-            && is_quiet(name.as_ref(), about)
-        {
-            look.colour = QUIET;
-            *name = Some(String::from("other methods"));
+    data.columns.retain(|column| !is_of_k(&column.x.title));
+    for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
+        // The others share a line.
+        row.sort_by_key(|item| is_quiet(item.name.as_ref(), about));
+        let mut place = RowPlace::Below;
+        for item in row.iter_mut().filter(|item| is_quiet(item.name.as_ref(), about)) {
+            if let RowItem { kind: RowKind::Mark(look, _, interval), .. } = item {
+                (*look, *interval) = (OTHER, None);
+                (item.name, item.place) = (Some(String::from("other methods")), place);
+                place = RowPlace::Beside;
+            }
         }
     }
 }
 
-/// Lines nearer to each other than this share of their values are one.
-const SAME_LINE: f64 = 0.03;
+#[cfg(test)]
+mod tests {
+    use report::figures::{LayeredPanel, PanelRow, RowsColumn, Ruler};
 
-fn is_same(one: &PlotCurve, other: &PlotCurve) -> bool {
-    let near = |((x, y), (own_x, own_y)): ((f64, f64), (f64, f64))| {
-        x == own_x && (y == own_y || (y - own_y).abs() <= SAME_LINE * y.abs() && y.is_finite())
-    };
-    one.x.len() == other.x.len() && one.pairs().zip(other.pairs()).all(near)
-}
+    use super::*;
 
-/// Joins methods whose lines lie on each other in all panels, under the names of all; one that the figure is about
-/// gives the line its look.
-fn merge(panels: &mut [LayeredPanel], about: &[String]) {
-    let is_method = |layer: &&Layer| matches!(layer.kind, LayerKind::Marks(_));
-    let layers = panels.iter().flat_map(|panel| &panel.layers).filter(is_method);
-    let mut names = distinct(layers.filter_map(|layer| layer.name.clone()));
-    names.sort_by_key(|name| about.iter().position(|one| one == name).unwrap_or(about.len()));
-    let own = |panel: &LayeredPanel, name: &String| -> PlotCurve {
-        let layer = panel.layers.iter().find(|layer| layer.name.as_ref() == Some(name));
-        layer.map_or_else(PlotCurve::default, |layer| layer.curve.clone())
-    };
-    let mut lines: Vec<Vec<String>> = Vec::new();
-    for name in names {
-        let same = |line: &&mut Vec<String>| panels.iter().all(|one| is_same(&own(one, &line[0]), &own(one, &name)));
-        match lines.iter_mut().find(same) {
-            Some(line) => line.push(name),
-            None => lines.push(vec![name]),
-        }
+    fn method(id: &str) -> (String, Look) {
+        (id.to_owned(), CurveOrigin::Method(id.to_owned()).look())
     }
-    for panel in panels {
-        panel
-            .layers
-            .retain(|layer| !is_method(&layer) || lines.iter().any(|line| layer.name.as_ref() == Some(&line[0])));
-        for layer in &mut panel.layers {
-            let line = lines.iter().find(|line| layer.name.as_ref() == Some(&line[0]));
-            layer.name = line.map_or_else(|| layer.name.take(), |line| Some(line.join("\n")));
-        }
+
+    #[test]
+    fn rows_of_t_stay_with_the_heads_of_their_columns() {
+        let panel = |column: usize, row: usize| LayeredPanel {
+            head: (row == 0).then(|| format!("column {column}")),
+            layers: vec![Layer::marks(method("srivc").0, method("srivc").1, vec![(row as f64, 1.0, None)])],
+        };
+        let titles = ["95 % intervals that hold K [%]", "… that hold T [%]", "width of K [%]", "width of T [%]"];
+        let stack = Stack {
+            x: vec![Ruler::decimal("x"); 2],
+            rows: titles.iter().map(|title| PanelRow::new(Ruler::decimal(*title), 0.2)).collect(),
+            panels: (0..4).flat_map(|row| [panel(0, row), panel(1, row)]).collect(),
+            ..Stack::default()
+        };
+        let Plot::Panels(data) = of_chart(Panels::of(stack).into(), &[String::from("output-error")]) else { panic!() };
+        let panels = &data.stacks[0].panels;
+        let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
+        assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
+        assert_eq!(panels[1].head.as_deref(), Some("column 1"));
+        let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
+        assert_eq!(marks.look.colour, QUIET);
+    }
+
+    #[test]
+    fn other_methods_share_a_line_below_those_the_figure_is_about() {
+        let item = |id: &str| RowItem::below(method(id).0, method(id).1, 1.0, None);
+        let column = |title: &str| RowsColumn {
+            x: Ruler::decimal(title),
+            rows: vec![vec![item("srivc"), item("output-error"), item("least-squares")]],
+            ..RowsColumn::default()
+        };
+        let rows =
+            NamedRows { columns: vec![column("error of K [%]"), column("error of T [%]")], ..NamedRows::default() };
+        let Plot::Rows(data) = of_chart(rows.into(), &[String::from("output-error")]) else { panic!() };
+        assert_eq!(data.columns.len(), 1);
+        let row = &data.columns[0].rows[0];
+        assert_eq!(row[0].name.as_deref(), Some("output-error"));
+        assert_eq!([row[1].place, row[2].place], [RowPlace::Below, RowPlace::Beside]);
+        assert_eq!(row[1].name, row[2].name);
     }
 }

@@ -13,6 +13,9 @@ use crate::documents::missing_moment::MissingMomentEntry;
 /// Panels of a figure at most.
 const PANELS: usize = 4;
 
+/// Times the usual size at which a moment is cut: a position that jumps would set the axis.
+const REACH: f64 = 4.0;
+
 /// Title of an axis over a channel.
 fn title_of(column: &str) -> String {
     match column {
@@ -57,7 +60,8 @@ fn banded(known: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], explai
 pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[MomentTable; 2]) -> Panels {
     let known = entry.explanation.as_ref();
     let over = |x: Ruler, height: f64, layers: Vec<Layer>| {
-        Stack::over(x, vec![(PanelRow::zeroed(Ruler::decimal("moment [° rudder]"), height), layers)])
+        let moment = Ruler::decimal("moment [° rudder]").within(REACH, Some(0.0));
+        Stack::over(x, vec![(PanelRow::zeroed(moment, height), layers)])
     };
     let over_time = |name: &str| PlotCurve::new(values(time, "t_s"), values(time, name));
     let ends = ["moment_rudder_deg", "lower95_rudder_deg", "upper95_rudder_deg"].map(over_time);
@@ -76,7 +80,9 @@ pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[MomentTable; 2]) -
         (stack.panels[0].head, stack.is_half) = (Some(head), true);
         stack
     }));
-    Panels { title: Some(format!("{}: yaw moment that the base lacks", entry.record)), stacks, ..Panels::default() }
+    let note = Some(format!("Moments beyond {REACH} times the usual size are cut."));
+    let title = Some(format!("{}: yaw moment that the base lacks", entry.record));
+    Panels { title, stacks, note, ..Panels::default() }
 }
 
 /// What is said of the moment of one record.

@@ -11,7 +11,7 @@ use report::figures::{
 use report::palette::DOTTED;
 use report::{CurveOrigin, PlotCurve, symbol};
 
-use super::charts::{ErrorMeasure, origin};
+use super::charts::{ErrorMeasure, comparable, origin, rms_title};
 
 /// Fewest points of an axis that make a map.
 const MAP: usize = 3;
@@ -26,7 +26,12 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
     if rows.len() < MAP || columns.len() < MAP {
         return Vec::new();
     }
-    let of = |(measure, panel, stem, title): (ErrorMeasure, usize, &str, &str)| {
+    let of = |(measure, panel, stem): (ErrorMeasure, usize, &str)| {
+        let (methods, to_nearest) = comparable(design, measure, design.cells.iter())?;
+        let title = match measure {
+            ErrorMeasure::Rms => rms_title(stem, to_nearest),
+            _ => String::from("validation error of the heading [°]"),
+        };
         // Cells are the product of the axes, the first axis slowest.
         let cell = |x: usize, y: usize, method: usize| {
             let record = summary.record(y * columns.len() + x, method);
@@ -42,21 +47,17 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
             titles: [design.axes[1].clone(), design.axes[0].clone()],
             columns: columns.clone(),
             rows: rows.clone(),
-            shades: Shades::Range(Division::Factors, title.to_owned()),
-            panels: (0..design.methods.len()).map(panel).collect(),
+            shades: Shades::Range(Division::Factors, title.clone()),
+            panels: methods.into_iter().map(panel).collect(),
             note: None,
         };
-        (format!("heat-map-{stem}"), title.to_owned(), map)
+        Some((format!("heat-map-{stem}"), title, map))
     };
     let is_there = |(_, _, map): &(String, String, CellMap)| {
         map.panels.iter().flat_map(|(_, rows)| rows).flatten().any(|cell| cell.value.is_some())
     };
-    let maps = [
-        (ErrorMeasure::Rms, 0, "K", "rms error of K [%]"),
-        (ErrorMeasure::Rms, 1, "T", "rms error of T [%]"),
-        (ErrorMeasure::Validation, 0, "validation", "validation error of the heading [°]"),
-    ];
-    maps.map(of).into_iter().filter(is_there).collect()
+    let maps = [(ErrorMeasure::Rms, 0, "K"), (ErrorMeasure::Rms, 1, "T"), (ErrorMeasure::Validation, 0, "validation")];
+    maps.into_iter().filter_map(of).filter(is_there).collect()
 }
 
 /// Whiskers further out than this many times the middle one are cut.
@@ -165,28 +166,41 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
     Some((rows, design.methods[summary.reference].label.clone()))
 }
 
-/// How often 90 % intervals of predictions hold, cell by cell and method by method: the mean over the figures of the
-/// shares of trials, and as a bar the lowest and the highest of them; nothing without predictions.
+/// How often 90 % intervals of predictions hold, cell by cell and method by method, and how wide they are: the mean
+/// over the figures, and as a bar the lowest and the highest share and the middle half of the widths; nothing without
+/// predictions.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
-    let of = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
-    let dot = |cell: usize, method: usize| {
-        let lines = || summary.predictions.iter().filter(move |line| (line.cell, line.method) == (cell, method));
-        let shares: Vec<f64> = lines().map(of).collect();
-        let ends = [shares.iter().copied().reduce(f64::min)?, shares.iter().copied().reduce(f64::max)?];
+    type Of = fn(&PredictionSummary) -> f64;
+    let dot = |of: Of, outer: usize, (cell, method): (usize, usize)| {
+        let lines = summary.predictions.iter().filter(|line| (line.cell, line.method) == (cell, method));
+        let mut shares: Vec<f64> = lines.map(of).collect();
+        shares.sort_by(f64::total_cmp);
+        let last = shares.len().checked_sub(1)?;
+        let cut = last * outer / 100;
         let mean = shares.iter().sum::<f64>() / shares.len() as f64;
         let origin = origin(design, method);
-        Some(RowItem::below(origin.label(), origin.look(), mean, Some(ends)))
+        Some(RowItem::below(origin.label(), origin.look(), mean, Some([shares[cut], shares[last - cut]])))
     };
-    let row = |cell: usize| (0..design.methods.len()).filter_map(|method| dot(cell, method)).collect();
+    let column = |x: Ruler, of: Of, outer: usize, reference: Option<Reference95>| {
+        let row = |cell: usize| (0..design.methods.len()).filter_map(|method| dot(of, outer, (cell, method))).collect();
+        RowsColumn { x, rows: (0..design.cells.len()).map(row).collect(), reference, ..RowsColumn::default() }
+    };
+    let inside = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
+    let width = |line: &PredictionSummary| 100.0 * line.width() / line.truth().abs();
     (!summary.predictions.is_empty()).then(|| NamedRows {
         title: None,
         names: design.cells.iter().map(|cell| cell.labels.join(", ")).collect(),
-        columns: vec![RowsColumn {
-            x: Ruler::decimal("trials in which a 90 % interval holds [%]"),
-            rows: (0..design.cells.len()).map(row).collect(),
-            reference: Some(Reference95::line(90.0)),
-            ..RowsColumn::default()
-        }],
-        note: Some("Markers: mean over the figures. Bars: from the lowest to the highest of them.".to_owned()),
+        columns: vec![
+            column(
+                Ruler::new("90 % intervals that hold [%]", Division::Percent),
+                inside,
+                0,
+                Some(Reference95::line(90.0)),
+            ),
+            column(Ruler::new("their width [% of the value]", Division::Factors), width, 25, None),
+        ],
+        note: Some(String::from(
+            "Markers: mean over the figures. Bars: from the lowest to the highest of them, of widths the middle half.",
+        )),
     })
 }

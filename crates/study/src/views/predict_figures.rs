@@ -7,7 +7,9 @@ use predict::interval::PredictionInterval;
 use predict::prediction::Bands;
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
-use report::figures::{Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler, Stack};
+use report::figures::{
+    Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn, Ruler, Stack,
+};
 use report::palette::{BEFORE, HEADING, Look, Marker, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
@@ -166,7 +168,7 @@ fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
             let mut items = interval(&figure.interval, false);
             // Under the bar, so that it does not hide a median nearby.
             let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));
-            items.push(RowItem { aside: Some(0.34), ..item });
+            items.push(RowItem { place: RowPlace::Aside(0.34), ..item });
             rows.push((format!("{} {}", replayed.name, words(name).0), items));
         }
     }

@@ -56,7 +56,7 @@ pub fn of(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<
         }
         found.map(|(place, figure)| {
             let mut plot = figure.plot.clone();
-            if *place == FigurePlace::Chart {
+            if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials) {
                 plot = key_figure::of_chart(plot, &words.methods);
             }
             if words.title.is_some() {
@@ -98,9 +98,9 @@ fn reading(measure: ErrorMeasure) -> &'static str {
              first-order response is no error: the ship has no K and T of its own."
         }
         ErrorMeasure::Coverage => {
-            "Share of quoted 95 % intervals that hold the truth, with Wilson's intervals. Inside the grey band a method is as \
-             honest as this number of trials can tell; below it, it is too sure. Methods that quote an interval in fewer than \
-             half of the trials are missing."
+            "Share of quoted 95 % intervals that hold the truth, with Wilson's intervals, and their median width. Inside the \
+             grey band a method is as honest as this number of trials can tell; below it, it is too sure; above it, its \
+             intervals are wider than they need be. Methods that quote an interval in fewer than half of the trials are missing."
         }
         ErrorMeasure::Failures => {
             "Share of trials without an answer, with Wilson's intervals; methods that always answer are left out. The reasons are \
@@ -156,8 +156,13 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
                        counts once in every trial of a ship whose effects are known, with 95 % intervals.";
         PageFigure::new("reliability", format!("{caption}{whose}"), data)
     });
+    let rules = traces::rules(design, &summary.tracing).map(|rows| {
+        let caption = "What every rule names: trials in which it names something that is not missing, and trials in which it \
+                       names what is missing and nothing else, with Wilson's 95 % intervals.";
+        PageFigure::new("rules", caption, rows)
+    });
     let confusions = traces::confusions(design, &lines).into_iter().enumerate().map(confusion);
-    confusions.chain(power).chain(reliability).collect()
+    rules.into_iter().chain(confusions).chain(power).chain(reliability).collect()
 }
 
 /// Errors over the axes. What a trace finds has its own figures; of many cells the errors would be a figure each.
@@ -181,8 +186,8 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     let mut figures = Vec::new();
     figures.extend(pooled_charts::predictions(design, summary).map(|data| {
-        let caption = "Share of trials in which the 90 % interval of a manoeuvre that was not made holds what the ship does. Left \
-                       of the line a method is too sure.";
+        let caption = "Share of trials in which the 90 % interval of a manoeuvre that was not made holds what the ship does, and \
+                       how wide it is. Left of the line a method is too sure; a wide interval holds more and says less.";
         PageFigure::new("predictions", caption, data)
     }));
     figures.extend(pooled_charts::indices(design, summary).map(|(data, method)| {

@@ -59,7 +59,7 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
 /// A figure of [`IndexErrors`]: its name, unit, and how to get it.
 type ErrorFigure = (&'static str, &'static str, fn(&IndexErrors) -> Option<Statistic>);
 
-const ERRORS: [ErrorFigure; 14] = [
+const ERRORS: [ErrorFigure; 15] = [
     ("mean error", "%", |errors| errors.mean),
     ("median error", "%", |errors| errors.median),
     ("sd", "%", |errors| errors.sd),
@@ -72,6 +72,7 @@ const ERRORS: [ErrorFigure; 14] = [
     ("median of sizes", "%", |errors| errors.median_size),
     ("90 % of sizes", "%", |errors| errors.high_size),
     ("coverage", "%", |errors| errors.coverage.map(|share| share.times(100.0))),
+    ("width of intervals", "%", |errors| errors.width),
     ("quoting intervals", "%", |errors| errors.quoting.map(|share| share.times(100.0))),
     ("sd/bound", "", |errors| errors.sd_over_bound),
 ];

@@ -1,9 +1,12 @@
-//! Data of the figures about traces: the confusion matrix, and power over the size of an effect.
+//! Data of the figures about traces: rules against each other, the confusion matrix, power over the size of an effect.
 
 use std::collections::BTreeSet;
 
 use report::PlotCurve;
-use report::figures::{CellMap, Division, Layer, MapCell, Outline, PanelRow, Panels, Pen, Ruler, Shades, Stack};
+use report::figures::{
+    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace,
+    RowsColumn, Ruler, Shades, Stack,
+};
 use report::palette::{CurveOrigin, DASHED, DOTTED, Dash, INK, Look, Marker, SOLID};
 use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
@@ -77,6 +80,40 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
              a number: 100.",
         )),
     }
+}
+
+/// Share of the pitch of the rows by which two shares of a rule stand beside the middle of their row.
+const ASIDE: f64 = 0.16;
+
+/// Several traces against each other over all ships whose effects are known: trials in which something that is not
+/// missing was named, and, of the ships that lack something, trials in which exactly that was. Nothing for one trace.
+pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
+    let of_rule = |(method, own): &(usize, Vec<&TraceSummary>)| {
+        let mark = |name: &str, origin: CurveOrigin, count: fn(&TraceSummary) -> u64, lacks: bool| {
+            let own = || own.iter().filter(|line| !line.is_hull() && (!lacks || !line.missing.is_empty()));
+            let share = share(own().map(|line| count(line)).sum(), own().map(|line| line.trials).sum())?.times(100.0);
+            Some(RowItem::new(name, RowKind::Mark(origin.look(), share.value, share.ci95)))
+        };
+        let items = [
+            mark("exactly what is missing", CurveOrigin::After, |line| line.exact, true),
+            mark("something that is not", CurveOrigin::Before, |line| line.wrong, false),
+        ];
+        let mut items: Vec<RowItem> = items.into_iter().flatten().collect();
+        if let [exact, wrong] = &mut items[..] {
+            (exact.place, wrong.place) = (RowPlace::Aside(-ASIDE), RowPlace::Aside(ASIDE));
+        }
+        (design.methods[*method].label.clone(), items)
+    };
+    let rules = grouped(lines, |line| line.method);
+    let (names, rows): (_, Vec<_>) = rules.iter().map(of_rule).unzip();
+    let x = Ruler::new("trials that name it [%]", Division::Percent);
+    let is_known = rows.iter().all(|row| !row.is_empty());
+    (rules.len() > 1 && is_known).then(|| NamedRows {
+        names,
+        columns: vec![RowsColumn { x, rows, ..RowsColumn::default() }],
+        note: Some(String::from("Bars: 95 % intervals.")),
+        ..NamedRows::default()
+    })
 }
 
 /// Smallest expected likelihood ratio that is drawn.
@@ -184,7 +221,32 @@ fn exceeds(freedom: u32, noncentrality: f64, limit: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::exceeds;
+    use super::*;
+    use scenario::MethodName;
+
+    /// One trial of four has a false name, and one of the two ships that lack something is named exactly.
+    #[test]
+    fn rules_are_held_against_what_was_missing() {
+        let name = |label: &str| MethodName { id: "trace".into(), label: label.into() };
+        let design = Design { methods: vec![name("bic, 0.5"), name("bic, 0.9")], ..Design::default() };
+        let line = |method, missing: &[&str], exact, wrong| TraceSummary {
+            missing: missing.iter().map(|&id| id.to_owned()).collect(),
+            ..TraceSummary { method, trials: 2, exact, wrong, ..TraceSummary::default() }
+        };
+        let lines =
+            [line(0, &["wave_yaw"], 1, 1), line(0, &[], 2, 0), line(1, &["wave_yaw"], 0, 0), line(1, &[], 2, 0)];
+        let values = |lines: &[TraceSummary]| {
+            let value = |item: &RowItem| match item.kind {
+                RowKind::Mark(_, value, _) => value,
+                _ => f64::NAN,
+            };
+            let rows = rules(&design, lines).expect("two rules").columns.remove(0).rows;
+            rows.iter().map(|row| row.iter().map(value).collect()).collect::<Vec<Vec<f64>>>()
+        };
+        assert_eq!(values(&lines), [[50.0, 25.0], [0.0, 0.0]]);
+        assert_eq!(values(&[line(0, &[], 1, 1), line(1, &[], 2, 0)]), [[50.0], [0.0]]);
+        assert!(rules(&design, &lines[..2]).is_none());
+    }
 
     /// P(χ'²₁(λ) > c) = P(|Z + √λ| > √c); for λ = 9, c = 4: Φ(1) + Φ(−5).
     #[test]

@@ -8,7 +8,8 @@ use campaign::curves::{curve, degrees, phase_curve, phase_of};
 use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
 use identify::replay::Replay;
 use report::figures::{
-    AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler, Stack,
+    AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn,
+    Ruler, Stack,
 };
 use report::number::{fixed, significant};
 use report::paint::Paint;
@@ -233,7 +234,7 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
             let mark = |origin: CurveOrigin, aside: f64, replay: &Option<ZigZag>| {
                 let value = replay.as_ref().and_then(of)?;
                 let item = RowItem::new(origin.label(), RowKind::Mark(origin.look(), value, None)).softly();
-                Some(RowItem { aside: Some(aside), ..item })
+                Some(RowItem { place: RowPlace::Aside(aside), ..item })
             };
             let measured = Look { marker: Marker::Square, ..CurveOrigin::Record.look() };
             let items = [
