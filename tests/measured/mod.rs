@@ -1,6 +1,7 @@
 //! Measured records, which are not part of the project: every test says in one line that it was skipped where they are
 //! not.
 
+mod boat;
 mod characteristics;
 mod manoeuvres;
 mod reading;

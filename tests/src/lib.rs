@@ -9,6 +9,7 @@
 //! | damaged files for every reader | [`fuzz`] |
 //! | what the outside estimator of the tests computes | [`outside`] |
 //! | measured records, which are not part of the project | [`measured`], [`autopilot`], [`wrapped`] |
+//! | manoeuvres of measured ships, predicted | [`predicted`] |
 //! | effects of one hull, record by record | [`stability`] |
 //! | ships that are on no list, traced | [`unlisted`] |
 
@@ -17,6 +18,7 @@ pub mod fuzz;
 pub mod logs;
 pub mod measured;
 pub mod outside;
+pub mod predicted;
 pub mod records;
 pub mod stability;
 pub mod unlisted;

@@ -11,6 +11,10 @@ use crate::signature::Signature;
 /// Why the replay of the base is kept.
 pub const NO_NEARER: &str = "the structures replay the records no nearer than the base: a random moment describes them, which no replay foresees";
 
+/// Why no effect is named, whatever its probability.
+pub const UNFOUNDED: &str = "the structures replay the records no nearer than the base, and no noise describes what \
+                             they leave: no effect is named";
+
 /// Name of the file of a trial, or of the trial.
 pub fn file_of(trial: &Trial) -> String {
     match trial.origin() {

@@ -1,7 +1,14 @@
 //! Where measured records are looked for. They are not part of the project, because their licences do not allow it; a
-//! test that needs one says in one line that it was skipped.
+//! test that needs one says in one line that it was skipped. [`sets`] says which records belong together, [`tracing`]
+//! traces them, [`analysis`] sums up what was found, [`charts`] draws it.
 
-use std::path::PathBuf;
+pub mod analysis;
+pub mod charts;
+pub mod sets;
+pub mod tracing;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use trial::channel::column;
 use trial::{Columns, Trial};
@@ -55,4 +62,23 @@ pub fn columns(file: &str) -> Option<Columns> {
 pub fn folder() -> PathBuf {
     std::env::var_os("TRIAL_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"), PathBuf::from)
+}
+
+/// Runs a program that works on the measured records and writes into the folder that is its only argument.
+pub fn into_results(usual: &str, run: fn(&Path) -> sets::Outcome<()>) -> ExitCode {
+    let Some(results) = std::env::args_os().nth(1).map(PathBuf::from) else {
+        eprintln!("give the folder of the results, for instance {usual}");
+        return ExitCode::from(2);
+    };
+    if !folder().is_dir() {
+        eprintln!("there are no measured records in {}; set TRIAL_DATA to their folder", folder().display());
+        return ExitCode::from(2);
+    }
+    match run(&results) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
 }

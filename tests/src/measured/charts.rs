@@ -1,0 +1,95 @@
+//! Figures over all sets of measured records: errors before and after, and indices that change with the amplitude.
+
+use identify::{Identifier, output_error};
+use report::figures::{Division, Layer, NamedRows, PanelRow, Panels, RowItem, RowKind, RowsColumn, Ruler, Stack};
+use report::palette::{BEFORE, HEADING, Look, Marker, RUDDER, SOLID};
+use report::{PageFigure, symbol};
+use trial::{Quantity, Trial};
+
+use super::analysis::{MeasuredAnalysis, ReplayError, WHOLE, WINDOWS_60_S};
+use super::sets::{MeasuredSet, Outcome};
+
+/// Errors on records that were held out, before and after, a row for each analysis.
+pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
+    let rows = |of: ReplayError| -> Vec<Vec<RowItem>> {
+        let pair = |own: &MeasuredAnalysis| {
+            let [before, after] = own.held_out(of);
+            let base = Look { colour: BEFORE, marker: Marker::Circle, dash: SOLID, hollow: true };
+            let traced = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };
+            vec![
+                RowItem::new("", RowKind::Thin([before.min(after), before.max(after)])),
+                RowItem::new("first-order base", RowKind::Mark(base, before, None)),
+                RowItem::new("traced", RowKind::Mark(traced, after, None)),
+            ]
+        };
+        analyses.iter().map(pair).collect()
+    };
+    let column = |title: &str, of| RowsColumn {
+        x: Ruler::new(title, Division::Factors),
+        rows: rows(of),
+        ..RowsColumn::default()
+    };
+    let name = |own: &MeasuredAnalysis| {
+        let set = own.set.name.split(',').next().unwrap_or_default();
+        let basin = own.set.folder.rsplit('_').next().unwrap_or_default().to_uppercase();
+        let ship = if set == "KVLCC2" { format!("{set} {basin}") } else { set.to_owned() };
+        format!("{ship}: {}", own.label)
+    };
+    let caption = "Heading error on records that were not fitted, of the best first-order base and of what was traced: whole \
+                   replays, and replays restarted every 60 s. A row is one analysis; what was fitted stands at its left.";
+    PageFigure::new(
+        "held-out",
+        caption,
+        NamedRows {
+            names: analyses.iter().map(name).collect(),
+            columns: vec![column("whole replay [°]", WHOLE), column("windows of 60 s [°]", WINDOWS_60_S)],
+            ..NamedRows::default()
+        },
+    )
+}
+
+/// K′, T′ and root mean square yaw rate r′ of one record.
+struct PrimeIndex {
+    rate: f64,
+    indices: [(f64, Option<[f64; 2]>); 2],
+}
+
+/// First-order indices of a record by output error; `None` where it has none.
+fn index(trial: &Trial) -> Option<PrimeIndex> {
+    let own = trial.particulars()?;
+    let estimate = output_error::Settings::default().build().ok()?.identify(std::slice::from_ref(trial)).ok()?;
+    let rates: Vec<f64> = trial.yaw_rate()?.iter().copied().filter(|rate| rate.is_finite()).collect();
+    let rms = (rates.iter().map(|rate| rate * rate).sum::<f64>() / rates.len() as f64).sqrt();
+    // Where 1/T is below zero the ship is not stable on a straight course: T lies beyond every bound.
+    let shown = |of: Quantity, factor: f64| match of.value > 0.0 {
+        true => (of.value * factor, of.ci95.map(|ends| ends.map(|end| end * factor))),
+        false => (f64::INFINITY, None),
+    };
+    let time = own.time();
+    Some(PrimeIndex { rate: rms * time, indices: [shown(estimate.K(), time), shown(estimate.T(), 1.0 / time)] })
+}
+
+/// K′ and T′ of the records of some sets over the yaw rate in them.
+///
+/// Fails where a record cannot be read.
+pub fn amplitude(sets: &[&MeasuredSet], scratch: &std::path::Path) -> Outcome<PageFigure> {
+    let looks = [(HEADING, Marker::Circle), (RUDDER, Marker::Square)];
+    let mut rows = ["K", "T"].map(|name| {
+        let ruler = Ruler::new(format!("{}′", symbol(name)), Division::Factors);
+        (PanelRow::new(ruler, 0.24), Vec::new())
+    });
+    for (set, (colour, marker)) in sets.iter().zip(looks) {
+        let trials = set.records.iter().map(|record| set.read(record, scratch)).collect::<Outcome<Vec<_>>>()?;
+        let found: Vec<PrimeIndex> = trials.iter().filter_map(index).collect();
+        let look = Look { colour, marker, dash: SOLID, hollow: false };
+        for (place, (_, layers)) in rows.iter_mut().enumerate() {
+            let points = found.iter().map(|own| (own.rate, own.indices[place].0, own.indices[place].1));
+            layers.push(Layer::marks(set.name, look, points.collect()));
+        }
+    }
+    let x = Ruler::decimal(format!("root mean square yaw rate {}′", symbol("r")));
+    let caption = "KVLCC2 has no K and T: first-order indices of single zig-zags, by output error with 95 % intervals (white \
+                   noise: they hold no error of the model), without dimension (L/U), over the yaw rate in the record. An \
+                   arrow: the record is best described by a ship that is unstable on a straight course.";
+    Ok(PageFigure::new("amplitude", caption, Panels::of(Stack::over(x, rows.into()))))
+}

@@ -1,0 +1,234 @@
+//! Measured trials predicted: a ship is traced from some records, and the others are held against what she then does.
+
+use std::path::Path;
+
+use campaign::known::{self, RecordFacts};
+use estimation::statistics::upper_median;
+use predict::identified_ship::is_same_length;
+use predict::steady::SteadyCurve;
+use predict::turn::without_current;
+use predict::{IdentifiedShip, Prediction, ShipMixture};
+use ship::Particulars;
+use ship::angle::to_deg;
+use trace::Settings;
+use trial::{Channel, Manoeuvre, Trial};
+
+use super::figure::{ForecastFigure, ForecastGroup};
+use super::turn::{RecordedTurn, TurnTrack};
+use crate::measured::sets::{MeasuredSet, Outcome, SETS};
+
+/// Ships that are drawn for every trial.
+const DRAWS: usize = 500;
+
+/// Ships that are drawn for a figure.
+const SHOWN: usize = 200;
+
+/// A ship as some records show her.
+pub struct TracedShip {
+    /// The records.
+    pub fitted: String,
+    known: IdentifiedShip,
+    /// Rate of the propeller in these records, 1/s, where it was recorded.
+    propeller: Option<f64>,
+}
+
+/// A circle, measured beside predicted.
+pub struct PredictedTrack {
+    /// Which circle, from what.
+    pub title: String,
+    /// As it was measured, without the current.
+    pub measured: TurnTrack,
+    /// The most probable ship.
+    pub probable: TurnTrack,
+    /// Drawn ships, east and north in lengths.
+    pub drawn: Vec<(Vec<f64>, Vec<f64>)>,
+}
+
+/// Steady turns, measured beside predicted.
+pub struct PredictedSteady {
+    /// Of which ship, from what.
+    pub title: String,
+    /// The most probable ship, then drawn ones.
+    pub curves: Vec<SteadyCurve>,
+    /// Rudder, deg, and yaw rate, deg/s, of measured circles.
+    pub measured: Vec<(f64, f64)>,
+}
+
+/// Everything that is predicted.
+#[derive(Default)]
+pub struct Forecasts {
+    /// Figure by figure.
+    pub figures: Vec<ForecastFigure>,
+    /// Two circles.
+    pub tracks: Vec<PredictedTrack>,
+    /// Two ships.
+    pub steady: Vec<PredictedSteady>,
+}
+
+fn set(folder: &str) -> &'static MeasuredSet {
+    SETS.iter().find(|set| set.folder == folder).expect("a set of this name")
+}
+
+/// Rate of the propeller of a record, 1/s.
+fn propeller(trial: &Trial) -> Option<f64> {
+    let mut rates = trial.channel(Channel::PropellerRate)?.to_vec();
+    rates.retain(|rate| rate.is_finite());
+    upper_median(&mut rates).filter(|rate| *rate > 0.0)
+}
+
+impl TracedShip {
+    /// The ship that a trace makes of some records together.
+    fn of(records: &[(&'static str, Trial)]) -> Outcome<Self> {
+        let (names, trials): (Vec<&str>, Vec<Trial>) = records.iter().cloned().unzip();
+        let fitted = names.join(", ");
+        eprintln!("{fitted}");
+        let settings = Settings { thorough: false, hulls: true, ..Settings::default() };
+        let analysis = trace::trace(&trials, &[], &settings)?;
+        let known = known::of_analysis(&analysis, &RecordFacts::of(&trials).with_motion(Some(&analysis)));
+        Ok(Self { fitted, known, propeller: propeller(&trials[0]) })
+    }
+
+    /// The same ship at the scale of a trial: of Froude, and on the same model with an approach speed that grows as
+    /// the rate of the propeller does.
+    fn at(&self, own: Particulars, rate: Option<f64>) -> Outcome<IdentifiedShip> {
+        let known = &self.known;
+        let (Some(length), Some(speed)) = (known.length_m, known.speed_m_s) else { return Ok(known.clone()) };
+        if !is_same_length(length, own.length) {
+            return Ok(known.scaled_to(own.length, Some(own.speed))?);
+        }
+        match rate.zip(self.propeller) {
+            Some((rate, of_fit)) => Ok(known.scaled_to(length, Some(speed * rate / of_fit))?),
+            None => Ok(known.clone()),
+        }
+    }
+
+    fn mixture(&self, trial: &Trial) -> Outcome<ShipMixture> {
+        let own = trial.particulars().ok_or("a measured record has length and speed in its sidecar")?;
+        Ok(ShipMixture::new(vec![(self.at(own, propeller(trial))?, 1.0)])?)
+    }
+
+    /// Every figure of a trial, measured and predicted; none where the prediction is refused, which is told.
+    fn figures(&self, group: ForecastGroup, name: &'static str, trial: &Trial) -> Outcome<Vec<ForecastFigure>> {
+        let (trial, current) = without_current(trial.clone(), None);
+        let replayed = match self.mixture(&trial)?.replay(&trial, DRAWS, current) {
+            Ok(replayed) => replayed.ok_or_else(|| format!("{name}: too few headings at its beginning"))?,
+            Err(error) => {
+                eprintln!("{name} from {}: {error}", self.fitted);
+                return Ok(Vec::new());
+            }
+        };
+        let figure = |(name_of, compared)| ForecastFigure {
+            group,
+            fitted: self.fitted.clone(),
+            trial: name,
+            name: name_of,
+            compared,
+        };
+        Ok(replayed.figures.into_iter().map(figure).collect())
+    }
+}
+
+/// A manoeuvre predicted for a trial from one or several ships alike.
+fn predicted(ships: &[&TracedShip], trial: &Trial, kind: &str) -> Outcome<Prediction> {
+    let own = trial.particulars().ok_or("a measured record has length and speed in its sidecar")?;
+    let known = ships.iter().map(|ship| Ok((ship.at(own, propeller(trial))?, 1.0)));
+    let kind: Manoeuvre = kind.parse().map_err(|error| format!("{kind}: {error}"))?;
+    Ok(ShipMixture::new(known.collect::<Outcome<Vec<_>>>()?)?.predict(&kind, SHOWN, false)?)
+}
+
+/// A circle beside its prediction; `None` where one of the two has no track.
+fn track(title: String, ships: &[&TracedShip], trial: &Trial) -> Outcome<Option<PredictedTrack>> {
+    let (trial, _) = without_current(trial.clone(), None);
+    let turn = RecordedTurn::of(&trial).ok_or("a circle has a rudder that is held")?;
+    let curves = predicted(ships, &trial, &format!("turning-circle:{}", to_deg(turn.rudder).round()))?.curves;
+    let length = trial.particulars().map_or(f64::NAN, |own| own.length);
+    let probable = curves.most_probable.as_ref().and_then(TurnTrack::predicted);
+    let drawn = curves.tracks.iter().map(|track| track.iter().map(|own| (own[1] / length, own[0] / length)).unzip());
+    let both = TurnTrack::recorded(&trial, length).zip(probable);
+    Ok(both.map(|(measured, probable)| PredictedTrack { title, measured, probable, drawn: drawn.collect() }))
+}
+
+/// Steady turns of some ships alike at the scale of the first circle, and the circles that were measured, brought to
+/// the rate of its propeller.
+fn steady(
+    title: String,
+    ships: &[&TracedShip],
+    circles: &[(&'static str, Trial)],
+    figures: &[ForecastFigure],
+) -> Outcome<PredictedSteady> {
+    let first = &circles[0].1;
+    let curves = predicted(ships, first, "spiral:38")?.curves.steady;
+    let rate_of = |name: &str| {
+        let own = figures.iter().find(|own| own.trial == name && own.name == "steady_rate_deg_s")?;
+        Some(own.compared.measured)
+    };
+    let measured = circles.iter().filter_map(|(name, trial)| {
+        let rudder = RecordedTurn::of(trial)?.rudder;
+        let slower = propeller(trial).zip(propeller(first)).map_or(1.0, |(own, first)| first / own);
+        Some((to_deg(rudder), rudder.signum() * slower * rate_of(name)?))
+    });
+    Ok(PredictedSteady { title, curves, measured: measured.collect() })
+}
+
+/// Every record of a set that is named, read.
+fn read(set: &MeasuredSet, names: &[&'static str], scratch: &Path) -> Outcome<Vec<(&'static str, Trial)>> {
+    names.iter().map(|name| Ok((*name, set.read(name, scratch)?))).collect()
+}
+
+impl Forecasts {
+    /// Predicts trials from a ship.
+    fn add(&mut self, group: ForecastGroup, ship: &TracedShip, trials: &[(&'static str, Trial)]) -> Outcome<()> {
+        for (name, trial) in trials.iter().filter(|(name, _)| !ship.fitted.split(", ").any(|own| own == *name)) {
+            self.figures.extend(ship.figures(group, name, trial)?);
+        }
+        Ok(())
+    }
+
+    /// KVLCC2: single records of HSVA, all of them, and the two 20/20 of MARIN.
+    fn kvlcc2(&mut self, scratch: &Path) -> Outcome<()> {
+        let [hsva, marin] = [set("kvlcc2_hsva"), set("kvlcc2_marin")];
+        let (small, large) = (read(hsva, hsva.records, scratch)?, read(marin, marin.records, scratch)?);
+        let circles = read(marin, marin.circles, scratch)?;
+        let full_scale = [large, circles.clone()].concat();
+        for record in &small {
+            let ship = TracedShip::of(std::slice::from_ref(record))?;
+            self.add(ForecastGroup::Hsva, &ship, &small)?;
+            self.add(ForecastGroup::MarinOfOne, &ship, &full_scale)?;
+        }
+        let all = TracedShip::of(&small)?;
+        self.add(ForecastGroup::MarinOfAll, &all, &full_scale)?;
+        let pair = TracedShip::of(&read(marin, marin.pools[0], scratch)?)?;
+        self.add(ForecastGroup::Marin, &pair, &full_scale)?;
+        let title = || String::from("KVLCC2 at full scale, from HSVA's zig-zags");
+        self.tracks.extend(track(title(), &[&all], &circles[0].1)?);
+        self.steady.push(steady(title(), &[&all], &circles, &self.figures)?);
+        Ok(())
+    }
+
+    /// Esso Osaka: every zig-zag alone.
+    fn esso_osaka(&mut self, scratch: &Path) -> Outcome<()> {
+        let set = set("esso_osaka");
+        let (zigzags, circles) = (read(set, set.records, scratch)?, read(set, set.circles, scratch)?);
+        let ships = zigzags.iter().map(|record| TracedShip::of(std::slice::from_ref(record)));
+        let ships = ships.collect::<Outcome<Vec<_>>>()?;
+        let trials = [zigzags, circles.clone()].concat();
+        for ship in &ships {
+            self.add(ForecastGroup::EssoOsaka, ship, &trials)?;
+        }
+        let alike: Vec<&TracedShip> = ships.iter().collect();
+        let title = || String::from("Esso Osaka, 3 m, from each of five zig-zags");
+        self.tracks.extend(track(title(), &alike, &circles[2].1)?);
+        self.steady.push(steady(title(), &alike, &circles, &self.figures)?);
+        Ok(())
+    }
+
+    /// Everything.
+    ///
+    /// Fails where a record cannot be read or traced.
+    pub fn make(scratch: &Path) -> Outcome<Self> {
+        let mut made = Self::default();
+        made.kvlcc2(scratch)?;
+        made.esso_osaka(scratch)?;
+        Ok(made)
+    }
+}
