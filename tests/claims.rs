@@ -23,6 +23,15 @@ struct Claims {
     held: Vec<String>,
     claim: Vec<Claim>,
     copy: Vec<TableCopy>,
+    lines: Vec<Lines>,
+}
+
+/// A block of output in a page, below a comment `<!-- Lines: PATH -->`, whose lines stand in a stored report.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Lines {
+    page: String,
+    report: String,
 }
 
 /// A stored table that stands in a page, below a comment `<!-- Table: PATH -->`.
@@ -127,6 +136,24 @@ impl TableCopy {
     }
 }
 
+impl Lines {
+    /// The lines that the report does not have: blanks, marks of tables and what is printed before a colon aside.
+    fn faults(&self) -> Result<Vec<String>, String> {
+        let bare = |line: &str| line.replace([' ', '|', '*', '\\'], "");
+        let report: Vec<String> = read(&self.report)?.lines().map(bare).collect();
+        let page = read(&self.page)?;
+        let mark = format!("<!-- Lines: {} -->\n\n```text\n", self.report);
+        let block = page.split_once(&mark).and_then(|(_, rest)| rest.split_once("```"));
+        let (block, _) = block.ok_or_else(|| format!("{} has no block below {mark}", self.page))?;
+        let stands = |line: &&str| {
+            let line = bare(line.trim_start_matches("next trial: "));
+            report.iter().any(|own| own.contains(&line))
+        };
+        let others = block.lines().filter(|line| !stands(line));
+        Ok(others.map(|line| format!("{} is not in {}: {line}", self.page, self.report)).collect())
+    }
+}
+
 const CLAIMS: &str = "tests/claims.toml";
 
 fn claims() -> Claims {
@@ -196,6 +223,9 @@ fn claims_follow_from_the_stored_results() {
             (Ok(_), Ok(_)) => faults.push(format!("{} has another table than {}", copy.page, copy.table)),
             (Err(error), _) | (_, Err(error)) => faults.push(error),
         }
+    }
+    for lines in &claims.lines {
+        faults.extend(lines.faults().unwrap_or_else(|error| vec![error]));
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
