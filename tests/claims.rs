@@ -1,17 +1,45 @@
-//! Sentences with numbers, held against the stored summaries they are about: `claims.toml` says which number is which
+//! Sentences with numbers, held against the stored results they are about: `claims.toml` says which number is which
 //! figure. A number is right when the stored one, rounded to as many digits, is it. A word such as "smallest" or "at
-//! the bound" is a test on the ends of intervals.
+//! the bound" is a test on the ends of intervals. Every number of a finding stands in a sentence that is held.
+//!
+//! `KEMPF_CLAIMS=write cargo test -p kempf-tests --test all claims` writes the stored numbers into the pages and into
+//! `claims.toml`, copies the tables, and then tests: what fails after that is a word.
+
+mod stored;
+mod wording;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::sync::Once;
 
 use serde::Deserialize;
+use stored::{Number, in_markdown, read, root};
+use wording::{Edit, edited, edits, in_the_form_of, is_rounded, numbers, places, sentences};
 
 /// All claims.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Claims {
+    /// Pages in which every number has to stand in a claim, beside the findings of the scenarios.
+    held: Vec<String>,
     claim: Vec<Claim>,
+    copy: Vec<TableCopy>,
+    lines: Vec<Lines>,
+}
+
+/// A block of output in a page, below a comment `<!-- Lines: PATH -->`, whose lines stand in a stored report.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Lines {
+    page: String,
+    report: String,
+}
+
+/// A stored table that stands in a page, below a comment `<!-- Table: PATH -->`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TableCopy {
+    page: String,
+    table: String,
 }
 
 /// One sentence, or a part of one.
@@ -52,129 +80,14 @@ struct Order {
     larger: Number,
 }
 
-/// A number of a table.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Number {
-    column: String,
-    /// Cells of the rows that count: one value, or one of several.
-    #[serde(default)]
-    rows: BTreeMap<String, OneOrMore>,
-    /// What is made of several rows.
-    #[serde(default)]
-    take: Take,
-    /// The column that says how much a row counts in a mean: each the same where there is none.
-    weight: Option<String>,
-    /// What the stored figure is multiplied with: −1 for what is "too low".
-    #[serde(default = "one")]
-    factor: f64,
-}
-
-fn one() -> f64 {
-    1.0
-}
-
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum OneOrMore {
-    One(String),
-    More(Vec<String>),
-}
-
-impl OneOrMore {
-    fn holds(&self, value: &str) -> bool {
-        match self {
-            Self::One(own) => own == value,
-            Self::More(own) => own.iter().any(|own| own == value),
-        }
-    }
-}
-
-#[derive(Deserialize, Default, Clone, Copy, PartialEq)]
-#[serde(rename_all = "kebab-case")]
-enum Take {
-    /// There has to be one row.
-    #[default]
-    Only,
-    Mean,
-    Least,
-    Most,
-}
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-fn read(path: &str) -> Result<String, String> {
-    std::fs::read_to_string(root().join(path)).map_err(|error| format!("{path}: {error}"))
-}
-
-/// One blank between words, whatever the lines are.
-fn in_one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<&str>>().join(" ")
-}
-
-/// The numbers in the braces of a sentence.
-fn numbers(says: &str) -> Vec<String> {
-    says.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(number, _)| number.to_owned()).collect()
-}
-
-impl Number {
-    /// The stored value in the unit of the sentence.
-    fn stored(&self, table: &str) -> Result<f64, String> {
-        self.taken(table).map(|value| self.factor * value)
-    }
-
-    fn taken(&self, table: &str) -> Result<f64, String> {
-        let text = read(table)?;
-        let mut reader = csv::Reader::from_reader(text.as_bytes());
-        let said = |error: csv::Error| format!("{table}: {error}");
-        let header = reader.headers().map_err(said)?.clone();
-        let place = |name: &str| {
-            header.iter().position(|own| own == name).ok_or_else(|| format!("{table}: no column {name:?}"))
-        };
-        let column = place(&self.column)?;
-        let wanted: Vec<(usize, &OneOrMore)> =
-            self.rows.iter().map(|(name, value)| Ok((place(name)?, value))).collect::<Result<_, String>>()?;
-        let rows: Vec<csv::StringRecord> = reader.records().collect::<Result<_, _>>().map_err(said)?;
-        let weight = self.weight.as_deref().map(place).transpose()?;
-        let counts = |row: &csv::StringRecord| weight.map_or(Some(1.0), |weight| row[weight].parse::<f64>().ok());
-        let (values, weights): (Vec<f64>, Vec<f64>) = rows
-            .iter()
-            .filter(|row| wanted.iter().all(|(place, value)| value.holds(&row[*place])))
-            .filter_map(|row| Some((row[column].parse::<f64>().ok()?, counts(row)?)))
-            .unzip();
-        match (self.take, values.len()) {
-            (_, 0) => Err(format!("{table}: no row for {:?}", self.column)),
-            (Take::Only, 1) => Ok(values[0]),
-            (Take::Only, count) => Err(format!("{table}: {count} rows for {:?}, say what to take", self.column)),
-            (Take::Mean, _) => {
-                let sum: f64 = values.iter().zip(&weights).map(|(value, weight)| value * weight).sum();
-                Ok(sum / weights.iter().sum::<f64>())
-            }
-            (Take::Least, _) => Ok(values.iter().copied().fold(f64::INFINITY, f64::min)),
-            (Take::Most, _) => Ok(values.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
-        }
-    }
-}
-
-/// Whether a number that is written is the stored one, rounded.
-fn is_rounded(written: &str, stored: f64) -> bool {
-    let plain = written.replace('−', "-");
-    let digits = plain.split_once('.').map_or(0, |(_, digits)| digits.len());
-    let Ok(value) = plain.parse::<f64>() else { return false };
-    // Half of the last digit, and a hair for what stands exactly between two.
-    (value - stored).abs() <= 0.5 * 10f64.powi(-(digits as i32)) * (1.0 + 1e-6)
-}
-
 impl Claim {
     /// What is wrong with it.
     fn faults(&self) -> Vec<String> {
-        let plain = in_one_line(&self.says.replace(['{', '}'], ""));
+        let plain = self.says.replace(['{', '}'], "");
         let mut faults = Vec::new();
         for page in &self.pages {
             match read(page) {
-                Ok(text) if in_one_line(&text).contains(&plain) => {}
+                Ok(text) if !places(&text, &plain).is_empty() => {}
                 Ok(_) => faults.push(format!("{page} does not say: {plain}")),
                 Err(error) => faults.push(error),
             }
@@ -211,17 +124,125 @@ impl Claim {
     }
 }
 
+impl TableCopy {
+    /// The page with the table as it is stored now.
+    fn renewed(&self) -> Result<String, String> {
+        let Self { page, table } = self;
+        let text = read(page)?;
+        let mark = format!("<!-- Table: {table} -->\n\n");
+        let (before, rest) = text.split_once(&mark).ok_or_else(|| format!("{page} has no {}", mark.trim()))?;
+        let length: usize = rest.split_inclusive('\n').take_while(|line| line.starts_with('|')).map(str::len).sum();
+        Ok(format!("{before}{mark}{}{}", in_markdown(table)?, &rest[length..]))
+    }
+}
+
+impl Lines {
+    /// The lines that the report does not have: blanks, marks of tables and what is printed before a colon aside.
+    fn faults(&self) -> Result<Vec<String>, String> {
+        let bare = |line: &str| line.replace([' ', '|', '*', '\\'], "");
+        let report: Vec<String> = read(&self.report)?.lines().map(bare).collect();
+        let page = read(&self.page)?;
+        let mark = format!("<!-- Lines: {} -->\n\n```text\n", self.report);
+        let block = page.split_once(&mark).and_then(|(_, rest)| rest.split_once("```"));
+        let (block, _) = block.ok_or_else(|| format!("{} has no block below {mark}", self.page))?;
+        let stands = |line: &&str| {
+            let line = bare(line.trim_start_matches("next trial: "));
+            report.iter().any(|own| own.contains(&line))
+        };
+        let others = block.lines().filter(|line| !stands(line));
+        Ok(others.map(|line| format!("{} is not in {}: {line}", self.page, self.report)).collect())
+    }
+}
+
+const CLAIMS: &str = "tests/claims.toml";
+
+fn claims() -> Claims {
+    let read = || toml::from_str(&read(CLAIMS).expect("it is there")).expect("it is right");
+    // Tests run beside each other, and one of them writes.
+    static WRITTEN: Once = Once::new();
+    WRITTEN.call_once(|| {
+        if std::env::var("KEMPF_CLAIMS").is_ok_and(|what| what == "write") {
+            write(&read()).unwrap_or_else(|fault| panic!("{fault}"));
+        }
+    });
+    read()
+}
+
+/// Writes the stored numbers into all pages and into the claims. What cannot be written stays, and fails later.
+fn write(claims: &Claims) -> Result<(), String> {
+    let mut wanted: BTreeMap<&str, Vec<Edit>> = BTreeMap::new();
+    let list = read(CLAIMS)?;
+    for claim in &claims.claim {
+        let stored: Result<Vec<f64>, String> = claim.numbers.iter().map(|number| number.stored(&claim.table)).collect();
+        let (Ok(stored), old) = (stored, numbers(&claim.says)) else { continue };
+        let new: Vec<String> = old.iter().zip(stored).map(|(old, stored)| in_the_form_of(old, stored)).collect();
+        for page in &claim.pages {
+            wanted.entry(page).or_default().extend(edits(&read(page)?, &claim.says, &new));
+        }
+        let mut says = claim.says.split_inclusive('{').map(str::to_owned).collect::<Vec<String>>();
+        for (part, new) in says.iter_mut().skip(1).zip(&new) {
+            let end = part.find('}').expect("a brace is closed");
+            part.replace_range(..end, new);
+        }
+        let line = format!("says = {:?}", claim.says);
+        let at = list.find(&line).ok_or_else(|| format!("{CLAIMS} has this in another form: {line}"))?;
+        wanted.entry(CLAIMS).or_default().push((at, at + line.len() - 1, format!("says = {:?}", says.concat())));
+    }
+    for (page, edits) in wanted {
+        let text = edited(&read(page)?, edits).map_err(|fault| format!("{page}: {fault}"))?;
+        std::fs::write(root().join(page), text).map_err(|error| format!("{page}: {error}"))?;
+    }
+    for copy in &claims.copy {
+        std::fs::write(root().join(&copy.page), copy.renewed()?).map_err(|error| error.to_string())?;
+    }
+    Ok(())
+}
+
+/// The numbers of a text that stand in no claim of its page.
+fn unheld(page: &str, text: &str, claims: &Claims) -> Vec<String> {
+    let own = claims.claim.iter().filter(|claim| claim.pages.iter().any(|own| own == page));
+    let spans: Vec<(usize, usize)> = own
+        .flat_map(|claim| places(text, &claim.says.replace(['{', '}'], "")))
+        .map(|place| (place[0], place[place.len() - 1]))
+        .collect();
+    let is_free = |place: usize| !spans.iter().any(|(from, to)| (*from..*to).contains(&place));
+    let free = text.char_indices().filter(|(place, letter)| is_free(*place) || letter.is_whitespace());
+    let free = sentences(&free.map(|(_, letter)| letter).collect::<String>());
+    let has_digit = |line: &&str| line.chars().any(|letter| letter.is_ascii_digit());
+    free.lines().filter(has_digit).map(|line| format!("{page}: in no claim: {}", line.trim())).collect()
+}
+
 /// Sentences say what the tables say.
 #[test]
 fn claims_follow_from_the_stored_results() {
-    let claims: Claims = toml::from_str(&read("tests/claims.toml").expect("it is there")).expect("it is right");
-    let faults: Vec<String> = claims.claim.iter().flat_map(Claim::faults).collect();
+    let claims = claims();
+    let mut faults: Vec<String> = claims.claim.iter().flat_map(Claim::faults).collect();
+    for copy in &claims.copy {
+        match (copy.renewed(), read(&copy.page)) {
+            (Ok(renewed), Ok(page)) if renewed == page => {}
+            (Ok(_), Ok(_)) => faults.push(format!("{} has another table than {}", copy.page, copy.table)),
+            (Err(error), _) | (_, Err(error)) => faults.push(error),
+        }
+    }
+    for lines in &claims.lines {
+        faults.extend(lines.faults().unwrap_or_else(|error| vec![error]));
+    }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// No number of a result stands where nothing holds it.
 #[test]
-fn a_number_is_right_to_its_last_digit() {
-    assert!(is_rounded("89.8", 89.84) && !is_rounded("89.8", 89.86) && is_rounded("−14", -13.6));
-    assert!(is_rounded("57", 56.7) && !is_rounded("57", 57.6) && !is_rounded("x", 0.0));
-    assert_eq!(numbers("K in {94.5} % and T in {94.9} %"), ["94.5", "94.9"]);
+fn numbers_of_findings_are_held() {
+    let claims = claims();
+    let mut faults: Vec<String> = Vec::new();
+    for entry in std::fs::read_dir(root().join("scenarios")).expect("the folder is there").flatten() {
+        let page = format!("scenarios/{}", entry.file_name().display());
+        let Some(scenario) = read(&page).ok().and_then(|text| text.parse::<toml::Table>().ok()) else { continue };
+        let finding = scenario.get("finding").and_then(|finding| finding.as_str()).unwrap_or_default();
+        faults.extend(unheld(&page, finding, &claims));
+    }
+    for page in &claims.held {
+        faults.extend(unheld(page, &read(page).expect("it is there"), &claims));
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
 }

@@ -1,4 +1,4 @@
-//! Support shared by the tests of the whole workspace: published numbers held against ours, and records to test methods
+//! Support shared by the tests of the whole workspace: reference numbers held against ours, and records to test methods
 //! with. What a single crate can show about itself is tested there.
 //!
 //! | to learn about | read |

@@ -92,9 +92,9 @@ pub fn section() -> Section {
         title: "Fourier fit of the heading",
         method: "Eight harmonics with a free fundamental w on 271 noise-free headings at 1 s of K = 0.1 1/s, T = 16.3 s, rudder at \
             2.5 deg/s; mid-trial begins 1.2 s after the second execute. K and T by least squares on all samples of the central \
-            90 %. Tolerances are those stated with the anchors: 0.0003 rad/s, 2e-5 in R², 1 % in K and T. The published numbers \
-            of K and T are far from the truth where the rudder is as recorded: that is a property of the method, and ours has to \
-            share it.",
+            90 %. Tolerances are those stated with the anchors: 0.0003 rad/s, 2e-5 in R², 1 % in K and T. K and T of the \
+            published method are far from the truth where the rudder is as recorded: that is a property of the method, and ours \
+            has to share it.",
         checks,
     }
 }

@@ -34,7 +34,7 @@ pub fn words(document: &PredictDocument) -> String {
     }
     if !document.ballast.is_empty() {
         words += &format!(
-            "records are replayed with {}, manoeuvres are told of the ship above\n",
+            "records are replayed with {}, manoeuvres are those of the ship above\n",
             document.ballast.join(", ")
         );
     }

@@ -194,7 +194,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
     let points: Vec<MeasuredShare> = calibration(lines).iter().filter_map(point).collect();
     let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
     let x = Ruler::new("mean probability given [%]", Division::Percent);
-    let theory = vec![(String::from("as promised"), diagonal)];
+    let theory = vec![(String::from("calibrated"), diagonal)];
     (!points.is_empty()).then(|| shares(x, "present [%]", vec![("effects by their probability", points)], theory))
 }
 
