@@ -43,6 +43,11 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     page.table(answers(document, curves));
     page.say(MODEL);
     page.say(FILES);
+    let warnings = document.ranked_warnings();
+    if !warnings.is_empty() {
+        page.part("Warnings");
+        page.list(warnings.iter().map(|entry| text(entry)));
+    }
     let notes = notes(document, curves);
     if !notes.trim().is_empty() {
         page.folded_part("Records");
@@ -61,15 +66,10 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
             table.into_iter().for_each(|table| page.table(table));
         }
     }
-    for (title, entries) in [("Warnings", document.ranked_warnings()), ("Notes", document.notes())] {
-        if !entries.is_empty() {
-            if title == "Notes" {
-                page.folded_part(title)
-            } else {
-                page.part(title)
-            }
-            page.list(entries.iter().map(|entry| text(entry)));
-        }
+    let remarks = document.notes();
+    if !remarks.is_empty() {
+        page.folded_part("Notes");
+        page.list(remarks.iter().map(|entry| text(entry)));
     }
     page.folded_part("Figures");
     page.figures(figures);
