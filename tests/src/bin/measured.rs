@@ -129,16 +129,21 @@ const PRIOR: &str = ", prior from ";
 fn with_prior(set: &'static MeasuredSet, scratch: &Path) -> Outcome<Vec<MeasuredAnalysis>> {
     let Some((folder, records)) = set.prior else { return Ok(Vec::new()) };
     let source = SETS.iter().find(|set| set.folder == folder).ok_or("a prior is of a set")?;
-    let trace = |set, records, held_out, priors, out: &Path| {
-        let figures = PageFigures::None;
-        MeasuredTrace { set, records, held_out, without_wind: false, priors, figures }.run(out)
-    };
     let out = scratch.join(format!("{folder}-prior"));
-    trace(source, records, &[], &[], &out)?;
+    let alone = MeasuredTrace {
+        set: source,
+        records,
+        held_out: &[],
+        without_wind: false,
+        priors: &[],
+        figures: PageFigures::None,
+    };
+    alone.run(&out)?;
     let priors = [out.join("trace.json")];
     let of = |&record: &&'static str| {
         let held_out = set.beside(record);
-        let document = trace(set, &[record], &held_out, &priors, &scratch.join(format!("{record}-with-prior")))?;
+        let run = MeasuredTrace { set, records: &[record], held_out: &held_out, priors: &priors, ..alone };
+        let document = run.run(&scratch.join(format!("{record}-with-prior")))?;
         let label = format!("{record}{PRIOR}{folder}: {}", records.join(", "));
         Ok(MeasuredAnalysis { set, label, is_single: false, document })
     };

@@ -10,6 +10,7 @@ use trace::Rule;
 use super::sets::{MeasuredSet, Outcome, reading};
 
 /// A trace of some records of a set.
+#[derive(Clone, Copy)]
 pub struct MeasuredTrace<'a> {
     /// The set.
     pub set: &'a MeasuredSet,

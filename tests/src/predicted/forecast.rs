@@ -84,7 +84,7 @@ impl TracedShip {
         eprintln!("{fitted}");
         let settings = Settings { thorough: false, hulls: true, ..Settings::default() };
         let analysis = trace::trace(&trials, &[], &settings)?;
-        let known = known::of_analysis(&analysis, &RecordFacts::of(&trials).with_motion(Some(&analysis)));
+        let known = known::of_analysis(&analysis, &RecordFacts::of(&trials).with_motion(Some(&analysis), &[]));
         Ok(Self { fitted, known, propeller: propeller(&trials[0]) })
     }
 
