@@ -266,7 +266,10 @@ fn coverage_of_predictions_is_drawn() {
     desk.file("study.toml", format!("{study}{predict}"));
     desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
     let drawn = desk.text("out/predictions.svg");
-    assert!(drawn.contains("90 % interval holds") && drawn.contains("output-error"), "{drawn}");
+    assert!(
+        drawn.contains("90 % intervals that hold") && drawn.contains("their width") && drawn.contains("output-error"),
+        "{drawn}"
+    );
     let table = desk.text("out/predictions.csv");
     assert!(table.lines().count() > 4, "{table}");
 }
