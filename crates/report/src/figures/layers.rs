@@ -222,8 +222,11 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     for (index, (place, panel)) in sheet.grid_within(grid, (from, width)).iter().zip(&stack.panels).enumerate() {
         let row = &stack.rows[if stack.across.is_some() { 0 } else { index / count }];
         background(place, &mut sheet.scene, &theme, stack, row);
-        let beside = (index < count).then_some(&panel.layers[..]);
-        stack.marks.iter().for_each(|mark| draw_mark(place, &mut sheet.scene, &theme, mark, beside));
+        for mark in &stack.marks {
+            let down = if panel.head.is_some() { -0.45 } else { 1.2 };
+            let beside = (index < count || panel.head.is_some()).then_some(down * theme.small_font);
+            draw_mark(place, &mut sheet.scene, &theme, mark, beside);
+        }
         for layer in &panel.layers {
             dots += draw_layer(sheet, place, layer, &theme, outside);
         }
@@ -265,34 +268,17 @@ fn background(place: &Panel, scene: &mut Canvas, theme: &Theme, stack: &Stack, r
     }
 }
 
-/// Places that are tried for a name, and looked at along a piece of a line.
-const STEPS: usize = 12;
-
-/// A line across the frame; over the first row its name is beside it where it is furthest from the other layers.
-fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine, named: Option<&[Layer]>) {
+/// A line across the frame, its name beside it, so far below its upper end: above the frame where a head stands too.
+fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine, down: Option<f64>) {
     panel.vertical(scene, Height::Grid, mark.at, Stroke::solid(INK, theme.thin).dashed(SHORT_DASH));
-    let Some(layers) = named else { return };
     let text = TextLine::new(mark.label.as_str(), theme.small_font);
     let Some(x) = panel.across(mark.at).filter(|x| panel.rect.contains((*x, panel.rect.y))) else { return };
     let gap = 0.4 * theme.small_font;
     let is_right = x + gap + text.width() < panel.rect.right();
     let (place, anchor) = if is_right { (x + gap, Anchor::Start) } else { (x - gap, Anchor::End) };
-    let (first, last) = if is_right { (x, place + text.width()) } else { (place - text.width(), x) };
-    let mut near: Vec<f64> = Vec::new();
-    for layer in layers {
-        let places: Vec<PagePoint> = layer.curve.finite().filter_map(|pair| panel.place(pair)).collect();
-        for pair in places.windows(2) {
-            let steps = (0..=STEPS).map(|step| step as f64 / STEPS as f64);
-            let [(x, y), (to, up)] = [pair[0], pair[1]];
-            let on = steps.map(|share| (x + share * (to - x), y + share * (up - y)));
-            near.extend(on.filter(|(x, _)| (first..=last).contains(x)).map(|(_, y)| y));
-        }
+    if let Some(down) = down {
+        scene.text_on_ground(Height::Note, (place, panel.rect.y + down), text.anchor(anchor));
     }
-    let free = |y: f64| near.iter().map(|own| (own - y).abs()).fold(f64::INFINITY, f64::min);
-    let ends = [panel.rect.y + 1.2 * theme.small_font, panel.rect.bottom() - 0.6 * theme.small_font];
-    let between = (1..=STEPS).map(|step| ends[0] + (ends[1] - ends[0]) * step as f64 / STEPS as f64);
-    let y = between.fold(ends[0], |best, y| if free(y) > free(best) { y } else { best });
-    scene.text_on_ground(Height::Note, (place, y), text.anchor(anchor));
 }
 
 /// What a small multiple says of what it does not show: how many of its dots lie outside, or how far a cut line goes.

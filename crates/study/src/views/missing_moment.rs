@@ -14,7 +14,7 @@ use crate::documents::missing_moment::MissingMomentEntry;
 const PANELS: usize = 4;
 
 /// Times the usual size at which a moment is cut: a position that jumps would set the axis.
-const REACH: f64 = 4.0;
+const REACH: f64 = 2.5;
 
 /// Title of an axis over a channel.
 fn title_of(column: &str) -> String {

@@ -250,8 +250,8 @@ points = [
     desk.file("study.toml", format!("{noisy}{sweeps}"));
     desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
     let drawn = |stem: &str| desk.text(&format!("out/{stem}.svg"));
-    assert!(drawn("errors-cubic").contains("that of the nearest first-order"));
-    assert!(drawn("errors-first-order").contains("over the Cramér–Rao bound"));
+    assert!(drawn("errors-cubic").contains("rms of K less that"));
+    assert!(drawn("errors-first-order").contains("rms error of K over the bound"));
     assert!(desk.path("out/coverage-first-order.png").exists() && !desk.path("out/coverage-cubic.png").exists());
     assert!(drawn("indices").contains("over that of a 5/5") && !desk.path("out/ranking.png").exists());
 }
@@ -266,7 +266,10 @@ fn coverage_of_predictions_is_drawn() {
     desk.file("study.toml", format!("{study}{predict}"));
     desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
     let drawn = desk.text("out/predictions.svg");
-    assert!(drawn.contains("90 % interval holds") && drawn.contains("output-error"), "{drawn}");
+    assert!(
+        drawn.contains("90 % intervals that hold") && drawn.contains("their width") && drawn.contains("output-error"),
+        "{drawn}"
+    );
     let table = desk.text("out/predictions.csv");
     assert!(table.lines().count() > 4, "{table}");
 }
