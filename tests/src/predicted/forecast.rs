@@ -222,13 +222,21 @@ impl Forecasts {
         Ok(())
     }
 
-    /// Everything.
+    /// Everything of the sets that are there.
     ///
     /// Fails where a record cannot be read or traced.
     pub fn make(scratch: &Path) -> Outcome<Self> {
         let mut made = Self::default();
-        made.kvlcc2(scratch)?;
-        made.esso_osaka(scratch)?;
+        let are_there = |folders: &[&str]| {
+            let missing = folders.iter().filter(|folder| !set(folder).is_there());
+            missing.inspect(|folder| eprintln!("skipped: no measured records {folder}")).count() == 0
+        };
+        if are_there(&["kvlcc2_hsva", "kvlcc2_marin"]) {
+            made.kvlcc2(scratch)?;
+        }
+        if are_there(&["esso_osaka"]) {
+            made.esso_osaka(scratch)?;
+        }
         Ok(made)
     }
 }
