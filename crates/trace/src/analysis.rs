@@ -142,8 +142,6 @@ pub fn watched(
     let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, (&full.law, &members), hulls, settings.thorough, time);
     let (mut identification, mut no_nearer) = fit(&[])?;
     let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
-    // Probabilities under a noise that does not describe the rest are worth nothing where no replay bears them out.
-    let is_founded = remainder.holds || !no_nearer;
     let hulls = hulls::fit(&trials, settings, &identification, &remainder);
     if !hulls.is_empty() {
         (identification, no_nearer) = fit(&hulls)?;
@@ -167,7 +165,6 @@ pub fn watched(
         whiteness: whiteness_of(&identification, &trials),
         outliers: &outliers,
         no_nearer,
-        is_founded,
         problem: &problem,
     };
     Ok(Analysis {

@@ -44,6 +44,9 @@ impl Innovations {
 pub struct Remainder {
     /// Whether the law describes it, and the bands that are made from the law hold.
     pub holds: bool,
+    /// Whether it does, or the structures replay the records nearer than the base: probabilities under a noise that
+    /// does not describe the rest are worth nothing where no replay bears them out.
+    pub is_founded: bool,
     /// Where it is, where it is more than noise.
     pub signature: Option<Signature>,
     /// A term without a name that would carry some of it.
@@ -65,11 +68,12 @@ impl Remainder {
         identification: &[RecordComparison],
         trials: &[Trial],
     ) -> Self {
-        let Some(best) = structures.all.first() else { return Self { holds: true, signature: None, empirical: None } };
+        let Some(best) = structures.all.first() else { return Self::noise(true, true) };
         let is_held = |one: &RecordComparison| one.after.coverage().is_none_or(|own| own.is_held());
         let innovations = innovations(problem, &best.fit.residual, &full.law);
         let holds = are_noise(&innovations) && identification.iter().all(is_held);
         let [before, after] = squares(identification);
+        let is_founded = holds || after < before;
         let share = (after / before).sqrt();
         let is_noise = holds && !full.law.is_of_model() && !full.law.is_random_moment();
         let rows: f64 = identification.iter().map(|one| one.after.errors.rows as f64).sum();
@@ -77,11 +81,11 @@ impl Remainder {
             full.law.variance.iter().zip(&problem.records).map(|(own, record)| own * record.full_readings as f64);
         let is_small = after / rows < SMALL * SMALL * white.fold(0.0, f64::max);
         if is_noise || is_small || share < UNEXPLAINED {
-            return Self { holds, signature: None, empirical: None };
+            return Self::noise(holds, is_founded);
         }
         let empirical = shapes::explain(problem, full, best);
         if holds && full.law.is_random_moment() && empirical.is_none() {
-            return Self { holds, signature: None, empirical };
+            return Self::noise(holds, is_founded);
         }
         let worst = (0..identification.len()).max_by(|&one, &other| {
             let error = |number: usize| identification[number].after.errors.heading;
@@ -94,7 +98,12 @@ impl Remainder {
             let (heading, rudder) = (&trials[number].heading()[rows.clone()], &trials[number].rudder()[rows]);
             signature(number, &replay.time, &replay.residual, heading, rudder, trials[number].sampling_period())
         });
-        Self { holds, signature, empirical }
+        Self { holds, is_founded, signature, empirical }
+    }
+
+    /// Nothing but noise.
+    fn noise(holds: bool, is_founded: bool) -> Self {
+        Self { holds, is_founded, signature: None, empirical: None }
     }
 }
 

@@ -55,9 +55,6 @@ pub struct TraceParts<'a> {
     pub outliers: &'a [Vec<f64>],
     /// Whether the structures replay the fitted records no nearer than the base.
     pub no_nearer: bool,
-    /// Whether the noise describes what the structures leave, or these replay the records nearer than the base: else
-    /// no effect is named but those that were asked for.
-    pub is_founded: bool,
     /// The records as they were fitted.
     pub problem: &'a FittedRecords,
 }
@@ -73,7 +70,7 @@ impl TraceParts<'_> {
     pub fn document(&self) -> Document {
         let selection = &self.settings.selection;
         let mut named = named(self.structures, self.settings.probability, selection);
-        named.retain(|own| self.is_founded || selection.asks_for(own.term.0));
+        named.retain(|own| self.remainder.is_founded || selection.asks_for(own.term.0));
         let effects = self.effects(&named);
         let signature = self.remainder.signature.as_ref();
         let verdict = match (signature, effects.is_empty()) {
@@ -366,7 +363,7 @@ impl TraceParts<'_> {
         };
         let left_out = self.trials.iter().zip(self.left_out).filter_map(|(trial, one)| Some((trial, one.as_ref()?)));
         ErrorEntry {
-            kept_base: match (self.is_founded, self.no_nearer) {
+            kept_base: match (self.remainder.is_founded, self.no_nearer) {
                 (false, _) => Some(words::UNFOUNDED.into()),
                 (true, no_nearer) => no_nearer.then(|| words::NO_NEARER.into()),
             },

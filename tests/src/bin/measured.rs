@@ -66,7 +66,7 @@ fn run(results: &Path) -> Outcome<()> {
     let _ = writeln!(page, "{}\n{SETS_TOGETHER}\n", table.to_markdown());
     for figure in &figures {
         fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::screen()).png()?)?;
-        let _ = writeln!(page, "![{0}]({1}.png)\n\n*{0}*\n", figure.caption, figure.stem);
+        let _ = writeln!(page, "![{1}]({1}.png)\n\n*{0}*\n", figure.caption, figure.stem);
     }
     page += &parts;
     let _ = writeln!(page, "{CLOSED_LOOP}\n\n{}", closed_loop(scratch.path())?.to_markdown());
@@ -177,7 +177,7 @@ fn sets_table(summaries: &[SetSummary]) -> Table {
 
 const SETS_TOGETHER: &str =
     "Every record of a set traced alone; medians over the records. *held out ratio*: error on all other records
-of the set, after over before. *named*: effects that are named in at least a third of the records, and in how many.";
+of the set, after over before. *named*: effects that are named in at least half of the records, and in how many.";
 
 const INTRODUCTION: &str = "# Measured records, traced
 

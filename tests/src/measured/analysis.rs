@@ -88,7 +88,7 @@ pub struct SetSummary {
     /// Median over the records of the ratio of errors on all others of the set, after over before: whole replays and
     /// windows of 60 s.
     pub held_out: [f64; 2],
-    /// Effects that are named in at least a third of the records, the most frequent first, and in how many.
+    /// Effects that are named in at least half of the records, the most frequent first, and in how many.
     pub named: Vec<(String, usize)>,
 }
 
@@ -107,7 +107,7 @@ impl SetSummary {
                 None => named.push((effect.id.clone(), 1)),
             }
         }
-        named.retain(|(_, count)| 3 * count >= own.len());
+        named.retain(|(_, count)| 2 * count >= own.len());
         named.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         Some(Self {
             name: set.name,

@@ -110,12 +110,10 @@ impl TracedShip {
     /// Every figure of a trial, measured and predicted; none where the prediction is refused, which is told.
     fn figures(&self, group: ForecastGroup, name: &'static str, trial: &Trial) -> Outcome<Vec<ForecastFigure>> {
         let (trial, current) = without_current(trial.clone(), None);
-        let replayed = match self.mixture(&trial)?.replay(&trial, DRAWS, current) {
-            Ok(replayed) => replayed.ok_or_else(|| format!("{name}: too few headings at its beginning"))?,
-            Err(error) => {
-                eprintln!("{name} from {}: {error}", self.fitted);
-                return Ok(Vec::new());
-            }
+        let replayed = match self.mixture(&trial).map(|ships| ships.replay(&trial, DRAWS, current)) {
+            Ok(Ok(replayed)) => replayed.ok_or_else(|| format!("{name}: too few headings at its beginning"))?,
+            Ok(Err(error)) => return Ok(self.refused(name, &error)),
+            Err(error) => return Ok(self.refused(name, &*error)),
         };
         let figure = |(name_of, compared)| ForecastFigure {
             group,
@@ -128,10 +126,19 @@ impl TracedShip {
     }
 }
 
+impl TracedShip {
+    /// No figures, and why.
+    fn refused(&self, trial: &str, error: &dyn std::fmt::Display) -> Vec<ForecastFigure> {
+        eprintln!("{trial} from {}: {error}", self.fitted);
+        Vec::new()
+    }
+}
+
 /// A manoeuvre predicted for a trial from one or several ships alike.
 fn predicted(ships: &[&TracedShip], trial: &Trial, kind: &str) -> Outcome<Prediction> {
     let own = trial.particulars().ok_or("a measured record has length and speed in its sidecar")?;
-    let known = ships.iter().map(|ship| Ok((ship.at(own, propeller(trial))?, 1.0)));
+    let can_be_predicted = ships.iter().filter(|ship| ship.mixture(trial).is_ok());
+    let known = can_be_predicted.map(|ship| Ok((ship.at(own, propeller(trial))?, 1.0)));
     let kind: Manoeuvre = kind.parse().map_err(|error| format!("{kind}: {error}"))?;
     Ok(ShipMixture::new(known.collect::<Outcome<Vec<_>>>()?)?.predict(&kind, SHOWN, false)?)
 }
@@ -222,13 +229,21 @@ impl Forecasts {
         Ok(())
     }
 
-    /// Everything.
+    /// Everything of the sets that are there.
     ///
     /// Fails where a record cannot be read or traced.
     pub fn make(scratch: &Path) -> Outcome<Self> {
         let mut made = Self::default();
-        made.kvlcc2(scratch)?;
-        made.esso_osaka(scratch)?;
+        let are_there = |folders: &[&str]| {
+            let missing = folders.iter().filter(|folder| !set(folder).is_there());
+            missing.inspect(|folder| eprintln!("skipped: no measured records {folder}")).count() == 0
+        };
+        if are_there(&["kvlcc2_hsva", "kvlcc2_marin"]) {
+            made.kvlcc2(scratch)?;
+        }
+        if are_there(&["esso_osaka"]) {
+            made.esso_osaka(scratch)?;
+        }
         Ok(made)
     }
 }
