@@ -177,7 +177,7 @@ fn each_alone(set: &Set, scratch: &Path, results: &Path, table: &mut Table) -> O
         for &without_wind in withheld {
             let name = if without_wind { format!("{record}-without-wind") } else { record.to_owned() };
             let out = scratch.join(&name);
-            let document = trace_some(set, &[record], &set.beside(record), without_wind, &out)?;
+            let document = trace_some(set, (&[record], &set.beside(record)), &[], without_wind, &out)?;
             let label = if without_wind { format!("{record}, wind withheld") } else { record.to_owned() };
             table.push(line(label, &document));
             if KEPT.contains(&(record, without_wind)) {
@@ -196,12 +196,12 @@ fn pooled(set: &Set, scratch: &Path, table: &mut Table) -> Outcome<()> {
     for (number, pool) in set.pools.iter().enumerate() {
         let out = scratch.join(format!("{}-pool-{number}", set.folder));
         let others = set.others(pool);
-        let document = trace_some(set, pool, &others, false, &out)?;
+        let document = trace_some(set, (pool, &others), &[], false, &out)?;
         let left = if others.is_empty() { ", each left out in turn" } else { "" };
         let together = format!("together: {}", pool.join(", "));
         table.push(line(format!("{together}{left}"), &document));
         if !set.circles.is_empty() {
-            let document = trace_some(set, pool, set.circles, false, &out)?;
+            let document = trace_some(set, (pool, set.circles), &[], false, &out)?;
             table.push(line(format!("{together}; turning circles held out"), &document));
         }
     }
@@ -214,12 +214,12 @@ fn with_prior(set: &Set, scratch: &Path, table: &mut Table) -> Outcome<()> {
     let Some((folder, records)) = set.prior else { return Ok(()) };
     let source = SETS.iter().find(|set| set.folder == folder).ok_or("a prior is of a set")?;
     let out = scratch.join(format!("{folder}-prior"));
-    trace_some(source, records, &[], false, &out)?;
+    trace_some(source, (records, &[]), &[], false, &out)?;
     let prior = [out.join("trace.json")];
     let mut logarithms = vec![[0.0; 3]; 0];
     for &record in set.records {
         let out = scratch.join(format!("{record}-with-prior"));
-        let document = trace_after(set, ([record].as_slice(), &set.beside(record)), &prior, false, &out)?;
+        let document = trace_some(set, (&[record], &set.beside(record)), &prior, false, &out)?;
         logarithms.push(ratios(&document).map(f64::ln));
         table.push(line(format!("{record}, prior from {folder}: {}", records.join(", ")), &document));
     }
@@ -227,11 +227,9 @@ fn with_prior(set: &Set, scratch: &Path, table: &mut Table) -> Outcome<()> {
         let sum: f64 = logarithms.iter().map(|all| all[place]).sum();
         significant((sum / logarithms.len() as f64).exp(), 2)
     };
-    let mut row = vec![format!("geometric mean of the {} with a prior", logarithms.len())];
-    row.extend([""; 4].map(String::from));
-    row.extend([0, 1, 2].map(mean));
-    row.extend([""; 2].map(String::from));
-    table.push(row);
+    let [whole, short, long] = [0, 1, 2].map(mean);
+    let label = format!("geometric mean of the {} with a prior", logarithms.len());
+    table.push([&label, "", "", "", "", &whole, &short, &long, "", ""].map(str::to_owned));
     Ok(())
 }
 
@@ -283,13 +281,9 @@ fn errors_table() -> Table {
     ])
 }
 
-/// Runs `study trace` on some records of a set, others held out, and reads `trace.json`.
-fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool, out: &Path) -> Outcome<Document> {
-    trace_after(set, (records, held_out), &[], without_wind, out)
-}
-
-/// The same with models of earlier trials as priors.
-fn trace_after(
+/// Runs `study trace` on some records of a set, others held out, with models of earlier trials as priors, and reads
+/// `trace.json`.
+fn trace_some(
     set: &Set,
     (records, held_out): (&[&str], &[&str]),
     priors: &[PathBuf],
