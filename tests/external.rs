@@ -373,6 +373,7 @@ fn a_fit_asks_other_programs_too() {
     let request = FitRequest {
         trials: vec![path],
         validate: Vec::new(),
+        priors: Vec::new(),
         methods: vec!["integral-least-squares".to_owned()],
         external: vec![format!("my method='{ESTIMATOR}' honest").parse().expect("a command")],
         reading: ReadingOptions {

@@ -85,7 +85,8 @@ fn said(text: &str) -> Result<([Quantity; 2], String), String> {
     let read = read_bytes(Path::new("log.csv"), text.as_bytes(), None, None).map_err(|error| error.to_string())?;
     let mut warnings = read.warnings;
     let methods = fit::methods(&names, &[], None).expect("they are known");
-    let fitted = fit::fit(&[read.trial], &[], &methods, true, &mut warnings).map_err(|failure| failure.to_string())?;
+    let fitted =
+        fit::fit([&[read.trial], &[]], &methods, &[], true, &mut warnings).map_err(|failure| failure.to_string())?;
     let document = fitted.document;
     let verdict = document.verdict.as_ref().expect("there is an answer");
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method).expect("it is among them");

@@ -164,9 +164,6 @@ impl<'a> RecordFacts<'a> {
 
 /// The records against what earlier trials told of every form of hull, the nearest first.
 fn checks(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<(&'static str, ExpectationCheck)> {
-    if earlier.is_empty() {
-        return Vec::new();
-    }
     let expected = ExpectedHull::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
     let after_trials = expected.par_iter().filter(|own| own.has_trials);
     let mut hulls: Vec<HullEstimate> = after_trials.filter_map(|own| hull::fit(trials, own).ok()).collect();

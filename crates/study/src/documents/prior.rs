@@ -18,8 +18,8 @@ const NOT_NEAR: &str = "no hull near it can be replayed over the records";
 pub struct EarlierTrials {
     /// The models.
     pub models: Vec<PriorModelEntry>,
-    /// The check of every hull that the models have, the nearest to the records first; empty where none near them can be
-    /// replayed over the records.
+    /// The check of every hull that the models have, the nearest to the records first; empty where none near them can
+    /// be replayed over the records.
     pub hulls: Vec<PriorCheckEntry>,
     /// Whether the records contradict the models: the nearest hull does, or there is none.
     pub conflict: bool,
@@ -107,9 +107,7 @@ impl EarlierTrials {
 
     /// The warning of a conflict.
     pub fn warning(&self) -> Option<String> {
-        if !self.conflict {
-            return None;
-        }
+        self.conflict.then_some(())?;
         let files = self.models.iter().map(|own| own.file.as_str()).collect::<Vec<_>>().join(", ");
         let cure = "make sure that it is the same ship in the same condition, or leave it out";
         let Some(nearest) = self.hulls.first() else { return Some(format!("--prior {files}: {NOT_NEAR}; {cure}")) };

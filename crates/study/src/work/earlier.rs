@@ -73,10 +73,7 @@ pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
 /// Fails where models of earlier trials are given and no hull can be fitted to the records; warns where the ships
 /// sail at other Froude numbers.
 pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<String>) -> Result<(), Failure> {
-    if models.is_empty() {
-        return Ok(());
-    }
-    if let Some(error) = hull::refusal(trials) {
+    if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
         let what = "--prior cannot be used";
         let cure = "give length and approach speed (--length-m, --speed-m-s, or [ship] in a sidecar) and a record from its \
                     steady approach on, or leave --prior out";
