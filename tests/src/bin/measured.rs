@@ -66,7 +66,7 @@ fn run(results: &Path) -> Outcome<()> {
     let _ = writeln!(page, "{}\n{SETS_TOGETHER}\n", table.to_markdown());
     for figure in &figures {
         fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::screen()).png()?)?;
-        let _ = writeln!(page, "![{1}]({1}.png)\n\n*{0}*\n", figure.caption, figure.stem);
+        let _ = writeln!(page, "![{0}]({1}.png)\n\n*{0}*\n", figure.caption, figure.stem);
     }
     page += &parts;
     let _ = writeln!(page, "{CLOSED_LOOP}\n\n{}", closed_loop(scratch.path())?.to_markdown());
@@ -91,19 +91,12 @@ fn analysed(set: &'static MeasuredSet, scratch: &Path, results: &Path) -> Outcom
         for &without_wind in withheld {
             let name = if without_wind { format!("{record}-without-wind") } else { record.to_owned() };
             let out = scratch.join(&name);
-<<<<<<< HEAD
             let is_kept = KEPT.contains(&(record, without_wind));
             let figures = if is_kept { PageFigures::All } else { PageFigures::None };
             let held_out = set.beside(record);
             let run = MeasuredTrace { set, records: &[record], held_out: &held_out, without_wind, priors: &[], figures };
             let document = run.run(&out)?;
             if is_kept {
-=======
-            let document = trace_some(set, (&[record], &set.beside(record)), &[], without_wind, &out)?;
-            let label = if without_wind { format!("{record}, wind withheld") } else { record.to_owned() };
-            table.push(line(label, &document));
-            if KEPT.contains(&(record, without_wind)) {
->>>>>>> hA
                 keep(&out, &results.join(format!("{}-{name}", set.folder)))?;
             }
             let label = if without_wind { format!("{record}{WITHHELD}") } else { record.to_owned() };
@@ -113,7 +106,6 @@ fn analysed(set: &'static MeasuredSet, scratch: &Path, results: &Path) -> Outcom
     for (number, pool) in set.pools.iter().enumerate() {
         let out = scratch.join(format!("{}-pool-{number}", set.folder));
         let others = set.others(pool);
-<<<<<<< HEAD
         let mut add = |held_out: &[&str], more: &str| -> Outcome<()> {
             let figures = PageFigures::None;
             let run = MeasuredTrace { set, records: pool, held_out, without_wind: false, priors: &[], figures };
@@ -124,15 +116,6 @@ fn analysed(set: &'static MeasuredSet, scratch: &Path, results: &Path) -> Outcom
         add(&others, if others.is_empty() { ", each left out in turn" } else { "" })?;
         if !set.circles.is_empty() {
             add(set.circles, "; turning circles held out")?;
-=======
-        let document = trace_some(set, (pool, &others), &[], false, &out)?;
-        let left = if others.is_empty() { ", each left out in turn" } else { "" };
-        let together = format!("together: {}", pool.join(", "));
-        table.push(line(format!("{together}{left}"), &document));
-        if !set.circles.is_empty() {
-            let document = trace_some(set, (pool, set.circles), &[], false, &out)?;
-            table.push(line(format!("{together}; turning circles held out"), &document));
->>>>>>> hA
         }
     }
     analyses.extend(with_prior(set, scratch)?);
@@ -147,7 +130,6 @@ fn with_prior(set: &'static MeasuredSet, scratch: &Path) -> Outcome<Vec<Measured
     let Some((folder, records)) = set.prior else { return Ok(Vec::new()) };
     let source = SETS.iter().find(|set| set.folder == folder).ok_or("a prior is of a set")?;
     let out = scratch.join(format!("{folder}-prior"));
-<<<<<<< HEAD
     let alone = MeasuredTrace {
         set: source,
         records,
@@ -166,25 +148,6 @@ fn with_prior(set: &'static MeasuredSet, scratch: &Path) -> Outcome<Vec<Measured
         Ok(MeasuredAnalysis { set, label, is_single: false, document })
     };
     set.records.iter().map(of).collect()
-=======
-    trace_some(source, (records, &[]), &[], false, &out)?;
-    let prior = [out.join("trace.json")];
-    let mut logarithms = vec![[0.0; 3]; 0];
-    for &record in set.records {
-        let out = scratch.join(format!("{record}-with-prior"));
-        let document = trace_some(set, (&[record], &set.beside(record)), &prior, false, &out)?;
-        logarithms.push(ratios(&document).map(f64::ln));
-        table.push(line(format!("{record}, prior from {folder}: {}", records.join(", ")), &document));
-    }
-    let mean = |place: usize| {
-        let sum: f64 = logarithms.iter().map(|all| all[place]).sum();
-        significant((sum / logarithms.len() as f64).exp(), 2)
-    };
-    let [whole, short, long] = [0, 1, 2].map(mean);
-    let label = format!("geometric mean of the {} with a prior", logarithms.len());
-    table.push([&label, "", "", "", "", &whole, &short, &long, "", ""].map(str::to_owned));
-    Ok(())
->>>>>>> hA
 }
 
 /// A line for every set.
@@ -214,7 +177,7 @@ fn sets_table(summaries: &[SetSummary]) -> Table {
 
 const SETS_TOGETHER: &str =
     "Every record of a set traced alone; medians over the records. *held out ratio*: error on all other records
-of the set, after over before. *named*: effects that are named in at least half of the records, and in how many.";
+of the set, after over before. *named*: effects that are named in at least a third of the records, and in how many.";
 
 const INTRODUCTION: &str = "# Measured records, traced
 
@@ -264,112 +227,6 @@ fn errors_table() -> Table {
     ])
 }
 
-<<<<<<< HEAD
-=======
-/// Runs `study trace` on some records of a set, others held out, with models of earlier trials as priors, and reads
-/// `trace.json`.
-fn trace_some(
-    set: &Set,
-    (records, held_out): (&[&str], &[&str]),
-    priors: &[PathBuf],
-    without_wind: bool,
-    out: &Path,
-) -> Outcome<Document> {
-    let prior = if priors.is_empty() { "" } else { ", with a prior" };
-    eprintln!("{}: {}{}{prior}", set.folder, records.join(", "), if without_wind { ", wind withheld" } else { "" });
-    let path = |name: &&str| file(set, name, out);
-    let sidecars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured");
-    // A sidecar of the whole set, else of each record.
-    let of_set = sidecars.join(format!("{}.trial.toml", set.folder));
-    let sidecars = if of_set.exists() { of_set } else { sidecars };
-    let withheld = if without_wind { vec![Withheld::Wind] } else { Vec::new() };
-    let [records, held_out] = [records, held_out].map(|names| names.iter().map(path).collect::<Outcome<Vec<_>>>());
-    trace_files([records?, held_out?, priors.to_vec()], withheld, Some(sidecars), out)
-}
-
-/// The file of a record; a copy beside the results where directions have to be left out of it.
-fn file(set: &Set, record: &str, out: &Path) -> Outcome<PathBuf> {
-    let path = folder().join(set.folder).join(format!("{record}.csv"));
-    let Some(column) = set.wrapped else { return Ok(path) };
-    let copies = out.with_extension("records");
-    fs::create_dir_all(&copies)?;
-    let copy = copies.join(format!("{record}.csv"));
-    fs::write(&copy, without_jumps(&fs::read_to_string(&path)?, column))?;
-    Ok(copy)
-}
-
-/// Runs `study trace` on some files, others held out, with models as priors, and reads `trace.json`.
-fn trace_files(
-    [trials, validate, priors]: [Vec<PathBuf>; 3],
-    without: Vec<Withheld>,
-    columns: Option<PathBuf>,
-    out: &Path,
-) -> Outcome<Document> {
-    let request = TraceRequest {
-        trials,
-        validate,
-        reading: ReadingOptions {
-            columns,
-            with_columns: Vec::new(),
-            trial: None,
-            from: None,
-            until: None,
-            ship: ShipOptions::default(),
-        },
-        without,
-        with: Vec::new(),
-        only: Vec::new(),
-        without_effect: Vec::new(),
-        effect: Vec::new(),
-        effects: None,
-        without_hull: false,
-        priors,
-        rule: Rule::default(),
-        style: PageFigureOptions {
-            style: FigureOptions { paper: None, dpi: 600.0, style: None },
-            figures: PageFigures::None,
-        },
-    };
-    let common = Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
-    study::commands::trace::run(&request, &common).map_err(|failure| failure.to_string())?;
-    Ok(serde_json::from_str(&fs::read_to_string(out.join("trace.json"))?)?)
-}
-
-/// What is named, in words.
-fn named(document: &Document) -> String {
-    let word = |effect: &EffectEntry| {
-        let aliases: String = effect.aliases.iter().map(|alias| format!(" or {alias}")).collect();
-        format!("{} ({}){aliases} {}", effect.id, effect.form, fixed(effect.probability, 2))
-    };
-    match document.effects.as_slice() {
-        [] => "nothing".to_owned(),
-        effects => effects.iter().map(word).collect::<Vec<_>>().join(", "),
-    }
-}
-
-/// Root mean square of a number of the errors of some records; not a number where one has none.
-fn pooled_error(records: &[&BeforeAfter], of: impl Fn(&BeforeAfter) -> Option<f64>) -> f64 {
-    let square: f64 = records.iter().map(|record| of(record).unwrap_or(f64::NAN).powi(2)).sum();
-    (square / records.len() as f64).sqrt()
-}
-
-/// Errors of the held-out records, after over before: whole replays, windows of 20 and of 60 s.
-fn ratios(document: &Document) -> [f64; 3] {
-    let held_out: Vec<&BeforeAfter> = document.error.validation.iter().chain(&document.error.leave_one_out).collect();
-    let ratio = |of: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
-        let [before, after] =
-            [pooled_error(&held_out, |record| of(&record.before)), pooled_error(&held_out, |record| of(&record.after))];
-        after / before
-    };
-    let window = |length: &'static str| move |errors: &ErrorsEntry| errors.horizon_rmse_deg.get(length).copied()?;
-    [ratio(&heading), ratio(&window("20")), ratio(&window("60"))]
-}
-
-fn heading(errors: &ErrorsEntry) -> Option<f64> {
-    Some(errors.heading_rmse_deg)
-}
-
->>>>>>> hA
 /// One line of the table.
 fn line(own: &MeasuredAnalysis) -> Vec<String> {
     let ratio = |of: ReplayError| {
