@@ -84,19 +84,19 @@ impl<'a> RecordFacts<'a> {
         &self.checks
     }
 
-    /// The same with speed and drift: the hulls of an analysis of these records, or those that they speak for where
-    /// length and speed are known and all of them begin on a steady approach and have a speed, unless earlier trials
-    /// told her hull; else two equations beside the yaw response where they have speed or position. As it was where
+    /// The same with speed and drift: the hulls that these records speak for, where length and speed are known, all of
+    /// them begin on a steady approach, and they have a speed, or an analysis or earlier trials told her hull; else two
+    /// equations beside the yaw response where they have speed or position. As it was where
     /// nothing can be fitted.
     pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
         let Some(length) = self.length else { return self };
         let has = |trial: &Trial, channel: Channel| trial.channel(channel).is_some();
         let has_speed =
             |trial: &Trial| has(trial, Channel::Speed) || has(trial, Channel::Surge) && has(trial, Channel::Sway);
-        let tells_hull = !earlier.is_empty() || self.trials.iter().all(has_speed);
-        let fitted = || if tells_hull { hull::members(self.trials, earlier, f64::INFINITY) } else { Vec::new() };
-        let known = analysis.map(|analysis| analysis.hulls.clone()).filter(|hulls| !hulls.is_empty());
-        let mut hulls = known.unwrap_or_else(fitted);
+        let was_told = !earlier.is_empty() || analysis.is_some_and(|analysis| !analysis.hulls.is_empty());
+        let tells_hull = was_told || self.trials.iter().all(has_speed);
+        // Structures may replay the records nearer, and know no speed of a manoeuvre that was not made.
+        let mut hulls = if tells_hull { hull::members(self.trials, earlier, f64::INFINITY) } else { Vec::new() };
         hulls.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
         self.hulls = weighed(&hulls);
         self.checks = checks(self.trials, earlier);

@@ -94,7 +94,8 @@ fn analysed(set: &'static MeasuredSet, scratch: &Path, results: &Path) -> Outcom
             let is_kept = KEPT.contains(&(record, without_wind));
             let figures = if is_kept { PageFigures::All } else { PageFigures::None };
             let held_out = set.beside(record);
-            let run = MeasuredTrace { set, records: &[record], held_out: &held_out, without_wind, priors: &[], figures };
+            let run =
+                MeasuredTrace { set, records: &[record], held_out: &held_out, without_wind, priors: &[], figures };
             let document = run.run(&out)?;
             if is_kept {
                 keep(&out, &results.join(format!("{}-{name}", set.folder)))?;

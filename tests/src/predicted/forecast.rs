@@ -76,15 +76,27 @@ fn propeller(trial: &Trial) -> Option<f64> {
     upper_median(&mut rates).filter(|rate| *rate > 0.0)
 }
 
+/// What a trace knows of the ship of some records.
+fn traced(trials: &[Trial]) -> Outcome<IdentifiedShip> {
+    let settings = Settings { thorough: false, hulls: true, ..Settings::default() };
+    let analysis = trace::trace(trials, &[], &settings)?;
+    Ok(known::of_analysis(&analysis, &RecordFacts::of(trials).with_motion(Some(&analysis), &[])))
+}
+
 impl TracedShip {
-    /// The ship that a trace makes of some records together.
+    /// The ship that a trace makes of some records together: of all channels, or, where a trial that was not made has
+    /// not what its model needs, without speed and sway, as the program then advises.
     fn of(records: &[(&'static str, Trial)]) -> Outcome<Self> {
         let (names, trials): (Vec<&str>, Vec<Trial>) = records.iter().cloned().unzip();
         let fitted = names.join(", ");
         eprintln!("{fitted}");
-        let settings = Settings { thorough: false, hulls: true, ..Settings::default() };
-        let analysis = trace::trace(&trials, &[], &settings)?;
-        let known = known::of_analysis(&analysis, &RecordFacts::of(&trials).with_motion(Some(&analysis), &[]));
+        let mut known = traced(&trials)?;
+        if ShipMixture::new(vec![(known.clone(), 1.0)]).is_err() {
+            let withheld = [Channel::Speed, Channel::Surge, Channel::Sway];
+            let without: Vec<Trial> = trials.iter().map(|trial| trial.clone().without(&withheld)).collect();
+            known = traced(&without)?;
+            eprintln!("{fitted}: traced without speed and sway");
+        }
         Ok(Self { fitted, known, propeller: propeller(&trials[0]) })
     }
 
