@@ -398,6 +398,7 @@ mod tests {
     use identify::output_error;
     use predict::ShipMixture;
     use ship::FirstOrder;
+    use ship::vessel::prior::HullParticulars;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
 
     fn record(walk_deg: f64) -> Trial {

@@ -63,46 +63,39 @@ fn curve(track: &TurnTrack) -> PlotCurve {
     PlotCurve::new(east, north)
 }
 
-/// Two circles from above.
-pub fn tracks(tracks: &[PredictedTrack]) -> PageFigure {
-    let mut said = Vec::new();
-    let stack = |own: &PredictedTrack| {
-        let mut layers: Vec<Layer> = own
-            .drawn
-            .iter()
-            .map(|(east, north)| {
-                Layer::line("drawn ships", PlotCurve::new(east.as_slice(), north.as_slice()), Pen::pale())
-            })
-            .map(|layer| layer.within(0.15))
-            .collect();
-        layers.push(Layer::line("measured", curve(&own.measured), Pen::new(INK).width(1.8)));
-        let predicted = Pen { dash: DASHED, ..Pen::new(HEADING).width(1.4) };
-        layers.push(Layer::line("most probable ship", curve(&own.probable), predicted));
-        for (track, colour, hollow) in [(&own.measured, INK, false), (&own.probable, HEADING, true)] {
-            let marks =
-                [("heading changed by 90° (advance)", Marker::Up), ("by 180° (tactical diameter)", Marker::Square)];
-            for ((name, marker), place) in marks.into_iter().zip(track.quarters()) {
-                let look = Look { colour, marker, dash: SOLID, hollow };
-                let name = if hollow { "" } else { name };
-                layers.push(Layer::marks(name, look, place.iter().map(|(x, y)| (*x, *y, None)).collect()));
-            }
+/// A circle from above.
+pub fn track((number, own): (usize, &PredictedTrack)) -> PageFigure {
+    let drawn = own.drawn.iter().take(SHOWN);
+    let drawn = drawn.map(|(east, north)| PlotCurve::new(east.as_slice(), north.as_slice()));
+    let mut layers: Vec<Layer> =
+        drawn.map(|curve| Layer::line("drawn ships", curve, Pen::pale()).within(0.15)).collect();
+    layers.push(Layer::line("measured", curve(&own.measured), Pen::new(INK).width(1.8)));
+    let predicted = Pen { dash: DASHED, ..Pen::new(HEADING).width(1.4) };
+    layers.push(Layer::line("most probable ship", curve(&own.probable), predicted));
+    for (track, colour, hollow) in [(&own.measured, INK, false), (&own.probable, HEADING, true)] {
+        let marks = [("heading changed by 90° (advance)", Marker::Up), ("by 180° (tactical diameter)", Marker::Square)];
+        for ((name, marker), place) in marks.into_iter().zip(track.quarters()) {
+            let look = Look { colour, marker, dash: SOLID, hollow };
+            let name = if hollow { "" } else { name };
+            layers.push(Layer::marks(name, look, place.iter().map(|(x, y)| (*x, *y, None)).collect()));
         }
-        let row = PanelRow::new(Ruler::decimal("north [L]"), 0.62);
-        Stack { equal: true, is_half: true, ..Stack::over(Ruler::decimal("east [L]"), vec![(row, layers)]) }
-    };
-    let stacks = tracks.iter().map(stack).collect();
-    for own in tracks {
-        let [measured, probable] = [&own.measured, &own.probable].map(TurnTrack::quarters);
-        let both = |place: usize, of: fn((f64, f64)) -> f64| -> String {
-            let shown = |found: Option<(f64, f64)>| found.map_or_else(String::new, |own| significant(of(own).abs(), 3));
-            format!("{} L, predicted {} L", shown(measured[place]), shown(probable[place]))
-        };
-        let (advance, diameter) = (both(0, |own| own.1), both(1, |own| own.0));
-        said.push(format!("{}: advance {advance}; tactical diameter {diameter}", own.title));
     }
-    let caption = "Turning circles that were not fitted, from the execute on, in lengths of the ship; a current that the \
-                   record shows is taken out. Left KVLCC2 (35° to port, MARIN), right Esso Osaka (35° to starboard).";
-    PageFigure::new("circles", caption, Panels { said, stacks, ..Panels::default() })
+    let [measured, probable] = [&own.measured, &own.probable].map(TurnTrack::quarters);
+    let both = |place: usize, of: fn((f64, f64)) -> f64| -> String {
+        let shown = |found: Option<(f64, f64)>| found.map_or_else(String::new, |own| significant(of(own).abs(), 3));
+        format!("{} L measured, {} L predicted", shown(measured[place]), shown(probable[place]))
+    };
+    let said =
+        vec![format!("advance: {}", both(0, |own| own.1)), format!("tactical diameter: {}", both(1, |own| own.0))];
+    let row = PanelRow::new(Ruler::decimal("north [L]"), 0.62);
+    let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [L]"), vec![(row, layers)]) };
+    let caption = format!(
+        "{}: a turning circle that was not fitted, from the execute on, in lengths of the ship; a current that the record \
+         shows is taken out.",
+        own.title
+    );
+    let data = Panels { title: Some(own.title.clone()), said, ..Panels::of(stack) };
+    PageFigure::new(format!("circle-{}", number + 1), caption, data)
 }
 
 /// Steady turns of two ships.

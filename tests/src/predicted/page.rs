@@ -183,12 +183,9 @@ pub fn write(forecasts: &Forecasts, results: &Path) -> Outcome<()> {
     let mut page = Page::titled("Predictions held against measured trials");
     page.say(headline(figures));
     page.table(reached(figures));
-    page.figures([
-        charts::overshoots(figures),
-        charts::tracks(tracks),
-        charts::steady(steady),
-        charts::coverage(figures),
-    ]);
+    page.figures([charts::overshoots(figures)]);
+    page.figures(tracks.iter().enumerate().map(charts::track));
+    page.figures([charts::steady(steady), charts::coverage(figures)]);
     page.part("How well, figure by figure");
     page.say(SCORES);
     page.table(scores(figures));
