@@ -98,7 +98,7 @@ impl<'a> RecordFacts<'a> {
         // Structures may replay the records nearer, and know no speed of a manoeuvre that was not made.
         let mut hulls = if tells_hull { hull::members(self.trials, earlier, f64::INFINITY) } else { Vec::new() };
         hulls.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
-        self.hulls = weighed(&hulls);
+        self.hulls = hulls.iter().map(|hull| stored(hull, hulls.len())).collect();
         self.checks = checks(self.trials, earlier);
         let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
         let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
@@ -171,17 +171,8 @@ fn checks(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<(&'static str, Expec
     hulls.iter().filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect()
 }
 
-/// Fitted hulls as a file holds them. Manoeuvres beyond the records are predicted by the hull of her own dimensions where
-/// there is one, because polynomials mean nothing there; else all weigh alike.
-fn weighed(hulls: &[HullEstimate]) -> Vec<StoredHull> {
-    let is_of_her_dimensions = hulls.iter().any(HullEstimate::is_of_her_dimensions);
-    let counts = |hull: &HullEstimate| hull.is_of_her_dimensions() == is_of_her_dimensions;
-    let share = 1.0 / hulls.iter().filter(|hull| counts(hull)).count() as f64;
-    hulls.iter().map(|hull| stored(hull, if counts(hull) { share } else { 0.0 })).collect()
-}
-
-/// A fitted hull as a file holds it, with its weight.
-fn stored(hull: &HullEstimate, weight: f64) -> StoredHull {
+/// A fitted hull as a file holds it, one of so many.
+fn stored(hull: &HullEstimate, of: usize) -> StoredHull {
     let expected = &hull.expected;
     let coefficient = |(own, value): (&HullCoefficient, &f64)| StoredCoefficient {
         key: own.key.to_owned(),
@@ -195,7 +186,7 @@ fn stored(hull: &HullEstimate, weight: f64) -> StoredHull {
     let HullReference { length, speed, propeller } = hull.reference;
     StoredHull {
         form: expected.form.as_str().to_owned(),
-        weight,
+        weight: 1.0 / of as f64,
         length_m: length,
         speed_m_s: speed,
         propeller_per_s: propeller,

@@ -32,8 +32,6 @@ use estimation::number::Real;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 use ship::Polyline;
-use ship::vessel::prime::HullForm;
-use ship::vessel::prior::HullParticulars;
 use ship::vessel::scaled::ScaledHull;
 use trial::Trial;
 
@@ -169,14 +167,6 @@ impl HullEstimate {
     /// The records against what was expected of the ship; `None` where they tell nothing new.
     pub fn check(&self) -> Option<ExpectationCheck> {
         ExpectationCheck::of(&self.expected, &self.values, &self.covariance)
-    }
-
-    /// Whether it is made from her own beam, draught and fullness, and not from what ships have in the mean.
-    pub fn is_of_her_dimensions(&self) -> bool {
-        let is_known = |own: &HullParticulars| {
-            own.beam.is_some() && own.draught.is_some() && own.block_coefficient.or(own.displacement).is_some()
-        };
-        matches!(self.expected.form, HullForm::Mmg(..)) && self.expected.particulars.as_ref().is_some_and(is_known)
     }
 
     /// Mean square of what it leaves of whole records, rad².
