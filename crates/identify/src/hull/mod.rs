@@ -4,15 +4,17 @@
 //! windows of 3.5 L/U₀; heading and yaw rate at the start are fitted, speed and sway begin as measured (or at approach
 //! speed) and run on. Minimised is
 //!
-//! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of the speed where it was recorded]
+//! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of the speed where it was
+//! recorded]
 //!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.65)/0.2)² in a turn with 35° of rudder
 //!
 //! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
 //! or twenty numbers is the ship. They start large and follow what is left of every record, to 1°, 0.2° and 0.1 U₀.
 //! A sway velocity is not fitted: logs do not say of which point of the ship it is.
 //!
-//! The n records of a ship count as one of their mean length: the error of the form is much the same in all of them. The
-//! turn is one that nearly every ship makes; zig-zags say little of it, and a form fitted to them may do anything there.
+//! The n records of a ship count as one of their mean length: the error of the form is much the same in all of them.
+//! The turn is one that nearly every ship makes; zig-zags say little of it, and a form fitted to them may do anything
+//! there.
 //!
 //! The covariance is the inverse of the second derivatives of J/2, so it holds the error of the form as far as that is
 //! another in every ship length of a record. Firm priors are what lets one record tell so many coefficients; without

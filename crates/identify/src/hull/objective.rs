@@ -219,7 +219,8 @@ impl Objective for HullObjective<'_> {
         self.expected.coefficients[unknown].ends
     }
 
-    /// Σ over records of their weights times mean squares over variances, the priors, and the turn with the rudder hard over.
+    /// Σ over records of their weights times mean squares over variances, the priors, and the turn with the rudder hard
+    /// over.
     fn value(&mut self, at: &[f64]) -> f64 {
         let (Some(left), Some(hull)) = (self.left(at), self.expected.form.with(at)) else { return f64::INFINITY };
         let of = |((track, left), believed): ((&HullTrack, Left), &HullDeviations)| {

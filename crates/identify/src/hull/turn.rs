@@ -1,4 +1,5 @@
-//! What nearly every ship does with her rudder hard over: a zig-zag says little of it, and a fitted form may do anything.
+//! What nearly every ship does with her rudder hard over: a zig-zag says little of it, and a fitted form may do
+//! anything.
 
 use estimation::number::Real;
 use ship::angle::DEGREE;
