@@ -44,9 +44,9 @@ pub fn overshoots(figures: &[ForecastFigure]) -> PageFigure {
         let red = Look { colour: RUDDER, marker: Marker::Square, dash: SOLID, hollow: true };
         let line = PlotCurve::new([0.0, largest], [0.0, largest]);
         let layers = vec![
-            Layer::line("predicted = measured", line, Pen { dash: DASHED, ..Pen::new(INK).width(0.8) }),
             marks("first overshoot", blue, |own| own.name.starts_with("first")),
             marks("later overshoots", red, |own| !own.name.starts_with("first")),
+            Layer::line("predicted = measured", line, Pen { dash: DASHED, ..Pen::new(INK).width(0.8) }),
         ];
         LayeredPanel { head: Some(group.words().to_owned()), layers }
     };
@@ -124,6 +124,9 @@ pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
     PageFigure::new("steady-turns", caption, Panels { stacks, ..Panels::default() })
 }
 
+/// A value with its interval, where it has one.
+type WithInterval = (f64, Option<[f64; 2]>);
+
 /// Share that 90 % intervals hold beside their width, kind by kind.
 pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
     let score = |group: ForecastGroup, kind| {
@@ -131,7 +134,7 @@ pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
             figures.iter().filter(|own| own.group == group && own.kind() == Some(kind)).collect();
         ForecastScore::of(&of)
     };
-    let rows = |item: &dyn Fn(&ForecastScore) -> (f64, Option<[f64; 2]>)| -> Vec<Vec<RowItem>> {
+    let rows = |item: &dyn Fn(&ForecastScore) -> WithInterval| -> Vec<Vec<RowItem>> {
         let of_kind = |kind| {
             let marks = ForecastGroup::ALL.into_iter().filter_map(|group| {
                 let (value, interval) = item(&score(group, kind)?);

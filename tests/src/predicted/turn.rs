@@ -109,7 +109,7 @@ mod tests {
         let origin = trial::Origin::Simulated { scenario: "circle".into(), cell: 0, replicate: 0 };
         let trial = Trial::new("circle", origin, columns).expect("a record");
         let turn = RecordedTurn::of(&trial).expect("a turn");
-        assert_eq!((turn.execute, turn.rudder), (20, 0.35));
+        assert!(turn.execute == 20 && (turn.rudder - 0.35).abs() < 1e-12, "{} {}", turn.execute, turn.rudder);
         let [quarter, half] = TurnTrack::recorded(&trial, 10.0).expect("positions").quarters();
         assert!((quarter.expect("90°").1 - 5.0).abs() < 0.01, "{quarter:?}");
         assert!((half.expect("180°").0 - 10.0).abs() < 0.01, "{half:?}");

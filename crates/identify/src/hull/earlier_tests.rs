@@ -1,7 +1,6 @@
 //! What earlier trials tell of the next: made-up numbers, and KVLCC2 as she is simulated.
 
 use nalgebra::{DMatrix, DVector};
-use ship::angle::to_deg;
 use ship::ships::kvlcc2::MODEL_L7;
 use ship::vessel::mmg::Mmg;
 use ship::vessel::prime::HullForm;

@@ -148,8 +148,8 @@ mod tests {
     #[test]
     fn a_conflict_is_one_warning_with_what_moved() {
         let warning = entry(4.4e-6).warning().expect("a conflict");
-        let expected = "--prior fit.json: the records contradict it (mmg: χ² = 41.3 of 9, p = 0.0000044); farthest from it: \
-                        Nv by −4.3 sd (trim, or shallow water), Nvv by 2.0 sd; make sure";
+        let expected = "--prior fit.json: the records contradict it (mmg: χ² = 41.3 of 9, p = 4.4×10⁻⁶); farthest from it: \
+                        Nv by −4.2 sd (trim, or shallow water), Nvv by 2.0 sd; make sure";
         assert!(warning.replace('-', "−").starts_with(&expected.replace('-', "−")), "{warning}");
         assert_eq!(entry(0.3).warning(), None);
     }

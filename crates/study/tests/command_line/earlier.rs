@@ -39,8 +39,8 @@ fn with_model() -> Desk {
 
 fn sd(json: &Value, key: &str, name: &str) -> f64 {
     let hulls = json["ships"]["output-error"]["hulls"].as_array().expect("hulls");
-    let quadratic = hulls.iter().find(|own| own["form"] == "quadratic").expect("it is near");
-    let own = quadratic["coefficients"].as_array().expect("a list").iter().find(|own| own["key"] == key);
+    let mmg = hulls.iter().find(|own| own["form"] == "mmg").expect("it is near");
+    let own = mmg["coefficients"].as_array().expect("a list").iter().find(|own| own["key"] == key);
     own.expect("a coefficient")[name].as_f64().expect("a number")
 }
 
