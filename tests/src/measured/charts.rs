@@ -33,7 +33,7 @@ pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
         let set = own.set.name.split(',').next().unwrap_or_default();
         let basin = own.set.folder.rsplit('_').next().unwrap_or_default().to_uppercase();
         let ship = if set == "KVLCC2" { format!("{set} {basin}") } else { set.to_owned() };
-        format!("{ship}: {}", own.label)
+        format!("{ship}: {}", short(&own.label))
     };
     let caption = "Heading error on records that were not fitted, of the best first-order base and of what was traced: whole \
                    replays, and replays restarted every 60 s. A row is one analysis; what was fitted stands at its left.";
@@ -46,6 +46,17 @@ pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
             ..NamedRows::default()
         },
     )
+}
+
+/// A label in one line: how many records were fitted together, and what was held out.
+fn short(label: &str) -> String {
+    match label.strip_prefix("together: ") {
+        Some(pool) => {
+            let circles = if pool.contains("circles") { ", to circles" } else { "" };
+            format!("{} together{circles}", pool.matches("zigzag_").count())
+        }
+        None => label.trim_start_matches("zigzag_").to_owned(),
+    }
 }
 
 /// K′, T′ and root mean square yaw rate r′ of one record.
