@@ -4,7 +4,7 @@ use identify::hull::EarlierHull;
 use nalgebra::{DMatrix, DVector};
 use predict::stored_hull::StoredHull;
 use predict::{IdentifiedShip, PredictError};
-use ship::vessel::prior::{HullParticulars, Particular};
+use ship::vessel::prior::HullParticulars;
 
 /// The hulls of an identified ship, each with the particulars of all.
 ///
@@ -16,13 +16,8 @@ pub fn hulls_of(ship: &IdentifiedShip) -> Result<Vec<EarlierHull>, PredictError>
 
 fn earlier(own: &StoredHull, with_particulars: &StoredHull) -> Result<EarlierHull, PredictError> {
     own.check()?;
-    let mut particulars = HullParticulars::default();
-    for (key, value) in &with_particulars.particulars {
-        if let Some(particular) = Particular::named(key) {
-            particular.set(&mut particulars, *value);
-        }
-    }
-    (particulars.length, particulars.speed) = (own.length_m, own.speed_m_s);
+    let (length, speed) = (own.length_m, own.speed_m_s);
+    let particulars = HullParticulars { length, speed, ..with_particulars.particulars()? };
     let size = own.coefficients.len();
     Ok(EarlierHull {
         form: own.form()?,

@@ -2,14 +2,13 @@
 //! traces and hulls leave.
 
 use identify::estimate::{Estimate, Uncertainty};
-use identify::hull::{self, EarlierHull, ExpectationCheck, ExpectedHull, HullEstimate, HullReference};
+use identify::hull::{self, EarlierHull, ExpectationCheck, HullEstimate, HullReference};
 use identify::replay::{Replay, replay};
 use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
 use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
 use predict::motion::{self, Planar};
 use predict::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
-use rayon::prelude::*;
 use ship::Particulars;
 use ship::angle::{from_deg, to_deg};
 use ship::vessel::prime::{HullCoefficient, HullForm};
@@ -86,8 +85,7 @@ impl<'a> RecordFacts<'a> {
 
     /// The same with speed and drift: the hulls that these records speak for, where length and speed are known, all of
     /// them begin on a steady approach, and they have a speed, or an analysis or earlier trials told her hull; else two
-    /// equations beside the yaw response where they have speed or position. As it was where
-    /// nothing can be fitted.
+    /// equations beside the yaw response where they have speed or position. As it was where nothing can be fitted.
     pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
         let Some(length) = self.length else { return self };
         let has = |trial: &Trial, channel: Channel| trial.channel(channel).is_some();
@@ -96,10 +94,12 @@ impl<'a> RecordFacts<'a> {
         let was_told = !earlier.is_empty() || analysis.is_some_and(|analysis| !analysis.hulls.is_empty());
         let tells_hull = was_told || self.trials.iter().all(has_speed);
         // Structures may replay the records nearer, and know no speed of a manoeuvre that was not made.
-        let mut hulls = if tells_hull { hull::members(self.trials, earlier, f64::INFINITY) } else { Vec::new() };
-        hulls.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
+        let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
+        fitted.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
+        let after_trials = fitted.iter().filter(|hull| hull.expected.has_trials);
+        self.checks = after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect();
+        let hulls = hull::members(fitted, f64::INFINITY);
         self.hulls = hulls.iter().map(|hull| stored(hull, hulls.len())).collect();
-        self.checks = checks(self.trials, earlier);
         let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
         let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
         if self.hulls.is_empty() && self.trials.iter().all(is_told) {
@@ -160,15 +160,6 @@ impl<'a> RecordFacts<'a> {
         let squares: Vec<f64> = self.zigzags.iter().zip(replays).filter_map(square).collect();
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).max(0.0).sqrt()
     }
-}
-
-/// The records against what earlier trials told of every form of hull, the nearest first.
-fn checks(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<(&'static str, ExpectationCheck)> {
-    let expected = ExpectedHull::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
-    let after_trials = expected.par_iter().filter(|own| own.has_trials);
-    let mut hulls: Vec<HullEstimate> = after_trials.filter_map(|own| hull::fit(trials, own).ok()).collect();
-    hulls.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
-    hulls.iter().filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect()
 }
 
 /// A fitted hull as a file holds it, one of so many.

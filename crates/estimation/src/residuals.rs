@@ -55,6 +55,11 @@ pub struct Whiteness {
 /// Largest lag of the whiteness test.
 const LAGS: usize = 20;
 
+/// Lags of the whiteness test of so many residuals.
+pub fn whiteness_lags(count: usize) -> usize {
+    LAGS.min(count / 4)
+}
+
 /// Tests the residuals of several records together.
 ///
 /// Q = n (n + 2) Σ ρ²/(n − k); where values are missing, every ρ counts by its pairs (Stoffer and Toloi 1992).
@@ -62,7 +67,7 @@ pub fn whiteness(residuals: &[GappedSeries]) -> Whiteness {
     let (mut square, mut cross, mut statistic, mut freedom) = (0.0, 0.0, 0.0, 0.0);
     for residual in residuals {
         let n = residual.values.len();
-        let correlations = autocorrelation(residual, LAGS.min(n / 4));
+        let correlations = autocorrelation(residual, whiteness_lags(n));
         let own: f64 = residual.values.iter().map(|e| e * e).sum();
         square += own;
         cross += correlations.iter().find(|one| one.lag == 1).map_or(0.0, |one| one.value) * own;

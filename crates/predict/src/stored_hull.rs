@@ -77,16 +77,25 @@ pub struct StoredHull {
 impl StoredHull {
     /// The form, made again; fails for one that this program does not know, and for other coefficients than its own.
     pub fn form(&self) -> Result<HullForm, PredictError> {
-        let refused = || PredictError::Hull { form: self.form.clone() };
-        let mut particulars = HullParticulars::default();
-        for (key, value) in &self.particulars {
-            Particular::named(key).ok_or_else(refused)?.set(&mut particulars, *value);
-        }
-        let forms = HullForm::of_ship(Some(&particulars));
+        let refused = || self.refused();
+        let forms = HullForm::of_ship(Some(&self.particulars()?));
         let form = forms.into_iter().find(|form| form.as_str() == self.form).ok_or_else(refused)?;
         let own = form.coefficients();
         let are_same = own.iter().map(|own| own.key).eq(self.coefficients.iter().map(|own| own.key.as_str()));
         if are_same { Ok(form) } else { Err(refused()) }
+    }
+
+    /// The particulars that it is made from; fails for a key that this program does not know.
+    pub fn particulars(&self) -> Result<HullParticulars, PredictError> {
+        let mut particulars = HullParticulars::default();
+        for (key, value) in &self.particulars {
+            Particular::named(key).ok_or_else(|| self.refused())?.set(&mut particulars, *value);
+        }
+        Ok(particulars)
+    }
+
+    fn refused(&self) -> PredictError {
+        PredictError::Hull { form: self.form.clone() }
     }
 
     /// Refuses what no file of this program holds: another form, other coefficients, a covariance that is none.

@@ -21,7 +21,7 @@ pub fn fit(
         return Vec::new();
     }
     let rows: usize = structures.iter().map(|one| one.after.errors.rows).sum();
-    hull::members(trials, &settings.earlier, (squares(structures)[1] / rows as f64).sqrt())
+    hull::members(hull::fit_all(trials, &settings.earlier), (squares(structures)[1] / rows as f64).sqrt())
 }
 
 /// The same hulls fitted to other records.

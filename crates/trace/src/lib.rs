@@ -37,7 +37,7 @@ mod words;
 
 pub use analysis::{Analysis, trace, watched};
 pub use document::{Document, Verdict};
-pub use remainder::Innovations;
+pub use remainder::{IMPROBABLE, Innovations};
 pub use selection::{EffectId, Selection};
 pub use settings::{Rule, Settings, TraceError};
 pub use watcher::Watcher;

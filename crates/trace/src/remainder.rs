@@ -108,7 +108,7 @@ impl Remainder {
 }
 
 /// Probability below which innovations are not those of the law.
-const IMPROBABLE: f64 = 1e-4;
+pub const IMPROBABLE: f64 = 1e-4;
 
 /// The residuals (rad) of all records, made white by a law.
 pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Vec<Innovations> {

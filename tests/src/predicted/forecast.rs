@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use campaign::known::{self, RecordFacts};
-use estimation::statistics::upper_median;
+use identify::hull::HullReference;
 use predict::identified_ship::is_same_length;
 use predict::steady::SteadyCurve;
 use predict::turn::without_current;
@@ -71,9 +71,7 @@ fn set(folder: &str) -> &'static MeasuredSet {
 
 /// Rate of the propeller of a record, 1/s.
 fn propeller(trial: &Trial) -> Option<f64> {
-    let mut rates = trial.channel(Channel::PropellerRate)?.to_vec();
-    rates.retain(|rate| rate.is_finite());
-    upper_median(&mut rates).filter(|rate| *rate > 0.0)
+    HullReference::of(trial)?.propeller
 }
 
 /// What a trace knows of the ship of some records.
@@ -136,9 +134,7 @@ impl TracedShip {
         };
         Ok(replayed.figures.into_iter().map(figure).collect())
     }
-}
 
-impl TracedShip {
     /// No figures, and why.
     fn refused(&self, trial: &str, error: &dyn std::fmt::Display) -> Vec<ForecastFigure> {
         eprintln!("{trial} from {}: {error}", self.fitted);

@@ -40,9 +40,7 @@ impl ExpectationCheck {
     pub fn is_conflict(&self) -> bool {
         self.p_value < CONFLICT
     }
-}
 
-impl ExpectationCheck {
     /// What a fit found against what was expected of the ship; what belongs to a trial has no part in it. `None`
     /// where the records tell nothing new.
     pub(super) fn of(expected: &ExpectedHull, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {

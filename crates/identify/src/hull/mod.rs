@@ -96,9 +96,7 @@ pub struct HullEstimate {
 /// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings or begins
 /// while the ship gathers way, and where no values near the expected ones can be replayed.
 pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, HullFitError> {
-    let reference = trials.iter().find_map(HullReference::of).ok_or(HullFitError::Particulars)?;
-    let track = |trial: &Trial| HullTrack::of(trial, &reference);
-    let tracks = trials.iter().map(track).collect::<Result<Vec<HullTrack>, _>>()?;
+    let (reference, tracks) = tracks(trials)?;
     let form = &expected.form;
     let mut problem = HullObjective::new(expected, &tracks);
     let mut at = expected.mean();
@@ -129,19 +127,28 @@ pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, Hu
 
 /// Why no hull can be fitted to some records of one ship; `None` where one can.
 pub fn refusal(trials: &[Trial]) -> Option<HullFitError> {
-    let Some(reference) = trials.iter().find_map(HullReference::of) else { return Some(HullFitError::Particulars) };
-    trials.iter().find_map(|trial| HullTrack::of(trial, &reference).err())
+    tracks(trials).err()
+}
+
+/// The records of one ship without dimension, and what they are measured with.
+fn tracks(trials: &[Trial]) -> Result<(HullReference, Vec<HullTrack>), HullFitError> {
+    let reference = trials.iter().find_map(HullReference::of).ok_or(HullFitError::Particulars)?;
+    let tracks = trials.iter().map(|trial| HullTrack::of(trial, &reference)).collect::<Result<_, _>>()?;
+    Ok((reference, tracks))
 }
 
 /// A hull that leaves this many times what another model leaves takes no part.
 const FAR: f64 = 3.0;
 
-/// The hulls of all forms that records of one ship speak for, about what earlier trials told of her: those that leave
-/// no more than three times what the best of them leaves of whole records, or another model (`rival`, rad; infinite
-/// without one). None where none can be fitted.
-pub fn members(trials: &[Trial], earlier: &[EarlierHull], rival: f64) -> Vec<HullEstimate> {
+/// The hulls of all forms that can be fitted to records of one ship, about what earlier trials told of her.
+pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
     let expected = ExpectedHull::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
-    let found: Vec<HullEstimate> = expected.par_iter().filter_map(|own| fit(trials, own).ok()).collect();
+    expected.par_iter().filter_map(|own| fit(trials, own).ok()).collect()
+}
+
+/// Those of some hulls that their records speak for: they leave no more than three times what the best of them leaves
+/// of whole records, or another model (`rival`, rad; infinite without one).
+pub fn members(found: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate> {
     let left = |hull: &HullEstimate| hull.mean_square().sqrt();
     let least = found.iter().map(left).fold(rival, f64::min);
     found.into_iter().filter(|hull| left(hull) <= FAR * least).collect()

@@ -15,7 +15,7 @@ use trial::{Channel, Columns, Origin, Trial};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
-use super::{ExpectedHull, HullEstimate, HullFitError, RandomMoment, fit, members};
+use super::{ExpectedHull, HullEstimate, HullFitError, RandomMoment, fit, fit_all, members};
 
 pub(super) const LENGTH: f64 = 7.0;
 pub(super) const SPEED: f64 = 1.2;
@@ -140,12 +140,12 @@ fn a_random_moment_is_found_again() {
 
 #[test]
 fn the_hulls_that_records_speak_for_are_near_them() {
-    let found = members(&records(|_| 0.0), &[], f64::INFINITY);
+    let found = members(fit_all(&records(|_| 0.0), &[]), f64::INFINITY);
     // All three forms are fitted; the quadratic one is the truth, and what leaves three times as much is left out.
     let left: Vec<f64> = found.iter().map(|hull| hull.mean_square().sqrt()).collect();
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(found[0].expected.form == HullForm::Quadratic && left.iter().all(|own| *own <= 3.0 * least), "{left:?}");
-    assert!(members(&records(|_| 0.0), &[], 1e-9).is_empty(), "another model that leaves nothing");
+    assert!(members(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
 }
 
 #[test]

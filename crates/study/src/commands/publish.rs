@@ -239,8 +239,8 @@ impl<'a> Publication<'a> {
     /// Has a program work in a folder of its own, which takes the place of the old one when all went well.
     fn program(&self, own: &PublishedProgram) -> Result<PublicationOutcome, Failure> {
         let place = self.published().join(&own.name);
-        let stamp = ProgramStamp { commands: own.commands.clone(), wall_time_s: 0.0, program: ProgramRevision::own() };
-        let is_of = |stored: ProgramStamp| ProgramStamp { wall_time_s: 0.0, ..stored } == stamp;
+        let program = ProgramRevision::own();
+        let is_of = |stored: ProgramStamp| stored.commands == own.commands && stored.program == program;
         if ProgramStamp::read(&place).ok().flatten().is_some_and(is_of) && !self.request.restart {
             return Ok(CURRENT);
         }
@@ -251,8 +251,8 @@ impl<'a> Publication<'a> {
         self.begin(&own.name);
         let scratch = self.request.folder.join(SCRATCH);
         remove_folder(&scratch)?;
-        let [made, aside] = [own.name.as_str(), "aside"].map(|name| scratch.join(name));
-        [&made, &aside].into_iter().try_for_each(|path| disk::create_folder(path).on("make the folder", path))?;
+        let made = scratch.join(&own.name);
+        disk::create_folder(&made).on("make the folder", &made)?;
         // As seen from where the commands run, for it may be written into a page.
         let shown = |path: &Path| {
             let name = self.request.folder.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_owned()));
@@ -260,14 +260,15 @@ impl<'a> Publication<'a> {
             Path::new(&name.unwrap_or_default()).join(inside).display().to_string()
         };
         let records = self.records.as_deref().unwrap_or(Path::new("")).display().to_string();
-        let places = [("{folder}", shown(&made)), ("{scratch}", shown(&aside)), ("{records}", records)];
+        let places = [("{folder}", shown(&made)), ("{records}", records)];
         let start = Instant::now();
         own.commands.iter().try_for_each(|command| self.start(command, &places))?;
         let is_left_out = |name: &str| own.leave_out.iter().any(|end| name.ends_with(end));
         for file in published_files(&made)?.iter().filter(|file| is_left_out(&file.to_string_lossy())) {
             disk::remove(&made.join(file)).on("remove", &made.join(file))?;
         }
-        let stamp = ProgramStamp { wall_time_s: start.elapsed().as_secs_f64().round(), ..stamp };
+        let wall_time_s = start.elapsed().as_secs_f64().round();
+        let stamp = ProgramStamp { commands: own.commands.clone(), wall_time_s, program };
         let text = toml::to_string(&stamp).on("describe", &made)?;
         ResultFolder::shared(&made)?.write(STAMP, text)?;
         remove_folder(&place)?;

@@ -1,7 +1,9 @@
 //! Whether model and noise describe a record: the innovations of its headings as a normal Q–Q plot with the band that
 //! chance leaves, and their autocorrelation with the test of whiteness. What acts on the ship is no part of it.
 
-use estimation::residuals::{GappedSeries, autocorrelation, whiteness};
+use ::trace::IMPROBABLE;
+use estimation::residuals::{GappedSeries, autocorrelation, whiteness, whiteness_lags};
+use estimation::statistics::upper_median;
 use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
 use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, SOLID};
@@ -11,13 +13,6 @@ use statrs::function::beta::beta_reg;
 
 /// Fewest innovations that are judged.
 const FEWEST: usize = 8;
-
-/// Lags of the test of whiteness, which are those of [`whiteness`].
-const LAGS: usize = 20;
-
-/// Probability below which innovations are called not white: the one below which a trace says that its noise does not
-/// describe what is left.
-const IMPROBABLE: f64 = 1e-4;
 
 /// Places between the ends at which the band is drawn, and places at either end that are all drawn.
 const PLACES: usize = 150;
@@ -57,8 +52,7 @@ fn ranks(count: usize) -> Vec<usize> {
 /// where they are few.
 pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Option<PageFigure> {
     let mut intervals: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    intervals.sort_by(f64::total_cmp);
-    let spacing = intervals.get(intervals.len() / 2).copied().unwrap_or_default();
+    let spacing = upper_median(&mut intervals).unwrap_or_default();
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     if time.len() != values.len() || sorted.len() < FEWEST || spacing <= 0.0 {
         return None;
@@ -70,7 +64,7 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
         true => format!("innovations are not white, p < {IMPROBABLE}"),
         false => format!("innovations white with p = {}", significant(p_value, 2)),
     };
-    let title = format!("{name}: {judged} (Ljung–Box, {} lags)", lags(sorted.len()));
+    let title = format!("{name}: {judged} (Ljung–Box, {} lags)", whiteness_lags(sorted.len()));
     let caption = format!(
         "{name}: innovations, what is new in every heading given those before it, over the standard deviation of the noise. \
          Left: on the line they are normal and as large as the noise that was found; the band holds each of them with 95 %. \
@@ -78,11 +72,6 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
     );
     let stacks = vec![quantiles(&sorted), correlation(&series)];
     Some(PageFigure::new(stem, caption, Panels { title: Some(title), stacks, ..Panels::default() }))
-}
-
-/// Lags of so many values.
-fn lags(count: usize) -> usize {
-    LAGS.min(count / 4)
 }
 
 /// Sorted numbers over where normal ones are expected.
@@ -111,8 +100,7 @@ fn quantiles(sorted: &[f64]) -> Stack {
 /// The autocorrelation with the ends between which 95 % of that of white numbers lie.
 fn correlation(series: &GappedSeries) -> Stack {
     let count = series.values.len();
-    let lags = lags(count);
-    let points = autocorrelation(series, lags);
+    let points = autocorrelation(series, whiteness_lags(count));
     let bound = 1.96 / (count as f64).sqrt();
     let outside = points.iter().filter(|one| one.value.abs() > bound).count();
     let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };

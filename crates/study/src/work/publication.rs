@@ -53,7 +53,7 @@ pub struct PublishedProgram {
     #[serde(default)]
     pub needs_records: bool,
     /// What is run, one after another, where the folder of results lies. `{folder}` is the folder to be filled,
-    /// `{scratch}` one that goes away, `{records}` that of the measured records. The command `study` is this program.
+    /// `{records}` that of the measured records. The command `study` is this program.
     pub commands: Vec<Vec<String>>,
     /// Ends of the names of files that are made and not published.
     #[serde(default)]

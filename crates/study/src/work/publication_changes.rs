@@ -1,6 +1,5 @@
 //! What a new publication changes: files, and figures of tables that moved beyond their noise.
 
-use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -67,7 +66,7 @@ pub fn changes(before: &Path, after: &Path) -> Result<PublicationChanges, Failur
             found.files.push(file);
         }
     }
-    found.moved.sort_by(|one, other| other.distance().partial_cmp(&one.distance()).unwrap_or(Ordering::Equal));
+    found.moved.sort_by(|one, other| other.distance().total_cmp(&one.distance()));
     Ok(found)
 }
 

@@ -71,39 +71,26 @@ impl HullParticulars {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::KVLCC2;
     use super::*;
-
-    const SHIP: HullParticulars = HullParticulars {
-        length: 320.0,
-        speed: 7.97,
-        beam: Some(58.0),
-        draught: Some(20.8),
-        block_coefficient: Some(0.81),
-        rudder_area: Some(112.5),
-        rudder_height: None,
-        propeller_diameter: None,
-        propeller_rate: Some(1.6),
-        displacement: None,
-        x_g: Some(11.2),
-    };
 
     /// KVLCC2 and her model of 7 m: 1.27 m, 0.455 m, 0.0539 m² (SIMMAN 2008).
     #[test]
     fn a_model_has_the_particulars_of_her_ship() {
         let bare = HullParticulars { length: 7.0, speed: 1.18, ..HullParticulars::default() };
-        let model = bare.filled_from(&SHIP);
+        let model = bare.filled_from(&KVLCC2);
         let near = |one: Option<f64>, other: f64| (one.expect("filled") / other - 1.0).abs() < 0.005;
         assert!(near(model.beam, 1.27) && near(model.draught, 0.455) && near(model.rudder_area, 0.0539), "{model:?}");
         assert_eq!((model.block_coefficient, model.propeller_rate, model.length), (Some(0.81), None, 7.0));
-        assert!(model.differing(&SHIP).is_empty() && bare.differing(&SHIP).is_empty());
-        assert!(!model.has_length_of(&SHIP) && (model.froude_number() / SHIP.froude_number() - 1.0).abs() < 0.01);
+        assert!(model.differing(&KVLCC2).is_empty() && bare.differing(&KVLCC2).is_empty());
+        assert!(!model.has_length_of(&KVLCC2) && (model.froude_number() / KVLCC2.froude_number() - 1.0).abs() < 0.01);
     }
 
     #[test]
     fn another_loading_differs() {
-        let ballast = HullParticulars { draught: Some(12.0), x_g: Some(5.0), ..SHIP };
-        assert_eq!(ballast.differing(&SHIP), ["draught-m", "x-g-m"]);
-        assert_eq!(ballast.filled_from(&SHIP).draught, Some(12.0));
-        assert!(HullParticulars { draught: Some(20.7), ..SHIP }.differing(&SHIP).is_empty(), "rounding");
+        let ballast = HullParticulars { draught: Some(12.0), x_g: Some(5.0), ..KVLCC2 };
+        assert_eq!(ballast.differing(&KVLCC2), ["draught-m", "x-g-m"]);
+        assert_eq!(ballast.filled_from(&KVLCC2).draught, Some(12.0));
+        assert!(HullParticulars { draught: Some(20.7), ..KVLCC2 }.differing(&KVLCC2).is_empty(), "rounding");
     }
 }

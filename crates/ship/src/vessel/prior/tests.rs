@@ -3,7 +3,7 @@ use crate::dynamics::Input;
 use crate::ships::{kvlcc2, seiun_like};
 use crate::vessel::mmg::Mmg;
 
-const KVLCC2: HullParticulars = HullParticulars {
+pub(super) const KVLCC2: HullParticulars = HullParticulars {
     length: 320.0,
     speed: 7.97,
     beam: Some(58.0),
