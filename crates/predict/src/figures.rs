@@ -58,7 +58,11 @@ pub fn of(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particulars: Option<Pa
 }
 
 /// Time of the initial turning, and its way in ship lengths.
-fn initial_turning(passage: &SimulatedManoeuvre, turning: Option<f64>, particulars: Option<Particulars>) -> Figures {
+pub(crate) fn initial_turning(
+    passage: &SimulatedManoeuvre,
+    turning: Option<f64>,
+    particulars: Option<Particulars>,
+) -> Figures {
     let lengths = particulars.map(|Particulars { length, speed }| {
         turning.map(|time| passage.distance(time).unwrap_or(speed * time) / length)
     });

@@ -26,6 +26,8 @@ pub(crate) struct DrawResult {
 /// A measured zig-zag as a helm steers it.
 pub(crate) struct SteeredZigZag {
     pub kind: Manoeuvre,
+    /// Change of heading that ends the initial turning, rad: the nominal one, where a helm is later than ordered.
+    turned: f64,
     /// Yaw rate at the first execute, rad/s.
     yaw_rate: f64,
     /// Rate of the rudder where the record shows it, rad/s.
@@ -60,7 +62,8 @@ impl SteeredZigZag {
             None => executes[0].yaw_rate.map_or(0.0, |rate| rate.value),
         };
         let kind = Manoeuvre::zig_zag(rudder, heading).to(side);
-        Some(Self { kind, yaw_rate, rudder_rate: measured.rudder_rate })
+        let turned = measured.pair.map_or(heading, |pair| pair.heading);
+        Some(Self { kind, turned, yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
     /// What drawn ships do, in the order of their numbers; `None` for one that does not come to the end.
@@ -71,7 +74,9 @@ impl SteeredZigZag {
             ship.yaw_rate = self.yaw_rate;
             ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
-            let figures = figures::of(&self.kind, &passage, mixture.particulars());
+            let mut figures = figures::of(&self.kind, &passage, mixture.particulars());
+            let turned = passage.reached(self.turned, self.kind.side().sign());
+            figures.extend(figures::initial_turning(&passage, turned, mixture.particulars()));
             Some(DrawResult { figures, largest_rate: passage.largest_rate() })
         })
     }

@@ -256,6 +256,19 @@ mod tests {
         assert!((0.80..=0.97).contains(&band), "{band}");
     }
 
+    /// A helm that is late reverses the rudder at 11.5° in a 10/10 zig-zag; the initial turning ends at 10°.
+    #[test]
+    fn the_initial_turning_ends_at_the_nominal_heading() {
+        let mixture = testing::mixture(testing::known());
+        let trial = testing::record(&mixture, "zig-zag:10/11.5", 0, from_deg(0.001), 0.5);
+        let replayed = mixture.replay(&trial, 100, None).expect("it sails").expect("it begins");
+        let [turning, second] = ["initial_turning_time_s", "second_execute_s"].map(|name| &replayed.figures[name]);
+        assert!(turning.measured < 0.95 * second.measured, "{turning:?} {second:?}");
+        for figure in [turning, second] {
+            assert!((figure.interval.median / figure.measured - 1.0).abs() < 0.03, "{figure:?}");
+        }
+    }
+
     #[test]
     fn a_rudder_is_its_corners() {
         let times: Vec<f64> = (0..400).map(f64::from).collect();

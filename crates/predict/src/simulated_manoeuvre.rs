@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use ship::vessel::prime::FASTEST;
 use ship::vessel::scaled::ScaledHull;
 use ship::{Regressor, Replayable};
 use simulate::simulation::{Simulated, Truth};
@@ -123,7 +124,8 @@ impl SimulatedManoeuvre {
 
     /// Steers a ship through a manoeuvre; `timescale` is a time of the ship, s.
     ///
-    /// Fails where the ship does not reach a heading that the helm waits for, or turns for ever.
+    /// Fails where the ship does not reach a heading that the helm waits for, turns for ever, or becomes so fast that
+    /// the equations of a hull are not those of a ship.
     pub fn sail(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
         if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
@@ -148,7 +150,19 @@ impl SimulatedManoeuvre {
             (None, Some(planar)) => Some(PlanarMotion::beside(planar, trial.time(), &passage)),
             (None, None) => None,
         };
-        Ok(passage)
+        match ship.hull.as_ref().and_then(|hull| passage.runs_away(FASTEST * hull.speed)) {
+            Some(row) => Err(SimulateError::Diverged {
+                time: passage.time(row),
+                heading: passage.heading[row],
+                yaw_rate: passage.yaw_rate[row],
+            }),
+            None => Ok(passage),
+        }
+    }
+
+    /// First row in which the ship is faster than any, m/s.
+    fn runs_away(&self, fastest: f64) -> Option<usize> {
+        self.way.as_ref()?.velocity.iter().position(|[surge, sway]| surge.hypot(*sway) > fastest)
     }
 
     /// What any simulated ship does, without her way; how often and how long it is recorded follows from `timescale`, a

@@ -51,7 +51,8 @@ pub(crate) fn in_doubt(passage: &SimulatedManoeuvre, current: &Current, number: 
 }
 
 /// A rudder that is put over and held; times on the clock of the record, s.
-pub(crate) struct HeldTurn {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldTurn {
     /// First row of the record.
     start: f64,
     /// When it leaves its beginning.
@@ -91,17 +92,17 @@ impl HeldTurn {
     }
 
     /// From the first row to the execute, s.
-    pub fn approach(&self) -> f64 {
+    pub(crate) fn approach(&self) -> f64 {
         self.execute - self.start
     }
 
     /// Figures of a turn that goes on as long as that of the record.
-    pub fn figures(&self, passage: &SimulatedManoeuvre) -> Figures {
+    pub(crate) fn figures(&self, passage: &SimulatedManoeuvre) -> Figures {
         self.whole_figures(&passage.until(self.until - self.start))
     }
 
     /// Figures of a turn that goes on to the end; its clock begins with the record.
-    pub fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Figures {
+    pub(crate) fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Figures {
         let first = (self.approach() / passage.period).round() as usize;
         let begin = passage.at(&passage.heading, self.approach());
         let heading = passage.heading.iter().skip(first).map(|heading| heading - begin).collect();
@@ -112,7 +113,7 @@ impl HeldTurn {
     }
 
     /// The rudder of the record up to the end of the turn, and held on from there.
-    pub fn held_on(&self, signal: &Polyline) -> Option<Polyline> {
+    pub(crate) fn held_on(&self, signal: &Polyline) -> Option<Polyline> {
         let mut times: Vec<f64> = signal.times().iter().copied().take_while(|time| *time <= self.until).collect();
         let mut values: Vec<f64> = signal.values()[..times.len()].to_vec();
         times.push(self.until + LONGER * (self.until - self.execute));

@@ -3,10 +3,8 @@
 use std::path::Path;
 
 use campaign::known::{self, RecordFacts};
-use identify::hull::HullReference;
-use predict::identified_ship::is_same_length;
 use predict::steady::SteadyCurve;
-use predict::turn::without_current;
+use predict::turn::{HeldTurn, without_current};
 use predict::{IdentifiedShip, Prediction, ShipMixture};
 use ship::Particulars;
 use ship::angle::to_deg;
@@ -14,7 +12,7 @@ use trace::Settings;
 use trial::{Channel, Manoeuvre, Trial};
 
 use super::figure::{ForecastFigure, ForecastGroup};
-use super::turn::{RecordedTurn, TurnTrack};
+use super::turn::TurnTrack;
 use crate::measured::sets::{MeasuredSet, Outcome, SETS};
 
 /// Ships that are drawn for every trial.
@@ -28,8 +26,6 @@ pub struct TracedShip {
     /// The records.
     pub fitted: String,
     known: IdentifiedShip,
-    /// Rate of the propeller in these records, 1/s, where it was recorded.
-    propeller: Option<f64>,
 }
 
 /// A circle, measured beside predicted.
@@ -69,11 +65,6 @@ fn set(folder: &str) -> &'static MeasuredSet {
     SETS.iter().find(|set| set.folder == folder).expect("a set of this name")
 }
 
-/// Rate of the propeller of a record, 1/s.
-fn propeller(trial: &Trial) -> Option<f64> {
-    HullReference::of(trial)?.propeller
-}
-
 /// What a trace knows of the ship of some records.
 fn traced(trials: &[Trial]) -> Outcome<IdentifiedShip> {
     let settings = Settings { thorough: false, hulls: true, ..Settings::default() };
@@ -95,26 +86,20 @@ impl TracedShip {
             known = traced(&without)?;
             eprintln!("{fitted}: traced without speed and sway");
         }
-        Ok(Self { fitted, known, propeller: propeller(&trials[0]) })
+        Ok(Self { fitted, known })
     }
 
-    /// The same ship at the scale of a trial: of Froude, and on the same model with an approach speed that grows as
-    /// the rate of the propeller does.
-    fn at(&self, own: Particulars, rate: Option<f64>) -> Outcome<IdentifiedShip> {
-        let known = &self.known;
-        let (Some(length), Some(speed)) = (known.length_m, known.speed_m_s) else { return Ok(known.clone()) };
-        if !is_same_length(length, own.length) {
-            return Ok(known.scaled_to(own.length, Some(own.speed))?);
-        }
-        match rate.zip(self.propeller) {
-            Some((rate, of_fit)) => Ok(known.scaled_to(length, Some(speed * rate / of_fit))?),
-            None => Ok(known.clone()),
+    /// The same ship at the scale and at the approach speed of a trial.
+    fn at(&self, own: Particulars) -> Outcome<IdentifiedShip> {
+        match self.known.length_m.zip(self.known.speed_m_s) {
+            Some(_) => Ok(self.known.scaled_to(own.length, Some(own.speed))?),
+            None => Ok(self.known.clone()),
         }
     }
 
     fn mixture(&self, trial: &Trial) -> Outcome<ShipMixture> {
         let own = trial.particulars().ok_or("a measured record has length and speed in its sidecar")?;
-        Ok(ShipMixture::new(vec![(self.at(own, propeller(trial))?, 1.0)])?)
+        Ok(ShipMixture::new(vec![(self.at(own)?, 1.0)])?)
     }
 
     /// Every figure of a trial, measured and predicted; none where the prediction is refused, which is told.
@@ -146,7 +131,7 @@ impl TracedShip {
 fn predicted(ships: &[&TracedShip], trial: &Trial, kind: &str) -> Outcome<Prediction> {
     let own = trial.particulars().ok_or("a measured record has length and speed in its sidecar")?;
     let can_be_predicted = ships.iter().filter(|ship| ship.mixture(trial).is_ok());
-    let known = can_be_predicted.map(|ship| Ok((ship.at(own, propeller(trial))?, 1.0)));
+    let known = can_be_predicted.map(|ship| Ok((ship.at(own)?, 1.0)));
     let kind: Manoeuvre = kind.parse().map_err(|error| format!("{kind}: {error}"))?;
     Ok(ShipMixture::new(known.collect::<Outcome<Vec<_>>>()?)?.predict(&kind, SHOWN, false)?)
 }
@@ -154,8 +139,9 @@ fn predicted(ships: &[&TracedShip], trial: &Trial, kind: &str) -> Outcome<Predic
 /// A circle beside its prediction; `None` where one of the two has no track.
 fn track(title: String, ships: &[&TracedShip], trial: &Trial) -> Outcome<Option<PredictedTrack>> {
     let (trial, _) = without_current(trial.clone(), None);
-    let turn = RecordedTurn::of(&trial).ok_or("a circle has a rudder that is held")?;
-    let curves = predicted(ships, &trial, &format!("turning-circle:{}", to_deg(turn.rudder).round()))?.curves;
+    let turn = HeldTurn::of(&trial).ok_or("a circle has a rudder that is held")?;
+    let curves =
+        predicted(ships, &trial, &format!("turning-circle:{}", to_deg(turn.side * turn.rudder).round()))?.curves;
     let length = trial.particulars().map_or(f64::NAN, |own| own.length);
     let probable = curves.most_probable.as_ref().and_then(TurnTrack::predicted);
     let drawn = curves.tracks.iter().map(|track| track.iter().map(|own| (own[1] / length, own[0] / length)).unzip());
@@ -164,7 +150,7 @@ fn track(title: String, ships: &[&TracedShip], trial: &Trial) -> Outcome<Option<
 }
 
 /// Steady turns of some ships alike at the scale of the first circle, and the circles that were measured, brought to
-/// the rate of its propeller.
+/// its approach speed.
 fn steady(
     title: String,
     ships: &[&TracedShip],
@@ -178,9 +164,9 @@ fn steady(
         Some(own.compared.measured)
     };
     let measured = circles.iter().filter_map(|(name, trial)| {
-        let rudder = RecordedTurn::of(trial)?.rudder;
-        let slower = propeller(trial).zip(propeller(first)).map_or(1.0, |(own, first)| first / own);
-        Some((to_deg(rudder), rudder.signum() * slower * rate_of(name)?))
+        let turn = HeldTurn::of(trial)?;
+        let faster = first.particulars()?.speed / trial.particulars()?.speed;
+        Some((to_deg(turn.side * turn.rudder), turn.side * faster * rate_of(name)?))
     });
     Ok(PredictedSteady { title, curves, measured: measured.collect() })
 }

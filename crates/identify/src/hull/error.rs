@@ -17,7 +17,7 @@ pub enum HullFitError {
         /// Name of the record.
         trial: String,
     },
-    /// A record does not begin on a steady approach, which the equations of a hull are about.
+    /// A record begins near rest, which no prior of a hull is about.
     #[error("{trial} begins at {share:.2} of the approach speed")]
     GathersWay {
         /// Name of the record.

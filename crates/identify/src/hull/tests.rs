@@ -162,7 +162,7 @@ fn records_that_tell_no_hull_are_refused() {
         let known = bare.clone().with_particulars(Particulars { length: LENGTH, speed: SPEED });
         [bare, known].map(|trial| fit(&[trial], &expected).err())
     };
-    let slow = |columns: &mut Columns| columns.channels.get_mut(&Channel::Speed).expect("a speed").fill(0.5 * SPEED);
+    let slow = |columns: &mut Columns| columns.channels.get_mut(&Channel::Speed).expect("a speed").fill(0.3 * SPEED);
     let [bare, slow] = refused(slow);
     assert_eq!(bare, Some(HullFitError::Particulars));
     assert!(matches!(slow, Some(HullFitError::GathersWay { .. })), "{slow:?}");

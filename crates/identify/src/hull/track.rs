@@ -11,8 +11,9 @@ const SPACING: f64 = 0.05;
 /// Length of the windows after which a replay is restarted, in L/U₀: about half a period of a zig-zag.
 const WINDOW: f64 = 3.5;
 
-/// Share of the approach speed below which a ship still gathers way at the start of a record.
-const SLOW: f64 = 0.7;
+/// Share of the approach speed below which a ship has hardly begun to gather way at the start of a record: no priors
+/// are about her there.
+const SLOW: f64 = 0.4;
 
 /// What a hull is measured with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +67,7 @@ pub(super) struct HullTrack {
 }
 
 impl HullTrack {
-    /// Fails for a record with too few headings, and for one that begins while the ship gathers way.
+    /// Fails for a record with too few headings, and for one that begins near rest.
     pub fn of(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
         let short = || HullFitError::Short { trial: trial.name().to_owned() };
         let track = Self::cut(trial, reference).ok_or_else(short)?;

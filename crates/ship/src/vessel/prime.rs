@@ -22,7 +22,7 @@ use super::prior::{HullParticulars, HullPrior, priors};
 const LEAST_SURGE: f64 = 0.15;
 
 /// Largest speed or yaw rate, in U₀ and U₀/L: no ship is as fast, and what runs away stays finite.
-const FASTEST: f64 = 2.0;
+pub const FASTEST: f64 = 2.0;
 
 /// Least inflow to the rudder, in U₀.
 const LEAST_INFLOW: f64 = 0.05;
