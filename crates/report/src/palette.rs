@@ -160,6 +160,18 @@ const METHODS: [(&str, Look); 8] = [
     ("maximum-likelihood", Look::new(Paint(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
 ];
 
+/// Colours of estimators outside, which no method has: olive, brown, magenta, grey, sand, teal (after Tol, 2021).
+const OUTSIDE: [Paint; 6] = [
+    Paint(0x99, 0x99, 0x33),
+    BROWN,
+    Paint(0xAA, 0x44, 0x99),
+    Paint(0x5A, 0x5A, 0x5A),
+    Paint(0xDD, 0xCC, 0x77),
+    Paint(0x44, 0xAA, 0x99),
+];
+
+const BROWN: Paint = Paint(0x66, 0x11, 0x00);
+
 /// The ids that have a look of their own, in the order figures list them.
 pub fn method_ids() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(id, _)| *id)
@@ -170,16 +182,10 @@ pub fn method_ids() -> impl Iterator<Item = &'static str> {
 fn variant_look(method: &str, number: usize) -> Look {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
+    let (marker, dash) = (MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()]);
     // Estimators outside have an id in common and nothing else.
-    if method == "external" {
-        return other_look(number);
-    }
-    Look {
-        marker: MARKERS[number % MARKERS.len()],
-        dash: DASHES[number % DASHES.len()],
-        hollow: true,
-        ..method_look(method)
-    }
+    let colour = if method == "external" { OUTSIDE[number % OUTSIDE.len()] } else { method_look(method).colour };
+    Look { marker, dash, hollow: true, colour }
 }
 
 /// Series differ in shade, shape and dash, so that they never look like a method.
@@ -205,9 +211,11 @@ const OTHERS: usize = LENT * OUTLINES.len() * LENT;
 /// A method outside the list keeps its look through all figures too: its name picks one of many, all with a hollow
 /// marker, which keeps them apart from the known methods.
 fn method_look(id: &str) -> Look {
-    // A trace is no method of the list, and stands beside them.
-    if id == "trace" {
-        return Look::new(INK, Marker::Square, SOLID);
+    // A trace and the rule that chooses a method are no methods of the list, and stand beside them.
+    match id {
+        "trace" => return Look::new(INK, Marker::Square, SOLID),
+        "recommended" => return Look { hollow: true, ..Look::new(BROWN, Marker::Diamond, DASHED) },
+        _ => {}
     }
     if let Some((_, look)) = METHODS.iter().find(|(known, _)| *known == id) {
         return *look;
@@ -254,7 +262,10 @@ mod tests {
     #[test]
     fn estimators_outside_differ_in_colour() {
         let outside = |number| CurveOrigin::Variant { label: "other".into(), method: "external".into(), number }.look();
-        assert!(outside(0).colour != outside(1).colour && outside(1).colour != outside(2).colour);
+        for number in 0..OUTSIDE.len() {
+            assert!(METHODS.iter().all(|(_, look)| look.colour != outside(number).colour));
+            assert!((0..number).all(|other| outside(other).colour != outside(number).colour));
+        }
     }
 
     #[test]
