@@ -84,9 +84,8 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
 }
 
 /// Several traces against each other over all ships whose effects are known: trials in which exactly what is missing
-/// was named, of those whose ship lacks something, over trials in which something else was. A point is a trace; those
-/// whose labels differ after the comma alone are joined. Where no ship lacks anything, rows of the latter. Nothing for
-/// one trace.
+/// was named, of those whose ship lacks something, over trials in which something else was. Where no ship lacks
+/// anything, rows of the latter. Nothing for one trace.
 pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Plot> {
     let known: Vec<&TraceSummary> = lines.iter().filter(|line| !line.is_hull()).collect();
     let rules = grouped(known, |line| line.method);
@@ -122,33 +121,34 @@ fn false_names(rules: &[(&str, Statistic, Option<Statistic>)]) -> NamedRows {
     }
 }
 
-/// Rules as points.
+/// Rules as points: a colour for what stands before the comma of their labels, a shape for what stands behind it.
 fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
     const COLOURS: [Paint; 3] = [HEADING, RUDDER, DIMENSION];
-    const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Diamond];
-    let kind = |label: &'_ str| label.split(", ").next().unwrap_or_default().to_owned();
-    let kinds = grouped(rules.iter(), |(label, ..)| kind(label));
+    const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
+    let parts: Vec<(&str, &str)> =
+        rules.iter().map(|(label, ..)| label.split_once(", ").unwrap_or((label, ""))).collect();
+    let variants = distinct(parts.iter().map(|(_, variant)| *variant));
+    let look = |colour: Paint, variant: &str| {
+        let number = variants.iter().position(|own| *own == variant).unwrap_or_default();
+        Look { colour, marker: MARKERS[number % MARKERS.len()], dash: SOLID, hollow: false }
+    };
     let mut layers = Vec::new();
-    for (number, (_, own)) in kinds.iter().enumerate() {
+    for (number, (kind, own)) in grouped(rules.iter().zip(&parts), |(_, (kind, _))| *kind).iter().enumerate() {
         let colour = COLOURS[number % COLOURS.len()];
-        let look = Look { colour, marker: MARKERS[number % MARKERS.len()], dash: SOLID, hollow: false };
-        let line =
-            |x: Vec<f64>, y: Vec<f64>, width| Layer::line("", PlotCurve::new(x, y), Pen::new(colour).width(width));
-        let (x, y) = own.iter().map(|(_, wrong, exact)| (wrong.value, exact.value)).unzip();
-        layers.push(line(x, y, 1.0));
-        for (label, wrong, exact) in own {
-            if let Some(ends) = wrong.ci95 {
-                layers.push(line(ends.to_vec(), vec![exact.value; 2], 0.56).within(1.0));
-            }
-            layers.push(Layer::marks(*label, look, vec![(wrong.value, exact.value, exact.ci95)]));
+        let line = |name, curve, width| Layer::line(name, curve, Pen::new(colour).width(width));
+        let (x, y): (Vec<f64>, Vec<f64>) = own.iter().map(|((_, wrong, exact), _)| (wrong.value, exact.value)).unzip();
+        layers.push(line(*kind, PlotCurve::new(x, y), 1.0));
+        for ((_, wrong, exact), (_, variant)) in own {
+            let level = PlotCurve::new(wrong.ci95.unwrap_or([wrong.value; 2]), [exact.value; 2]);
+            layers.push(line("", level, 0.56).within(1.0));
+            layers.push(Layer::marks("", look(colour, variant), vec![(wrong.value, exact.value, exact.ci95)]));
         }
     }
-    let row = PanelRow::new(Ruler::decimal("trials that name exactly what is missing [%]"), 0.42);
-    Panels {
-        names_aside: true,
-        note: Some(String::from("Bars: 95 % intervals. Best is top left.")),
-        ..Panels::of(Stack::over(Ruler::decimal(FALSE_NAMES), vec![(row, layers)]))
-    }
+    // The shapes stand in the key, in ink.
+    layers.extend(variants.iter().map(|variant| Layer::marks(*variant, look(INK, variant), Vec::new())));
+    let row = PanelRow::new(Ruler::decimal("trials named exactly [%]"), 0.42);
+    let stack = Stack { zero: true, ..Stack::over(Ruler::decimal(FALSE_NAMES), vec![(row, layers)]) };
+    Panels { note: Some(String::from("Bars: 95 % intervals. Best is top left.")), ..Panels::of(stack) }
 }
 
 /// Smallest expected likelihood ratio that is drawn.
@@ -271,9 +271,9 @@ mod tests {
         let lines =
             [line(0, &["wave_yaw"], 1, 1), line(0, &[], 2, 0), line(1, &["wave_yaw"], 0, 0), line(1, &[], 2, 0)];
         let Some(Plot::Panels(data)) = rules(&design, &lines) else { panic!("two rules") };
-        let points = data.stacks[0].panels[0].layers.iter().filter(|layer| layer.name.is_some());
-        let points: Vec<[f64; 2]> = points.map(|layer| [layer.curve.x[0], layer.curve.y[0]]).collect();
-        assert_eq!(points, [[25.0, 50.0], [0.0, 0.0]]);
+        let layers = &data.stacks[0].panels[0].layers;
+        let key: Vec<&str> = layers.iter().filter_map(|layer| layer.name.as_deref()).collect();
+        assert_eq!((&layers[0].curve, key), (&PlotCurve::new([25.0, 0.0], [50.0, 0.0]), vec!["bic", "0.5", "0.9"]));
         let Some(Plot::Rows(data)) = rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]) else { panic!("rows") };
         assert!(matches!(data.columns[0].rows[0][0].kind, RowKind::Mark(_, 50.0, Some(_))));
         assert!(rules(&design, &lines[..2]).is_none());
