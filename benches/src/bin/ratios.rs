@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use kempf_benches::work::{Cores, Reach, TimedWork, WorkGroup};
 use kempf_benches::works;
+use report::figures::{Division, NamedRows, Plot, Reference95, RowItem, RowKind, RowsColumn, Ruler};
 use report::number::{self, MISSING, significant};
-use report::{Table, TableColumn};
+use report::{CurveOrigin, Table, TableColumn, Theme};
 use serde::Deserialize;
 
 /// Head of the report.
@@ -18,6 +19,7 @@ const HEAD: &str = "# What the work costs\n\n\
 
 fn main() -> Result<(), Box<dyn Error>> {
     let criterion = std::env::var_os("CRITERION_HOME").map_or_else(in_target, PathBuf::from);
+    let mut figure = None;
     let (mut report, mut numbers) = (HEAD.to_owned(), Table::new(NUMBERS.map(TableColumn::left)));
     // The group of outside estimators is only named here, so its program need not be there.
     for group in works::all().into_iter().chain([works::outside("echo")]) {
@@ -28,14 +30,63 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         report += &format!("\n## {}\n\n{}\n\n{}", group.title, group.about, table(&rows).to_markdown());
         rows.iter().for_each(|row| numbers.push(row.numbers(group.name)));
+        if let Some(own) = (group.name == FIGURE.0).then(|| identification(&rows)) {
+            report += &format!("\n![Figure 1]({}.png)\n\n*Figure 1. {CAPTION}*\n", FIGURE.1);
+            figure = Some(Plot::from(own));
+        }
     }
     print!("{report}");
     if let Some(folder) = std::env::args_os().nth(1).map(PathBuf::from) {
         fs::create_dir_all(&folder)?;
         fs::write(folder.join("report.md"), report)?;
         fs::write(folder.join("performance.csv"), numbers.to_csv())?;
+        if let Some(figure) = figure {
+            fs::write(folder.join(format!("{}.png", FIGURE.1)), figure.draw(&Theme::screen()).png()?)?;
+        }
     }
     Ok(())
+}
+
+/// The group that has a figure, and the stem of that.
+const FIGURE: (&str, &str) = ("identify", "identification");
+
+const CAPTION: &str = "Time of one identification on one core, with 95 % intervals. Hollow: another library, or other settings of \
+    a method; the line is SRIVC of that library.";
+
+/// The rival that identifications are held against.
+const RIVAL: &str = "dsmc SRIVC, heading";
+
+/// Times of identifications, the shortest first.
+fn identification(rows: &[ComparedWork]) -> NamedRows {
+    let mut rows: Vec<&ComparedWork> = rows.iter().collect();
+    rows.sort_by(|one, other| one.time.value.total_cmp(&other.time.value));
+    let name = |row: &ComparedWork| row.row.work.name.clone();
+    let look = |(number, row): (usize, &&ComparedWork)| {
+        let label = name(row);
+        match label.split_once(", ") {
+            _ if label.starts_with("dsmc") => CurveOrigin::Variant { label, method: "external".to_owned(), number },
+            Some((method, _)) => CurveOrigin::Variant { method: method.to_owned(), label, number: 0 },
+            None => CurveOrigin::Method(label),
+        }
+    };
+    let mark = |(number, row): (usize, &&ComparedWork)| {
+        let time = row.time.times(1e3);
+        vec![RowItem::new("", RowKind::Mark(look((number, row)).look(), time.value, Some(time.interval)))]
+    };
+    let time_of = |wanted: &str| rows.iter().find(|row| name(row) == wanted).map(|row| row.time);
+    let ratio = time_of("output-error").zip(time_of(RIVAL)).map(|(own, rival)| own.over(&rival).value);
+    let column = RowsColumn {
+        x: Ruler::new("time of a fit [ms]", Division::Factors),
+        rows: rows.iter().enumerate().map(mark).collect(),
+        reference: time_of(RIVAL).map(|rival| Reference95::line(1e3 * rival.value)),
+        ..RowsColumn::default()
+    };
+    NamedRows {
+        title: ratio.map(|own| format!("Output error takes {} times as long as SRIVC of dsmc", significant(own, 2))),
+        names: rows.iter().map(|row| name(row)).collect(),
+        columns: vec![column],
+        note: None,
+    }
 }
 
 /// Where criterion keeps its estimates: `criterion` in the target folder that this program is in.
