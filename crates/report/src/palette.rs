@@ -170,6 +170,11 @@ const OUTSIDE: [Paint; 6] = [
     Paint(0x44, 0xAA, 0x99),
 ];
 
+/// The id that estimators outside have in common.
+const EXTERNAL: &str = "external";
+/// Looks after which they begin again: 6 colours, 5 markers, 4 dashes.
+const LOOKS: u64 = 60;
+
 const BROWN: Paint = Paint(0x66, 0x11, 0x00);
 
 /// The ids that have a look of their own, in the order figures list them.
@@ -183,8 +188,7 @@ fn variant_look(method: &str, number: usize) -> Look {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
     let (marker, dash) = (MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()]);
-    // Estimators outside have an id in common and nothing else.
-    let colour = if method == "external" { OUTSIDE[number % OUTSIDE.len()] } else { method_look(method).colour };
+    let colour = if method == EXTERNAL { OUTSIDE[number % OUTSIDE.len()] } else { method_look(method).colour };
     Look { marker, dash, hollow: true, colour }
 }
 
@@ -199,17 +203,7 @@ fn series_look(number: usize) -> Look {
     }
 }
 
-/// Filled shapes, the only ones that can be hollow.
-const OUTLINES: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down, Marker::Diamond];
-
-/// Known methods whose colours and dashes others may have: a look that was once given stays when a method joins.
-const LENT: usize = 7;
-
-/// How many looks there are beside those of the known methods.
-const OTHERS: usize = LENT * OUTLINES.len() * LENT;
-
-/// A method outside the list keeps its look through all figures too: its name picks one of many, all with a hollow
-/// marker, which keeps them apart from the known methods.
+/// A method outside the list keeps its look through all figures too: its name picks one of those of estimators outside.
 fn method_look(id: &str) -> Look {
     // A trace and the rule that chooses a method are no methods of the list, and stand beside them.
     match id {
@@ -222,20 +216,7 @@ fn method_look(id: &str) -> Look {
     }
     // FNV-1a, because the standard hasher does not promise the same value in the next release.
     let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
-    other_look((hash % OTHERS as u64) as usize)
-}
-
-/// Look number `number` of the cycle of colour, marker and dash. Of neighbours in the cycle all three differ, and
-/// within a lap of 35 at least two.
-fn other_look(number: usize) -> Look {
-    let (colours, shapes) = (LENT, OUTLINES.len());
-    let (colour, shape, lap) = (number % colours, number % shapes, number / (colours * shapes));
-    Look {
-        colour: METHODS[colour].1.colour,
-        marker: OUTLINES[shape],
-        dash: METHODS[(colour + shape + lap) % colours].1.dash,
-        hollow: true,
-    }
+    variant_look(EXTERNAL, (hash % LOOKS) as usize)
 }
 
 #[cfg(test)]
@@ -273,18 +254,5 @@ mod tests {
         let look = CurveOrigin::Method("ridge".into()).look();
         assert_eq!(look, CurveOrigin::Method("ridge".into()).look());
         assert!(look.hollow);
-    }
-
-    #[test]
-    fn looks_of_other_methods_are_all_different_and_near_ones_in_two_ways() {
-        let differences = |a: Look, b: Look| {
-            usize::from(a.colour != b.colour) + usize::from(a.marker != b.marker) + usize::from(a.dash != b.dash)
-        };
-        for one in 0..OTHERS {
-            for other in one + 1..OTHERS {
-                let least = if other / 35 == one / 35 { 2 } else { 1 };
-                assert!(differences(other_look(one), other_look(other)) >= least, "{one} and {other}");
-            }
-        }
     }
 }
