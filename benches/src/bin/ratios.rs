@@ -260,7 +260,7 @@ impl ComparedWork<'_> {
 
     /// The line for a machine.
     fn numbers(&self, group: &str) -> [String; 11] {
-        let of = |time: CriterionTime| [time.value, time.interval[0], time.interval[1]].map(|own| format!("{own:e}"));
+        let of = |time: CriterionTime| [time.value, time.interval[0], time.interval[1]].map(|own| format!("{own:.6e}"));
         let ([time, lower, upper], (reach, verdict)) = (of(self.time), self.reached());
         let [ratio, ratio_lower, ratio_upper] = self.ratio().map(of).unwrap_or_default();
         let (work, beside) = (self.row.work.name.clone(), self.row.beside.clone().unwrap_or_default());
@@ -314,8 +314,11 @@ mod tests {
         store("rival", &FOUND.replace("00.0", "50.0"));
         assert!(csv().contains("0.8") && csv().contains("met"), "{}", csv());
         let numbers = compared(&group, folder.path())[1].numbers("group");
-        assert_eq!(numbers[..6], ["group", "own", "2e-7", "1.9e-7", "2.1e-7", "rival"].map(String::from));
-        assert!(numbers[6].starts_with('8') && numbers[6].ends_with("e-1") && numbers[10] == "met", "{numbers:?}");
+        assert_eq!(
+            numbers[..6],
+            ["group", "own", "2.000000e-7", "1.900000e-7", "2.100000e-7", "rival"].map(String::from)
+        );
+        assert_eq!((numbers[6].as_str(), numbers[10].as_str()), ("8.000000e-1", "met"));
     }
 
     #[test]
