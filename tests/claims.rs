@@ -1,6 +1,7 @@
 //! Sentences with numbers, held against the stored results they are about: `claims.toml` says which number is which
 //! figure. A number is right when the stored one, rounded to as many digits, is it. A word such as "smallest" or "at
-//! the bound" is a test on the ends of intervals. Every number of a finding stands in a sentence that is held.
+//! the bound" is a test on the ends of intervals. Every number of a finding stands in a sentence that is held, be it of
+//! a scenario or of what is published beside them.
 //!
 //! `KEMPF_CLAIMS=write cargo test -p kempf-tests --test all claims` writes the stored numbers into the pages and into
 //! `claims.toml`, copies the tables, and then tests: what fails after that is a word.
@@ -155,6 +156,8 @@ impl Lines {
 }
 
 const CLAIMS: &str = "tests/claims.toml";
+/// What is published beside the studies.
+const PLAN: &str = "results/publish.toml";
 
 fn claims() -> Claims {
     let read = || toml::from_str(&read(CLAIMS).expect("it is there")).expect("it is right");
@@ -240,6 +243,11 @@ fn numbers_of_findings_are_held() {
         let Some(scenario) = read(&page).ok().and_then(|text| text.parse::<toml::Table>().ok()) else { continue };
         let finding = scenario.get("finding").and_then(|finding| finding.as_str()).unwrap_or_default();
         faults.extend(unheld(&page, finding, &claims));
+    }
+    let plan: toml::Table = read(PLAN).expect("it is there").parse().expect("it is TOML");
+    let programs = plan["program"].as_array().expect("programs");
+    for finding in programs.iter().filter_map(|own| own.get("finding")?.as_str()) {
+        faults.extend(unheld(PLAN, finding, &claims));
     }
     for page in &claims.held {
         faults.extend(unheld(page, &read(page).expect("it is there"), &claims));

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use kempf_benches::work::{Cores, Reach, TimedWork, WorkGroup};
 use kempf_benches::works;
+use report::figures::{Division, NamedRows, Plot, Reference95, RowItem, RowKind, RowsColumn, Ruler};
 use report::number::{self, MISSING, significant};
-use report::{Table, TableColumn};
+use report::{CurveOrigin, Table, TableColumn, Theme};
 use serde::Deserialize;
 
 /// Head of the report.
@@ -18,23 +19,74 @@ const HEAD: &str = "# What the work costs\n\n\
 
 fn main() -> Result<(), Box<dyn Error>> {
     let criterion = std::env::var_os("CRITERION_HOME").map_or_else(in_target, PathBuf::from);
-    let (mut report, mut numbers) = (HEAD.to_owned(), String::new());
+    let mut figure = None;
+    let (mut report, mut numbers) = (HEAD.to_owned(), Table::new(NUMBERS.map(TableColumn::left)));
     // The group of outside estimators is only named here, so its program need not be there.
     for group in works::all().into_iter().chain([works::outside("echo")]) {
-        let Some(table) = table(&group, &criterion) else {
+        let rows = compared(&group, &criterion);
+        if rows.is_empty() {
             eprintln!("nothing of `{}` was measured; run `cargo bench -p kempf-benches -- {}`", group.name, group.name);
             continue;
-        };
-        report += &format!("\n## {}\n\n{}\n\n{}", group.title, group.about, table.to_markdown());
-        numbers += &table.to_csv();
+        }
+        report += &format!("\n## {}\n\n{}\n\n{}", group.title, group.about, table(&rows).to_markdown());
+        rows.iter().for_each(|row| numbers.push(row.numbers(group.name)));
+        if let Some(own) = (group.name == FIGURE.0).then(|| identification(&rows)) {
+            report += &format!("\n![Figure 1]({}.png)\n\n*Figure 1. {CAPTION}*\n", FIGURE.1);
+            figure = Some(Plot::from(own));
+        }
     }
     print!("{report}");
     if let Some(folder) = std::env::args_os().nth(1).map(PathBuf::from) {
         fs::create_dir_all(&folder)?;
         fs::write(folder.join("report.md"), report)?;
-        fs::write(folder.join("performance.csv"), numbers)?;
+        fs::write(folder.join("performance.csv"), numbers.to_csv())?;
+        if let Some(figure) = figure {
+            fs::write(folder.join(format!("{}.png", FIGURE.1)), figure.draw(&Theme::screen()).png()?)?;
+        }
     }
     Ok(())
+}
+
+/// The group that has a figure, and the stem of that.
+const FIGURE: (&str, &str) = ("identify", "identification");
+
+const CAPTION: &str = "Time of one identification on one core, with 95 % intervals. Hollow: another library, or other settings of \
+    a method; the line is SRIVC of that library.";
+
+/// The rival that identifications are held against.
+const RIVAL: &str = "dsmc SRIVC, heading";
+
+/// Times of identifications, the shortest first.
+fn identification(rows: &[ComparedWork]) -> NamedRows {
+    let mut rows: Vec<&ComparedWork> = rows.iter().collect();
+    rows.sort_by(|one, other| one.time.value.total_cmp(&other.time.value));
+    let name = |row: &ComparedWork| row.row.work.name.clone();
+    let look = |(number, row): (usize, &&ComparedWork)| {
+        let label = name(row);
+        match label.split_once(", ") {
+            _ if label.starts_with("dsmc") => CurveOrigin::Variant { label, method: "external".to_owned(), number },
+            Some((method, _)) => CurveOrigin::Variant { method: method.to_owned(), label, number: 0 },
+            None => CurveOrigin::Method(label),
+        }
+    };
+    let mark = |(number, row): (usize, &&ComparedWork)| {
+        let time = row.time.times(1e3);
+        vec![RowItem::new("", RowKind::Mark(look((number, row)).look(), time.value, Some(time.interval)))]
+    };
+    let time_of = |wanted: &str| rows.iter().find(|row| name(row) == wanted).map(|row| row.time);
+    let ratio = time_of("output-error").zip(time_of(RIVAL)).map(|(own, rival)| own.over(&rival).value);
+    let column = RowsColumn {
+        x: Ruler::new("time of a fit [ms]", Division::Factors),
+        rows: rows.iter().enumerate().map(mark).collect(),
+        reference: time_of(RIVAL).map(|rival| Reference95::line(1e3 * rival.value)),
+        ..RowsColumn::default()
+    };
+    NamedRows {
+        title: ratio.map(|own| format!("Output error takes {} times as long as SRIVC of dsmc", significant(own, 2))),
+        names: rows.iter().map(|row| name(row)).collect(),
+        columns: vec![column],
+        note: None,
+    }
 }
 
 /// Where criterion keeps its estimates: `criterion` in the target folder that this program is in.
@@ -116,56 +168,105 @@ fn estimate(path: &Path) -> Option<CriterionTime> {
     Some(CriterionTime { value: point_estimate, interval }.times(1e-9))
 }
 
-/// The table of a group; `None` where nothing of it was measured.
-fn table(group: &WorkGroup, criterion: &Path) -> Option<Table> {
+/// Work that was timed, beside other work of its group where it is held against some.
+struct ComparedWork<'a> {
+    row: &'a TimedWork,
+    time: CriterionTime,
+    beside: Option<CriterionTime>,
+}
+
+/// What was measured of a group.
+fn compared<'a>(group: &'a WorkGroup, criterion: &Path) -> Vec<ComparedWork<'a>> {
     let time = |row: &TimedWork| {
         let found = estimate(&criterion.join(group.name).join(&row.work.name).join("new/estimates.json"))?;
         Some(found.times(1.0 / row.work.units))
     };
     let rows: Vec<(&TimedWork, CriterionTime)> = group.rows.iter().filter_map(|row| Some((row, time(row)?))).collect();
-    let [work, times, beside, reach, verdict] =
-        ["work", "time", "beside it", "reach", "verdict"].map(TableColumn::left);
-    let mut table =
-        Table::new([work, times, beside, TableColumn::left("its time"), TableColumn::decimal("ratio"), reach, verdict]);
-    for (row, own) in &rows {
-        let beside = row.beside.as_ref();
-        let other = beside.and_then(|name| rows.iter().find(|(other, _)| other.work.name == *name));
-        table.push(cells(row, own, other.map(|(_, time)| time)));
-    }
-    (!rows.is_empty()).then_some(table)
+    let of = |(row, time): &(&'a TimedWork, CriterionTime)| {
+        let is_beside = |other: &TimedWork| row.beside.as_ref() == Some(&other.work.name);
+        let beside = rows.iter().find(|(other, _)| is_beside(other)).map(|(_, time)| *time);
+        ComparedWork { row, time: *time, beside }
+    };
+    rows.iter().map(of).collect()
 }
 
-/// The line of work that took a time per unit, beside work that took another one.
-fn cells(row: &TimedWork, time: &CriterionTime, beside: Option<&CriterionTime>) -> [String; 7] {
-    // What is held against a ratio to be reached: time over time beside, or the share of all cores that is used.
-    let ratio = beside.map(|beside| match row.reach {
-        Some(Reach::Scaling(_)) => beside.over(time).times(1.0 / cores()),
-        _ => time.over(beside),
-    });
-    let of_ratio = |is_kept: &dyn Fn(f64) -> bool| ratio.map_or("", |ratio| ratio.verdict(is_kept));
-    let (reach, verdict) = match row.reach {
-        None => (MISSING.to_owned(), ""),
-        Some(Reach::Ratio(limit)) => (format!("≤ {}", significant(limit, 2)), of_ratio(&|ratio| ratio <= limit)),
-        Some(Reach::Time(limit)) => {
-            let words = in_unit(limit, |size| significant(limit / size, 3));
-            (format!("< {words}"), time.verdict(|time| time <= limit))
+/// The table of a group.
+fn table(rows: &[ComparedWork]) -> Table {
+    let [work, times, beside, its, reach, verdict] =
+        ["work", "time", "beside it", "its time", "reach", "verdict"].map(TableColumn::left);
+    let mut table = Table::new([work, times, beside, its, TableColumn::decimal("ratio"), reach, verdict]);
+    rows.iter().for_each(|row| table.push(row.cells()));
+    table
+}
+
+/// Columns of the table for machines: times in seconds per unit of work, with the ends of their intervals.
+const NUMBERS: [&str; 11] = [
+    "group",
+    "work",
+    "time_s",
+    "lower_s",
+    "upper_s",
+    "beside",
+    "ratio",
+    "ratio_lower",
+    "ratio_upper",
+    "reach",
+    "verdict",
+];
+
+impl ComparedWork<'_> {
+    /// What is held against a ratio to be reached: time over time beside, or the share of all cores that is used.
+    fn ratio(&self) -> Option<CriterionTime> {
+        let beside = self.beside?;
+        Some(match self.row.reach {
+            Some(Reach::Scaling(_)) => beside.over(&self.time).times(1.0 / cores()),
+            _ => self.time.over(&beside),
+        })
+    }
+
+    /// What is to be reached, and whether it is.
+    fn reached(&self) -> (String, &'static str) {
+        let of_ratio = |is_kept: &dyn Fn(f64) -> bool| self.ratio().map_or("", |ratio| ratio.verdict(is_kept));
+        match self.row.reach {
+            None => (MISSING.to_owned(), ""),
+            Some(Reach::Ratio(limit)) => (format!("≤ {}", significant(limit, 2)), of_ratio(&|ratio| ratio <= limit)),
+            Some(Reach::Time(limit)) => {
+                let words = in_unit(limit, |size| significant(limit / size, 3));
+                (format!("< {words}"), self.time.verdict(|time| time <= limit))
+            }
+            Some(Reach::Scaling(limit)) => {
+                (format!("≥ {} of the cores", significant(limit, 2)), of_ratio(&|share| share >= limit))
+            }
         }
-        Some(Reach::Scaling(limit)) => {
-            (format!("≥ {} of the cores", significant(limit, 2)), of_ratio(&|share| share >= limit))
-        }
-    };
-    let unit = if row.work.units > 1.0 { " per unit" } else { "" };
-    let threads = if row.work.cores == Cores::All { format!(" ({} threads)", cores()) } else { String::new() };
-    let missing = || MISSING.to_owned();
-    [
-        format!("{}{threads}", row.work.name),
-        measured_time(time) + unit,
-        row.beside.clone().unwrap_or_else(missing),
-        beside.map_or_else(missing, measured_time),
-        ratio.as_ref().map_or_else(missing, CriterionTime::words),
-        reach,
-        verdict.to_owned(),
-    ]
+    }
+
+    /// The line for a person.
+    fn cells(&self) -> [String; 7] {
+        let Self { row, time, beside } = self;
+        let unit = if row.work.units > 1.0 { " per unit" } else { "" };
+        let threads = if row.work.cores == Cores::All { format!(" ({} threads)", cores()) } else { String::new() };
+        let missing = || MISSING.to_owned();
+        let (reach, verdict) = self.reached();
+        [
+            format!("{}{threads}", row.work.name),
+            measured_time(time) + unit,
+            row.beside.clone().unwrap_or_else(missing),
+            beside.as_ref().map_or_else(missing, measured_time),
+            self.ratio().as_ref().map_or_else(missing, CriterionTime::words),
+            reach,
+            verdict.to_owned(),
+        ]
+    }
+
+    /// The line for a machine.
+    fn numbers(&self, group: &str) -> [String; 11] {
+        let of = |time: CriterionTime| [time.value, time.interval[0], time.interval[1]].map(|own| format!("{own:.6e}"));
+        let ([time, lower, upper], (reach, verdict)) = (of(self.time), self.reached());
+        let [ratio, ratio_lower, ratio_upper] = self.ratio().map(of).unwrap_or_default();
+        let (work, beside) = (self.row.work.name.clone(), self.row.beside.clone().unwrap_or_default());
+        let verdict = verdict.to_owned();
+        [group.to_owned(), work, time, lower, upper, beside, ratio, ratio_lower, ratio_upper, reach, verdict]
+    }
 }
 
 const UNITS: [(f64, &str); 4] = [(1e-9, "ns"), (1e-6, "µs"), (1e-3, "ms"), (1.0, "s")];
@@ -205,13 +306,19 @@ mod tests {
             fs::create_dir_all(&new).expect("a folder");
             fs::write(new.join("estimates.json"), text).expect("a file");
         };
-        let csv = || table(&group, folder.path()).map(|table| table.to_csv()).unwrap_or_default();
-        assert_eq!(csv(), "");
+        let csv = || table(&compared(&group, folder.path())).to_csv();
+        assert!(compared(&group, folder.path()).is_empty());
         store("own", FOUND);
         // Where the rival was not measured there is no ratio.
         assert!(csv().contains("200 ± 10 ns") && !csv().contains("met"), "{}", csv());
         store("rival", &FOUND.replace("00.0", "50.0"));
         assert!(csv().contains("0.8") && csv().contains("met"), "{}", csv());
+        let numbers = compared(&group, folder.path())[1].numbers("group");
+        assert_eq!(
+            numbers[..6],
+            ["group", "own", "2.000000e-7", "1.900000e-7", "2.100000e-7", "rival"].map(String::from)
+        );
+        assert_eq!((numbers[6].as_str(), numbers[10].as_str()), ("8.000000e-1", "met"));
     }
 
     #[test]
@@ -222,7 +329,8 @@ mod tests {
         // One core is as fast as `share` of all of them makes it.
         let scaling = |share: f64| {
             let row = TimedWork { work: Work::new("", || ()), beside: None, reach: Some(Reach::Scaling(0.92)) };
-            cells(&row, &timed(1.0, 0.001), Some(&timed(share * cores(), 0.001)))[6].clone()
+            let beside = Some(timed(share * cores(), 0.001));
+            ComparedWork { row: &row, time: timed(1.0, 0.001), beside }.cells()[6].clone()
         };
         assert_eq!([scaling(0.95), scaling(0.5)], ["met", "missed"]);
     }

@@ -160,6 +160,23 @@ const METHODS: [(&str, Look); 8] = [
     ("maximum-likelihood", Look::new(Paint(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
 ];
 
+/// Colours of estimators outside, which no method has: olive, brown, magenta, grey, sand, teal (after Tol, 2021).
+const OUTSIDE: [Paint; 6] = [
+    Paint(0x99, 0x99, 0x33),
+    BROWN,
+    Paint(0xAA, 0x44, 0x99),
+    Paint(0x5A, 0x5A, 0x5A),
+    Paint(0xDD, 0xCC, 0x77),
+    Paint(0x44, 0xAA, 0x99),
+];
+
+/// The id that estimators outside have in common.
+const EXTERNAL: &str = "external";
+/// Looks after which they begin again: 6 colours, 5 markers, 4 dashes.
+const LOOKS: u64 = 60;
+
+const BROWN: Paint = Paint(0x66, 0x11, 0x00);
+
 /// The ids that have a look of their own, in the order figures list them.
 pub fn method_ids() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(id, _)| *id)
@@ -170,16 +187,9 @@ pub fn method_ids() -> impl Iterator<Item = &'static str> {
 fn variant_look(method: &str, number: usize) -> Look {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
-    // Estimators outside have an id in common and nothing else.
-    if method == "external" {
-        return other_look(number);
-    }
-    Look {
-        marker: MARKERS[number % MARKERS.len()],
-        dash: DASHES[number % DASHES.len()],
-        hollow: true,
-        ..method_look(method)
-    }
+    let (marker, dash) = (MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()]);
+    let colour = if method == EXTERNAL { OUTSIDE[number % OUTSIDE.len()] } else { method_look(method).colour };
+    Look { marker, dash, hollow: true, colour }
 }
 
 /// Series differ in shade, shape and dash, so that they never look like a method.
@@ -193,41 +203,20 @@ fn series_look(number: usize) -> Look {
     }
 }
 
-/// Filled shapes, the only ones that can be hollow.
-const OUTLINES: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down, Marker::Diamond];
-
-/// Known methods whose colours and dashes others may have: a look that was once given stays when a method joins.
-const LENT: usize = 7;
-
-/// How many looks there are beside those of the known methods.
-const OTHERS: usize = LENT * OUTLINES.len() * LENT;
-
-/// A method outside the list keeps its look through all figures too: its name picks one of many, all with a hollow
-/// marker, which keeps them apart from the known methods.
+/// A method outside the list keeps its look through all figures too: its name picks one of those of estimators outside.
 fn method_look(id: &str) -> Look {
-    // A trace is no method of the list, and stands beside them.
-    if id == "trace" {
-        return Look::new(INK, Marker::Square, SOLID);
+    // A trace and the rule that chooses a method are no methods of the list, and stand beside them.
+    match id {
+        "trace" => return Look::new(INK, Marker::Square, SOLID),
+        "recommended" => return Look { hollow: true, ..Look::new(BROWN, Marker::Diamond, DASHED) },
+        _ => {}
     }
     if let Some((_, look)) = METHODS.iter().find(|(known, _)| *known == id) {
         return *look;
     }
     // FNV-1a, because the standard hasher does not promise the same value in the next release.
     let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
-    other_look((hash % OTHERS as u64) as usize)
-}
-
-/// Look number `number` of the cycle of colour, marker and dash. Of neighbours in the cycle all three differ, and
-/// within a lap of 35 at least two.
-fn other_look(number: usize) -> Look {
-    let (colours, shapes) = (LENT, OUTLINES.len());
-    let (colour, shape, lap) = (number % colours, number % shapes, number / (colours * shapes));
-    Look {
-        colour: METHODS[colour].1.colour,
-        marker: OUTLINES[shape],
-        dash: METHODS[(colour + shape + lap) % colours].1.dash,
-        hollow: true,
-    }
+    variant_look(EXTERNAL, (hash % LOOKS) as usize)
 }
 
 #[cfg(test)]
@@ -254,7 +243,10 @@ mod tests {
     #[test]
     fn estimators_outside_differ_in_colour() {
         let outside = |number| CurveOrigin::Variant { label: "other".into(), method: "external".into(), number }.look();
-        assert!(outside(0).colour != outside(1).colour && outside(1).colour != outside(2).colour);
+        for number in 0..OUTSIDE.len() {
+            assert!(METHODS.iter().all(|(_, look)| look.colour != outside(number).colour));
+            assert!((0..number).all(|other| outside(other).colour != outside(number).colour));
+        }
     }
 
     #[test]
@@ -262,18 +254,5 @@ mod tests {
         let look = CurveOrigin::Method("ridge".into()).look();
         assert_eq!(look, CurveOrigin::Method("ridge".into()).look());
         assert!(look.hollow);
-    }
-
-    #[test]
-    fn looks_of_other_methods_are_all_different_and_near_ones_in_two_ways() {
-        let differences = |a: Look, b: Look| {
-            usize::from(a.colour != b.colour) + usize::from(a.marker != b.marker) + usize::from(a.dash != b.dash)
-        };
-        for one in 0..OTHERS {
-            for other in one + 1..OTHERS {
-                let least = if other / 35 == one / 35 { 2 } else { 1 };
-                assert!(differences(other_look(one), other_look(other)) >= least, "{one} and {other}");
-            }
-        }
     }
 }

@@ -65,9 +65,9 @@ fn run(results: &Path) -> Outcome<()> {
         SETS.iter().filter(|set| set.name.starts_with("KVLCC2") && set.is_there()).collect();
     let figures = [charts::before_after(&analyses), charts::amplitude(&tanker, scratch.path())?];
     let _ = writeln!(page, "{}\n{SETS_TOGETHER}\n", table.to_markdown());
-    for figure in &figures {
+    for (number, figure) in (1..).zip(&figures) {
         fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::screen()).png()?)?;
-        let _ = writeln!(page, "![{0}]({1}.png)\n\n*{0}*\n", figure.caption, figure.stem);
+        let _ = writeln!(page, "![Figure {number}]({}.png)\n\n*Figure {number}. {}*\n", figure.stem, figure.caption);
     }
     page += &parts;
     let _ = writeln!(page, "{CLOSED_LOOP}\n\n{}", closed_loop(scratch.path())?.to_markdown());

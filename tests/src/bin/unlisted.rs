@@ -2,11 +2,13 @@
 //!
 //! Run with the folder of the results as first argument; see [`kempf_tests::unlisted`].
 
+use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use kempf_tests::unlisted::{NOISES_DEG, REPLICATES, page, run, truths};
+use kempf_tests::unlisted::{NOISES_DEG, REPLICATES, chart, page, run, truths};
+use report::Theme;
 
 fn main() -> ExitCode {
     let Some(results) = std::env::args_os().nth(1).map(PathBuf::from) else {
@@ -22,9 +24,11 @@ fn main() -> ExitCode {
     }
 }
 
-fn write(results: &Path) -> std::io::Result<()> {
+fn write(results: &Path) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(results)?;
     let outcomes = run(&truths::ALL, &NOISES_DEG, REPLICATES);
+    let figure = chart::outcomes(&truths::ALL, &outcomes);
+    fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::screen()).png()?)?;
     fs::write(results.join("outcomes.csv"), page::csv(&truths::ALL, &outcomes))?;
-    fs::write(results.join("README.md"), page::markdown(&truths::ALL, &outcomes))
+    Ok(fs::write(results.join("README.md"), page::markdown(&truths::ALL, &outcomes))?)
 }

@@ -1,10 +1,13 @@
 //! Figures of measured trials beside their predictions.
 
+use campaign::statistics::grouped;
+use estimation::statistics::median;
 use report::figures::{
-    Division, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Reference95, RowItem, RowsColumn, Ruler, Stack,
+    Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Reference95, RowItem, RowsColumn,
+    Ruler, Stack,
 };
 use report::number::significant;
-use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, RUDDER, SOLID};
+use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
 use report::{PageFigure, PlotCurve};
 use ship::angle::to_deg;
 
@@ -26,36 +29,73 @@ fn look(group: ForecastGroup) -> Look {
     Look { colour, marker, dash: SOLID, hollow: false }
 }
 
+/// The predictions of one overshoot by all models of a group.
+struct PredictedOvershoot<'a> {
+    group: ForecastGroup,
+    is_first: bool,
+    /// In the order of what they predict.
+    models: Vec<&'a ForecastFigure>,
+}
+
+impl<'a> PredictedOvershoot<'a> {
+    fn of(mut models: Vec<&'a ForecastFigure>) -> Self {
+        models.sort_by(|one, other| one.compared.interval.median.total_cmp(&other.compared.interval.median));
+        Self { group: models[0].group, is_first: models[0].name.starts_with("first"), models }
+    }
+
+    /// What was measured, and the middle prediction with its interval.
+    fn middle(&self) -> (f64, f64, Option<[f64; 2]>) {
+        let own = &self.models[self.models.len() / 2].compared;
+        (own.measured, own.interval.median, Some(own.interval.ci90))
+    }
+}
+
+/// The overshoots in the order of their names.
+fn by_overshoot(figures: &[ForecastFigure]) -> Vec<PredictedOvershoot<'_>> {
+    let wanted = figures.iter().filter(|own| own.name.ends_with("overshoot_deg"));
+    let own = grouped(wanted, |own| (own.group.words(), own.trial, own.name.as_str()));
+    own.into_iter().map(|(_, models)| PredictedOvershoot::of(models)).collect()
+}
+
+/// The title of the figure of overshoots: median size of the errors over all models.
+fn overshoots_title(overshoots: &[PredictedOvershoot]) -> String {
+    let error = |is_first: bool| {
+        let own = overshoots.iter().filter(|own| own.is_first == is_first).flat_map(|own| &own.models);
+        let mut sizes: Vec<f64> = own.map(|own| own.error().abs()).collect();
+        median(&mut sizes).map_or_else(|| String::from("–"), |size| significant(size, 2))
+    };
+    let [first, later] = [true, false].map(error);
+    format!("Overshoots of trials that were not fitted: off by {first}° (first) and {later}° (later) in the median")
+}
+
 /// Overshoots as predicted against measured ones, a panel for each group that has some.
 pub fn overshoots(figures: &[ForecastFigure]) -> PageFigure {
-    let of = |group: ForecastGroup| -> Vec<&ForecastFigure> {
-        figures.iter().filter(|own| own.group == group && own.name.ends_with("overshoot_deg")).collect()
-    };
-    let largest = figures.iter().filter(|own| own.name.ends_with("overshoot_deg"));
-    let largest = largest.map(|own| own.compared.measured).fold(0.0, f64::max) * 1.1;
+    let overshoots = by_overshoot(figures);
+    let largest = overshoots.iter().map(|own| own.middle().0).fold(0.0, f64::max) * 1.1;
     let panel = |group: ForecastGroup| {
-        let marks = |name: &str, look: Look, is_wanted: fn(&ForecastFigure) -> bool| {
-            let points = of(group).into_iter().filter(|own| is_wanted(own));
-            let points = points
-                .map(|own| (own.compared.measured, own.compared.interval.median, Some(own.compared.interval.ci90)));
-            Layer::marks(name, look, points.collect())
-        };
+        let of = |is_first: bool| overshoots.iter().filter(move |own| own.group == group && own.is_first == is_first);
+        let marks =
+            |name: &str, look: Look, is_first| Layer::marks(name, look, of(is_first).map(|own| own.middle()).collect());
+        let every =
+            [true, false].into_iter().flat_map(of).filter(|own| own.models.len() > 1).flat_map(|own| &own.models);
+        let (x, y) = every.map(|own| (own.compared.measured, own.compared.interval.median)).unzip();
         let blue = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };
         let red = Look { colour: RUDDER, marker: Marker::Square, dash: SOLID, hollow: true };
         let line = PlotCurve::new([0.0, largest], [0.0, largest]);
         let layers = vec![
-            marks("first overshoot", blue, |own| own.name.starts_with("first")),
-            marks("later overshoots", red, |own| !own.name.starts_with("first")),
+            marks("later overshoots", red, false),
+            marks("first overshoot", blue, true),
+            Layer::new("from each record", PlotCurve { x, y }, LayerKind::Dots(RECORD)),
             Layer::line("predicted = measured", line, Pen { dash: DASHED, ..Pen::new(INK).width(0.8) }),
         ];
         LayeredPanel { head: Some(group.words().to_owned()), layers }
     };
-    let groups = ForecastGroup::ALL.into_iter().filter(|group| !of(*group).is_empty());
+    let groups = ForecastGroup::ALL.into_iter().filter(|group| overshoots.iter().any(|own| own.group == *group));
     let row = PanelRow::new(Ruler::decimal("predicted overshoot [°]").within(2.0, None), 0.36);
     let stack = Stack::multiples(2, Ruler::decimal("measured overshoot [°]"), row, groups.map(panel).collect());
-    let caption = "Overshoots of trials that were not fitted: predicted median with its 90 % interval against what was \
-                   measured, one mark for every overshoot and model.";
-    PageFigure::new("overshoots", caption, Panels::of(stack))
+    let caption = "Overshoots of trials that were not fitted, predicted against measured: medians from every single record as \
+                   dots, the middle one of them as a mark with its 90 % interval.";
+    PageFigure::new("overshoots", caption, Panels { title: Some(overshoots_title(&overshoots)), ..Panels::of(stack) })
 }
 
 fn curve(track: &TurnTrack) -> PlotCurve {
@@ -114,13 +154,13 @@ pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
         let look = Look { colour: RUDDER, marker: Marker::Diamond, dash: SOLID, hollow: false };
         let points = own.measured.iter().map(|(rudder, rate)| (*rudder, *rate, None)).collect();
         layers.push(Layer::marks("measured circle", look, points));
-        let row = PanelRow::zeroed(Ruler::yaw_rate(), 0.42);
-        Stack { is_half: true, zero: true, ..Stack::over(Ruler::rudder(), vec![(row, layers)]) }
+        let panels = vec![LayeredPanel { head: Some(own.title.clone()), layers }];
+        let rows = vec![PanelRow::zeroed(Ruler::yaw_rate(), 0.42)];
+        Stack { x: vec![Ruler::rudder()], rows, panels, is_half: true, zero: true, ..Stack::default() }
     };
     let stacks = ships.iter().map(stack).collect();
     let caption = "Steady turns: the yaw rate that belongs to every rudder angle, as drawn ships have it, and measured \
-                   circles. Left KVLCC2 at full scale from HSVA's zig-zags, right Esso Osaka at 10 turns of the propeller \
-                   a second, from each of five zig-zags.";
+                   circles, those of the Esso Osaka at 10 turns of the propeller a second.";
     PageFigure::new("steady-turns", caption, Panels { stacks, ..Panels::default() })
 }
 

@@ -3,6 +3,7 @@
 //! Ships are written out here ([`truths`]), steered through zig-zags in plain code ([`records`]), traced, and what the
 //! trace says is held against the truth ([`judged`]). The page of it is [`page`].
 
+pub mod chart;
 pub mod judged;
 pub mod page;
 pub mod records;

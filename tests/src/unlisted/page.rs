@@ -5,10 +5,11 @@ use std::fmt::Write as _;
 
 use campaign::statistics::share;
 use report::number::{MISSING, fixed, significant};
-use report::{Table, TableColumn};
+use report::{PageFigure, Table, TableColumn};
 use ship::angle::to_deg;
 
 use super::Outcome;
+use super::chart;
 use super::judged::{Judgement, NEAR, Named};
 use super::truths::{Kind, Truth};
 
@@ -17,7 +18,9 @@ pub const COMMAND: &str = "cargo run --release -p kempf-tests --bin unlisted -- 
 
 /// The page.
 pub fn markdown(truths: &[Truth], outcomes: &[Outcome]) -> String {
-    let mut page = format!("{HEAD}\n\n{}\n\n{}\n", finding(truths, outcomes), how());
+    let PageFigure { stem, caption, .. } = chart::outcomes(truths, outcomes);
+    let figure = format!("![Figure 1]({stem}.png)\n\n{}", wrapped(&format!("*Figure 1. {caption}*")));
+    let mut page = format!("{HEAD}\n\n{}\n\n{figure}\n\n{}\n", finding(truths, outcomes), how());
     for (group, columns, text) in [
         (Group::Listed, &LISTED[..], TEXT_LISTED),
         (Group::Unlisted, &UNLISTED[..], TEXT_UNLISTED),

@@ -2,7 +2,6 @@
 
 use super::panels::{Layer, Panels};
 use crate::clip::PagePoint;
-use crate::palette::RECORD;
 use crate::panel::Panel;
 use crate::scene::{Canvas, Layer as Height, Stroke, TextLine};
 use crate::theme::Theme;
@@ -11,9 +10,8 @@ use crate::theme::Theme;
 const GAP: f64 = 0.8;
 
 fn text(layer: &Layer, theme: &Theme) -> TextLine {
-    let colour = if layer.is_quiet() { RECORD } else { layer.colour() };
     let name = layer.name.as_deref().unwrap_or_default();
-    TextLine { bold: !layer.is_quiet(), ..TextLine::new(name, theme.small_font).colour(colour) }
+    TextLine { bold: true, ..TextLine::new(name, theme.small_font).colour(layer.colour()) }
 }
 
 /// Width of the names with what keeps them clear of the frame, points.

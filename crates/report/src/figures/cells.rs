@@ -94,8 +94,7 @@ impl CellMap {
 pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     let box_of = |dash: Dash| KeySample::Line(Stroke::solid(INK, 1.4 * theme.line).dashed(dash));
-    let outlines =
-        [(Outline::Right, SOLID, "outlined: what is missing"), (Outline::Alias, DOTTED, "cannot be told from it")];
+    let outlines = [(Outline::Right, SOLID, "outlined: right"), (Outline::Alias, DOTTED, "cannot be told from it")];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
     sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(box_of(dash), *name)).collect::<Vec<_>>());
     let count = data.panels.len().max(1);

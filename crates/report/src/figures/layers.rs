@@ -32,15 +32,9 @@ struct Unshown {
     names: Vec<String>,
 }
 
-/// The figure as it fits a narrow page: names in a key, one for all that the figure is not about, and more than two
-/// panels side by side as small multiples.
+/// The figure as it fits a narrow page: names in a key, and more than two panels side by side as small multiples.
 fn narrowed(data: &Panels) -> Panels {
-    let mut data = data.clone();
-    let layers = data.stacks.iter_mut().flat_map(|stack| &mut stack.panels).flat_map(|panel| &mut panel.layers);
-    for layer in layers.filter(|layer| data.names_aside && layer.is_quiet()) {
-        layer.name = Some(String::from("other methods"));
-    }
-    data.names_aside = false;
+    let mut data = Panels { names_aside: false, ..data.clone() };
     for stack in data.stacks.iter_mut().filter(|own| own.across.is_none() && own.rows.len() == 1 && own.x.len() > 2) {
         stack.across = Some(3);
         stack.x.truncate(1);

@@ -9,7 +9,7 @@ use crate::curve::PlotCurve;
 use crate::legend::KeySample;
 use crate::markup::symbol;
 use crate::paint::Paint;
-use crate::palette::{CurveOrigin, Dash, HEADING, Look, QUIET, SOLID};
+use crate::palette::{CurveOrigin, Dash, HEADING, Look, SOLID};
 use crate::scene::Stroke;
 use crate::theme::Theme;
 use crate::ticks::TickSteps;
@@ -240,11 +240,6 @@ impl Layer {
             LayerKind::Marks(marks) => marks.look.colour,
             LayerKind::Record => crate::palette::RECORD,
         }
-    }
-
-    /// Whether the figure is not about it.
-    pub(super) fn is_quiet(&self) -> bool {
-        self.colour() == QUIET
     }
 
     /// How it looks in the key; a band where others lie under it as dense as `shade`.

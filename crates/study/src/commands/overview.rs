@@ -160,7 +160,7 @@ fn page(studies: &[PublishedStudy]) -> String {
             write!(page, "\n{finding}\n").expect("writing to a string does not fail");
         }
         if let Some(figure) = figure {
-            write!(page, "\n![{question}]({folder}/{figure})\n").expect("writing to a string does not fail");
+            write!(page, "\n![Figure of {name}]({folder}/{figure})\n").expect("writing to a string does not fail");
         }
     }
     page
@@ -182,6 +182,6 @@ mod tests {
         };
         let page = page(&[study(Some("errors.png")), study(None)]);
         assert_eq!(page.matches("## [noise](published/noise/report.md)\n\n**How much?**\n\nLittle.\n").count(), 2);
-        assert_eq!(page.matches("![How much?](published/noise/errors.png)").count(), 1);
+        assert_eq!(page.matches("![Figure of noise](published/noise/errors.png)").count(), 1);
     }
 }

@@ -263,10 +263,6 @@ impl<'a> Publication<'a> {
         let places = [("{folder}", shown(&made)), ("{records}", records)];
         let start = Instant::now();
         own.commands.iter().try_for_each(|command| self.start(command, &places))?;
-        let is_left_out = |name: &str| own.leave_out.iter().any(|end| name.ends_with(end));
-        for file in published_files(&made)?.iter().filter(|file| is_left_out(&file.to_string_lossy())) {
-            disk::remove(&made.join(file)).on("remove", &made.join(file))?;
-        }
         let wall_time_s = start.elapsed().as_secs_f64().round();
         let stamp = ProgramStamp { commands: own.commands.clone(), wall_time_s, program };
         let text = toml::to_string(&stamp).on("describe", &made)?;

@@ -1,7 +1,7 @@
 //! Figures of a benchmark: scores over those of the reference.
 
-use campaign::benchmark::BenchDocument;
 use campaign::benchmark::board::Board;
+use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::folder::ResultFolder;
 use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
 use report::{CurveOrigin, PageFigure};
@@ -32,8 +32,7 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
     let figure = |field: &str| {
         let caption = format!(
             "{}: median of the score over that of {} in the same case, with 95 % intervals where there are six independent \
-             records or more. Left of the line a method is better. An arrow: more than {FAR} times, or no answer in half of \
-             the cases.",
+             records or more. An arrow: more than {FAR} times, or no answer in half of the cases.",
             capital(field),
             results.reference
         );
@@ -50,6 +49,18 @@ fn origin(method: &str) -> CurveOrigin {
             CurveOrigin::Variant { label: method.to_owned(), method: scenario::TRACE.to_owned(), number: 0 }
         }
         method => CurveOrigin::Method(method.to_owned()),
+    }
+}
+
+/// A task as the title of a narrow axis.
+fn axis_title(task: BenchTask) -> &'static str {
+    match task {
+        BenchTask::Identify => "fitted record",
+        BenchTask::Indices => "K and T",
+        BenchTask::OtherSide => "other side",
+        BenchTask::OtherAmplitude => "other amplitude",
+        BenchTask::Circle => "turning circle",
+        BenchTask::Name => "missing effect",
     }
 }
 
@@ -70,16 +81,16 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             vec![RowItem::new("", RowKind::Mark(origin(method).look(), value.max(f64::MIN_POSITIVE), interval))]
         };
         RowsColumn {
-            x: Ruler::new(board.task.id(), Division::Factors),
+            x: Ruler::new(axis_title(board.task), Division::Factors),
             reference: Some(Reference95::line(1.0)),
             rows: others.iter().map(row).collect(),
             ..RowsColumn::default()
         }
     };
     Some(NamedRows {
-        title: Some(format!("{}: score over that of {}", capital(field), results.reference)),
+        title: Some(format!("{}: left of the line a method is better than {}", capital(field), results.reference)),
         names: others.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
-        note: Some(String::from("Medians over the cases with 95 % intervals. Left of the line is better.")),
+        note: Some(format!("Score over that of {}: medians over the cases, with 95 % intervals.", results.reference)),
     })
 }

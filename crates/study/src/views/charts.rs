@@ -110,7 +110,7 @@ pub fn comparable<'a>(
 /// Titles of the axes of root mean square errors of K and of T.
 pub fn rms_title(symbol: &str, to_nearest: bool) -> String {
     match to_nearest {
-        true => format!("rms of {symbol} less that of the nearest first-order response [%]"),
+        true => format!("rms difference of {symbol} from the nearest first-order response [%]"),
         false => format!("rms error of {symbol} [%]"),
     }
 }

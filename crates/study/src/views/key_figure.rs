@@ -30,6 +30,7 @@ fn is_of_k(title: &str) -> bool {
 }
 
 fn of_panels(data: &mut Panels, about: &[String]) {
+    let mut has_others = false;
     for stack in &mut data.stacks {
         if stack.across.is_some() {
             // Small multiples are of one method each.
@@ -43,14 +44,20 @@ fn of_panels(data: &mut Panels, about: &[String]) {
                 if is_quiet(layer.name.as_ref(), about)
                     && let LayerKind::Marks(marks) = &mut layer.kind
                 {
+                    layer.name = None;
                     marks.look.colour = QUIET;
                     marks.joined = marks.joined.map(|pen| Pen { colour: QUIET, ..pen.width(0.7) });
+                    has_others = true;
                 }
             }
             // What the figure is about stands over the rest.
             let is_quiet = |layer: &Layer| matches!(&layer.kind, LayerKind::Marks(own) if own.look.colour == QUIET);
             panel.layers.sort_by_key(|layer| !is_quiet(layer));
         }
+    }
+    if has_others {
+        data.note =
+            Some(["Grey: other methods."].into_iter().chain(data.note.as_deref()).collect::<Vec<_>>().join(" "));
     }
 }
 
@@ -111,7 +118,8 @@ mod tests {
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
         assert_eq!(panels[1].head.as_deref(), Some("column 1"));
         let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
-        assert_eq!(marks.look.colour, QUIET);
+        assert!(marks.look.colour == QUIET && panels[0].layers[0].name.is_none());
+        assert_eq!(data.note.as_deref(), Some("Grey: other methods."));
     }
 
     #[test]

@@ -49,7 +49,7 @@ fn values(table: &MomentTable, name: &str) -> Vec<f64> {
 fn banded(known: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], explained: PlotCurve) -> Vec<Layer> {
     let dashed = Pen { dash: SHORT_DASH, ..Pen::new(RUDDER) };
     let mut layers = vec![
-        Layer::band("95 % band", [lower, upper], HEADING, 0.2),
+        Layer::band("95 % band", [lower, upper], HEADING, 0.2).within(0.3),
         Layer::line("missing moment", middle, Pen::new(HEADING)),
     ];
     layers.extend(known.map(|name| Layer::line(name, explained, dashed)));
@@ -73,7 +73,7 @@ pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[MomentTable; 2]) -
         let (moment, half) = (of("moment"), of("half_width95"));
         let edge = |side: f64| curve(moment.iter().zip(&half).map(|(m, half)| m + side * half).collect());
         let rows = PlotCurve::new(values(time, name), values(time, "moment_rudder_deg"));
-        let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.3)];
+        let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.1)];
         layers.extend(banded(known, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(of("explained"))));
         let mut stack = over(Ruler::decimal(title_of(name)), 0.2, layers);
         let head = if own.shows { percent(own.variance_share) } else { "zero lies inside the band".into() };

@@ -156,10 +156,10 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
                        counts once in every trial of a ship whose effects are known, with 95 % intervals.";
         PageFigure::new("reliability", format!("{caption}{whose}"), data)
     });
-    let rules = traces::rules(design, &summary.tracing).map(|rows| {
-        let caption = "What every rule names: trials in which it names something that is not missing, and trials in which it \
-                       names what is missing and nothing else, with Wilson's 95 % intervals.";
-        PageFigure::new("rules", caption, rows)
+    let rules = traces::rules(design, &summary.tracing).map(|plot| {
+        let caption = "Rules against each other: trials with a false name, of all trials, and trials that name what is missing \
+                       and nothing else, of those whose ship lacks something, with Wilson's 95 % intervals.";
+        PageFigure::new("rules", caption, plot)
     });
     let confusions = traces::confusions(design, &lines).into_iter().enumerate().map(confusion);
     rules.into_iter().chain(confusions).chain(power).chain(reliability).collect()

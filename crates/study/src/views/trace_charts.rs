@@ -4,15 +4,16 @@ use std::collections::BTreeSet;
 
 use report::PlotCurve;
 use report::figures::{
-    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace,
-    RowsColumn, Ruler, Shades, Stack,
+    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, Plot, RowItem, RowKind, RowsColumn,
+    Ruler, Shades, Stack,
 };
-use report::palette::{CurveOrigin, DASHED, DOTTED, Dash, INK, Look, Marker, SOLID};
+use report::paint::Paint;
+use report::palette::{CurveOrigin, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RUDDER, SOLID};
 use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
-use campaign::statistics::{distinct, grouped, share};
+use campaign::statistics::{Statistic, distinct, grouped, share};
 use campaign::summary::{CALIBRATION, CalibrationBin, TraceSummary};
 
 /// Name of the row of ships that lack nothing, and of the column of trials in which nothing was named.
@@ -82,38 +83,72 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     }
 }
 
-/// Share of the pitch of the rows by which two shares of a rule stand beside the middle of their row.
-const ASIDE: f64 = 0.16;
-
-/// Several traces against each other over all ships whose effects are known: trials in which something that is not
-/// missing was named, and, of the ships that lack something, trials in which exactly that was. Nothing for one trace.
-pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
-    let of_rule = |(method, own): &(usize, Vec<&TraceSummary>)| {
-        let mark = |name: &str, origin: CurveOrigin, count: fn(&TraceSummary) -> u64, lacks: bool| {
-            let own = || own.iter().filter(|line| !line.is_hull() && (!lacks || !line.missing.is_empty()));
-            let share = share(own().map(|line| count(line)).sum(), own().map(|line| line.trials).sum())?.times(100.0);
-            Some(RowItem::new(name, RowKind::Mark(origin.look(), share.value, share.ci95)))
-        };
-        let items = [
-            mark("exactly what is missing", CurveOrigin::After, |line| line.exact, true),
-            mark("something that is not", CurveOrigin::Before, |line| line.wrong, false),
-        ];
-        let mut items: Vec<RowItem> = items.into_iter().flatten().collect();
-        if let [exact, wrong] = &mut items[..] {
-            (exact.place, wrong.place) = (RowPlace::Aside(-ASIDE), RowPlace::Aside(ASIDE));
-        }
-        (design.methods[*method].label.clone(), items)
+/// Several traces against each other over all ships whose effects are known: trials in which exactly what is missing
+/// was named, of those whose ship lacks something, over trials in which something else was. Where no ship lacks
+/// anything, rows of the latter. Nothing for one trace.
+pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Plot> {
+    let known: Vec<&TraceSummary> = lines.iter().filter(|line| !line.is_hull()).collect();
+    let rules = grouped(known, |line| line.method);
+    if rules.len() < 2 {
+        return None;
+    }
+    let share_of = |own: &[&TraceSummary], count: fn(&TraceSummary) -> u64, lacks: bool| {
+        let own = || own.iter().filter(|line| !lacks || !line.missing.is_empty());
+        share(own().map(|line| count(line)).sum(), own().map(|line| line.trials).sum()).map(|own| own.times(100.0))
     };
-    let rules = grouped(lines, |line| line.method);
-    let (names, rows): (_, Vec<_>) = rules.iter().map(of_rule).unzip();
-    let x = Ruler::new("trials that name it [%]", Division::Percent);
-    let is_known = rows.iter().all(|row| !row.is_empty());
-    (rules.len() > 1 && is_known).then(|| NamedRows {
-        names,
-        columns: vec![RowsColumn { x, rows, ..RowsColumn::default() }],
+    let of_rule = |(method, own): &(usize, Vec<&TraceSummary>)| {
+        let (wrong, exact) = (share_of(own, |line| line.wrong, false)?, share_of(own, |line| line.exact, true));
+        Some((design.methods[*method].label.as_str(), wrong, exact))
+    };
+    let rules: Vec<_> = rules.iter().map(of_rule).collect::<Option<_>>()?;
+    let both: Option<Vec<_>> = rules.iter().map(|(label, wrong, exact)| Some((*label, *wrong, (*exact)?))).collect();
+    Some(both.map_or_else(|| false_names(&rules).into(), |rules| trade_off(&rules).into()))
+}
+
+/// Title of an axis of trials in which something was named that is not missing.
+const FALSE_NAMES: &str = "trials with a false name [%]";
+
+/// Rules by their false names alone.
+fn false_names(rules: &[(&str, Statistic, Option<Statistic>)]) -> NamedRows {
+    let look = CurveOrigin::Before.look();
+    let row = |wrong: &Statistic| vec![RowItem::new("", RowKind::Mark(look, wrong.value, wrong.ci95))];
+    let rows = rules.iter().map(|(_, wrong, _)| row(wrong)).collect();
+    NamedRows {
+        names: rules.iter().map(|(label, ..)| (*label).to_owned()).collect(),
+        columns: vec![RowsColumn { x: Ruler::decimal(FALSE_NAMES), rows, zero: true, ..RowsColumn::default() }],
         note: Some(String::from("Bars: 95 % intervals.")),
         ..NamedRows::default()
-    })
+    }
+}
+
+/// Rules as points: a colour for what stands before the comma of their labels, a shape for what stands behind it.
+fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
+    const COLOURS: [Paint; 3] = [HEADING, RUDDER, DIMENSION];
+    const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
+    let parts: Vec<(&str, &str)> =
+        rules.iter().map(|(label, ..)| label.split_once(", ").unwrap_or((label, ""))).collect();
+    let variants = distinct(parts.iter().map(|(_, variant)| *variant));
+    let look = |colour: Paint, variant: &str| {
+        let number = variants.iter().position(|own| *own == variant).unwrap_or_default();
+        Look { colour, marker: MARKERS[number % MARKERS.len()], dash: SOLID, hollow: false }
+    };
+    let mut layers = Vec::new();
+    for (number, (kind, own)) in grouped(rules.iter().zip(&parts), |(_, (kind, _))| *kind).iter().enumerate() {
+        let colour = COLOURS[number % COLOURS.len()];
+        let line = |name, curve, width| Layer::line(name, curve, Pen::new(colour).width(width));
+        let (x, y): (Vec<f64>, Vec<f64>) = own.iter().map(|((_, wrong, exact), _)| (wrong.value, exact.value)).unzip();
+        layers.push(line(*kind, PlotCurve::new(x, y), 1.0));
+        for ((_, wrong, exact), (_, variant)) in own {
+            let level = PlotCurve::new(wrong.ci95.unwrap_or([wrong.value; 2]), [exact.value; 2]);
+            layers.push(line("", level, 0.56).within(1.0));
+            layers.push(Layer::marks("", look(colour, variant), vec![(wrong.value, exact.value, exact.ci95)]));
+        }
+    }
+    // The shapes stand in the key, in ink.
+    layers.extend(variants.iter().map(|variant| Layer::marks(*variant, look(INK, variant), Vec::new())));
+    let row = PanelRow::new(Ruler::decimal("trials named exactly [%]"), 0.42);
+    let stack = Stack { zero: true, ..Stack::over(Ruler::decimal(FALSE_NAMES), vec![(row, layers)]) };
+    Panels { note: Some(String::from("Bars: 95 % intervals. Best is top left.")), ..Panels::of(stack) }
 }
 
 /// Smallest expected likelihood ratio that is drawn.
@@ -235,16 +270,12 @@ mod tests {
         };
         let lines =
             [line(0, &["wave_yaw"], 1, 1), line(0, &[], 2, 0), line(1, &["wave_yaw"], 0, 0), line(1, &[], 2, 0)];
-        let values = |lines: &[TraceSummary]| {
-            let value = |item: &RowItem| match item.kind {
-                RowKind::Mark(_, value, _) => value,
-                _ => f64::NAN,
-            };
-            let rows = rules(&design, lines).expect("two rules").columns.remove(0).rows;
-            rows.iter().map(|row| row.iter().map(value).collect()).collect::<Vec<Vec<f64>>>()
-        };
-        assert_eq!(values(&lines), [[50.0, 25.0], [0.0, 0.0]]);
-        assert_eq!(values(&[line(0, &[], 1, 1), line(1, &[], 2, 0)]), [[50.0], [0.0]]);
+        let Some(Plot::Panels(data)) = rules(&design, &lines) else { panic!("two rules") };
+        let layers = &data.stacks[0].panels[0].layers;
+        let key: Vec<&str> = layers.iter().filter_map(|layer| layer.name.as_deref()).collect();
+        assert_eq!((&layers[0].curve, key), (&PlotCurve::new([25.0, 0.0], [50.0, 0.0]), vec!["bic", "0.5", "0.9"]));
+        let Some(Plot::Rows(data)) = rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]) else { panic!("rows") };
+        assert!(matches!(data.columns[0].rows[0][0].kind, RowKind::Mark(_, 50.0, Some(_))));
         assert!(rules(&design, &lines[..2]).is_none());
     }
 

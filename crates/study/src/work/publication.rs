@@ -55,9 +55,6 @@ pub struct PublishedProgram {
     /// What is run, one after another, where the folder of results lies. `{folder}` is the folder to be filled,
     /// `{records}` that of the measured records. The command `study` is this program.
     pub commands: Vec<Vec<String>>,
-    /// Ends of the names of files that are made and not published.
-    #[serde(default)]
-    pub leave_out: Vec<String>,
 }
 
 /// A command that has to succeed when all is published.

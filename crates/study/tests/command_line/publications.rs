@@ -21,7 +21,6 @@ fn study(replicates: u32, noise_deg: f64) -> String {
 const PLAN: &str = "scenarios = \"../scenarios\"\n\
     [[program]]\nname = \"other\"\nquestion = \"What else?\"\nfinding = \"This.\"\npage = \"README.md\"\n\
     commands = [[\"cp\", \"words.md\", \"{folder}/README.md\"], [\"cp\", \"words.md\", \"{folder}/left.json\"]]\n\
-    leave-out = [\".json\"]\n\
     [[program]]\nname = \"trials\"\nquestion = \"What is measured?\"\npage = \"README.md\"\nneeds-records = true\n\
     commands = [[\"cp\", \"{records}/a.md\", \"{folder}/README.md\"]]\n\
     [[check]]\nname = \"words\"\ncommand = [\"grep\", \"-q\", \"Little.\", \"results/README.md\"]\n";
@@ -58,7 +57,7 @@ fn all_is_made_once_and_what_changes_is_said() {
         assert!(page.contains(part), "{part} is missing in\n{page}");
     }
     assert_eq!(desk.text("results/published/trials/README.md"), "measured\n");
-    assert!(!desk.path("results/published/other/left.json").exists() && !desk.path("results/before").exists());
+    assert!(!desk.path("results/before").exists());
     let stamp = ProgramStamp::read(&desk.path("results/published/other")).expect("readable").expect("a stamp");
     assert_eq!(stamp.program, campaign::manifest::ProgramRevision::own());
     // A figure that no page shows any more, and one more run, which has nothing to do.

@@ -1,0 +1,65 @@
+//! What a trace said of every ship, as a map.
+
+use campaign::statistics::share;
+use report::PageFigure;
+use report::figures::{CellMap, MapCell, Outline, Plot, Shades};
+
+use super::Outcome;
+use super::judged::Judgement;
+use super::truths::{Kind, Truth};
+
+/// What was said, in the order of the columns.
+const SAID: [(&str, &[Judgement]); 7] = [
+    ("right name", &[Judgement::Right]),
+    ("located", &[Judgement::Located]),
+    ("unexplained", &[Judgement::Unexplained]),
+    ("clean", &[Judgement::Clean]),
+    ("alias", &[Judgement::Alias]),
+    ("only noise", &[Judgement::Noise]),
+    ("wrong name", &[Judgement::Wrong, Judgement::Elsewhere]),
+];
+
+/// Whether that is right to say of a ship.
+fn is_right(judgement: Judgement, kind: &Kind) -> bool {
+    match kind {
+        Kind::Listed { .. } => judgement == Judgement::Right,
+        Kind::Unlisted { .. } => matches!(judgement, Judgement::Located | Judgement::Unexplained),
+        Kind::Nothing => judgement == Judgement::Clean,
+    }
+}
+
+/// A row for every ship, a column for everything that was said.
+pub fn outcomes(truths: &[Truth], outcomes: &[Outcome]) -> PageFigure {
+    let of_ship = |ship| outcomes.iter().filter(move |own| own.ship == ship);
+    let cell = |ship: usize, said: &[Judgement]| {
+        let count = of_ship(ship).filter(|own| said.contains(&own.judgement)).count();
+        let share = share(count as u64, of_ship(ship).count() as u64).map(|own| own.times(100.0));
+        MapCell {
+            value: share.map(|own| own.value),
+            interval: share.and_then(|own| own.ci95),
+            outline: is_right(said[0], &truths[ship].kind).then_some(Outline::Right),
+        }
+    };
+    let cells = (0..truths.len()).map(|ship| SAID.iter().map(|(_, said)| cell(ship, said)).collect());
+    let right = |is_of: fn(&Kind) -> bool| {
+        let own = outcomes.iter().filter(|own| is_of(&truths[own.ship].kind));
+        let judged: Vec<bool> = own.map(|own| is_right(own.judgement, &truths[own.ship].kind)).collect();
+        format!("right in {} of {}", judged.iter().filter(|own| **own).count(), judged.len())
+    };
+    let listed = right(|kind| matches!(kind, Kind::Listed { .. }));
+    let unlisted = right(|kind| matches!(kind, Kind::Unlisted { .. }));
+    let map = CellMap {
+        title: Some(format!("Other formulas: {listed} trials; on no list: {unlisted}")),
+        titles: [String::from("said by the trace"), String::new()],
+        columns: SAID.iter().map(|(words, _)| (*words).to_owned()).collect(),
+        rows: (truths.iter().enumerate())
+            .map(|(ship, truth)| format!("{} (n = {})", truth.name, of_ship(ship).count()))
+            .collect(),
+        shades: Shades::Shares,
+        panels: vec![(None, cells.collect())],
+        note: Some(String::from("Shares of the trials in per cent, with 95 % intervals where there is room.")),
+    };
+    let caption = "What was said of every ship, both noises together, with 95 % intervals (Wilson). A wrong name is an effect \
+                   of the ship, or one of time away from every change.";
+    PageFigure::new("outcomes", caption, Plot::Cells(map))
+}
