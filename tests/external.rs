@@ -16,9 +16,6 @@ use identify::{Identifier, IdentifyError};
 use kempf_tests::outside::least_squares;
 use kempf_tests::records::Case;
 use scenario::Scenario;
-use study::options::{
-    Common, FigureOptions, FitRequest, Format, PageFigureOptions, PageFigures, ReadingOptions, ShipOptions,
-};
 use trial::Trial;
 
 const ESTIMATOR: &str = env!("CARGO_BIN_EXE_estimator");
@@ -361,79 +358,4 @@ fn a_run_says_what_it_starts_and_starts_few_processes() {
     assert!(told.len() == 1 && told[0].contains("estimator started") && told[0].contains("`mine 0`"), "{told:?}");
     let processes = fs::read_to_string(&started).expect("it was started").lines().count();
     assert!((1..=3).contains(&processes), "{processes} processes for three threads");
-}
-
-#[test]
-fn a_fit_asks_other_programs_too() {
-    let desk = tempfile::tempdir().expect("a folder");
-    let path = desk.path().join("zz.csv");
-    let trial = record(6);
-    trial::write_csv(&trial, fs::File::create(&path).expect("a file")).expect("written");
-    let read = trial::reader::read(&path).expect("a record").trial;
-    let request = FitRequest {
-        trials: vec![path],
-        validate: Vec::new(),
-        priors: Vec::new(),
-        methods: vec!["integral-least-squares".to_owned()],
-        external: vec![format!("my method='{ESTIMATOR}' honest").parse().expect("a command")],
-        reading: ReadingOptions {
-            columns: None,
-            with_columns: Vec::new(),
-            trial: None,
-            from: None,
-            until: None,
-            ship: ShipOptions::default(),
-        },
-        style: PageFigureOptions {
-            style: FigureOptions { paper: Some(60.0), dpi: 72.0, style: None },
-            figures: PageFigures::All,
-        },
-    };
-    let out = desk.path().join("fit");
-    let common = Common { out: Some(out.clone()), threads: None, seed: None, quiet: true, format: Format::Text };
-    study::commands::fit::run(&request, &common).unwrap_or_else(|failure| panic!("{failure}"));
-    let text = fs::read_to_string(out.join("fit.json")).expect("a fit");
-    let fit: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    let [ours, theirs] = [&fit["methods"][0], &fit["methods"][1]];
-    assert!(ours["id"].is_null() && theirs["method"] == "my method" && theirs["id"] == "external", "{theirs}");
-    let k = theirs["parameters"]["K_per_s"]["value"].as_f64().expect("an answer");
-    assert!((k - direct(&read)[0]).abs() < 1e-12, "{k}");
-    assert!(fs::read_to_string(out.join("report.md")).expect("a page").contains("my method"));
-}
-
-#[test]
-fn what_is_not_there_is_said_before_the_first_trial() {
-    let desk = tempfile::tempdir().expect("a folder");
-    let path = desk.path().join("outside.toml");
-    let missing = |from: &str, to: &str| {
-        let text = scenario_of(&[&["honest"]], "", &path).text.replace(from, to);
-        let study = Scenario::parse(&path, "outside", text, None).unwrap_or_else(|failure| panic!("{failure}"));
-        let folder = desk.path().join("none");
-        let held = ResultFolder::hold(&folder).expect("a folder");
-        let failure = collect(&study, Shard::WHOLE, &held, false, &NoObserver).err().expect("something is missing");
-        assert_eq!(failure.blame, scenario::failure::Blame::Input);
-        assert!(!folder.join("unfinished").exists(), "nothing was begun");
-        failure.message
-    };
-    let program = missing(ESTIMATOR, "no-such-program-here");
-    assert!(program.contains("`mine 0`") && program.contains("`no-such-program-here` on the PATH"), "{program}");
-    let script = missing("honest", "mine.py");
-    assert!(script.contains("there is no file mine.py in") && script.contains("manifest"), "{script}");
-}
-
-#[test]
-fn a_script_is_part_of_the_identity_of_a_study() {
-    let desk = tempfile::tempdir().expect("a folder");
-    let path = desk.path().join("outside.toml");
-    let of = |content: &str| {
-        fs::write(desk.path().join("mine.txt"), content).expect("written");
-        scenario_of(&[&["honest", "0", "mine.txt"]], "", &path)
-    };
-    let (one, other, again) = (of("a = 1"), of("a = 2"), of("a = 1"));
-    assert_eq!(one.design_sha256, again.design_sha256);
-    assert_ne!(one.design_sha256, other.design_sha256);
-    run(&one, 2, &desk.path().join("out"), &NoObserver);
-    let held = ResultFolder::hold(&desk.path().join("out")).expect("a folder");
-    let failure = collect(&other, Shard::WHOLE, &held, false, &NoObserver).err().expect("another study");
-    assert!(failure.message.contains("a file that a command in it names"), "{failure}");
 }

@@ -7,10 +7,11 @@ use std::path::Path;
 use identify::{Identifier, output_error};
 use kempf_tests::logs::{self, File, Outcome, combined, voyage};
 use rayon::prelude::*;
+use ship::angle::to_deg;
 use study::views::fit_page;
 use study::work::fit;
 use trial::reader::read_bytes;
-use trial::{Log, Quantity, ReadError, ReadRecord};
+use trial::{Log, Quantity, ReadError, ReadRecord, ZigZag};
 
 /// Deviations, in standard deviations of the difference, within which two answers are one.
 const SAME: f64 = 2.0;
@@ -76,6 +77,29 @@ fn every_log_gives_the_answer_of_the_sound_one_or_says_why_not() {
     }
     let faults: Vec<String> = files.par_iter().flat_map_iter(|file| faults(file, &answer)).collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Instruments and loggers fail, and the peaks stay where they were, to 0.3 deg; one of them may be gone.
+#[test]
+fn faults_of_instruments_leave_the_overshoots() {
+    let files = logs::all();
+    let swings = |name: &str| -> Vec<Option<f64>> {
+        let file = files.iter().find(|file| file.name == name).expect("it is among them");
+        let trial = read(file).unwrap_or_else(|error| panic!("{error}")).trial;
+        let zig_zag = ZigZag::of(&trial).unwrap_or_else(|error| panic!("{name}: {error}"));
+        zig_zag.swings().map(|swing| swing.map(|own| to_deg(own.angle.value))).collect()
+    };
+    let sound = swings("clean.csv");
+    for name in ["sentinels.csv", "spike.csv", "frozen.csv", "stale.csv"] {
+        let found = swings(name);
+        let is_near =
+            |(found, own): (&Option<f64>, &Option<f64>)| found.zip(*own).is_none_or(|(a, b)| (a - b).abs() < 0.3);
+        assert!(
+            found.len() == sound.len() && found.iter().zip(&sound).all(is_near),
+            "{name}: {found:?}, not {sound:?}"
+        );
+        assert!(found.iter().flatten().count() + 1 >= sound.len(), "{name}: {found:?}");
+    }
 }
 
 /// What a fit says of a log: K and T of the answer to take with their standard deviations, and every word; or why there

@@ -9,9 +9,8 @@
 //! |---|---|
 //! | records that are identified | [`records`] |
 //! | pieces of work and their limits | [`work`], [`works`] |
-//! | identification by another library | [`rivals`] |
+//! | identification by another library | the package `kempf-rivals` |
 
 pub mod records;
-pub mod rivals;
 pub mod work;
 pub mod works;

@@ -5,8 +5,7 @@ use std::sync::Arc;
 use identify::{IdentifierSettings, fourier_published, registry};
 use trial::Trial;
 
-use crate::records::{PERIOD, ROWS, T, first_order_zig_zag, record};
-use crate::rivals;
+use crate::records::{ROWS, first_order_zig_zag, record};
 use crate::work::{Reach, Work, WorkGroup};
 
 /// What everything is held against.
@@ -62,25 +61,35 @@ pub fn identification() -> WorkGroup {
          started at 0.1 rad/s; a good start is 1/T of the ship), which gives K and T alone.",
     );
     let trial = Arc::new(record(&first_order_zig_zag(ROWS)));
-    let [rudder, heading, yaw_rate] = rivals::columns(&trial);
+    #[cfg(feature = "rivals")]
+    by_rivals(&mut group, &trial);
+    for settings in registry::defaults() {
+        let id = settings.build().expect("default settings are valid").id();
+        group.beside(identifying(id, settings, &trial), RIVAL, reach(id));
+    }
+    let many = fourier_published::Settings { triples: TRIPLES, ..fourier_published::Settings::default() };
+    let many = identifying(MANY_TRIPLES, IdentifierSettings::FourierPublished(many), &trial);
+    group.beside(many, RIVAL, reach(MANY_TRIPLES));
+    group
+}
+
+/// Another library on a record that has a gyro.
+#[cfg(feature = "rivals")]
+fn by_rivals(group: &mut WorkGroup, trial: &Trial) {
+    use crate::records::{PERIOD, T};
+
+    let yaw_rate = trial.channel(trial::Channel::YawRate).expect("a record with a gyro").to_vec();
+    let (rudder, heading) = (trial.rudder().to_vec(), trial.heading().to_vec());
     let within = 0.02;
     let srivc = |name: &str, bandwidth: f64| {
         let (u, y) = (rudder.clone(), heading.clone());
         Work::answering(name, within, move || rivals::srivc_heading(&u, &y, PERIOD, bandwidth))
     };
-    let rival = group.alone(srivc(RIVAL, rivals::BANDWIDTH), None);
-    group.beside(srivc("dsmc SRIVC, good start", 1.0 / T), &rival, None);
+    group.alone(srivc(RIVAL, rivals::BANDWIDTH), None);
+    group.beside(srivc("dsmc SRIVC, good start", 1.0 / T), RIVAL, None);
     let (u, y) = (rudder.clone(), yaw_rate.clone());
     let gyro = Work::answering("dsmc SRIVC, gyro", within, move || rivals::srivc_gyro(&u, &y, PERIOD));
-    group.beside(gyro, &rival, None);
+    group.beside(gyro, RIVAL, None);
     let output_error = move || rivals::output_error_gyro(&rudder, &yaw_rate, PERIOD);
-    group.beside(Work::answering("dsmc output error, gyro", within, output_error), &rival, None);
-    for settings in registry::defaults() {
-        let id = settings.build().expect("default settings are valid").id();
-        group.beside(identifying(id, settings, &trial), &rival, reach(id));
-    }
-    let many = fourier_published::Settings { triples: TRIPLES, ..fourier_published::Settings::default() };
-    let many = identifying(MANY_TRIPLES, IdentifierSettings::FourierPublished(many), &trial);
-    group.beside(many, &rival, reach(MANY_TRIPLES));
-    group
+    group.beside(Work::answering("dsmc output error, gyro", within, output_error), RIVAL, None);
 }

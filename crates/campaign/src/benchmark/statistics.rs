@@ -132,14 +132,15 @@ mod tests {
     fn intervals_cover_what_they_say() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         let samples = 300;
-        let covered = (0..samples).filter(|_| {
+        let covered = (0..samples).filter(|sample| {
             let own: Vec<f64> = (0..40).map(|_| -rng.random::<f64>().ln()).collect();
             // Every number twice, in a cluster of its own.
             let clusters: Vec<Vec<usize>> = (0..40).map(|place| vec![place, place]).collect();
             let of = |cases: &[usize]| middle_and_high(cases.iter().map(|&case| own[case]).collect())[0];
             let figure = ScoreFigure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
-            let again = ScoreFigure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
-            assert_eq!(figure, again);
+            if *sample == 0 {
+                assert_eq!(figure, ScoreFigure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of)));
+            }
             let [Some(low), Some(high)] = figure.ci95.expect("enough clusters") else { panic!("finite") };
             low <= LN_2 && LN_2 <= high
         });

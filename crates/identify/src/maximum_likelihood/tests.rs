@@ -226,21 +226,6 @@ fn a_coloured_compass_is_named() {
     assert!(found.warnings.iter().any(|warning| warning.contains("compass error")), "{:?}", found.warnings);
 }
 
-/// Two records of one ship know more than one of them, and agree with both.
-#[test]
-fn records_are_taken_together() {
-    let trials = [
-        disturbed(&noisy(), &ExtraNoise::Walk(0.1)),
-        disturbed(&Case { seed: 8, rudder_deg: -20.0, heading_deg: 20.0, ..noisy() }, &ExtraNoise::Walk(0.02)),
-    ];
-    let together = identify(&trials).T();
-    for trial in &trials {
-        let alone = identify(std::slice::from_ref(trial)).T();
-        assert!(together.sd < alone.sd, "{together:?} {alone:?}");
-    }
-    assert!((together.value - 16.3).abs() < 4.0 * together.sd.expect("known"));
-}
-
 /// Bounds under a walk are those of a calm where it is small, and wider where it is not; a gyro narrows them.
 #[test]
 fn the_bound_knows_the_noise() {

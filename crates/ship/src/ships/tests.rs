@@ -12,7 +12,7 @@ use crate::dynamics::{Input, Motion};
 use crate::linear::{PrimeSwayYaw, SecondOrderIndices};
 use crate::replay::{Recorded, replay};
 use crate::signal::Polyline;
-use crate::vessel::mmg::{BySign, Mmg, Wake};
+use crate::vessel::mmg::{BySign, Mmg};
 use crate::vessel::{Hull, Velocity, state};
 
 fn every_finite(state: &[f64]) -> bool {
@@ -277,35 +277,6 @@ fn revolutions_and_speed_of_the_straight_approach_agree() {
         let (state, motion) = held_rudder(&by_speed, 0.0, 600.0, 0.1);
         assert_relative_eq!(motion.speed.expect("a hull has a speed"), speed_kn * KNOT, max_relative = 1e-10);
         assert_relative_eq!(state[state::NORTH], 600.0 * speed_kn * KNOT, max_relative = 1e-10);
-    }
-}
-
-#[test]
-fn a_hull_without_sides_is_its_own_mirror() {
-    let mut tanker = kvlcc2::FULL_SCALE;
-    tanker.rudder.gammaR = BySign { positive: 0.5, negative: 0.5 };
-    tanker.propeller.wake = Wake::Exponential { C1: 2.0, C2: BySign { positive: 1.3, negative: 1.3 } };
-    let mut training_ship = seiun_like::PARAMETERS;
-    training_ship.rudder.gammaR = BySign { positive: 0.35, negative: 0.35 };
-    let mut cargo_ship = mariner::DERIVATIVES;
-    for side in [&mut cargo_ship.Y, &mut cargo_ship.N] {
-        (side.zero, side.zero_u, side.zero_uu) = (0.0, 0.0, 0.0);
-    }
-    let hulls: [Box<dyn Dynamics>; 3] = [
-        Box::new(Mmg::at_speed(tanker, 8.0).expect("balances")),
-        Box::new(Mmg::at_speed(training_ship, 8.0).expect("balances")),
-        Box::new(crate::vessel::abkowitz::Abkowitz::new(Particulars { length: 160.93, speed: 7.7175 }, cargo_ship)),
-    ];
-    for hull in hulls {
-        let (starboard, _) = held_rudder(hull.as_ref(), 20.0, 500.0, 0.1);
-        let (port, _) = held_rudder(hull.as_ref(), -20.0, 500.0, 0.1);
-        for odd in [state::HEADING, state::YAW_RATE, state::SWAY, state::EAST] {
-            assert_relative_eq!(starboard[odd], -port[odd], max_relative = 1e-9);
-        }
-        for even in [state::SURGE, state::NORTH] {
-            assert_relative_eq!(starboard[even], port[even], max_relative = 1e-9);
-        }
-        assert!(starboard[state::HEADING] > 1.0);
     }
 }
 

@@ -51,7 +51,7 @@ fn what_can_be_drawn_can_be_told_without_figures() {
         assert!(!report.contains("igures\n"), "a headline over nothing\n{report}");
     }
     let bytes = desk.bytes("fit/fit.json");
-    desk.run(&["fit", "run.csv", "--method", "output-error", "--out", "fit", "--quiet"]).is_done();
+    desk.draw(&["fit", "run.csv", "--method", "output-error", "--out", "fit", "--quiet"]).is_done();
     assert!(desk.path("fit/fit.png").is_file() && desk.bytes("fit/fit.json") == bytes);
 }
 

@@ -56,11 +56,13 @@ fn medians(desk: &Desk, file: &str) -> Vec<(String, String, f64)> {
     boards.iter().flat_map(of_board).collect()
 }
 
+/// It is the same with any number of threads, and nothing stale is left.
 #[test]
 fn a_benchmark_of_ones_own_runs_and_skips_what_is_not_there() {
     let desk = Desk::new();
     lay_out(&desk);
-    let run = desk.run(&["bench", "own.toml", "--data", "records", "--paper", "80", "--dpi", "72"]);
+    let own = ["bench", "own.toml", "--data", "records", "--paper", "80", "--dpi", "72"];
+    let run = desk.run(&own);
     run.is_done();
     assert!(run.out.contains("skipped: ship, lost: no file lost.csv"), "{}", run.out);
     let json = desk.json("results/small-bench/bench.json");
@@ -87,26 +89,17 @@ fn a_benchmark_of_ones_own_runs_and_skips_what_is_not_there() {
         let text = desk.text(&format!("results/small-bench/{file}"));
         assert!(!text.contains(&here), "{file} says where the records lie");
     }
-}
 
-#[test]
-fn threads_change_no_byte_and_nothing_stale_is_left() {
-    let desk = Desk::new();
-    lay_out(&desk);
-    let run = |threads: &str, out: &str, more: &[&str]| {
-        let fixed = ["bench", "own.toml", "--data", "records", "--paper", "80", "--dpi", "72", "--quiet"];
-        let arguments = [&fixed[..], &["--threads", threads, "--out", out], more].concat();
-        assert_eq!(desk.run(&arguments).is_done().out, "");
-    };
-    run("1", "one", &[]);
-    run("4", "four", &[]);
-    let files = ["bench.json", "rows.csv", "report.md", "leaderboard.csv", "ratios-made.svg", "methods/srivc.md"];
-    for file in files {
-        assert_eq!(desk.bytes(&format!("one/{file}")), desk.bytes(&format!("four/{file}")), "{file}");
+    let again = |more: &[&str]| assert_eq!(desk.run(&[&own[..], more].concat()).is_done().out, "");
+    again(&["--quiet", "--threads", "1", "--out", "one"]);
+    for file in ["bench.json", "rows.csv", "report.md", "leaderboard.csv", "ratios-made.svg", "methods/srivc.md"] {
+        let bytes = desk.bytes(&format!("results/small-bench/{file}"));
+        assert_eq!(bytes, desk.bytes(&format!("one/{file}")), "{file}");
     }
-    run("4", "four", &["--task", "identify", "--set", "made", "--method", "output-error", "--method", "straight-on"]);
-    assert!(!desk.path("four/ratios-measured.svg").exists() && !desk.path("four/methods/srivc.md").exists());
-    let json = desk.json("four/bench.json");
+    let one_task = ["--task", "identify", "--set", "made", "--method", "output-error", "--method", "straight-on"];
+    again(&[&["--quiet", "--out", "one"], &one_task[..]].concat());
+    assert!(!desk.path("one/ratios-measured.svg").exists() && !desk.path("one/methods/srivc.md").exists());
+    let json = desk.json("one/bench.json");
     assert_eq!(json["methods"], serde_json::json!(["output-error", "straight-on"]));
     assert_eq!(json["boards"].as_array().map(Vec::len), Some(1));
 }

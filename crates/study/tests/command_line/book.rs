@@ -13,9 +13,12 @@
 
 #![cfg(unix)]
 
+use std::cell::OnceCell;
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+
+use rayon::prelude::*;
 
 use crate::desk::{copy, of_repository};
 
@@ -146,7 +149,9 @@ impl Scratch {
 
 /// Works through a page; the first thing that is wrong ends it. What was not run is said.
 fn work_through(page: &str) -> Result<Vec<String>, String> {
-    let scratch = Scratch::new();
+    // Most pages have nothing to be typed.
+    let made = OnceCell::new();
+    let scratch = || made.get_or_init(Scratch::new);
     let (mut left_out, mut written) = (Vec::new(), Vec::new());
     // Of the last block of commands; none where it was not run.
     let mut printed = None;
@@ -162,14 +167,14 @@ fn work_through(page: &str) -> Result<Vec<String>, String> {
                 left_out.push(format!("{line}: {value}"));
                 printed = None;
             }
-            ("sh", "needs") if !scratch.has(value) => {
+            ("sh", "needs") if !scratch().has(value) => {
                 left_out.push(format!("{line}: there is no {value}"));
                 printed = None;
             }
             ("sh", "" | "needs") => {
                 let of_each = commands(block)
                     .into_iter()
-                    .map(|(line, command)| scratch.run(&command).map_err(|error| format!("{line}: {error}")));
+                    .map(|(line, command)| scratch().run(&command).map_err(|error| format!("{line}: {error}")));
                 printed = Some(of_each.collect::<Result<String, String>>()?);
             }
             ("text", "shown") => match &printed {
@@ -183,7 +188,7 @@ fn work_through(page: &str) -> Result<Vec<String>, String> {
                 return Err(format!("{line}: a reader is not told that this is {value:?}"));
             }
             (_, "file") => {
-                let path = scratch.folder.path().join(value);
+                let path = scratch().folder.path().join(value);
                 fs::create_dir_all(path.parent().expect("it is in the folder")).expect("a folder");
                 fs::write(path, text).expect("a file");
                 written.push(value);
@@ -191,7 +196,7 @@ fn work_through(page: &str) -> Result<Vec<String>, String> {
             _ => return Err(format!("{line}: nobody knows the mark {mark:?}")),
         }
     }
-    match scratch.left(&written)? {
+    match made.get().map(|scratch| scratch.left(&written)).transpose()?.unwrap_or_default() {
         left if left.is_empty() => Ok(left_out),
         left => Err(format!("git sees what was left: {left}; give it a name in .gitignore")),
     }
@@ -216,11 +221,14 @@ fn pages() -> Vec<PathBuf> {
 #[test]
 fn what_the_pages_tell_to_type_can_be_typed() {
     let root = of_repository("");
-    let mut faults = Vec::new();
-    for page in pages() {
-        let name = page.strip_prefix(&root).unwrap_or(&page).display();
+    let work = |page: PathBuf| {
+        let name = page.strip_prefix(&root).unwrap_or(&page).display().to_string();
         let text = fs::read_to_string(&page).unwrap_or_else(|error| panic!("{name}: {error}"));
-        match work_through(&text) {
+        (name, work_through(&text))
+    };
+    let mut faults = Vec::new();
+    for (name, worked) in pages().into_par_iter().map(work).collect::<Vec<_>>() {
+        match worked {
             Ok(left_out) => left_out.iter().for_each(|why| println!("not run: {name}:{why}")),
             Err(fault) => faults.push(format!("{name}:{fault}")),
         }

@@ -165,7 +165,7 @@ fn several_records_have_a_zig_zag_each() {
     let desk = Desk::new();
     desk.file("a.csv", zig_zag_csv());
     desk.file("b.csv", zig_zag_csv().replace("\n300,", "\n300.5,"));
-    let run = desk.run(&["fit", "a.csv", "b.csv", "--method", "output-error"]);
+    let run = desk.draw(&["fit", "a.csv", "b.csv", "--method", "output-error"]);
     let out = &run.is_done().out;
     assert!(out.contains("a: zig-zag") && out.contains("b: zig-zag"), "{out}");
     let folder = "a-and-1-more-fit";

@@ -43,7 +43,14 @@ impl Desk {
         name
     }
 
+    /// Runs the program to its end. Of records and predictions no figures are made unless they are asked for: drawing
+    /// takes most of the time of these commands.
     pub fn run(&self, arguments: &[&str]) -> Run {
+        self.draw(&undrawn(arguments))
+    }
+
+    /// The same as a user has it, with all figures.
+    pub fn draw(&self, arguments: &[&str]) -> Run {
         let run = Run::of(self.command(arguments).output().expect("the program starts"));
         if run.code == Some(0) {
             schemas::hold_below(self.folder.path());
@@ -57,9 +64,9 @@ impl Desk {
         command
     }
 
-    /// The same with a text on standard input.
+    /// As [`Self::run`] with a text on standard input.
     pub fn run_with_input(&self, arguments: &[&str], input: impl AsRef<[u8]>) -> Run {
-        let mut command = self.command(arguments);
+        let mut command = self.command(&undrawn(arguments));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().expect("the program starts");
         // A program that refuses its arguments reads nothing, and one that has read enough no more.
@@ -93,6 +100,13 @@ impl Desk {
     pub fn json(&self, name: &str) -> serde_json::Value {
         serde_json::from_slice(&self.bytes(name)).expect("JSON")
     }
+}
+
+/// Arguments with which no figures are made, unless they say which.
+fn undrawn<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    let can_be_told = ["fit", "trace", "predict"].iter().any(|command| arguments.first() == Some(command));
+    let told: &[&str] = if can_be_told && !arguments.contains(&"--figures") { &["--figures", "none"] } else { &[] };
+    [arguments, told].concat()
 }
 
 /// Kills a run; what it had said.
@@ -142,15 +156,10 @@ pub fn zig_zag_csv() -> String {
 
 /// The same with another ship.
 pub fn zig_zag_csv_of(ship: &Ship) -> String {
-    zig_zag_csv_every(ship, 1.0)
-}
-
-/// The same with another time between rows, s.
-pub fn zig_zag_csv_every(ship: &Ship, period: f64) -> String {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0));
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
-        recording: Recording { period, duration: Some(300.0), ..Recording::default() },
+        recording: Recording { period: 1.0, duration: Some(300.0), ..Recording::default() },
         ..Simulation::new(Vessel::ship(ship), manoeuvre)
     };
     let simulated = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a plain zig-zag");

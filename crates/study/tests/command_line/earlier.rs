@@ -71,7 +71,7 @@ fn a_model_of_the_same_ship_is_what_is_expected() {
 #[test]
 fn a_trace_takes_a_prior() {
     let desk = with_model();
-    let trace = ["trace", "next.csv", "--prior", "f/fit.json", "--out", "t", "--figures", "none"];
+    let trace = ["trace", "next.csv", "--prior", "f/fit.json", "--out", "t"];
     let run = desk.run(&[&trace[..], &KVLCC2].concat());
     assert!(run.is_done().out.contains("\nprior: f/fit.json (the same ship"), "{}", run.out);
     let json = desk.json("t/trace.json");

@@ -20,16 +20,16 @@ fn banked(desk: &Desk) -> String {
 fn a_line_of_text_is_simulated_named_and_predicted_with() {
     let desk = Desk::new();
     let record = banked(&desk);
-    desk.run(&["trace", &record, "--effect", BANK, "--out", "t", "--figures", "none"]).is_done();
+    desk.run(&["trace", &record, "--effect", BANK, "--out", "t"]).is_done();
     let effects = desk.json("t/trace.json")["effects"].clone();
     assert_eq!((&effects[0]["id"], &effects[0]["form"]), (&"bank".into(), &"c * tanh(k * psi)".into()), "{effects}");
     let page = desk.text("t/report.md");
     assert!(page.contains("`bank = c * tanh(k * psi)` acts to port as to starboard."), "{page}");
-    desk.run(&["predict", "t/trace.json", "--manoeuvre", "zig-zag:20/20", "--figures", "none"]).is_done();
+    desk.run(&["predict", "t/trace.json", "--manoeuvre", "zig-zag:20/20"]).is_done();
     desk.file("own.toml", format!("effects = [\"{BANK}\"]\n"));
-    desk.run(&["trace", &record, "--effects", "own.toml", "--out", "file", "--figures", "none"]).is_done();
+    desk.run(&["trace", &record, "--effects", "own.toml", "--out", "file"]).is_done();
     assert_eq!(desk.json("file/trace.json")["effects"], effects);
-    let run = desk.run(&["trace", &record, "--effect", BANK, "--only", "bank", "--out", "only", "--figures", "none"]);
+    let run = desk.run(&["trace", &record, "--effect", BANK, "--only", "bank", "--out", "only"]);
     run.is_done();
     assert!(run.out.contains("\nbank = c * tanh(k * psi) acts to port as to starboard\n"), "{}", run.out);
     let only = desk.json("only/trace.json")["effects"].clone();

@@ -25,4 +25,3 @@ mod schemas;
 mod stored;
 mod traces;
 mod tracks;
-mod troubles;

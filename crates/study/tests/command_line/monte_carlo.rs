@@ -46,7 +46,7 @@ pub fn parts(desk: &Desk, folder: &str) -> usize {
 #[test]
 fn a_killed_run_goes_on_and_ends_with_the_same_bytes() {
     let desk = Desk::new();
-    desk.file("study.toml", scenario(24_000));
+    desk.file("study.toml", scenario(12_000));
     let whole = uninterrupted(&desk);
     // Killed before the first part, and then some time after one more part is stored, wherever that falls.
     let mut stored = vec![0];
@@ -78,7 +78,7 @@ fn a_killed_run_goes_on_and_ends_with_the_same_bytes() {
 #[test]
 fn a_damaged_part_is_run_again() {
     let desk = Desk::new();
-    desk.file("study.toml", scenario(9000));
+    desk.file("study.toml", scenario(6000));
     let whole = uninterrupted(&desk);
     let run = ["study.toml", "--out", "damaged", "--quiet", "--threads", "2"];
     killed(desk.start_until(&run, || parts(&desk, "damaged") >= 2));

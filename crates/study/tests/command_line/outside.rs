@@ -10,6 +10,10 @@ use crate::scenarios::GOOD;
 const OUTSIDE: &str =
     "[[identifier]]\nlabel = \"mine\"\nmethod.external = { command = [\"no-such-program-here\", \"a b.py\"] }\n";
 
+/// A script that answers every question with K = 0.1 1/s and T = 16 s.
+const ANSWER: &str =
+    r#"while IFS= read -r line; do n=${line#*:}; echo "{\"trial\":${n%%,*},\"K_per_s\":0.1,\"T_s\":16}"; done"#;
+
 #[test]
 fn a_check_names_the_commands_and_starts_nothing() {
     let desk = Desk::new();
@@ -22,7 +26,12 @@ fn a_check_names_the_commands_and_starts_nothing() {
     let resolved = desk.run(&["check", "--resolved", "outside.toml"]);
     assert!(resolved.is_done().out.contains("timeout-s = 60.0  # default"), "{}", resolved.out);
     desk.run(&["outside.toml"]).is_refused(2, &["`mine`", "`no-such-program-here` on the PATH", "outside.toml"][..2]);
-    assert!(!desk.path("results/outside/unfinished").exists());
+    desk.file(
+        "script.toml",
+        format!("{GOOD}\n{OUTSIDE}").replace("no-such-program-here\", \"a b.py", "sh\", \"mine.sh"),
+    );
+    desk.run(&["script.toml"]).is_refused(2, &["there is no file mine.sh in", "manifest"]);
+    assert!(["outside", "script"].iter().all(|name| !desk.path("results").join(name).join("unfinished").exists()));
 }
 
 /// A terminal would not tell the program, and one that computes does not see that its input has ended.
@@ -81,10 +90,8 @@ fn a_program_that_hangs_costs_three_trials_and_one_line() {
 #[test]
 fn a_manifest_runs_its_scripts_where_it_lies() {
     let desk = Desk::new();
-    let answer =
-        r#"while IFS= read -r line; do n=${line#*:}; echo "{\"trial\":${n%%,*},\"K_per_s\":0.1,\"T_s\":16}"; done"#;
-    desk.file("here/deep/mine.sh", answer);
-    desk.file("tools/theirs.sh", answer.replace("16", "17"));
+    desk.file("here/deep/mine.sh", ANSWER);
+    desk.file("tools/theirs.sh", ANSWER.replace("16", "17"));
     let method = |label: &str, script: &str| {
         format!("[[identifier]]\nlabel = {label:?}\nmethod.external = {{ command = [\"sh\", {script:?}] }}\n")
     };
@@ -106,7 +113,7 @@ fn a_manifest_runs_its_scripts_where_it_lies() {
         assert_eq!(first, rows(&desk, out), "{manifest}");
     }
     // A script that was changed there is another study.
-    desk.file("out/sources/up/deep/mine.sh", answer.replace("16", "15"));
+    desk.file("out/sources/up/deep/mine.sh", ANSWER.replace("16", "15"));
     let changed = desk.run(&["out/manifest.toml", "--out", "again"]);
     assert!(changed.code == Some(2) && changed.err.contains("a file that a command in it names"), "{}", changed.err);
 }
@@ -236,17 +243,23 @@ fn answers_to_other_trials_are_refused() {
     desk.run(&changed).is_refused(2, &["are not those of the scenario"]);
 }
 
-/// What a program says beside its answers could act on a terminal, and has no end.
+/// A fit asks other programs too. What one says beside its answers could act on a terminal, and has no end.
 #[cfg(unix)]
 #[test]
 fn what_a_program_of_a_fit_says_goes_into_a_bounded_log() {
     let desk = Desk::new();
+    desk.file("answers.sh", ANSWER);
     desk.file("zz.csv", zig_zag_csv());
     let talks = "read line; printf '\\033]0;title\\007' >&2; head -c 3000000 /dev/zero | tr '\\0' z >&2; exit 3";
     desk.file("talks.sh", talks);
     let fit = ["fit", "zz.csv", "--method", "least-squares", "--external", "it talks=sh talks.sh", "--out", "o"];
-    let run = desk.run(&fit);
+    let run = desk.run(&[&fit[..], &["--external", "my own=sh answers.sh"]].concat());
     assert!(run.is_done().err.len() < 10_000 && !run.err.contains('\u{1b}'), "{} bytes", run.err.len());
     let size = std::fs::metadata(desk.path("o/external-it-talks.log")).expect("a log").len();
     assert!((1 << 20..(1 << 20) + 100).contains(&size), "{size} bytes");
+    let fitted = desk.json("o/fit.json");
+    let [ours, _, own] = [0, 1, 2].map(|number| &fitted["methods"][number]);
+    assert!(ours["id"].is_null() && own["id"] == "external" && own["method"] == "my own", "{own}");
+    let k = own["parameters"]["K_per_s"]["value"].as_f64().expect("an answer");
+    assert!((k - 0.1).abs() < 1e-12 && desk.text("o/report.md").contains("my own"), "{k}");
 }

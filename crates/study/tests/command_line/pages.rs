@@ -21,9 +21,9 @@ fn every_report_has_a_page_for_a_browser() {
     desk.file("small.toml", GOOD);
     desk.file("run.csv", zig_zag_csv());
     desk.run(&["small.toml", "--out", "s", "--quiet"]).is_done();
-    desk.run(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
-    desk.run(&["trace", "run.csv", "--out", "t", "--quiet"]).is_done();
-    desk.run(&["predict", "t/trace.json", "--out", "p", "--quiet"]).is_done();
+    desk.draw(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
+    desk.draw(&["trace", "run.csv", "--out", "t", "--quiet"]).is_done();
+    desk.draw(&["predict", "t/trace.json", "--out", "p", "--quiet"]).is_done();
     for folder in ["s", "f", "t", "p"] {
         page(&desk, folder);
     }
@@ -31,7 +31,7 @@ fn every_report_has_a_page_for_a_browser() {
     assert!(fit.contains("data-series=\"output-error, rms") && fit.contains("<th scope=\"row\">output-error</th>"));
     let traced = page(&desk, "t");
     assert!(traced.contains("data-series=\"before") && traced.contains("data-series=\"after"));
-    desk.run(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
+    desk.draw(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
     assert_eq!(page(&desk, "f"), fit, "the same bytes");
 }
 
@@ -40,8 +40,8 @@ fn limits_of_an_axis_that_no_figure_has_are_refused() {
     let desk = Desk::new();
     desk.file("run.csv", zig_zag_csv());
     desk.file("style.toml", "[limits]\n\"residual [°]\" = [-1.0, 1.0]\n");
-    desk.run(&["fit", "run.csv", "--style", "style.toml"]).is_done();
+    desk.draw(&["fit", "run.csv", "--style", "style.toml"]).is_done();
     desk.file("style.toml", "[limits]\n\"residual\" = [-1.0, 1.0]\n");
-    desk.run(&["fit", "run.csv", "--style", "style.toml"])
+    desk.draw(&["fit", "run.csv", "--style", "style.toml"])
         .is_refused(2, &["[limits] \"residual\"", "no figure of this page has an axis", "\"residual [°]\""]);
 }

@@ -58,7 +58,7 @@ fn criteria(json: &Value) -> Vec<&str> {
 #[test]
 fn a_fit_tells_the_trials_of_the_imo() {
     let desk = with_fit();
-    let run = desk.run(&["predict", "f/fit.json", "--out", "p", "--draws", "200"]);
+    let run = desk.draw(&["predict", "f/fit.json", "--out", "p", "--draws", "200"]);
     assert!(run.is_done().out.contains("IMO MSC.137(76)"), "{}", run.out);
     let json = desk.json("p/predict.json");
     keeps_the_contract(&json);

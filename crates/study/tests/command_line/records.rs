@@ -181,7 +181,7 @@ fn a_broken_sidecar_is_refused_with_its_line() {
 fn a_good_record_gives_a_table_figures_and_json() {
     let desk = Desk::new();
     desk.file("run 1.csv", zig_zag_csv());
-    let run = desk.run(&["fit", "run 1.csv"]);
+    let run = desk.draw(&["fit", "run 1.csv"]);
     for method in USUAL {
         assert!(run.is_done().out.contains(method), "{method}\n{}", run.out);
     }
@@ -250,7 +250,7 @@ fn options_of_fit_do_what_they_say() {
     desk.file("run.trial.toml", "[ship]\nlength-m = 105.0\nspeed-kn = 16.7\n");
     let methods = ["--method", "srivc", "--method", "output-error", "--columns", "run.trial.toml"];
     let records = ["fit", "a/run.csv", "b/run.csv", "--validate", "b/run.csv", "--out", "both", "--threads", "1"];
-    let run = desk.run(&[&records[..], &methods].concat());
+    let run = desk.draw(&[&records[..], &methods].concat());
     let fit = desk.json("both/fit.json");
     assert_eq!(fit["trials"].as_array().map(Vec::len), Some(2));
     assert_eq!(fit["methods"].as_array().map(Vec::len), Some(2));
@@ -334,29 +334,5 @@ fn every_measured_record_can_be_identified() {
         let remark = "maximum-likelihood: its K and T are those of small, fast motions";
         assert!(record != "zigzag_13_57_45" || run.out.contains(remark), "{}", run.out);
         assert!(desk.path(&format!("{record}-fit")).join("fit.json").is_file(), "{record}");
-    }
-}
-
-/// Raw files as their authors wrote them, through the sidecars of the repository: named, and beside the table.
-#[test]
-fn raw_records_are_read_through_their_sidecars() {
-    let Some(data) = measured() else { return };
-    let desk = Desk::new();
-    for name in [
-        "HSVA_CPMC_KVLCC2_Z_20_10_S.dat",
-        "MARIN_FREE_KVLCC2_zz_20_m.dat",
-        "esso_osaka_zigzag_31-Jul-2020_13_57_45.csv",
-    ] {
-        let stem = name.rsplit_once('.').expect("an extension").0;
-        let raw = data.join("raw").join(name);
-        let sidecar = of_repository("scenarios/measured").join(format!("{stem}.trial.toml"));
-        let raw_text = raw.display().to_string();
-        desk.run(&["fit", &raw_text, "--columns", &sidecar.display().to_string(), "--out", "named", "--quiet"])
-            .is_done();
-        desk.file(name, std::fs::read(&raw).expect("readable"));
-        desk.file(&format!("{stem}.trial.toml"), std::fs::read(&sidecar).expect("readable"));
-        desk.run(&["fit", name, "--out", "beside", "--quiet"]).is_done();
-        let methods = |folder: &str| desk.json(&format!("{folder}/fit.json"))["methods"].clone();
-        assert_eq!(methods("named"), methods("beside"), "{name}");
     }
 }

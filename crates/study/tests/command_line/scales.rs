@@ -28,7 +28,7 @@ fn value(of: &serde_json::Value) -> f64 {
 fn one_record_has_prime_indices_where_its_ship_is_known() {
     let desk = Desk::new();
     both(&desk);
-    let run = desk.run(&["fit", "ship.csv", "--method", "output-error", "--out", "known", "--paper", "85"]);
+    let run = desk.draw(&["fit", "ship.csv", "--method", "output-error", "--out", "known", "--paper", "85"]);
     assert!(run.is_done().out.contains("prime indices K′ = K L/V"), "{}", run.out);
     let method = &desk.json("known/fit.json")["methods"][0];
     assert!((value(&method["prime"]["K"]) - 0.1 * 105.0 / 8.59).abs() < 1e-3, "{method}");
@@ -48,7 +48,7 @@ fn one_record_has_prime_indices_where_its_ship_is_known() {
 fn a_model_and_its_ship_are_one_analysis() {
     let desk = Desk::new();
     both(&desk);
-    let run = desk.run(&["fit", "model.csv", "ship.csv", "--method", "output-error", "--out", "fit"]);
+    let run = desk.draw(&["fit", "model.csv", "ship.csv", "--method", "output-error", "--out", "fit"]);
     for part in
         ["one analysis in prime time", "1 record of L = 105 m, V = 8.59 m/s, time × 0.2000", "every scale alone"]
     {
@@ -90,7 +90,7 @@ fn a_model_that_answers_otherwise_does_not_scale() {
 fn a_trace_is_told_without_dimension() {
     let desk = Desk::new();
     both(&desk);
-    let run = desk.run(&["trace", "ship.csv", "model.csv", "--out", "traced", "--paper", "85"]);
+    let run = desk.draw(&["trace", "ship.csv", "model.csv", "--out", "traced", "--paper", "85"]);
     assert!(run.is_done().out.contains("one analysis in prime time"), "{}", run.out);
     let trace = desk.json("traced/trace.json");
     // Records of one amplitude do not exclude a stall, which goes with a larger K.

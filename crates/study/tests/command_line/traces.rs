@@ -58,7 +58,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     let desk = Desk::new();
     desk.file("run.csv", zig_zag_csv_of(&second_order()));
     desk.file("other.csv", zig_zag_csv_of(&second_order()));
-    let run = desk.run(&["trace", "run.csv", "--validate", "other.csv"]);
+    let run = desk.draw(&["trace", "run.csv", "--validate", "other.csv"]);
     run.is_done();
     for part in ["The first-order response lacks second_order", "held out ×", "noise: ", "next trial: "] {
         assert!(run.out.contains(part), "{part}: {}", run.out);
@@ -113,7 +113,7 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     let desk = Desk::new();
     desk.file("run.csv", zig_zag_csv_of(&second_order()));
     desk.file("other.csv", zig_zag_csv_of(&second_order()));
-    desk.run(&["trace", "run.csv", "--validate", "other.csv", "--out", "t", "--quiet"]).is_done();
+    desk.draw(&["trace", "run.csv", "--validate", "other.csv", "--out", "t", "--quiet"]).is_done();
     let report = desk.text("t/report.md");
     let mut paragraphs = report.split("\n\n");
     let (title, headline) = (paragraphs.next().unwrap_or_default(), paragraphs.next().unwrap_or_default());
@@ -132,7 +132,7 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     assert!(!shown.contains("<table") && folded.contains(">Evidence</h2></summary>"));
     let caption = "Left: a record that was fitted.";
     assert_eq!((report.matches(caption).count(), page.matches(caption).count()), (1, 1));
-    desk.run(&["trace", "run.csv", "--out", "alone", "--quiet"]).is_done();
+    desk.draw(&["trace", "run.csv", "--out", "alone", "--quiet"]).is_done();
     assert!(desk.text("alone/report.md").contains("![Figure 1](record.png)") && !desk.path("alone/hero.png").exists());
 }
 
@@ -141,7 +141,7 @@ fn the_page_begins_with_the_finding_and_its_figure() {
 fn a_trace_is_drawn_again_from_its_files() {
     let desk = Desk::new();
     desk.file("run.csv", zig_zag_csv_of(&second_order()));
-    desk.run(&["trace", "run.csv", "--out", "t", "--quiet"]).is_done();
+    desk.draw(&["trace", "run.csv", "--out", "t", "--quiet"]).is_done();
     desk.run(&["report", "t", "--out", "again", "--quiet"]).is_done();
     for file in ["report.md", "report.html", "record.svg", "residual.svg", "evidence.svg", "missing-moment-run.svg"] {
         assert!(desk.bytes(&format!("t/{file}")) == desk.bytes(&format!("again/{file}")), "{file}");
@@ -161,7 +161,7 @@ fn the_missing_moment_is_written() {
     let desk = Desk::new();
     desk.file("Run 1.csv", zig_zag_csv_of(&with_effect(listed("nonlinear_damping", "r³"), &[60.0])));
     desk.file("other.csv", zig_zag_csv());
-    desk.run(&["trace", "Run 1.csv", "--validate", "other.csv", "--out", "here", "--quiet"]).is_done();
+    desk.draw(&["trace", "Run 1.csv", "--validate", "other.csv", "--out", "here", "--quiet"]).is_done();
     let json = desk.json("here/trace.json");
     let records = json["missing_moment"].as_array().expect("a list");
     assert_eq!((records.len(), records[0]["file"].as_str()), (1, Some("Run 1.csv")));
@@ -213,7 +213,7 @@ fn a_record_beside_its_own_band_is_not_clean() {
          disturbance.gusts = { sd-deg = 0.5, correlation-s = 20.0 }\nidentifier = [{ method.output-error = {} }]\n",
     );
     desk.run(&["simulate", "gusts.toml", "--replicate", "25", "--out", "run.csv", "--quiet"]).is_done();
-    let run = desk.run(&["trace", "run.csv", "--out", "here", "--figures", "none"]);
+    let run = desk.run(&["trace", "run.csv", "--out", "here"]);
     run.is_done();
     let json = desk.json("here/trace.json");
     let coverage = json["error"]["identification"][0]["after"]["band_coverage_95"].as_f64().expect("a band");

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use proptest::prelude::*;
 use ship::angle::from_deg;
 
 use super::*;
@@ -152,23 +151,4 @@ fn gaps_are_remarked() {
     }
     let warnings = verdict(columns).expect("a gap is no fault");
     assert!(warnings[0].starts_with("1 gap ") && warnings[0].contains("6.1 s, begins at 49.9 s"), "{warnings:?}");
-}
-
-proptest! {
-    #[test]
-    fn no_finite_record_makes_the_checks_panic(
-        rows in proptest::collection::vec((any::<f64>(), any::<f64>(), any::<f64>()), 8..60),
-    ) {
-        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
-        let columns = Columns {
-            time: (0..rows.len()).map(|row| row as f64).collect(),
-            channels: BTreeMap::from([
-                (Channel::Rudder, rows.iter().map(|row| finite(row.0)).collect()),
-                (Channel::Heading, rows.iter().map(|row| finite(row.1)).collect()),
-                (Channel::YawRate, rows.iter().map(|row| row.2).collect()),
-            ]),
-            unknown: Vec::new(),
-        };
-        let _ = verdict(columns);
-    }
 }

@@ -1,5 +1,5 @@
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, LazyLock};
 
 use crate::NoObserver;
 use identify::estimate::{Estimate, StopReason, Uncertainty};
@@ -89,19 +89,20 @@ impl Identifier for KnownIndices {
     }
 }
 
-fn results(definition: &Definition) -> BenchDocument {
+/// Asked once for the tests of this file.
+static RESULTS: LazyLock<BenchDocument> = LazyLock::new(|| {
     let mut methods = BenchMethod::ours();
     methods.retain(|method| ["output-error", "trace", method::STRAIGHT_ON].contains(&method.label()));
     for (label, known) in [("perfect", Some([0.1, 20.0])), ("slow", Some([0.1, 24.0])), ("silent", None)] {
         methods.push(BenchMethod::new(label, Arc::new(KnownIndices(known))));
     }
-    run(definition, &RecordStore::default(), &methods, &NoObserver, || Ok(()))
+    run(&definition(), &RecordStore::default(), &methods, &NoObserver, || Ok(()))
         .unwrap_or_else(|failure| panic!("{failure}"))
-}
+});
 
 #[test]
 fn scores_are_what_the_models_are_worth() {
-    let results = results(&definition());
+    let results = &*RESULTS;
     assert_eq!(results.boards.len(), 4);
     for board in &results.boards {
         let of = |method: &str| board.standings.iter().find(|standing| standing.method == method);
@@ -128,7 +129,7 @@ fn scores_are_what_the_models_are_worth() {
 
 #[test]
 fn only_who_names_effects_is_asked_for_one() {
-    let results = results(&definition());
+    let results = &*RESULTS;
     let [line] = &results.naming[..] else { panic!("{:?}", results.naming) };
     assert_eq!((line.method.as_str(), line.missing.as_deref(), line.named.of), ("trace", Some("nonlinear_damping"), 2));
     assert_eq!(line.counts.iter().sum::<usize>(), 2);
@@ -137,9 +138,9 @@ fn only_who_names_effects_is_asked_for_one() {
 
 #[test]
 fn what_is_stored_is_read_back() {
-    let results = results(&definition());
+    let results = &*RESULTS;
     let json = results.json().expect("numbers");
-    assert_eq!(serde_json::from_str::<BenchDocument>(&json).expect("its own file"), results);
+    assert_eq!(serde_json::from_str::<BenchDocument>(&json).expect("its own file"), *results);
     assert_eq!(json.lines().filter(|line| line.contains("\"answers\"")).count(), results.cases.len());
 }
 

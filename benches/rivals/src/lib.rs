@@ -7,7 +7,6 @@ use dsmc::system_identification::iv::srivc::{
     Initialization, InterSample, Prefilter, SrivcOptions, identify, identify_with_prefilter,
 };
 use dsmc::system_identification::oe;
-use trial::Trial;
 
 /// Bandwidth that a search starts from when the ship is unknown, rad/s: between that of a tanker and that of a boat. It
 /// takes three iterations from here and from most other starts, two from close to 1/T.
@@ -52,24 +51,47 @@ pub fn output_error_gyro(rudder: &[f64], yaw_rate: &[f64], period: f64) -> Optio
     Some([(b0 + b1) / (1.0 - f), -period / f.ln()])
 }
 
-/// Rudder, heading and yaw rate of a record that has all three.
-///
-/// # Panics
-/// When there is no yaw rate.
-pub fn columns(trial: &Trial) -> [Vec<f64>; 3] {
-    let yaw_rate = trial.channel(trial::Channel::YawRate).expect("a record with a gyro");
-    [trial.rudder().to_vec(), trial.heading().to_vec(), yaw_rate.to_vec()]
-}
-
 #[cfg(test)]
 mod tests {
+    use rand::{SeedableRng, rngs::ChaCha12Rng};
+    use rand_distr::{Distribution, Normal};
+
     use super::*;
-    use crate::records::{K, PERIOD, ROWS, T, first_order_zig_zag, record};
+
+    const K: f64 = 0.08;
+    const T: f64 = 25.0;
+    const PERIOD: f64 = 0.5;
+
+    /// Rudder, heading and yaw rate of a 10/10 zig-zag of 600 s, steps of ten in a period, with the noise of sensors.
+    fn zig_zag() -> [Vec<f64>; 3] {
+        let (step, rate) = (0.1 * PERIOD, 2.5_f64.to_radians());
+        let mut chance = ChaCha12Rng::seed_from_u64(1957);
+        let mut noise = |sd: f64| Normal::new(0.0, sd).expect("a width").sample(&mut chance);
+        let (mut delta, mut psi, mut r, mut order) = (0.0_f64, 0.0_f64, 0.0_f64, 10.0_f64.to_radians());
+        let mut columns = [Vec::new(), Vec::new(), Vec::new()];
+        for number in 0..12_010 {
+            if number % 10 == 0 {
+                let row = [delta, psi + noise(0.1_f64.to_radians()), r + noise(0.02_f64.to_radians())];
+                columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+            }
+            if psi * order > 0.0 && psi.abs() > order.abs() {
+                order = -order;
+            }
+            let before = delta;
+            delta += (order - delta).clamp(-rate * step, rate * step);
+            // Exact where the rudder stands at the middle of its step.
+            let steady = K * 0.5 * (before + delta);
+            let kept = (-step / T).exp();
+            psi += steady * step + T * (r - steady) * (1.0 - kept);
+            r = steady + (r - steady) * kept;
+        }
+        columns
+    }
 
     /// A comparison of times is only fair between methods that answer the same question rightly.
     #[test]
     fn rivals_find_the_ship() {
-        let [rudder, heading, yaw_rate] = columns(&record(&first_order_zig_zag(ROWS)));
+        let [rudder, heading, yaw_rate] = zig_zag();
         for (name, found, within) in [
             ("SRIVC, heading", srivc_heading(&rudder, &heading, PERIOD, BANDWIDTH), 0.01),
             ("SRIVC, gyro", srivc_gyro(&rudder, &yaw_rate, PERIOD), 0.01),
