@@ -250,7 +250,7 @@ points = [
     desk.file("study.toml", format!("{noisy}{sweeps}"));
     desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
     let drawn = |stem: &str| desk.text(&format!("out/{stem}.svg"));
-    assert!(drawn("errors-cubic").contains("rms of K less that"));
+    assert!(drawn("errors-cubic").contains("rms difference of K"));
     assert!(drawn("errors-first-order").contains("rms error of K over the bound"));
     assert!(desk.path("out/coverage-first-order.png").exists() && !desk.path("out/coverage-cubic.png").exists());
     assert!(drawn("indices").contains("over that of a 5/5") && !desk.path("out/ranking.png").exists());
