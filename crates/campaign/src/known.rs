@@ -84,7 +84,7 @@ impl<'a> RecordFacts<'a> {
     }
 
     /// The same with speed and drift: the hulls that these records speak for, where length and speed are known, all of
-    /// them begin on a steady approach, and they have a speed, or an analysis or earlier trials told her hull; else two
+    /// them begin away from rest, and they have a speed, or an analysis or earlier trials told her hull; else two
     /// equations beside the yaw response where they have speed or position. As it was where nothing can be fitted.
     pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
         let Some(length) = self.length else { return self };
