@@ -165,14 +165,10 @@ fn programs() -> Vec<(String, Option<campaign::manifest::ProgramRevision>)> {
     names.iter().map(|name| (name.clone(), program(name))).collect()
 }
 
-/// What is older than the program that made all else: times, which want a machine that does nothing beside.
-const OLDER: [&str; 1] = ["performance"];
-
 /// All was made by one program, whose source is in the repository.
 #[test]
 fn published_results_are_of_one_program() {
-    let mut programs = programs();
-    programs.retain(|(name, _)| !OLDER.contains(&name.as_str()));
+    let programs = programs();
     let (_, first) = &programs[0];
     assert!(first.as_ref().is_some_and(|first| !first.git_dirty && first.git_revision.is_some()), "{first:?}");
     let others: Vec<_> = programs.iter().filter(|(_, program)| program != first).collect();
