@@ -41,6 +41,17 @@ const KVLCC2_TURNS: [(f64, f64); 10] = [
     (-20., -0.441),
     (-35., -0.493),
 ];
+const TANKER_TURNS: [(f64, f64); 8] = [
+    (5., 0.310),
+    (10., 0.364),
+    (20., 0.411),
+    (35., 0.461),
+    (-5., -0.339),
+    (-10., -0.380),
+    (-20., -0.424),
+    (-35., -0.477),
+];
+const S175_TURNS: [(f64, f64); 4] = [(5., 0.315), (10., 0.428), (20., 0.538), (-35., -0.595)];
 
 /// Time after which a turn is steady to far below the last digit, s.
 const STEADY: f64 = 3000.0;
@@ -54,8 +65,11 @@ fn half_digit(decimals: i32) -> Tolerance {
 pub fn section() -> Section {
     let mut checks = linear_indices();
     checks.extend(straight_approach());
-    for (ship, turns) in [(mariner::hull(), MARINER_TURNS), (kvlcc2::full_scale(), KVLCC2_TURNS)] {
-        for (rudder, rate) in turns {
+    let all: [(&str, &[(f64, f64)]); 4] =
+        [("mariner", &MARINER_TURNS), ("kvlcc2", &KVLCC2_TURNS), ("tanker", &TANKER_TURNS), ("s175", &S175_TURNS)];
+    for (id, turns) in all {
+        let ship = registered(id);
+        for &(rudder, rate) in turns {
             let what = format!("{}, steady turn with rudder {rudder} deg: yaw rate", ship.id);
             let (id, ours) = (format!("hulls/{}/turn/{rudder}", ship.id), steady_rate(&ship, rudder));
             checks.push(Check::new(id, what, (rate, 3), ours, Tolerance::Absolute(1e-3), "deg/s"));

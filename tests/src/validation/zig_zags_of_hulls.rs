@@ -50,7 +50,7 @@ struct Anchor {
 }
 
 #[rustfmt::skip]
-const ANCHORS: [Anchor; 9] = [
+const ANCHORS: [Anchor; 11] = [
     Anchor { ship: "mariner", rudder_deg: 10., heading_deg: 10., first: Side::Starboard, rate_deg_s: 2.33, turning_time: 30.9,
         overshoots_deg: &[6.35, 5.66, 7.55, 5.60], period: 199.7, least_speed: 0.936,
         fit: Fit { until: 6, k: (0.0623, 4), t: 32.3, bias_deg: 1.0, rms_deg: 0.71 } },
@@ -78,6 +78,12 @@ const ANCHORS: [Anchor; 9] = [
     Anchor { ship: "seiun-like", rudder_deg: 20., heading_deg: 20., first: Side::Starboard, rate_deg_s: 2.5, turning_time: 25.6,
         overshoots_deg: &[12.41, 15.44, 13.78, 15.3], period: 129.8, least_speed: 0.698,
         fit: Fit { until: 6, k: (0.0740, 4), t: 11.3, bias_deg: -0.7, rms_deg: 0.47 } },
+    Anchor { ship: "tanker", rudder_deg: 10., heading_deg: 10., first: Side::Starboard, rate_deg_s: 2.33, turning_time: 75.2,
+        overshoots_deg: &[6.24, 14.67, 13.71, 15.77], period: 509.8, least_speed: 0.783,
+        fit: Fit { until: 6, k: (0.0609, 4), t: 189.7, bias_deg: -0.6, rms_deg: 0.76 } },
+    Anchor { ship: "s175", rudder_deg: 20., heading_deg: 20., first: Side::Starboard, rate_deg_s: 5.0, turning_time: 44.2,
+        overshoots_deg: &[5.25, 4.97, 4.84, 4.80], period: 216.9, least_speed: 0.738,
+        fit: Fit { until: 6, k: (0.0299, 4), t: 16.5, bias_deg: 0.0, rms_deg: 0.45 } },
 ];
 
 /// Step of the independent program, s.

@@ -16,7 +16,9 @@ use crate::response::Response;
 pub mod frigate;
 pub mod kvlcc2;
 pub mod mariner;
+pub mod s175;
 pub mod seiun_like;
+pub mod tanker;
 pub mod user;
 pub mod yukun;
 pub mod zeefakkel;
@@ -77,6 +79,8 @@ pub fn all() -> Vec<Ship> {
         mariner::hull(),
         kvlcc2::full_scale(),
         kvlcc2::model_l7(),
+        tanker::ship(),
+        s175::ship(),
         seiun_like::ship(),
     ]
 }

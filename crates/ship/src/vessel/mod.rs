@@ -36,7 +36,7 @@ pub mod state {
 /// Share of the approach speed below which prime quantities are formed with that share instead of the speed.
 ///
 /// Prime velocities v/U and r L/U lose their meaning at U → 0, and their powers would overflow. Ships in zig-zag trials
-/// and turning circles keep more than a third of their speed, so trials never see this bound.
+/// and turning circles keep more than a quarter of their speed, so trials never see this bound.
 pub const SLOWEST: f64 = 0.1;
 
 /// Velocities in the frame of the ship, at midship.

@@ -1,0 +1,156 @@
+//! The container ship S175 of 175 m as a hull of three degrees of freedom: her published equations without heel.
+//!
+//! The source has a fourth degree of freedom, roll. Roll angle and roll rate are zero here, and the terms with them are
+//! left out; a ship of this speed and metacentric height heels when she turns, so she is not S175 to the last digit.
+//! Forces are prime, by ½ρL²U², with the momentary speed U; the rudder is positive to starboard, as everywhere here.
+#![expect(non_snake_case, reason = "each name is the symbol of the source")]
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use super::{Model, Ship};
+use crate::dynamics::Input;
+use crate::particulars::Particulars;
+use crate::vessel::{Acceleration, Hull, SLOWEST, Velocity};
+
+/// Length and speed; the speed is that of the linear equations that the Marine Systems Simulator has of her.
+const PARTICULARS: Particulars = Particulars { length: 175.0, speed: 7.0 };
+
+/// m' and the added masses m_x', m_y'; I_z' + J_z', and m_y' α_y with the centre α_y' = 0.05 of m_y'.
+const M: f64 = 0.00792;
+const MX: f64 = 0.000_238;
+const MY: f64 = 0.007_049;
+const INERTIA: f64 = 0.000_456 + 0.000_419;
+const COUPLING: f64 = MY * 0.05;
+
+/// X'uu, X'vr, X'rr and X'vv.
+const X: [f64; 4] = [-0.000_422_6, -0.00311, 0.00020, -0.00386];
+/// v, r, vvv, rrr, vvr and vrr of Y' and N'.
+const Y: [f64; 6] = [-0.0116, 0.00242, -0.109, 0.00177, 0.0214, -0.0405];
+const N: [f64; 6] = [-0.003_854_5, -0.00222, 0.001_492, -0.00229, -0.0424, 0.00156];
+
+/// Diameter of the propeller, m; wake, its growth with the inflow across, place, thrust deduction, K_T = k0 + k1 J.
+const DIAMETER: f64 = 6.533;
+const WAKE: f64 = 0.184;
+const TAU: f64 = 1.09;
+const XP: f64 = -0.526;
+const DEDUCTION: f64 = 0.175;
+const THRUST: [f64; 2] = [0.527, -0.455];
+
+/// Rudder area, m², and aspect ratio; κ and ε of its inflow; flow straightening of v', r', r'³ and r'² v'.
+const AREA: f64 = 33.0376;
+const ASPECT: f64 = 1.8219;
+const KAPPA: f64 = 0.631;
+const EPSILON: f64 = 0.921;
+const STRAIGHTENING: [f64; 4] = [0.088, -0.156, -0.275, 1.96];
+/// Share of F_N sin δ that is resistance; a_H, x_R' and x_H'.
+const RESISTANCE: f64 = 0.71;
+const AH: f64 = 0.237;
+const XR: f64 = -0.5;
+const XH: f64 = -0.48;
+
+/// The hull at the propeller revolutions of her steady approach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContainerHull {
+    /// n D, m/s.
+    tip: f64,
+}
+
+impl ContainerHull {
+    /// Thrust balances the resistance: (1 − t) 2 (D/L)² (k0 q² + k1 (1 − w) q) = −X'uu with q = n D/U.
+    fn new() -> Self {
+        let Particulars { length: L, speed: U } = PARTICULARS;
+        let [k0, k1] = THRUST;
+        let wanted = -X[0] / ((1.0 - DEDUCTION) * 2.0 * (DIAMETER / L).powi(2));
+        let half = -0.5 * k1 * (1.0 - WAKE);
+        Self { tip: U * (half + (half * half + k0 * wanted).sqrt()) / k0 }
+    }
+
+    /// Normal force of the rudder over ½ρL²U², at prime velocities.
+    fn rudder_force(&self, [u, v, r]: [f64; 3], rudder: f64, U: f64) -> f64 {
+        let [by_v, by_r, by_rrr, by_rrv] = STRAIGHTENING;
+        let vR = by_v * v + by_r * r + by_rrr * r * r * r + by_rrv * r * r * v;
+        let uP = inflow(u, v, r);
+        let q = self.tip / U;
+        // ε u_P √(1 + 8 κ K_T/(π J²)), regular at J = 0.
+        let uR = EPSILON * (uP * uP + 8.0 * KAPPA * thrust_coefficient(uP, q) * q * q / PI).max(0.0).sqrt();
+        let lift = 6.13 * ASPECT / (ASPECT + 2.25) * AREA / PARTICULARS.length.powi(2);
+        -lift * (uR * uR + vR * vR) * (rudder + vR.atan2(uR)).sin()
+    }
+
+    /// dN'/dδ on the straight approach.
+    fn rudder_slope(&self) -> f64 {
+        let step = 1e-6;
+        (XR + AH * XH) * self.rudder_force([1.0, 0.0, 0.0], step, PARTICULARS.speed) / step
+    }
+}
+
+/// Inflow to the propeller over U.
+fn inflow(u: f64, v: f64, r: f64) -> f64 {
+    u * (1.0 - WAKE + TAU * (v + XP * r).powi(2))
+}
+
+/// K_T at the inflow `uP` and q = n D/U; written as K_T with J = u_P/q.
+fn thrust_coefficient(uP: f64, q: f64) -> f64 {
+    THRUST[0] + THRUST[1] * uP / q
+}
+
+fn lateral([by_v, by_r, vvv, rrr, vvr, vrr]: [f64; 6], v: f64, r: f64) -> f64 {
+    by_v * v + by_r * r + vvv * v * v * v + rrr * r * r * r + vvr * v * v * r + vrr * v * r * r
+}
+
+impl Hull for ContainerHull {
+    fn length(&self) -> f64 {
+        PARTICULARS.length
+    }
+
+    fn approach_speed(&self) -> f64 {
+        PARTICULARS.speed
+    }
+
+    /// m' a' = F', and a = a' U²/L (r' by U²/L²); the disturbance adds the yaw moment N'δ δ of approach speed.
+    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration {
+        let Particulars { length: L, speed: U0 } = PARTICULARS;
+        let U = velocity.surge.hypot(velocity.sway).max(SLOWEST * U0);
+        let (u, v, r) = (velocity.surge / U, velocity.sway / U, velocity.yaw * L / U);
+        let q = self.tip / U;
+        let thrust = 2.0 * (DIAMETER / L).powi(2) * q * q * thrust_coefficient(inflow(u, v, r), q);
+        let force = self.rudder_force([u, v, r], input.rudder, U);
+        let (sin, cos) = input.rudder.sin_cos();
+
+        let [uu, vr, rr, vv] = X;
+        let ahead = uu * u * u
+            + vr * v * r
+            + rr * r * r
+            + vv * v * v
+            + (1.0 - DEDUCTION) * thrust
+            + RESISTANCE * force * sin
+            + (M + MY) * v * r;
+        let across = lateral(Y, v, r) + (1.0 + AH) * force * cos - (M + MX) * u * r;
+        let moment = lateral(N, v, r)
+            + (XR + AH * XH) * force * cos
+            + self.rudder_slope() * input.disturbance * (U0 / U).powi(2);
+        let det = (M + MY) * INERTIA - COUPLING * COUPLING;
+        let unit = U * U / L;
+        Acceleration {
+            surge: ahead / (M + MX) * unit,
+            sway: (INERTIA * across - COUPLING * moment) / det * unit,
+            yaw: ((M + MY) * moment - COUPLING * across) / det * unit / L,
+        }
+    }
+}
+
+/// The ship at 7 m/s; the rudder turns at 5 deg/s, as in the source of the table.
+///
+/// Source: Son and Nomoto (1982), as tabulated in the Marine Systems Simulator (Lauvdal 1994, Fossen 2022).
+pub fn ship() -> Ship {
+    Ship {
+        id: "s175".into(),
+        name: "container ship S175, 7 m/s, without heel".into(),
+        source: "Son and Nomoto (1982), in the Marine Systems Simulator".into(),
+        particulars: Some(PARTICULARS),
+        rudder_rate: Some(5f64.to_radians()),
+        largest_rudder: None,
+        model: Model::Hull(Arc::new(ContainerHull::new())),
+    }
+}

@@ -1,0 +1,121 @@
+//! A tanker of 304.8 m, course-unstable, in deep water: the equations of van Berlekom and Goddard (1972).
+//!
+//! The source divides forces by the mass and lengths by L (the bis system), so accelerations come out in m/s². The
+//! rudder works in the speed c of the stream behind the propeller, c² = c_un u n + c_nn n². The thrust turns the ship a
+//! little (Y_T, N_T). The rudder of the source is positive to port and is turned round here; the terms of shallow water
+//! vanish.
+#![expect(non_snake_case, reason = "each name is the symbol of the source")]
+
+use std::sync::Arc;
+
+use super::{Model, Ship};
+use crate::dynamics::Input;
+use crate::particulars::Particulars;
+use crate::vessel::{Acceleration, Hull, Velocity};
+
+/// Length and approach speed; the propeller makes 80 rpm then.
+const PARTICULARS: Particulars = Particulars { length: 304.8, speed: 8.23 };
+
+/// 1 − X_u̇, 1 − Y_v̇ and k_z² − N_ṙ.
+const INERTIA: [f64; 3] = [1.050, 2.020, 0.1232];
+/// 1 + X_vr, Y_ur − 1 and N_ur − x_G.
+const TURNING: [f64; 3] = [2.020, -0.752, -0.231];
+
+/// uu, un and nn of the thrust T, and thrust deduction; un and nn of c².
+const THRUST: [f64; 3] = [-0.00695, -0.00063, 0.000_035_4];
+const DEDUCTION: f64 = 0.22;
+const STREAM: [f64; 2] = [0.605, 38.2];
+
+/// uu, vv, ccδδ and ccβδ of X.
+const X: [f64; 4] = [-0.0377, 0.3, -0.093, 0.152];
+/// uv, v|v|, ccδ, ccβ|β||δ| and T of Y.
+const Y: [f64; 5] = [-1.205, -2.400, 0.208, -2.16, 0.04];
+/// uv, |v|r, ccδ, ccβ|β||δ| and T of N.
+const N: [f64; 5] = [-0.451, -0.300, -0.098, 0.688, -0.02];
+
+/// The hull at the propeller revolutions of her steady approach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TankerHull {
+    /// n, 1/s.
+    revolutions: f64,
+}
+
+impl TankerHull {
+    /// Thrust balances the resistance: X_uu U²/L + (1 − t) T = 0.
+    fn new() -> Self {
+        let Particulars { length: L, speed: U } = PARTICULARS;
+        let [uu, un, nn] = THRUST;
+        let rest = (uu + X[0] / (1.0 - DEDUCTION)) * U * U / L;
+        let half = 0.5 * un * U / (L * nn);
+        Self { revolutions: (half * half - rest / (L * nn)).sqrt() - half }
+    }
+
+    /// Thrust over mass, m/s², and c², m²/s².
+    fn thrust_and_stream(&self, u: f64) -> [f64; 2] {
+        let (L, n) = (PARTICULARS.length, self.revolutions);
+        let thrust = THRUST[0] * u * u / L + THRUST[1] * u * n + L * THRUST[2] * n * n;
+        [thrust, (STREAM[0] * u * n + STREAM[1] * n * n).max(0.0)]
+    }
+}
+
+impl Hull for TankerHull {
+    fn length(&self) -> f64 {
+        PARTICULARS.length
+    }
+
+    fn approach_speed(&self) -> f64 {
+        PARTICULARS.speed
+    }
+
+    /// The equations of the source; the disturbance adds the yaw moment N_ccδ c² δ of approach speed.
+    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration {
+        let Velocity { surge: u, sway: v, yaw: r } = velocity;
+        let L = PARTICULARS.length;
+        let [thrust, cc] = self.thrust_and_stream(u);
+        let delta = -input.rudder;
+        let beta = v.atan2(u);
+        let stalled = cc * beta * beta.abs() * delta.abs();
+
+        let [uu, vv, ccdd, ccbd] = X;
+        let ahead = uu * u * u
+            + L * TURNING[0] * v * r
+            + vv * v * v
+            + cc * delta * (ccdd * delta + ccbd * beta)
+            + L * (1.0 - DEDUCTION) * thrust;
+        let [uv, vav, ccd, ccbbd, of_thrust] = Y;
+        let across = uv * u * v
+            + vav * v * v.abs()
+            + ccd * cc * delta
+            + L * TURNING[1] * u * r
+            + ccbbd * stalled
+            + of_thrust * L * thrust;
+        let [uv, avr, ccd, ccbbd, of_thrust] = N;
+        let disturbed = -self.thrust_and_stream(PARTICULARS.speed)[1] * input.disturbance;
+        let moment = uv * u * v
+            + L * avr * v.abs() * r
+            + ccd * (cc * delta + disturbed)
+            + L * TURNING[2] * u * r
+            + ccbbd * stalled
+            + of_thrust * L * thrust;
+        Acceleration {
+            surge: ahead / (L * INERTIA[0]),
+            sway: across / (L * INERTIA[1]),
+            yaw: moment / (L * L * INERTIA[2]),
+        }
+    }
+}
+
+/// The ship at 8.23 m/s; the rudder turns at 2.33 deg/s, as in the source of the table.
+///
+/// Source: van Berlekom and Goddard (1972), as tabulated in the Marine Systems Simulator (Lauvdal 1994, Fossen 2005).
+pub fn ship() -> Ship {
+    Ship {
+        id: "tanker".into(),
+        name: "tanker of 304.8 m, course-unstable, 16 kn".into(),
+        source: "Van Berlekom and Goddard (1972), in the Marine Systems Simulator".into(),
+        particulars: Some(PARTICULARS),
+        rudder_rate: Some(2.33f64.to_radians()),
+        largest_rudder: None,
+        model: Model::Hull(Arc::new(TankerHull::new())),
+    }
+}
