@@ -28,16 +28,18 @@ const STREAM: [f64; 2] = [0.605, 38.2];
 
 /// uu, vv, ccδδ and ccβδ of X.
 const X: [f64; 4] = [-0.0377, 0.3, -0.093, 0.152];
-/// uv, v|v|, ccδ, ccβ|β||δ| and T of Y.
-const Y: [f64; 5] = [-1.205, -2.400, 0.208, -2.16, 0.04];
-/// uv, |v|r, ccδ, ccβ|β||δ| and T of N.
-const N: [f64; 5] = [-0.451, -0.300, -0.098, 0.688, -0.02];
+/// uv, v|v|, ccδ and ccβ|β||δ| of Y.
+const Y: [f64; 4] = [-1.205, -2.400, 0.208, -2.16];
+/// uv, |v|r, ccδ and ccβ|β||δ| of N.
+const N: [f64; 4] = [-0.451, -0.300, -0.098, 0.688];
 
 /// The hull at the propeller revolutions of her steady approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TankerHull {
     /// n, 1/s.
     revolutions: f64,
+    /// T of Y and N: the asymmetry of a single propeller.
+    by_thrust: [f64; 2],
 }
 
 impl TankerHull {
@@ -47,7 +49,12 @@ impl TankerHull {
         let [uu, un, nn] = THRUST;
         let rest = (uu + X[0] / (1.0 - DEDUCTION)) * U * U / L;
         let half = 0.5 * un * U / (L * nn);
-        Self { revolutions: (half * half - rest / (L * nn)).sqrt() - half }
+        Self { revolutions: (half * half - rest / (L * nn)).sqrt() - half, by_thrust: [0.04, -0.02] }
+    }
+
+    /// The same ship whose thrust does not turn her.
+    pub fn evened(self) -> Self {
+        Self { by_thrust: [0.0; 2], ..self }
     }
 
     /// Thrust over mass, m/s², and c², m²/s².
@@ -82,27 +89,32 @@ impl Hull for TankerHull {
             + vv * v * v
             + cc * delta * (ccdd * delta + ccbd * beta)
             + L * (1.0 - DEDUCTION) * thrust;
-        let [uv, vav, ccd, ccbbd, of_thrust] = Y;
+        let [uv, vav, ccd, ccbbd] = Y;
         let across = uv * u * v
             + vav * v * v.abs()
             + ccd * cc * delta
             + L * TURNING[1] * u * r
             + ccbbd * stalled
-            + of_thrust * L * thrust;
-        let [uv, avr, ccd, ccbbd, of_thrust] = N;
+            + self.by_thrust[0] * L * thrust;
+        let [uv, avr, ccd, ccbbd] = N;
         let disturbed = -self.thrust_and_stream(PARTICULARS.speed)[1] * input.disturbance;
         let moment = uv * u * v
             + L * avr * v.abs() * r
             + ccd * (cc * delta + disturbed)
             + L * TURNING[2] * u * r
             + ccbbd * stalled
-            + of_thrust * L * thrust;
+            + self.by_thrust[1] * L * thrust;
         Acceleration {
             surge: ahead / (L * INERTIA[0]),
             sway: across / (L * INERTIA[1]),
             yaw: moment / (L * L * INERTIA[2]),
         }
     }
+}
+
+/// The equations of [`ship`].
+pub fn equations() -> TankerHull {
+    TankerHull::new()
 }
 
 /// The ship at 8.23 m/s; the rudder turns at 2.33 deg/s, as in the source of the table.
@@ -116,6 +128,6 @@ pub fn ship() -> Ship {
         particulars: Some(PARTICULARS),
         rudder_rate: Some(2.33f64.to_radians()),
         largest_rudder: None,
-        model: Model::Hull(Arc::new(TankerHull::new())),
+        model: Model::Hull(Arc::new(equations())),
     }
 }
