@@ -11,7 +11,7 @@ const SPACING: f64 = 0.05;
 /// Length of the windows after which a replay is restarted, in L/U₀: about half a period of a zig-zag.
 const WINDOW: f64 = 3.5;
 
-/// Time over which a speed is read off positions, in L/U₀: over about a ship length errors of a position weigh little and
+/// Time over which a speed is read off positions, in L/U₀: over a ship length errors of a position weigh little, and
 /// the way is nearly straight.
 const WAY: f64 = 1.0;
 
@@ -156,8 +156,8 @@ pub fn has_speed(trial: &Trial) -> bool {
 /// Speed over ground of every row: the straight way between the first and the last position within half a [`WAY`] of
 /// it, over the time between them. NaN where there are no two.
 ///
-/// A current is part of it. A usual one is below 0.1 U₀, the least deviation of a speed; a stronger one lets the replay
-/// begin at a wrong speed.
+/// A current is part of it. A usual one is below 0.1 U₀, the least deviation of a speed; with a stronger one the
+/// replay begins at a wrong speed.
 fn over_ground(time: &[f64], north: &[f64], east: &[f64]) -> Vec<f64> {
     let read: Vec<usize> = (0..time.len()).filter(|&row| north[row].is_finite() && east[row].is_finite()).collect();
     let of = |now: &f64| {
