@@ -2,7 +2,7 @@
 //!
 //! The rudder that was recorded is replayed through the hull ([`ship::vessel::prime`]), over the whole record and over
 //! windows of 3.5 L/U₀; heading and yaw rate at the start are fitted, speed and sway begin as measured (or at approach
-//! speed) and run on. Minimised is
+//! speed) and run on. Positions give the speed of a record that has none. Minimised is
 //!
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of the speed where it was
 //! recorded]
@@ -10,7 +10,9 @@
 //!
 //! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
 //! or twenty numbers is the ship. They start large and follow what is left of every record, to 1°, 0.2° and 0.1 U₀.
-//! A sway velocity is not fitted: logs do not say of which point of the ship it is.
+//! A sway velocity is not fitted: logs do not say of which point of the ship it is. Nor is a yaw rate beside the
+//! heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it made the heading error on other records of
+//! KVLCC2 0.96 ± 0.02 times what it is without, and smaller in 5 of 11 sets.
 //!
 //! The n records of a ship count as one of their mean length: the error of the form is much the same in all of them.
 //! The turn is one that nearly every ship makes; zig-zags say little of it, and a form fitted to them may do anything
@@ -43,8 +45,8 @@ pub use expected::{EarlierHull, ExpectedHull, Likeness, is_other_froude_number};
 pub use moment::RandomMoment;
 pub use objective::HullDeviations;
 use objective::{HullObjective, variances};
-pub use track::HullReference;
 use track::HullTrack;
+pub use track::{HullReference, has_speed};
 
 /// How a search proceeds.
 const RULES: Rules = Rules {

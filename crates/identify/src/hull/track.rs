@@ -11,6 +11,10 @@ const SPACING: f64 = 0.05;
 /// Length of the windows after which a replay is restarted, in L/U₀: about half a period of a zig-zag.
 const WINDOW: f64 = 3.5;
 
+/// Time over which a speed is read off positions, in L/U₀: over a ship length errors of a position weigh little, and
+/// the way is nearly straight.
+const WAY: f64 = 1.0;
+
 /// Share of the approach speed below which a ship has hardly begun to gather way at the start of a record: no priors
 /// are about her there.
 const SLOW: f64 = 0.4;
@@ -56,7 +60,7 @@ pub(super) struct HullTrack {
     pub turning: Vec<f64>,
     /// Yaw moment as rudder angle, rad: none of a record.
     pub moment: Vec<f64>,
-    /// Speed, where it was recorded.
+    /// Speed, where it was recorded or positions tell it.
     pub speed: Option<Vec<f64>>,
     /// Surge and sway in the first row.
     pub start: [f64; 2],
@@ -113,6 +117,11 @@ impl HullTrack {
             Some(surge.iter().zip(sway.as_ref()?).map(|(u, v)| u.hypot(*v)).collect())
         });
         let time: Vec<f64> = take(trial.time()).into_iter().map(|t| t / second).collect();
+        let speed = speed.or_else(|| {
+            let [north, east] = [Channel::North, Channel::East].map(|own| trial.channel(own).map(take));
+            filled(over_ground(&time, &north?, &east?))
+                .map(|way| way.iter().map(|own| own / reference.length).collect())
+        });
         let drift = sway.as_ref().map_or(0.0, |sway| sway[0]);
         let surge = speed.as_ref().map_or(1.0, |speed| (speed[0] * speed[0] - drift * drift).max(0.0).sqrt());
         let turning = known.and_then(|reference| channel(Channel::PropellerRate, reference));
@@ -135,6 +144,31 @@ impl HullTrack {
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
     }
+}
+
+/// Whether a record tells the speed of the ship: by itself, by surge and sway, or by positions.
+pub fn has_speed(trial: &Trial) -> bool {
+    let channels: [&[Channel]; 3] =
+        [&[Channel::Speed], &[Channel::Surge, Channel::Sway], &[Channel::North, Channel::East]];
+    channels.iter().any(|all| all.iter().all(|own| trial.channel(*own).is_some()))
+}
+
+/// Speed over ground of every row: the straight way between the first and the last position within half a [`WAY`] of
+/// it, over the time between them. NaN where there are no two.
+///
+/// A current is part of it. A usual one is below 0.1 U₀, the least deviation of a speed; with a stronger one the
+/// replay begins at a wrong speed.
+fn over_ground(time: &[f64], north: &[f64], east: &[f64]) -> Vec<f64> {
+    let read: Vec<usize> = (0..time.len()).filter(|&row| north[row].is_finite() && east[row].is_finite()).collect();
+    let of = |now: &f64| {
+        let first = read.partition_point(|&row| time[row] < now - 0.5 * WAY);
+        let after = read.partition_point(|&row| time[row] <= now + 0.5 * WAY);
+        match read[first..after] {
+            [from, .., to] => (north[to] - north[from]).hypot(east[to] - east[from]) / (time[to] - time[from]),
+            _ => f64::NAN,
+        }
+    };
+    time.iter().map(of).collect()
 }
 
 /// First rows of windows that follow one another, and the number of rows; what is less than half a window belongs to
