@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::write(folder.join("report.md"), report)?;
         fs::write(folder.join("performance.csv"), numbers.to_csv())?;
         if let Some(figure) = figure {
-            fs::write(folder.join(format!("{}.png", FIGURE.1)), figure.draw(&Theme::screen()).png()?)?;
+            fs::write(folder.join(format!("{}.png", FIGURE.1)), figure.draw(&Theme::column()).png()?)?;
         }
     }
     Ok(())
@@ -85,7 +85,9 @@ fn identification(rows: &[ComparedWork]) -> NamedRows {
         title: ratio.map(|own| format!("Output error takes {} times as long as SRIVC of dsmc", significant(own, 2))),
         names: rows.iter().map(|row| name(row)).collect(),
         columns: vec![column],
-        note: None,
+        note: Some(String::from(
+            "Hollow: another library, dsmc, or other settings. Line: its SRIVC, from the heading.",
+        )),
     }
 }
 

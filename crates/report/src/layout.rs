@@ -89,7 +89,7 @@ impl Sheet {
                 let text = TextLine { bold: true, ..TextLine::new(line, size).anchor(Anchor::Middle) };
                 sheet.scene.text(Layer::Note, (theme.width / 2.0, sheet.y), text);
             }
-            sheet.y += 0.35 * size;
+            sheet.y += 0.7 * size;
         }
         sheet
     }

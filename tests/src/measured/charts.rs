@@ -1,5 +1,6 @@
 //! Figures over all sets of measured records: errors before and after, and indices that change with the amplitude.
 
+use campaign::statistics::grouped;
 use identify::{Identifier, output_error};
 use report::figures::{Division, Layer, NamedRows, PanelRow, Panels, RowItem, RowKind, RowsColumn, Ruler, Stack};
 use report::palette::{BEFORE, HEADING, Look, Marker, RUDDER, SOLID};
@@ -11,6 +12,12 @@ use super::sets::{MeasuredSet, Outcome};
 
 /// Errors on records that were held out, before and after, a row for each analysis.
 pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
+    let ship = |own: &&MeasuredAnalysis| {
+        let set = own.set.name.split(',').next().unwrap_or_default();
+        let basin = own.set.folder.rsplit('_').next().unwrap_or_default().to_uppercase();
+        if set == "KVLCC2" { format!("{set} {basin}") } else { set.to_owned() }
+    };
+    let ships = grouped(analyses, ship);
     let rows = |of: ReplayError| -> Vec<Vec<RowItem>> {
         let pair = |own: &MeasuredAnalysis| {
             let [before, after] = own.held_out(of);
@@ -22,28 +29,39 @@ pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
                 RowItem::new("traced", RowKind::Mark(traced, after, None)),
             ]
         };
-        analyses.iter().map(pair).collect()
+        ships.iter().flat_map(|(_, own)| [Vec::new()].into_iter().chain(own.iter().map(|own| pair(own)))).collect()
     };
     let column = |title: &str, of| RowsColumn {
         x: Ruler::new(title, Division::Factors),
         rows: rows(of),
         ..RowsColumn::default()
     };
-    let name = |own: &MeasuredAnalysis| {
-        let set = own.set.name.split(',').next().unwrap_or_default();
-        let basin = own.set.folder.rsplit('_').next().unwrap_or_default().to_uppercase();
-        let ship = if set == "KVLCC2" { format!("{set} {basin}") } else { set.to_owned() };
-        format!("{ship}: {}", short(&own.label))
+    let is_better = |own: &&MeasuredAnalysis| {
+        let [before, after] = own.held_out(WHOLE);
+        after < before
     };
+    let better = analyses.iter().filter(is_better).count();
+    let all = analyses.len();
+    let title =
+        format!("Records that were not fitted: the traced model replays them better in {better} of {all} analyses");
+    let names = ships
+        .iter()
+        .flat_map(|(ship, own)| [format!("{ship}:")].into_iter().chain(own.iter().map(|own| short(&own.label))));
     let caption = "Heading error on records that were not fitted, of the best first-order base and of what was traced: whole \
                    replays, and replays restarted every 60 s. A row is one analysis; what was fitted stands at its left.";
     PageFigure::new(
         "held-out",
         caption,
         NamedRows {
-            names: analyses.iter().map(name).collect(),
-            columns: vec![column("whole replay [°]", WHOLE), column("windows of 60 s [°]", WINDOWS_60_S)],
-            ..NamedRows::default()
+            names: names.collect(),
+            columns: vec![
+                column("rms heading error, whole replay [°]", WHOLE),
+                column("rms heading error, windows of 60 s [°]", WINDOWS_60_S),
+            ],
+            title: Some(title),
+            note: Some(String::from(
+                "Rows: name of the fitted record, or how many were fitted together. One mark: both coincide.",
+            )),
         },
     )
 }

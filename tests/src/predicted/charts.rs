@@ -57,15 +57,16 @@ fn by_overshoot(figures: &[ForecastFigure]) -> Vec<PredictedOvershoot<'_>> {
     own.into_iter().map(|(_, models)| PredictedOvershoot::of(models)).collect()
 }
 
-/// The title of the figure of overshoots: median size of the errors over all models.
-fn overshoots_title(overshoots: &[PredictedOvershoot]) -> String {
-    let error = |is_first: bool| {
-        let own = overshoots.iter().filter(|own| own.is_first == is_first).flat_map(|own| &own.models);
+/// Stem of the figure that stands for the page.
+pub const OVERSHOOTS: &str = "overshoots";
+
+/// Median sizes of the errors of first and of later overshoots over all models.
+fn errors<'a>(overshoots: impl Iterator<Item = &'a PredictedOvershoot<'a>> + Clone) -> [String; 2] {
+    [true, false].map(|is_first| {
+        let own = overshoots.clone().filter(|own| own.is_first == is_first).flat_map(|own| &own.models);
         let mut sizes: Vec<f64> = own.map(|own| own.error().abs()).collect();
         median(&mut sizes).map_or_else(|| String::from("–"), |size| significant(size, 2))
-    };
-    let [first, later] = [true, false].map(error);
-    format!("Overshoots of trials that were not fitted: off by {first}° (first) and {later}° (later) in the median")
+    })
 }
 
 /// Overshoots as predicted against measured ones, a panel for each group that has some.
@@ -88,14 +89,20 @@ pub fn overshoots(figures: &[ForecastFigure]) -> PageFigure {
             Layer::new("from each record", PlotCurve { x, y }, LayerKind::Dots(RECORD)),
             Layer::line("predicted = measured", line, Pen { dash: DASHED, ..Pen::new(INK).width(0.8) }),
         ];
-        LayeredPanel { head: Some(group.words().to_owned()), layers }
+        let [first, later] = errors(overshoots.iter().filter(|own| own.group == group));
+        LayeredPanel { head: Some(format!("{}: {first}°, {later}°", group.words())), layers }
     };
     let groups = ForecastGroup::ALL.into_iter().filter(|group| overshoots.iter().any(|own| own.group == *group));
     let row = PanelRow::new(Ruler::decimal("predicted overshoot [°]").within(2.0, None), 0.36);
     let stack = Stack::multiples(2, Ruler::decimal("measured overshoot [°]"), row, groups.map(panel).collect());
     let caption = "Overshoots of trials that were not fitted, predicted against measured: medians from every single record as \
                    dots, the middle one of them as a mark with its 90 % interval.";
-    PageFigure::new("overshoots", caption, Panels { title: Some(overshoots_title(&overshoots)), ..Panels::of(stack) })
+    let [first, later] = errors(overshoots.iter());
+    let title = format!("Overshoots that were not fitted are predicted to {first}° (first) and {later}° (later)");
+    let note =
+        "Bars: 90 % intervals. In the title and above the panels: median errors of first and of later overshoots.";
+    let data = Panels { title: Some(title), note: Some(note.to_owned()), ..Panels::of(stack) };
+    PageFigure::new(OVERSHOOTS, caption, data)
 }
 
 fn curve(track: &TurnTrack) -> PlotCurve {

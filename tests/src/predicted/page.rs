@@ -193,8 +193,8 @@ pub fn write(forecasts: &Forecasts, results: &Path) -> Outcome<()> {
     page.say(INTRODUCTION);
     page.say(COMMAND);
     fs::create_dir_all(results)?;
-    let theme = Theme::screen();
     for figure in page.drawings() {
+        let theme = if figure.stem == charts::OVERSHOOTS { Theme::column() } else { Theme::screen() };
         fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&theme).png()?)?;
     }
     fs::write(results.join("README.md"), page.to_markdown())?;

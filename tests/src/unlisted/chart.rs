@@ -49,15 +49,25 @@ pub fn outcomes(truths: &[Truth], outcomes: &[Outcome]) -> PageFigure {
     let listed = right(|kind| matches!(kind, Kind::Listed { .. }));
     let unlisted = right(|kind| matches!(kind, Kind::Unlisted { .. }));
     let map = CellMap {
-        title: Some(format!("Other formulas: {listed} trials; on no list: {unlisted}")),
+        title: Some(format!("Listed effects in other formulas: {listed} trials; effects on no list: {unlisted}")),
         titles: [String::from("said by the trace"), String::new()],
         columns: SAID.iter().map(|(words, _)| (*words).to_owned()).collect(),
         rows: (truths.iter().enumerate())
-            .map(|(ship, truth)| format!("{} (n = {})", truth.name, of_ship(ship).count()))
+            .map(|(ship, truth)| {
+                let kind = match truth.kind {
+                    Kind::Listed { .. } => "listed: ",
+                    Kind::Unlisted { .. } => "no list: ",
+                    Kind::Nothing => "",
+                };
+                format!("{kind}{} ({})", truth.name, of_ship(ship).count())
+            })
             .collect(),
         shades: Shades::Shares,
         panels: vec![(None, cells.collect())],
-        note: Some(String::from("Shares of the trials in per cent, with 95 % intervals where there is room.")),
+        note: Some(String::from(
+            "Shares of the trials (number behind the name) in per cent. Located: a moment in time, at the right time. \
+             Unexplained: said so. Clean: nothing missing. Alias: not to be told from the truth.",
+        )),
     };
     let caption = "What was said of every ship, both noises together, with 95 % intervals (Wilson). A wrong name is an effect \
                    of the ship, or one of time away from every change.";

@@ -14,6 +14,9 @@ const ACCURACY: f64 = 1e-3;
 /// Below this a value is zero.
 const ZERO: f64 = 1e-12;
 
+/// Quartile distances beyond the quartiles where a density ends at the latest.
+const TAILS: f64 = 3.0;
+
 /// A sample that is being taken.
 #[derive(Debug, Clone, Default)]
 pub struct ErrorSample {
@@ -141,8 +144,10 @@ impl Ordered {
         self.distances(self.quantile(0.5)?).figure(0.5)
     }
 
-    /// Density by a Gaussian kernel at `points` places from one end of the middle 98 % to the other, with the bandwidth
-    /// of Silverman (1986, eq. 3.31); nothing for fewer than ten values or for values that are all the same.
+    /// Density by a Gaussian kernel at `points` places from one end of the middle 98 % to the other, or three quartile
+    /// distances beyond the quartiles where heavy tails reach further: places across these would be too far apart for
+    /// the kernel. Bandwidth of Silverman (1986, eq. 3.31); nothing for fewer than ten values or for values that are all
+    /// the same.
     pub fn density(&self, points: usize) -> Vec<(f64, f64)> {
         let quantiles = [0.01, 0.25, 0.75, 0.99].map(|p| self.quantile(p).unwrap_or(0.0));
         let n = self.len() as f64;
@@ -152,7 +157,9 @@ impl Ordered {
             return Vec::new();
         }
         let bandwidth = 0.9 * spread * n.powf(-0.2);
-        let (from, to) = (quantiles[0] - 2.0 * bandwidth, quantiles[3] + 2.0 * bandwidth);
+        let reach = TAILS * (quantiles[2] - quantiles[1]);
+        let from = (quantiles[0] - 2.0 * bandwidth).max(quantiles[1] - reach);
+        let to = (quantiles[3] + 2.0 * bandwidth).min(quantiles[2] + reach);
         let norm = 1.0 / (n * bandwidth * (2.0 * std::f64::consts::PI).sqrt());
         (0..points)
             .map(|k| {

@@ -94,7 +94,7 @@ impl CellMap {
 pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     let box_of = |dash: Dash| KeySample::Line(Stroke::solid(INK, 1.4 * theme.line).dashed(dash));
-    let outlines = [(Outline::Right, SOLID, "outlined: right"), (Outline::Alias, DOTTED, "cannot be told from it")];
+    let outlines = [(Outline::Right, SOLID, "outlined: right"), (Outline::Alias, DOTTED, "indistinguishable from it")];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
     sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(box_of(dash), *name)).collect::<Vec<_>>());
     let count = data.panels.len().max(1);
@@ -143,14 +143,15 @@ fn bar(sheet: &mut Sheet, (division, title): (Division, &str), theme: &Theme, ra
         Division::Factors => PlotAxis::log_between(value(range.low), value(range.high)),
         _ => PlotAxis::linear(range.low, range.high, TickSteps::Decimal),
     };
-    let strip = (0.5 * theme.width, 0.4 * theme.width);
+    let strip = (0.25 * theme.width, 0.5 * theme.width);
     let row = (AxisSide::new(PlotAxis::names(Vec::new()), ""), 0.9 * theme.small_font);
     let panels = sheet.grid_within(Grid::new(vec![AxisSide::new(axis, title)], vec![row]), strip);
     let Some(panel) = panels.first() else { return };
     let (top, bottom) = (panel.rect.y, panel.rect.bottom());
     for piece in 0..PIECES {
         let at = |share: f64| panel.rect.x + share * panel.rect.w;
-        let (left, right) = (at(piece as f64 / PIECES as f64), at((piece + 1) as f64 / PIECES as f64));
+        // Each lies over the end of the one before: edges side by side would let the paper through.
+        let (left, right) = (at(piece as f64 / PIECES as f64), panel.rect.right());
         let along = range.low + (piece as f64 + 0.5) / PIECES as f64 * (range.high - range.low);
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
         sheet.scene.fill(Layer::Data, corners, range.colour(value(along)).0, 1.0);
@@ -205,7 +206,7 @@ impl Range {
     fn colour(&self, value: f64) -> (Paint, f64) {
         if self.is_shares {
             let share = (value / 100.0).clamp(0.0, 1.0);
-            return (HEADING, if share > 0.0 { 0.12 + 0.88 * share } else { 0.0 });
+            return (HEADING, if share > 0.0 { 0.1 + 0.5 * share } else { 0.0 });
         }
         let (along, range) = (self.along(value).unwrap_or(self.low), self.high - self.low);
         let share = if range > 0.0 { ((along - self.low) / range).clamp(0.0, 1.0) } else { 0.5 };

@@ -11,7 +11,7 @@ use crate::layout::{AxisSide, Grid, NAMES, Sheet};
 use crate::legend::{KeyEntry, KeySample};
 use crate::lines::wrap;
 use crate::number::significant;
-use crate::palette::{HEADING, INK, Look, PAPER, RECORD};
+use crate::palette::{GRID, HEADING, INK, Look, PAPER, RECORD};
 use crate::panel::Panel;
 use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
 use crate::theme::Theme;
@@ -124,7 +124,7 @@ impl RowItem {
 
 /// Share of the range of usual distributions by which the median of another may widen an axis, and its quartiles.
 const MEDIANS: f64 = 4.0;
-const BOXES: f64 = 2.5;
+const BOXES: f64 = 4.0;
 
 /// All rows over one axis.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -166,7 +166,10 @@ fn thick_stroke(theme: &Theme) -> Stroke {
     Stroke { opacity: 0.55, ..Stroke::solid(HEADING, 2.9 * theme.marker) }
 }
 
-/// Draws the columns side by side, or above each other when the figure is narrow. What reaches beyond an axis is cut
+/// Rows that may stand twice below each other.
+const FEW: usize = 8;
+
+/// Draws the columns side by side, or above each other when the figure is narrow and has few rows. What reaches beyond an axis is cut
 /// and marked.
 pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
@@ -180,7 +183,9 @@ pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
     let row = (AxisSide::new(PlotAxis::names(data.names.clone()), ""), height);
     let sides = data.columns.iter().map(|column| AxisSide::new(axis(column), column.x.title.clone()));
-    let panels = match theme.is_narrow() {
+    // Two columns over many rows would be too tall below each other.
+    let is_stacked = theme.is_narrow() && (data.columns.len() != 2 || data.names.len() <= FEW);
+    let panels = match is_stacked {
         true => sides.flat_map(|side| sheet.grid(Grid::stack(side, vec![row.clone()]))).collect(),
         false => sheet.grid(Grid::new(sides.collect(), vec![row])),
     };
@@ -244,6 +249,12 @@ fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (column, pitch): (&Row
     for (row, items) in column.rows.iter().enumerate() {
         let Some(middle) = panel.up(row as f64) else { continue };
         let stacked = items.iter().filter(|item| item.is_stacked()).count();
+        // A ground under every other row keeps several marks of a row together.
+        if stacked > 1 && !row.is_multiple_of(2) {
+            let ([left, right], [top, bottom]) =
+                ([panel.rect.x, panel.rect.right()], [-0.5, 0.5].map(|s| middle + s * pitch));
+            scene.fill(Layer::Grid, [(left, top), (right, top), (right, bottom), (left, bottom)], GRID, 0.45);
+        }
         let mut line = -0.5 * (stacked + 1) as f64;
         for item in items {
             line += if item.is_stacked() { 1.0 } else { 0.0 };
@@ -257,12 +268,6 @@ fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (column, pitch): (&Row
             let text = TextLine::new("no estimate", theme.small_font).anchor(Anchor::Middle).colour(RECORD);
             let place = (panel.rect.x + panel.rect.w / 2.0, middle + text.centring());
             scene.text_on_ground(Layer::Note, place, text);
-        }
-        // A line between rows with several marks keeps them together.
-        if let Some(above) = panel.up(row as f64 - 1.0).filter(|_| row > 0 && stacked > 1) {
-            let (y, stroke) =
-                (0.5 * (above + middle), Stroke { opacity: 0.35, ..Stroke::solid(INK, 0.6 * theme.thin) });
-            scene.line(Layer::Grid, [(panel.rect.x, y), (panel.rect.right(), y)], stroke);
         }
     }
     beyond

@@ -1,6 +1,6 @@
 //! Figures of a benchmark: scores over those of the reference.
 
-use campaign::benchmark::board::Board;
+use campaign::benchmark::board::{Board, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::folder::ResultFolder;
 use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
@@ -64,6 +64,21 @@ fn axis_title(task: BenchTask) -> &'static str {
     }
 }
 
+/// Which methods leave less of the fitted records than the reference, as far as chance can be ruled out.
+fn finding(boards: &[&Board], reference: &str) -> String {
+    let fitted = boards.iter().find(|board| board.task == BenchTask::Identify);
+    let is_better = |standing: &&LeaderboardRow| {
+        let upper = standing.ratio.and_then(|ratio| ratio.ci95?[1]);
+        upper.is_some_and(|upper| upper < 1.0)
+    };
+    let better = fitted.into_iter().flat_map(|board| &board.standings).filter(is_better);
+    match better.map(|standing| standing.method.as_str()).collect::<Vec<_>>()[..] {
+        [] => format!("no method fits clearly better than {reference}"),
+        [only] => format!("only {only} fits clearly better than {reference}"),
+        ref some => format!("{} fit clearly better than {reference}", some.join(" and ")),
+    }
+}
+
 fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let boards: Vec<_> = results.boards.iter().filter(|board| board.field == field).collect();
     let others: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
@@ -81,16 +96,20 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             vec![RowItem::new("", RowKind::Mark(origin(method).look(), value.max(f64::MIN_POSITIVE), interval))]
         };
         RowsColumn {
-            x: Ruler::new(axis_title(board.task), Division::Factors),
+            x: Ruler::new(format!("score ratio, {}", axis_title(board.task)), Division::Factors),
             reference: Some(Reference95::line(1.0)),
             rows: others.iter().map(row).collect(),
             ..RowsColumn::default()
         }
     };
     Some(NamedRows {
-        title: Some(format!("{}: left of the line a method is better than {}", capital(field), results.reference)),
+        title: Some(format!("{}: {}", capital(field), finding(&boards, &results.reference))),
         names: others.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
-        note: Some(format!("Score over that of {}: medians over the cases, with 95 % intervals.", results.reference)),
+        note: Some(format!(
+            "Left of the line a method is better than {}. Medians over the cases; bars: 95 % intervals, from six independent \
+             records on.",
+            results.reference
+        )),
     })
 }

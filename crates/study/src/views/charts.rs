@@ -86,6 +86,11 @@ const WORTHLESS: f64 = 100.0;
 /// Error below which an answer is exact, per cent.
 const EXACT: f64 = 1e-4;
 
+/// What is said of errors that are worth nothing.
+pub const CUT_NOTE: &str = "Arrows: rms error of more than 100 % of the true value.";
+/// What is said of errors that are exact.
+pub const EXACT_NOTE: &str = "Errors below 0.0001 % are drawn there.";
+
 /// The methods that can be compared in some cells, and whether they are held against a first-order response that is
 /// only the nearest to the ship. Nothing where K and T are not one thing in all cells and the study is about
 /// predictions, and where intervals would be of a response that is no truth. A trace is held against the ship's own K
@@ -145,13 +150,13 @@ impl<'a> ComparedMethods<'a> {
     fn titles(&self) -> Vec<String> {
         let of_both = |words: &str| ["K", "T"].map(|symbol| words.replace('#', symbol));
         match self.measure {
-            ErrorMeasure::Rms if self.over_bound => of_both("rms error of # over the bound").to_vec(),
+            ErrorMeasure::Rms if self.over_bound => of_both("rms error of # / Cramér–Rao bound").to_vec(),
             ErrorMeasure::Rms => ["K", "T"].map(|symbol| rms_title(symbol, self.to_nearest)).to_vec(),
             ErrorMeasure::Coverage => {
                 [of_both("95 % intervals that hold # [%]"), of_both("median interval width of # [%]")].concat()
             }
             ErrorMeasure::Failures => vec!["trials without answer [%]".to_owned()],
-            ErrorMeasure::Validation => vec!["median error of a heading not seen [°]".to_owned()],
+            ErrorMeasure::Validation => vec!["median error of an unseen heading [°]".to_owned()],
         }
     }
 
@@ -199,8 +204,13 @@ impl<'a> ComparedMethods<'a> {
         let figures: Vec<(Statistic, bool)> = places.flat_map(of).collect();
         let is_cut = figures.iter().any(|(_, is_worthless)| *is_worthless);
         let is_exact = self.measure == ErrorMeasure::Rms && figures.iter().any(|(figure, _)| figure.value == EXACT);
-        let remarks =
-            [(is_cut, "Arrows: rms error above 100 %."), (is_exact, "Errors below 0.0001 % are drawn there.")];
+        let has_bars = figures.iter().any(|(figure, is_worthless)| figure.ci95.is_some() && !is_worthless);
+        let remarks = [
+            (has_bars, "Bars: 95 % intervals; none seen: within the mark."),
+            (self.measure == ErrorMeasure::Coverage, "Grey band: what chance leaves of 95 %."),
+            (is_cut, CUT_NOTE),
+            (is_exact, EXACT_NOTE),
+        ];
         let said: Vec<&str> = remarks.into_iter().filter(|(holds, _)| *holds).map(|(_, remark)| remark).collect();
         (!said.is_empty()).then(|| said.join(" "))
     }
@@ -348,11 +358,13 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
             ..RowsColumn::default()
         }
     };
-    let rows = format!("Rows: {}.", design.axes[x]);
+    // A number needs its quantity, a name does not.
+    let rows = design.axes[x].contains('[').then(|| format!("Rows: {}.", design.axes[x]));
+    let note: Vec<String> = rows.into_iter().chain(compared.note(part)).collect();
     NamedRows {
         title: None,
         names: group.cells.iter().map(|&cell| design.cells[cell].labels[x].clone()).collect(),
         columns: compared.titles().into_iter().enumerate().map(column).collect(),
-        note: Some(compared.note(part).map_or(rows.clone(), |note| format!("{rows} {note}"))),
+        note: (!note.is_empty()).then(|| note.join(" ")),
     }
 }

@@ -5,6 +5,9 @@ use report::figures::{Layer, LayerKind, NamedRows, Panels, Pen, Plot, RowItem, R
 use report::palette::{Look, Marker, QUIET};
 use report::{CurveOrigin, palette::SOLID};
 
+use super::charts::{CUT_NOTE, EXACT_NOTE};
+use campaign::statistics::distinct;
+
 /// How a method is drawn that the figure is not about.
 const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
 
@@ -30,7 +33,7 @@ fn is_of_k(title: &str) -> bool {
 }
 
 fn of_panels(data: &mut Panels, about: &[String]) {
-    let mut has_others = false;
+    let mut others: Vec<String> = Vec::new();
     for stack in &mut data.stacks {
         if stack.across.is_some() {
             // Small multiples are of one method each.
@@ -42,24 +45,40 @@ fn of_panels(data: &mut Panels, about: &[String]) {
         for panel in &mut stack.panels {
             for layer in &mut panel.layers {
                 if is_quiet(layer.name.as_ref(), about)
-                    && let LayerKind::Marks(marks) = &mut layer.kind
+                    && let LayerKind::Marks(marks) = &layer.kind
                 {
-                    layer.name = None;
-                    marks.look.colour = QUIET;
-                    marks.joined = marks.joined.map(|pen| Pen { colour: QUIET, ..pen.width(0.7) });
-                    has_others = true;
+                    others.extend(layer.name.take());
+                    let dash = marks.joined.map_or(SOLID, |pen| pen.dash);
+                    layer.kind = LayerKind::Line(Pen { dash, ..Pen::new(QUIET).width(0.8) });
+                    layer.room = Some(BESIDE);
                 }
             }
             // What the figure is about stands over the rest.
-            let is_quiet = |layer: &Layer| matches!(&layer.kind, LayerKind::Marks(own) if own.look.colour == QUIET);
+            let is_quiet = |layer: &Layer| matches!(&layer.kind, LayerKind::Line(pen) if pen.colour == QUIET);
             panel.layers.sort_by_key(|layer| !is_quiet(layer));
         }
     }
-    if has_others {
-        data.note =
-            Some(["Grey: other methods."].into_iter().chain(data.note.as_deref()).collect::<Vec<_>>().join(" "));
-    }
+    let others = distinct(others);
+    let grey = match others.len() {
+        0 => return,
+        1..=NAMED => format!("Grey: {}.", others.join("; ")),
+        _ => String::from("Grey: other methods."),
+    };
+    let layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
+    let is_cut = layers
+        .filter(|layer| matches!(layer.kind, LayerKind::Marks(_)))
+        .any(|own| own.curve.y.contains(&f64::INFINITY));
+    // What is said of arrows and of the exact holds for marks, and lines have none.
+    let note = data.note.take().unwrap_or_default().replace(EXACT_NOTE, "");
+    let note = if is_cut { note } else { note.replace(CUT_NOTE, "") };
+    data.note = Some(format!("{grey} {note}").trim_end().to_owned());
 }
+
+/// Methods beside those a figure is about that its note names.
+const NAMED: usize = 3;
+
+/// Share of the range of what a figure is about by which the others may widen an axis.
+const BESIDE: f64 = 0.2;
 
 /// Leaves the rows of K out, and hands their heads on.
 fn keep_t(stack: &mut Stack) {
@@ -70,7 +89,7 @@ fn keep_t(stack: &mut Stack) {
     stack.panels.retain(|_| row.next().is_some_and(|panel| is_kept[panel / across]));
     stack.rows.retain(|row| !is_of_k(&row.y.title));
     stack.panels.iter_mut().zip(heads).for_each(|(panel, head)| panel.head = head);
-    stack.rows.iter_mut().for_each(|row| row.height = 0.3);
+    stack.rows.iter_mut().for_each(|row| row.height = 0.26);
 }
 
 fn of_rows(data: &mut NamedRows, about: &[String]) {
@@ -78,6 +97,9 @@ fn of_rows(data: &mut NamedRows, about: &[String]) {
     for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
         // The others share a line.
         row.sort_by_key(|item| is_quiet(item.name.as_ref(), about));
+        let value = |item: &RowItem| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None };
+        let own: Vec<_> = row.iter().filter(|item| !is_quiet(item.name.as_ref(), about)).map(value).collect();
+        row.retain(|item| !is_quiet(item.name.as_ref(), about) || !own.contains(&value(item)));
         let mut place = RowPlace::Below;
         for item in row.iter_mut().filter(|item| is_quiet(item.name.as_ref(), about)) {
             if let RowItem { kind: RowKind::Mark(look, _, interval), .. } = item {
@@ -117,17 +139,19 @@ mod tests {
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
         assert_eq!(panels[1].head.as_deref(), Some("column 1"));
-        let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
-        assert!(marks.look.colour == QUIET && panels[0].layers[0].name.is_none());
-        assert_eq!(data.note.as_deref(), Some("Grey: other methods."));
+        let LayerKind::Line(pen) = &panels[0].layers[0].kind else { panic!() };
+        assert!(pen.colour == QUIET && panels[0].layers[0].name.is_none());
+        assert_eq!(data.note.as_deref(), Some("Grey: srivc."));
     }
 
     #[test]
     fn other_methods_share_a_line_below_those_the_figure_is_about() {
-        let item = |id: &str| RowItem::below(method(id).0, method(id).1, 1.0, None);
+        let item = |id: &str, value: f64| RowItem::below(method(id).0, method(id).1, value, None);
+        // What coincides with one of those is not drawn.
+        let items = [("srivc", 2.0), ("output-error", 1.0), ("least-squares", 3.0), ("maximum-likelihood", 1.0)];
         let column = |title: &str| RowsColumn {
             x: Ruler::decimal(title),
-            rows: vec![vec![item("srivc"), item("output-error"), item("least-squares")]],
+            rows: vec![items.map(|(id, value)| item(id, value)).into()],
             ..RowsColumn::default()
         };
         let rows =
@@ -136,7 +160,7 @@ mod tests {
         assert_eq!(data.columns.len(), 1);
         let row = &data.columns[0].rows[0];
         assert_eq!(row[0].name.as_deref(), Some("output-error"));
-        assert_eq!([row[1].place, row[2].place], [RowPlace::Below, RowPlace::Beside]);
+        assert_eq!((row.len(), row[1].place, row[2].place), (3, RowPlace::Below, RowPlace::Beside));
         assert_eq!(row[1].name, row[2].name);
     }
 }

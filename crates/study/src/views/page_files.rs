@@ -12,6 +12,9 @@ pub const REPORT: &str = "report.md";
 /// The same page for a browser, in one file.
 pub const BROWSER: &str = "report.html";
 
+/// Stem of the figure that stands for a page.
+pub const KEY_FIGURE: &str = "hero";
+
 /// Draws the figures of a page and writes it in both forms; without a theme it is a page of words and tables.
 ///
 /// Fails when the style has limits for an axis that is in none of the figures, and when a file cannot be written, with
@@ -43,7 +46,8 @@ fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure
         )));
     }
     first_failure(figures.par_iter().map(|PageFigure { stem, plot, .. }| {
-        let figure = plot.draw(theme);
+        let theme = if stem == KEY_FIGURE { theme.of_key_figure() } else { *theme };
+        let figure = plot.draw(&theme);
         folder.write(&format!("{stem}.svg"), figure.svg())?;
         folder.write(&format!("{stem}.png"), figure.png().on("draw the figure", &folder.path().join(stem))?)
     }))

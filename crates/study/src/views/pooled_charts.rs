@@ -5,10 +5,10 @@ use campaign::design::Design;
 use campaign::statistics::{distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use report::figures::{
-    CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, Reference95, RowItem,
-    RowKind, RowsColumn, Ruler, Shades, Stack,
+    CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind,
+    RowsColumn, Ruler, Shades, Stack,
 };
-use report::palette::DOTTED;
+use report::palette::{DASHED, DOTTED, INK};
 use report::{CurveOrigin, PlotCurve, symbol};
 
 use super::charts::{ErrorMeasure, comparable, origin, rms_title};
@@ -30,7 +30,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
         let (methods, to_nearest) = comparable(design, measure, design.cells.iter())?;
         let title = match measure {
             ErrorMeasure::Rms => rms_title(stem, to_nearest),
-            _ => String::from("validation error of the heading [°]"),
+            _ => String::from("error of the predicted heading [°]"),
         };
         // Cells are the product of the axes, the first axis slowest.
         let cell = |x: usize, y: usize, method: usize| {
@@ -86,7 +86,7 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
         let trials = summary.record(detail.cell, 0).map_or(0, |record| record.trials);
         let known = columns.iter().flat_map(|column| &column.rows).any(|row| !row.is_empty());
         let names = (0..detail.methods.len()).map(|method| design.methods[method].label.clone()).collect();
-        let note = Some(String::from("Box: quartiles and median. Line: 2.5 to 97.5 %."));
+        let note = Some(String::from("Shape: density. Box: quartiles, with the median. Line: 2.5 to 97.5 %."));
         (trials >= 10 && known).then_some((detail.cell, NamedRows { title: None, names, columns, note }))
     };
     summary.details.iter().filter_map(of_cell).collect()
@@ -118,7 +118,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
         let panels = detail.methods.iter().enumerate().map(panel).collect();
         let across = if count == 4 { 2 } else { count.clamp(1, 3) };
         let multiples = Stack::multiples(across, axis("K"), PanelRow::zeroed(axis("T"), 0.24), panels);
-        let note = Some(String::from("Outlines: 95 %."));
+        let note = Some(String::from("Outlines: ellipses of 95 % of the trials, solid as found, dotted at the bound."));
         let data = Panels { note, ..Panels::of(Stack { zero: true, ..multiples }) };
         let known = detail.methods.iter().any(|own| own.cloud.is_some());
         known.then_some((detail.cell, bound.is_some(), data))
@@ -154,21 +154,21 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
             };
             series.iter().enumerate().filter_map(dot).collect()
         };
-        let x = Ruler::decimal(format!("{symbol} over that of a {}", names[0]));
+        let x = Ruler::decimal(format!("{symbol} / {symbol} of the {}", names[0]));
         RowsColumn { x, rows: (0..names.len()).map(row).collect(), ..RowsColumn::default() }
     };
     let rows = NamedRows {
         title: None,
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
-        note: Some(format!("Rows: {}. Bars: 95 % intervals of the mean.", design.axes[last])),
+        note: Some(String::from("Marks: means, whose 95 % intervals are bars; none seen: within the mark.")),
     };
     Some((rows, design.methods[summary.reference].label.clone()))
 }
 
 /// How often 90 % intervals of predictions hold, cell by cell and method by method, and how wide they are: the mean
-/// over the figures, and as a bar the lowest and the highest share and the middle half of the widths; nothing without
-/// predictions.
+/// share and the median width over the predicted values, and as a bar the lowest and the highest share and the middle
+/// half of the widths; nothing without predictions.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
     let dot = |of: Of, outer: usize, (cell, method): (usize, usize)| {
@@ -178,12 +178,13 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
         let last = shares.len().checked_sub(1)?;
         let cut = last * outer / 100;
         let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+        let middle = if outer > 0 { 0.5 * (shares[last / 2] + shares[last.div_ceil(2)]) } else { mean };
         let origin = origin(design, method);
-        Some(RowItem::below(origin.label(), origin.look(), mean, Some([shares[cut], shares[last - cut]])))
+        Some(RowItem::below(origin.label(), origin.look(), middle, Some([shares[cut], shares[last - cut]])))
     };
-    let column = |x: Ruler, of: Of, outer: usize, reference: Option<Reference95>| {
+    let column = |x: Ruler, of: Of, outer: usize, lines: Vec<(String, Pen, f64)>| {
         let row = |cell: usize| (0..design.methods.len()).filter_map(|method| dot(of, outer, (cell, method))).collect();
-        RowsColumn { x, rows: (0..design.cells.len()).map(row).collect(), reference, ..RowsColumn::default() }
+        RowsColumn { x, rows: (0..design.cells.len()).map(row).collect(), lines, ..RowsColumn::default() }
     };
     let inside = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
     let width = |line: &PredictionSummary| 100.0 * line.width() / line.truth().abs();
@@ -195,12 +196,13 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
                 Ruler::new("90 % intervals that hold [%]", Division::Percent),
                 inside,
                 0,
-                Some(Reference95::line(90.0)),
+                vec![(String::from("90 %"), Pen { dash: DASHED, ..Pen::new(INK) }, 90.0)],
             ),
-            column(Ruler::new("their width [% of the value]", Division::Factors), width, 25, None),
+            column(Ruler::new("their width [% of the predicted value]", Division::Factors), width, 25, Vec::new()),
         ],
         note: Some(String::from(
-            "Markers: mean over the figures. Bars: from the lowest to the highest of them, of widths the middle half.",
+            "Over the predicted overshoots, times and turns. Marks: mean share, median width. Bars: lowest to highest share, \
+             middle half of the widths.",
         )),
     })
 }

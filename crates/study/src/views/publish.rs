@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use report::{Table, Theme};
 use scenario::failure::{Failure, OnPath};
 
-use super::page_files::{REPORT, write_page};
-use super::study_figures::{self, FigurePlace, KEY_FIGURE};
+use super::page_files::{KEY_FIGURE, REPORT, write_page};
+use super::study_figures::{self, FigurePlace};
 use super::study_page::{on_screen, page};
 use super::{coverage_table, curve_tables, tables, tracing_table};
 use crate::documents::{self, answers::StudyAnswer};

@@ -6,6 +6,7 @@ use scenario::name::slug;
 
 use super::charts::{self, ErrorMeasure};
 use super::key_figure;
+use super::page_files::KEY_FIGURE;
 use super::pooled_charts;
 use super::trace_charts as traces;
 use super::tracing_table::has_several;
@@ -34,9 +35,6 @@ pub enum FigurePlace {
 
 /// A figure and its place.
 pub type StudyFigure = (FigurePlace, PageFigure);
-
-/// Stem of the figure that stands for a study.
-pub const KEY_FIGURE: &str = "hero";
 
 /// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
 /// A name of a figure that there is not is warned of.
@@ -147,7 +145,8 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     };
     let power = traces::power(&lines).map(|data| {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood \
-                       ratio it has on average against the best first-order response, with 95 % intervals. Curves: power of a \
+                       ratio it has on average against the best first-order response, cells of like ratio together, with 95 % \
+                       intervals. Curves: power of a \
                        likelihood-ratio test with one to three parameters at the threshold that a trace has under white noise.";
         PageFigure::new("power", format!("{caption}{whose}"), data)
     });

@@ -77,8 +77,8 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
         shades: Shades::Shares,
         panels: vec![(None, cells.collect())],
         note: Some(String::from(
-            "Shares of the trials in per cent, with 95 % intervals where there is room; empty: never named; full without \
-             a number: 100.",
+            "Shares of the trials in per cent, with 95 % intervals where there is room; empty: never named. A trace may name \
+             several effects, so that a row may exceed 100.",
         )),
     }
 }
@@ -148,11 +148,14 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
     layers.extend(variants.iter().map(|variant| Layer::marks(*variant, look(INK, variant), Vec::new())));
     let row = PanelRow::new(Ruler::decimal("trials named exactly [%]"), 0.42);
     let stack = Stack { zero: true, ..Stack::over(Ruler::decimal(FALSE_NAMES), vec![(row, layers)]) };
-    Panels { note: Some(String::from("Bars: 95 % intervals. Best is top left.")), ..Panels::of(stack) }
+    Panels { note: Some(String::from("Best is top left. Bars: 95 % intervals.")), ..Panels::of(stack) }
 }
 
 /// Smallest expected likelihood ratio that is drawn.
 const SMALLEST: f64 = 1.0;
+
+/// Groups of cells in a decade of expected likelihood ratios: a cell alone has few trials.
+const POOLS: f64 = 3.0;
 
 /// Points of a curve of theory.
 const POINTS: usize = 80;
@@ -198,13 +201,17 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
             [only] => is_of_time(only) == needs_search,
             _ => false,
         };
-        let point = |line: &TraceSummary| {
-            let share = line.complete_share()?.times(100.0);
-            Some((line.expected.filter(|expected| *expected > SMALLEST)?, share.value, share.ci95))
+        let size = |line: &TraceSummary| line.expected.filter(|expected| *expected > SMALLEST).map(f64::log10);
+        let sized = lines.iter().filter(is_wanted).filter_map(|line| Some((size(line)?, line)));
+        let pool = |(_, own): (i64, Vec<(f64, &TraceSummary)>)| {
+            let count = |of: fn(&TraceSummary) -> u64| own.iter().map(|(_, line)| of(line)).sum();
+            let share = share(count(|line| line.complete), count(|line| line.trials))?.times(100.0);
+            let middle = own.iter().map(|(size, _)| size).sum::<f64>() / own.len() as f64;
+            Some((10f64.powf(middle), share.value, share.ci95))
         };
-        lines.iter().filter(is_wanted).filter_map(point).collect()
+        grouped(sized, |(size, _)| (POOLS * size).floor() as i64).into_iter().filter_map(pool).collect()
     };
-    let series = [(false, "an effect of the ship or its gear"), (true, "a moment that depends on time")];
+    let series = [(false, "effect of the ship or its gear"), (true, "moment that depends on time")];
     let series = series.map(|(of_time, name)| (name, points(of_time)));
     let series: Vec<_> = series.into_iter().filter(|(_, points)| !points.is_empty()).collect();
     let largest = series.iter().flat_map(|(_, points)| points).map(|point| point.0).reduce(f64::max)?;
@@ -214,10 +221,11 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
             (0..POINTS).map(|k| SMALLEST * (largest / SMALLEST).powf(k as f64 / (POINTS - 1) as f64)).collect();
         let power: Vec<f64> = sizes.iter().map(|&size| 100.0 * exceeds(freedom, size, limit)).collect();
         let plural = if freedom == 1 { "" } else { "s" };
-        (format!("likelihood-ratio test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
+        (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
     });
-    let x = Ruler::new("expected likelihood ratio against the best first-order response", Division::Factors);
-    Some(shares(x, "named [%]", series, theory.into()))
+    let x = Ruler::new("expected 2 ln (likelihood ratio) over the best first-order response", Division::Factors);
+    let note = Some(String::from("Marks: trials of missing effects of like size. Bars: 95 % intervals."));
+    Some(Panels { note, ..shares(x, "trials in which it is named [%]", series, theory.into()) })
 }
 
 /// Probabilities and how often they came true, for traces of ships whose effects are known; `None` without any.

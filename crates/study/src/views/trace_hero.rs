@@ -3,9 +3,9 @@
 
 use ::trace::document::BeforeAfter;
 use campaign::curves::curve;
-use report::PageFigure;
 use report::figures::{Division, Layer, LayeredPanel, PanelRow, Panels, Ruler, Stack};
 use report::number::significant;
+use report::{CurveOrigin, PageFigure};
 
 use super::record_figures::heading_and_residual;
 use super::trace_figures::{models_over_time, ratio};
@@ -17,44 +17,50 @@ const NAMES: usize = 3;
 
 /// The finding: what is missing, and both ratios.
 fn title(document: &TraceDocument) -> String {
-    let mut ids: Vec<String> = document.trace.effects.iter().map(|one| one.id.replace('_', " ")).collect();
+    let name = |id: &str| id.trim_end_matches("_measured").replace('_', " ");
+    let mut ids: Vec<String> = document.trace.effects.iter().map(|one| name(&one.id)).collect();
     ids.dedup();
     let more = ids.len().saturating_sub(NAMES);
     if more > 0 {
         ids.truncate(NAMES);
         ids.push(format!("{more} more"));
     }
-    let lacks = match &ids[..] {
-        [] => String::from("No effect is named"),
-        [one] => format!("The first-order response lacks {one}"),
-        [first @ .., last] => format!("The first-order response lacks {} and {last}", first.join(", ")),
+    let with = match &ids[..] {
+        [] => String::from("No effect is named:"),
+        [one] => format!("With {one}"),
+        [first @ .., last] => format!("With {} and {last}", first.join(", ")),
     };
     let error = &document.trace.error;
     let records = |count: usize| if count == 1 { "record" } else { "records" };
     let [fitted, held] = [&error.identification, &error.validation];
     format!(
-        "{lacks}: heading error × {:.2} on {} fitted {}, × {:.2} on {} held out",
-        ratio(fitted.iter()),
+        "{with} the heading error is {:.0} % of a first-order response’s on {} fitted {}, {:.0} % on {} held out",
+        100.0 * ratio(fitted.iter()),
         fitted.len(),
         records(fitted.len()),
-        ratio(held.iter()),
+        100.0 * ratio(held.iter()),
         held.len(),
     )
 }
 
-/// Number of the held-out record whose ratio is the middle one, the worse of two, among those of an errors table.
-fn middle(held: &[BeforeAfter]) -> Option<usize> {
-    let own = |number: usize| ratio(held[number..=number].iter());
-    let mut order: Vec<usize> = (0..held.len()).collect();
-    order.sort_by(|&one, &other| own(one).total_cmp(&own(other)));
-    order.get(held.len() / 2).copied()
+/// Number of the held-out record whose ratio is nearest to that of all together, which the title says.
+fn nearest(held: &[BeforeAfter]) -> Option<usize> {
+    let off = |number: &usize| (ratio(held[*number..=*number].iter()) / ratio(held.iter())).ln().abs();
+    (0..held.len()).min_by(|one, other| off(one).total_cmp(&off(other)))
 }
 
 /// Heading and residual of a record, under what it is.
 fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], what: &str) -> Stack {
     let name = record.trial.name();
     let trial = &record.trial;
-    let [upper, lower] = heading_and_residual(curve(trial.time(), trial.heading()), models_over_time(record, None));
+    let [mut upper, lower] = heading_and_residual(curve(trial.time(), trial.heading()), models_over_time(record, None));
+    for name in upper.iter_mut().filter_map(|layer| layer.name.as_mut()) {
+        let words = [(CurveOrigin::Before, "first-order response"), (CurveOrigin::After, "with these effects")];
+        let own = words.iter().find(|(origin, _)| origin.label() == name);
+        if let Some((_, words)) = own {
+            *name = (*words).to_owned();
+        }
+    }
     let [before, after] = [&errors.before, &errors.after].map(|own| significant(own.heading_rmse_deg, 2));
     let heads = [format!("({}) {name}, {what}", letters[0]), format!("({}) rms {before}° → {after}°", letters[1])];
     let heights = [0.21, 0.15];
@@ -69,20 +75,20 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], what:
 /// The figure; `None` where no record was held out.
 pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let error = &document.trace.error;
-    let number = middle(&error.validation)?;
+    let number = nearest(&error.validation)?;
     let all = || document.records.iter().zip(&curves.records);
     let (_, fitted) = all().find(|(entry, _)| !entry.held_out)?;
     let (_, held) = all().filter(|(entry, _)| entry.held_out).nth(number)?;
     let of = match error.validation.len() {
         1 => String::from("held out"),
-        count => format!("held out, the middle one of {count}"),
+        count => format!("held out, nearest to the mean of {count}"),
     };
     let stacks = vec![
         column(fitted, error.identification.first()?, ['a', 'b'], "fitted"),
         column(held, &error.validation[number], ['c', 'd'], &of),
     ];
-    let caption = "Left: a record that was fitted. Right: one of which nothing but the initial state was fitted, with the middle \
-                   one of the ratios of all that were held out. Above the heading, below what the models leave of it. Before: the \
-                   best first-order response; after: the same with the effects that were found, and its 95 % band.";
+    let caption = "Left: a record that was fitted. Right: one of which nothing but the initial state was fitted, with the \
+                   ratio nearest to that of all that were held out. Above the heading, below what the models leave of it: the best \
+                   first-order response, and the same with the effects that were found and its 95 % band.";
     Some(PageFigure::new("hero", caption, Panels { title: Some(title(document)), stacks, ..Panels::default() }))
 }
