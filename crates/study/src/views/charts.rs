@@ -339,7 +339,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
             };
             let bound = compared.shown_bound(cell, panel);
             let bound = bound.map(|bound| RowItem::new(CurveOrigin::Bound.label(), RowKind::Limit(bound)));
-            compared.methods.iter().filter_map(dot).chain(bound).collect()
+            bound.into_iter().chain(compared.methods.iter().filter_map(dot)).collect()
         };
         RowsColumn {
             x: measure.ruler(panel, title),
@@ -348,11 +348,13 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
             ..RowsColumn::default()
         }
     };
-    let rows = format!("Rows: {}.", design.axes[x]);
+    // Names of trials say what they are.
+    let rows = design.axes[x].contains('[').then(|| format!("Rows: {}.", design.axes[x]));
+    let said: Vec<String> = rows.into_iter().chain(compared.note(part)).collect();
     NamedRows {
         title: None,
         names: group.cells.iter().map(|&cell| design.cells[cell].labels[x].clone()).collect(),
         columns: compared.titles().into_iter().enumerate().map(column).collect(),
-        note: Some(compared.note(part).map_or(rows.clone(), |note| format!("{rows} {note}"))),
+        note: (!said.is_empty()).then(|| said.join(" ")),
     }
 }
