@@ -179,6 +179,7 @@ impl<'a> FourierCurve<'a> {
             title,
             measured: curve(time, heading),
             fitted: self.sampled(|t| self.curve.heading(t)),
+            origin: Some(self.origin.clone()),
             fitted_name: format!("{}, {} harmonics", self.origin.label(), self.curve.cosine.len()),
             residual: curve(time, &residual),
             r_squared: Some(self.curve.r_squared),

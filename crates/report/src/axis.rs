@@ -34,6 +34,8 @@ pub(crate) struct PlotAxis {
     scale: AxisScale,
     /// Distance of the ticks, where it is not for the axis to choose.
     step: Option<f64>,
+    /// The last value with a tick: beyond is room for text.
+    last: f64,
 }
 
 /// The marks of an axis, as fractions of its length.
@@ -44,6 +46,10 @@ pub(crate) struct Ticks {
 }
 
 impl PlotAxis {
+    fn new(lo: f64, hi: f64, scale: AxisScale) -> Self {
+        Self { lo, hi, scale, step: None, last: f64::INFINITY }
+    }
+
     /// From `lo` to `hi`; a range that is empty or not finite is widened to something that can be drawn.
     pub(crate) fn linear(lo: f64, hi: f64, steps: TickSteps) -> Self {
         let (lo, hi) = match (lo.is_finite(), hi.is_finite()) {
@@ -61,7 +67,7 @@ impl PlotAxis {
             let half = if lo == 0.0 { 1.0 } else { 0.05 * lo.abs() };
             (lo - half, hi + half)
         };
-        Self { lo, hi, scale: AxisScale::Linear(steps), step: None }
+        Self::new(lo, hi, AxisScale::Linear(steps))
     }
 
     /// Covers the finite `values` with a margin of `pad` of their range on either side.
@@ -80,27 +86,32 @@ impl PlotAxis {
         let (lo, hi) = (lo.clamp(LARGEST.recip(), LARGEST), hi.clamp(LARGEST.recip(), LARGEST));
         let pad = ((hi / lo).log10() * 0.06).max(0.05);
         let widen = 10f64.powf(pad);
-        Self { lo: lo / widen, hi: hi * widen, scale: AxisScale::Log { zero }, step: None }
+        Self::new(lo / widen, hi * widen, AxisScale::Log { zero })
     }
 
     /// From `lo` to `hi`, both positive, on a logarithmic scale.
     pub(crate) fn log_between(lo: f64, hi: f64) -> Self {
-        Self { lo, hi, scale: AxisScale::Log { zero: false }, step: None }
+        Self::new(lo, hi, AxisScale::Log { zero: false })
     }
 
     /// A list of names, one unit each, the first at the top (of a vertical axis).
     pub(crate) fn names(names: Vec<String>) -> Self {
-        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: AxisScale::Names(names), step: None }
+        Self::new(-0.6, names.len().max(1) as f64 - 0.4, AxisScale::Names(names))
     }
 
     /// A list of short names along a horizontal axis, one unit each, the first at the left.
     pub(crate) fn columns(names: Vec<String>) -> Self {
-        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: AxisScale::Columns(names), step: None }
+        Self::new(-0.6, names.len().max(1) as f64 - 0.4, AxisScale::Columns(names))
     }
 
     /// The same axis with ticks at the multiples of `step`, as long as there are two.
     pub(crate) fn stepped(self, step: f64) -> Self {
         Self { step: Some(step), ..self }
+    }
+
+    /// The same axis without ticks beyond a value above its lower end.
+    pub(crate) fn told_until(self, last: f64) -> Self {
+        Self { last, ..self }
     }
 
     /// Kind, ends and where the scale begins as a fraction, or the names: what a value is found with from its place.
@@ -174,14 +185,15 @@ impl PlotAxis {
     }
 
     fn linear_ticks(&self, count: usize, steps: TickSteps) -> Ticks {
+        let multiples = |step: f64| ticks::multiples(self.lo, self.hi.min(self.last), step);
         let divide = |intervals: usize| {
             let step = ticks::nice_step(self.hi - self.lo, intervals, steps);
-            (step, ticks::multiples(self.lo, self.hi, step))
+            (step, multiples(step))
         };
         let count = count.max(1);
         // One interval more can still give no more ticks than allowed, because the ends of the axis are not round. And
         // a single label says nothing about the scale, so the step shrinks until there are two.
-        let given = self.step.map(|step| (step, ticks::multiples(self.lo, self.hi, step)));
+        let given = self.step.map(|step| (step, multiples(step)));
         let (step, values) = given
             .into_iter()
             .chain(std::iter::once(divide(count + 1)).filter(|(_, values)| values.len() <= count + 1))
@@ -190,7 +202,7 @@ impl PlotAxis {
             .expect("a small enough step has two multiples in any range");
         let place = |v: f64| (v - self.lo) / (self.hi - self.lo);
         let labels = ticks::labels(&values, step);
-        let minor = ticks::multiples(self.lo, self.hi, step / ticks::minor_parts(step) as f64);
+        let minor = multiples(step / ticks::minor_parts(step) as f64);
         Ticks {
             minor: minor.into_iter().map(place).collect(),
             major: values.into_iter().map(place).zip(labels).collect(),
@@ -272,7 +284,7 @@ mod tests {
 
     #[test]
     fn logarithmic_places_and_labels() {
-        let axis = PlotAxis { lo: 1e-6, hi: 1.0, scale: AxisScale::Log { zero: false }, step: None };
+        let axis = PlotAxis::log_between(1e-6, 1.0);
         assert!((axis.fraction(1e-3).unwrap() - 0.5).abs() < 1e-12);
         assert_eq!(axis.fraction(0.0), None);
         assert_eq!(axis.fraction(-1.0), None);

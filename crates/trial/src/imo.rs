@@ -11,6 +11,8 @@ use ship::angle::to_deg;
 use crate::quantity::Quantity;
 use crate::zigzag::{Pair, ZigZag};
 
+/// Shortest ship that the criteria are for, m.
+pub const SHORTEST_M: f64 = 100.0;
 /// Largest advance of a turning circle, ship lengths.
 pub const ADVANCE_LENGTHS: f64 = 4.5;
 /// Largest tactical diameter of a turning circle, ship lengths.

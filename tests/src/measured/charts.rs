@@ -3,8 +3,8 @@
 use campaign::statistics::grouped;
 use identify::{Identifier, output_error};
 use report::figures::{Division, Layer, NamedRows, PanelRow, Panels, RowItem, RowKind, RowsColumn, Ruler, Stack};
-use report::palette::{BEFORE, HEADING, Look, Marker, RUDDER, SOLID};
-use report::{PageFigure, symbol};
+use report::palette::{BEFORE, HEADING, Look, Marker, SOLID};
+use report::{CurveOrigin, PageFigure, symbol};
 use trial::{Quantity, Trial};
 
 use super::analysis::{MeasuredAnalysis, ReplayError, WHOLE, WINDOWS_60_S};
@@ -102,23 +102,29 @@ fn index(trial: &Trial) -> Option<PrimeIndex> {
 ///
 /// Fails where a record cannot be read.
 pub fn amplitude(sets: &[&MeasuredSet], scratch: &std::path::Path) -> Outcome<PageFigure> {
-    let looks = [(HEADING, Marker::Circle), (RUDDER, Marker::Square)];
+    let mut is_unstable = false;
     let mut rows = ["K", "T"].map(|name| {
         let ruler = Ruler::new(format!("{}′", symbol(name)), Division::Factors);
         (PanelRow::new(ruler, 0.24), Vec::new())
     });
-    for (set, (colour, marker)) in sets.iter().zip(looks) {
+    for (number, set) in sets.iter().enumerate() {
         let trials = set.records.iter().map(|record| set.read(record, scratch)).collect::<Outcome<Vec<_>>>()?;
         let found: Vec<PrimeIndex> = trials.iter().filter_map(index).collect();
-        let look = Look { colour, marker, dash: SOLID, hollow: false };
+        is_unstable |= found.iter().flat_map(|own| &own.indices).any(|(value, _)| value.is_infinite());
+        let series = CurveOrigin::Series { label: set.name.to_owned(), number };
         for (place, (_, layers)) in rows.iter_mut().enumerate() {
             let points = found.iter().map(|own| (own.rate, own.indices[place].0, own.indices[place].1));
-            layers.push(Layer::marks(set.name, look, points.collect()));
+            layers.push(Layer::marks(series.label(), series.look(), points.collect()));
         }
     }
     let x = Ruler::decimal(format!("root mean square yaw rate {}′", symbol("r")));
-    let caption = "KVLCC2 has no K and T: first-order indices of single zig-zags, by output error with 95 % intervals (white \
-                   noise: they hold no error of the model), without dimension (L/U), over the yaw rate in the record. An \
-                   arrow: the record is best described by a ship that is unstable on a straight course.";
+    let arrow = match is_unstable {
+        true => " An arrow: the record is best described by a ship that is unstable on a straight course.",
+        false => "",
+    };
+    let caption = format!(
+        "KVLCC2 has no K and T: first-order indices of single zig-zags, by output error with 95 % intervals (white noise: \
+         they hold no error of the model), without dimension (L/U), over the yaw rate in the record.{arrow}"
+    );
     Ok(PageFigure::new("amplitude", caption, Panels::of(Stack::over(x, rows.into()))))
 }

@@ -7,27 +7,22 @@ use report::figures::{
     Ruler, Stack,
 };
 use report::number::significant;
-use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
-use report::{PageFigure, PlotCurve};
+use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
+use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 
 use super::figure::{ForecastFigure, ForecastGroup, ForecastScore, KINDS};
 use super::forecast::{PredictedSteady, PredictedTrack};
 use super::turn::TurnTrack;
 
+/// Largest rudder of steady turns, degrees.
+const LARGEST: f64 = 40.0;
+
 /// Drawn ships that a figure shows.
 const SHOWN: usize = 40;
 
-fn look(group: ForecastGroup) -> Look {
-    let (colour, marker) = match group {
-        ForecastGroup::Hsva => (HEADING, Marker::Circle),
-        ForecastGroup::MarinOfOne => (RUDDER, Marker::Square),
-        ForecastGroup::MarinOfAll => (DIMENSION, Marker::Diamond),
-        ForecastGroup::Marin => (BEFORE, Marker::Up),
-        ForecastGroup::EssoOsaka => (INK, Marker::Down),
-    };
-    Look { colour, marker, dash: SOLID, hollow: false }
-}
+/// Fewest figures whose share is drawn.
+const FEWEST: usize = 5;
 
 /// The predictions of one overshoot by all models of a group.
 struct PredictedOvershoot<'a> {
@@ -123,25 +118,27 @@ pub fn track((number, own): (usize, &PredictedTrack)) -> PageFigure {
         let marks = [("heading changed by 90° (advance)", Marker::Up), ("by 180° (tactical diameter)", Marker::Square)];
         for ((name, marker), place) in marks.into_iter().zip(track.quarters()) {
             let look = Look { colour, marker, dash: SOLID, hollow };
-            let name = if hollow { "" } else { name };
+            let name = if hollow { "the same of the most probable ship (hollow)" } else { name };
             layers.push(Layer::marks(name, look, place.iter().map(|(x, y)| (*x, *y, None)).collect()));
         }
     }
     let [measured, probable] = [&own.measured, &own.probable].map(TurnTrack::quarters);
     let both = |place: usize, of: fn((f64, f64)) -> f64| -> String {
         let shown = |found: Option<(f64, f64)>| found.map_or_else(String::new, |own| significant(of(own).abs(), 3));
-        format!("{} L measured, {} L predicted", shown(measured[place]), shown(probable[place]))
+        format!("{} L measured, {} L most probable", shown(measured[place]), shown(probable[place]))
     };
     let said =
         vec![format!("advance: {}", both(0, |own| own.1)), format!("tactical diameter: {}", both(1, |own| own.0))];
     let row = PanelRow::new(Ruler::decimal("north [L]"), 0.62);
     let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [L]"), vec![(row, layers)]) };
+    let side = if own.rudder_deg < 0.0 { "port" } else { "starboard" };
+    let title = format!("{}: {:.0}° of rudder to {side}", own.title, own.rudder_deg.abs());
     let caption = format!(
-        "{}: a turning circle that was not fitted, from the execute on, in lengths of the ship; a current that the record \
-         shows is taken out.",
-        own.title
+        "{title}. A turning circle that was not fitted, from the execute on, in lengths of the ship; a current that the \
+         record shows is taken out. Steps in the measured track are those of positions that the record has with three \
+         digits."
     );
-    let data = Panels { title: Some(own.title.clone()), said, ..Panels::of(stack) };
+    let data = Panels { title: Some(title), said, ..Panels::of(stack) };
     PageFigure::new(format!("circle-{}", number + 1), caption, data)
 }
 
@@ -149,26 +146,36 @@ pub fn track((number, own): (usize, &PredictedTrack)) -> PageFigure {
 pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
     let stack = |own: &PredictedSteady| {
         let curve = |of: &predict::steady::SteadyCurve| {
-            let [rudder, rate] = [&of.rudder, &of.yaw_rate].map(|values| values.iter().map(|own| to_deg(*own)));
-            PlotCurve::new(rudder.collect::<Vec<f64>>(), rate.collect::<Vec<f64>>())
+            let points = of.rudder.iter().zip(&of.yaw_rate).map(|(rudder, rate)| (to_deg(*rudder), to_deg(*rate)));
+            let (x, y) = points.filter(|(rudder, _)| rudder.abs() <= LARGEST).unzip();
+            PlotCurve { x, y }
         };
-        let drawn = own.curves.iter().skip(1).take(SHOWN);
-        let mut layers: Vec<Layer> =
-            drawn.map(|ship| Layer::line("drawn ships", curve(ship), Pen::pale()).within(0.2)).collect();
-        layers.extend(
-            own.curves.first().map(|ship| Layer::line("most probable ship", curve(ship), Pen::new(HEADING).width(1.3))),
-        );
+        let drawn = own.drawn.iter().map(|ship| Layer::line("drawn ships", curve(ship), Pen::pale()).within(0.2));
+        let probable = own
+            .probable
+            .iter()
+            .map(|ship| Layer::line("most probable ship of a model", curve(ship), Pen::new(HEADING).width(1.3)));
+        let mut layers: Vec<Layer> = drawn.chain(probable).collect();
         let look = Look { colour: RUDDER, marker: Marker::Diamond, dash: SOLID, hollow: false };
         let points = own.measured.iter().map(|(rudder, rate)| (*rudder, *rate, None)).collect();
         layers.push(Layer::marks("measured circle", look, points));
         let panels = vec![LayeredPanel { head: Some(own.title.clone()), layers }];
         let rows = vec![PanelRow::zeroed(Ruler::yaw_rate(), 0.42)];
-        Stack { x: vec![Ruler::rudder()], rows, panels, is_half: true, zero: true, ..Stack::default() }
+        // As far to either side, whatever is cut.
+        let x = vec![Ruler::rudder().about_zero(f64::MAX)];
+        Stack { x, rows, panels, is_half: true, zero: true, ..Stack::default() }
     };
     let stacks = ships.iter().map(stack).collect();
-    let caption = "Steady turns: the yaw rate that belongs to every rudder angle, as drawn ships have it, and measured \
-                   circles, those of the Esso Osaka at 10 turns of the propeller a second.";
-    PageFigure::new("steady-turns", caption, Panels { stacks, ..Panels::default() })
+    let caption = "Steady turns: the yaw rate that belongs to every rudder angle up to 38°, as the most probable ship of each \
+                   model and drawn ships have it, and measured circles, those of the Esso Osaka at 10 turns of the \
+                   propeller a second. A line ends where the ship has no faster steady turn.";
+    let left_out: usize = ships.iter().map(|own| own.left_out).sum();
+    let note = format!("Models with which no circle could be sailed are left out: {left_out}.");
+    PageFigure::new(
+        "steady-turns",
+        caption,
+        Panels { stacks, note: (left_out > 0).then_some(note), ..Panels::default() },
+    )
 }
 
 /// A value with its interval, where it has one.
@@ -179,13 +186,14 @@ pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
     let score = |group: ForecastGroup, kind| {
         let of: Vec<&ForecastFigure> =
             figures.iter().filter(|own| own.group == group && own.kind() == Some(kind)).collect();
-        ForecastScore::of(&of)
+        ForecastScore::of(&of).filter(|score| score.count >= FEWEST)
     };
     let rows = |item: &dyn Fn(&ForecastScore) -> WithInterval| -> Vec<Vec<RowItem>> {
         let of_kind = |kind| {
-            let marks = ForecastGroup::ALL.into_iter().filter_map(|group| {
+            let marks = ForecastGroup::ALL.into_iter().enumerate().filter_map(|(number, group)| {
                 let (value, interval) = item(&score(group, kind)?);
-                Some(RowItem::below(group.words(), look(group), value, interval))
+                let series = CurveOrigin::Series { label: group.words().to_owned(), number };
+                Some(RowItem::below(series.label(), series.look(), value, interval))
             });
             marks.collect()
         };
@@ -204,7 +212,10 @@ pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
         ..RowsColumn::default()
     };
     let names = KINDS.into_iter().map(|kind| kind.words.to_owned()).collect();
-    let caption = "How often the 90 % interval holds what was measured, with the 95 % interval of that share (Wilson, as if \
-                   all figures were independent), and the median width of the intervals.";
+    let caption = format!(
+        "How often the 90 % interval holds what was measured, with the 95 % interval of that share (Wilson, as if all \
+         figures were independent), and the median width of the intervals. Grey: 85 to 95 %, which was to be reached. \
+         What rests on fewer than {FEWEST} figures is left out."
+    );
     PageFigure::new("coverage", caption, NamedRows { names, columns: vec![held, width], ..NamedRows::default() })
 }

@@ -18,8 +18,9 @@ use crate::measured::sets::{MeasuredSet, Outcome, SETS};
 /// Ships that are drawn for every trial.
 const DRAWS: usize = 500;
 
-/// Ships that are drawn for a figure.
+/// Ships that are drawn for a prediction, and those of them that a figure of steady turns shows.
 const SHOWN: usize = 200;
+const FIGURE: usize = 40;
 
 /// A ship as some records show her.
 pub struct TracedShip {
@@ -32,6 +33,8 @@ pub struct TracedShip {
 pub struct PredictedTrack {
     /// Which circle, from what.
     pub title: String,
+    /// Rudder, deg, positive to starboard.
+    pub rudder_deg: f64,
     /// As it was measured, without the current.
     pub measured: TurnTrack,
     /// The most probable ship.
@@ -44,8 +47,12 @@ pub struct PredictedTrack {
 pub struct PredictedSteady {
     /// Of which ship, from what.
     pub title: String,
-    /// The most probable ship, then drawn ones.
-    pub curves: Vec<SteadyCurve>,
+    /// The most probable ship of each model.
+    pub probable: Vec<SteadyCurve>,
+    /// Drawn ones, of all models alike.
+    pub drawn: Vec<SteadyCurve>,
+    /// Models with which no circle could be sailed, which are left out.
+    pub left_out: usize,
     /// Rudder, deg, and yaw rate, deg/s, of measured circles.
     pub measured: Vec<(f64, f64)>,
 }
@@ -140,17 +147,23 @@ fn predicted(ships: &[&TracedShip], trial: &Trial, kind: &str) -> Outcome<Predic
 fn track(title: String, ships: &[&TracedShip], trial: &Trial) -> Outcome<Option<PredictedTrack>> {
     let (trial, _) = without_current(trial.clone(), None);
     let turn = HeldTurn::of(&trial).ok_or("a circle has a rudder that is held")?;
-    let curves =
-        predicted(ships, &trial, &format!("turning-circle:{}", to_deg(turn.side * turn.rudder).round()))?.curves;
+    let rudder_deg = to_deg(turn.side * turn.rudder).round();
+    let curves = predicted(ships, &trial, &format!("turning-circle:{rudder_deg}"))?.curves;
     let length = trial.particulars().map_or(f64::NAN, |own| own.length);
     let probable = curves.most_probable.as_ref().and_then(TurnTrack::predicted);
     let drawn = curves.tracks.iter().map(|track| track.iter().map(|own| (own[1] / length, own[0] / length)).unzip());
     let both = TurnTrack::recorded(&trial, length).zip(probable);
-    Ok(both.map(|(measured, probable)| PredictedTrack { title, measured, probable, drawn: drawn.collect() }))
+    Ok(both.map(|(measured, probable)| PredictedTrack {
+        title,
+        rudder_deg,
+        measured,
+        probable,
+        drawn: drawn.collect(),
+    }))
 }
 
-/// Steady turns of some ships alike at the scale of the first circle, and the circles that were measured, brought to
-/// its approach speed.
+/// Steady turns of some ships, each by itself, at the scale of the first circle, and the circles that were measured,
+/// brought to its approach speed. A ship with which no circle could be sailed has no steady turns either.
 fn steady(
     title: String,
     ships: &[&TracedShip],
@@ -158,7 +171,15 @@ fn steady(
     figures: &[ForecastFigure],
 ) -> Outcome<PredictedSteady> {
     let first = &circles[0].1;
-    let curves = predicted(ships, first, "spiral:38")?.curves.steady;
+    let is_circle = |own: &ForecastFigure| circles.iter().any(|(name, _)| *name == own.trial);
+    let turns = |ship: &&&TracedShip| figures.iter().any(|own| own.fitted == ship.fitted && is_circle(own));
+    let sailed: Vec<_> = ships.iter().filter(turns).collect();
+    let (mut probable, mut drawn) = (Vec::new(), Vec::new());
+    for ship in &sailed {
+        let mut curves = predicted(&[**ship], first, "spiral:38")?.curves.steady.into_iter();
+        probable.extend(curves.next());
+        drawn.extend(curves.take(FIGURE / sailed.len()));
+    }
     let rate_of = |name: &str| {
         let own = figures.iter().find(|own| own.trial == name && own.name == "steady_rate_deg_s")?;
         Some(own.compared.measured)
@@ -168,7 +189,8 @@ fn steady(
         let faster = first.particulars()?.speed / trial.particulars()?.speed;
         Some((to_deg(turn.side * turn.rudder), turn.side * faster * rate_of(name)?))
     });
-    Ok(PredictedSteady { title, curves, measured: measured.collect() })
+    let left_out = ships.len() - sailed.len();
+    Ok(PredictedSteady { title, probable, drawn, left_out, measured: measured.collect() })
 }
 
 /// Every record of a set that is named, read.

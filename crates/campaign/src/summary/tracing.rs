@@ -30,8 +30,8 @@ pub struct TraceSummary {
     pub verdicts: [u64; 3],
     /// How often every identifier was named.
     pub named: BTreeMap<String, u64>,
-    /// Identifiers that were named for a missing effect which the trial could not tell from them.
-    pub aliases: BTreeSet<String>,
+    /// How often every identifier was named for a missing effect that the trial could not tell from it.
+    pub aliases: BTreeMap<String, u64>,
     /// Trials in which nothing was named.
     pub silent: u64,
     /// Trials in which every missing effect is in one of the groups named.
@@ -154,7 +154,8 @@ impl TraceTally {
         let (right, wrong): (Vec<_>, Vec<_>) =
             answer.named.iter().partition(|effect| missing.iter().any(|id| effect.holds(id)));
         let aliases = right.iter().filter(|effect| missing.iter().all(|id| **id != *effect.id));
-        summary.aliases.extend(aliases.map(|effect| effect.id.to_string()));
+        let aliases: BTreeSet<&str> = aliases.map(|effect| &*effect.id).collect();
+        aliases.into_iter().for_each(|id| *summary.aliases.entry(id.to_owned()).or_default() += 1);
         let complete = missing.iter().all(|id| right.iter().any(|effect| effect.holds(id)));
         summary.wrong += u64::from(!wrong.is_empty());
         summary.complete += u64::from(complete && !missing.is_empty());
@@ -215,7 +216,7 @@ mod tests {
         let summary = summary(&["a", "b"], &trials);
         assert_eq!((summary.trials, summary.complete, summary.wrong, summary.silent), (5, 3, 1, 1));
         assert_eq!((summary.exact, summary.clear), (2, [5, 3]));
-        assert_eq!((summary.named["b"], summary.named["c"]), (3, 1));
+        assert_eq!((summary.named["b"], summary.named["c"], summary.aliases.get("c")), (3, 1, Some(&1)));
         assert_eq!((summary.expected, summary.band), (Some(4.0), [Some(0.9), None]));
     }
 

@@ -94,7 +94,8 @@ impl CellMap {
 pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     let box_of = |dash: Dash| KeySample::Line(Stroke::solid(INK, 1.4 * theme.line).dashed(dash));
-    let outlines = [(Outline::Right, SOLID, "outlined: right"), (Outline::Alias, DOTTED, "indistinguishable from it")];
+    let outlines =
+        [(Outline::Right, SOLID, "outlined: right"), (Outline::Alias, DOTTED, "mostly cannot be told from it")];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
     sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(box_of(dash), *name)).collect::<Vec<_>>());
     let count = data.panels.len().max(1);
@@ -218,9 +219,9 @@ impl Range {
     }
 }
 
-/// The interval of a share that is neither none nor all of the trials.
+/// The interval of a share of the trials that is not none.
 fn bracket(cell: &MapCell) -> Option<String> {
-    let [low, high] = cell.interval.filter(|_| cell.value.is_some_and(|own| own > 0.0 && own < 100.0))?;
+    let [low, high] = cell.interval.filter(|_| cell.value.is_some_and(|own| own > 0.0))?;
     Some(format!("{low:.0}–{high:.0}"))
 }
 

@@ -272,11 +272,12 @@ fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine, 
     let is_right = x + gap + text.width() < panel.rect.right();
     let (place, anchor) = if is_right { (x + gap, Anchor::Start) } else { (x - gap, Anchor::End) };
     if let Some(down) = down {
-        scene.text_on_ground(Height::Note, (place, panel.rect.y + down), text.anchor(anchor));
+        // Under the curves, which its ground would hide.
+        scene.text_on_ground(Height::Grid, (place, panel.rect.y + down), text.anchor(anchor));
     }
 }
 
-/// What a small multiple says of what it does not show: how many of its dots lie outside, or how far a cut line goes.
+/// What a small multiple says of what it does not show: how many of its dots lie outside.
 fn corner(place: &Panel, scene: &mut Canvas, theme: &Theme, panel: &LayeredPanel) {
     let Some(layer) = panel.layers.first() else { return };
     let rect = place.rect;
@@ -290,12 +291,6 @@ fn corner(place: &Panel, scene: &mut Canvas, theme: &Theme, panel: &LayeredPanel
         let text = TextLine::new(note, theme.small_font).anchor(Anchor::End);
         let at = (rect.right() - 0.4 * theme.small_font, rect.bottom() - 0.5 * theme.small_font);
         scene.text_on_ground(Height::Note, at, text);
-    } else if let LayerKind::Line(_) = layer.kind
-        && let Some(peak) = outside().map(|(_, y)| y.abs()).reduce(f64::max)
-    {
-        let text = TextLine::new(format!("cut, reaches {}°", significant(peak, 2)), theme.small_font);
-        let at = (rect.right(), rect.y - 0.45 * theme.small_font);
-        scene.text(Height::Note, at, text.anchor(Anchor::End));
     }
 }
 

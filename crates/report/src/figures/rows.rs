@@ -91,10 +91,11 @@ impl RowItem {
 
     fn sample(&self, theme: &Theme) -> KeySample {
         match &self.kind {
-            RowKind::Mark(look, ..) | RowKind::Bar(look, _) | RowKind::Violin(look, ..) => KeySample::Marker(*look),
+            RowKind::Mark(look, ..) | RowKind::Violin(look, ..) => KeySample::Marker(*look),
+            RowKind::Bar(look, _) => KeySample::Area(bar_stroke(look, theme)),
             RowKind::Thin(_) => KeySample::Line(Stroke::solid(HEADING, theme.line)),
             RowKind::Thick(_) => KeySample::Line(thick_stroke(theme)),
-            RowKind::Limit(_) => KeySample::Upright(Stroke::solid(INK, 1.5 * theme.line)),
+            RowKind::Limit(_) => KeySample::Upright(limit_stroke(theme)),
         }
     }
 
@@ -159,6 +160,11 @@ pub struct NamedRows {
 fn bar_stroke(look: &Look, theme: &Theme) -> Stroke {
     let opacity = if look.hollow || look.colour == RECORD { 0.45 } else { 1.0 };
     Stroke { opacity, ..Stroke::solid(look.colour, 0.9 * theme.tick_font) }
+}
+
+/// Thinner than a mark, which is seen on it.
+fn limit_stroke(theme: &Theme) -> Stroke {
+    Stroke::solid(INK, theme.line)
 }
 
 /// Pale, so that the marks on it can be seen, and higher than a mark, so that a narrow one is seen too.
@@ -229,7 +235,11 @@ fn axis(column: &RowsColumn) -> PlotAxis {
     let (lo, hi) = data.ends(column.x.reach).0.map_or((0.0, 1.0), |(lo, hi)| (lo.min(0.0), hi.max(0.0)));
     let pad = 0.05 * (hi - lo);
     let (lo, hi) = (if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi });
-    PlotAxis::linear(lo, if lo == hi { 1.0 } else { hi + column.room * (hi - lo) }, crate::ticks::TickSteps::Decimal)
+    let steps = crate::ticks::TickSteps::Decimal;
+    if lo == hi {
+        return PlotAxis::linear(lo, 1.0, steps);
+    }
+    PlotAxis::linear(lo, hi + column.room * (hi - lo), steps).told_until(hi)
 }
 
 /// Draws the rows of a column; tells whether something lies beyond its axis.
@@ -307,7 +317,7 @@ fn draw_item(
         RowKind::Limit(value) => {
             if let Some(x) = panel.across(*value).filter(|x| panel.rect.contains((*x, y))) {
                 let half = 0.42 * pitch;
-                scene.line(Layer::Data, [(x, y - half), (x, y + half)], Stroke::solid(INK, 1.5 * theme.line));
+                scene.line(Layer::Data, [(x, y - half), (x, y + half)], limit_stroke(theme));
             }
             false
         }

@@ -20,6 +20,9 @@ pub struct CurveFit {
     pub fitted: PlotCurve,
     /// Name of the fitted curve, such as "Fourier series, 5 harmonics".
     pub fitted_name: String,
+    /// The method that fitted it; decides how the curve looks.
+    #[serde(default)]
+    pub origin: Option<CurveOrigin>,
     /// Measured minus fitted heading, degrees over seconds.
     pub residual: PlotCurve,
     /// Coefficient of determination of the heading.
@@ -34,7 +37,7 @@ impl CurveFit {
         let name = if self.fitted_name.is_empty() { "fitted curve" } else { &self.fitted_name };
         let upper = vec![
             Layer::new("measured", self.measured.clone(), LayerKind::Record),
-            Layer::line(name, self.fitted.clone(), Pen::new(HEADING)),
+            Layer::line(name, self.fitted.clone(), self.origin.as_ref().map_or(Pen::new(HEADING), Pen::of)),
         ];
         let lower = vec![
             Layer::line("", self.residual.clone(), Pen::new(RECORD).width(0.6)),
@@ -124,13 +127,13 @@ pub struct Replays {
 
 /// A replay may leave the range of the record by this share of it before it is cut.
 const HEADING_ROOM: f64 = 0.25;
-/// A residual is cut at this many times the middle one of all the largest residuals.
-const RESIDUAL_ROOM: f64 = 4.0;
+/// A residual is cut at this many times the middle one of all sizes.
+const RESIDUAL_ROOM: f64 = 10.0;
 
 impl Replays {
     /// Record and replays above, one residual panel per method below, because seven of them on top of each other cannot
-    /// be read. A replay or residual that runs far off is cut at the frame, and its panel says how far it goes, so that
-    /// one failure does not flatten the others.
+    /// be read. A replay or residual that runs far off is cut at the frame, so that one failure does not flatten the
+    /// others; above every panel stands how far its residual goes.
     pub fn panels(&self) -> Panels {
         let mut upper = vec![Layer::new("record", self.record.clone(), LayerKind::Record)];
         let truth = |own: &PlotCurve| Layer::line("truth", own.clone(), Pen::of(&CurveOrigin::Truth));
@@ -139,11 +142,13 @@ impl Replays {
             Layer::line(own.origin.label(), own.heading.clone(), Pen::of(&own.origin)).within(HEADING_ROOM)
         }));
         let below = |own: &ReplayCurves| {
-            let rms = own.rms_deg.filter(|rms| rms.is_finite());
-            let rms = rms.map_or_else(|| MISSING.into(), |rms| format!("{}°", number::significant(rms, 2)));
+            let size = |size: f64| format!("{}°", number::significant(size, 2));
+            let rms = own.rms_deg.filter(|rms| rms.is_finite()).map_or_else(|| MISSING.into(), size);
+            let largest = own.residual.finite().map(|(_, y)| y.abs()).reduce(f64::max);
+            let largest = largest.map_or_else(String::new, |largest| format!(", up to {}", size(largest)));
             let solid = Pen::new(own.origin.look().colour).width(0.8);
             LayeredPanel {
-                head: Some(format!("{}, rms {rms}", own.origin.label())),
+                head: Some(format!("{}, rms {rms}{largest}", own.origin.label())),
                 layers: vec![Layer::line("", own.residual.clone(), solid)],
             }
         };
@@ -159,7 +164,8 @@ impl Replays {
             time.title.clear();
         }
         stacks.insert(0, Stack::over(time, vec![(PanelRow::new(Ruler::heading(), 0.28), upper)]));
-        Panels { title: self.title.clone(), stacks, ..Panels::default() }
+        let cut = Some(String::from("Curves that leave their panel are cut."));
+        Panels { title: self.title.clone(), stacks, cut, ..Panels::default() }
     }
 }
 
@@ -231,11 +237,13 @@ impl Intervals {
                 ..RowsColumn::default()
             }
         };
-        let points = || self.estimates.iter().flat_map(|own| [own.k_per_s, own.t_s]).flatten();
-        let has_bars = points().any(|own| own.interval.is_some()).then_some("Bars: 95 % intervals.");
-        let lacks = points().any(|own| own.interval.is_none());
-        let lacks = lacks.then_some("Without bar: the method gives no interval.");
-        let note: Vec<&str> = [has_bars, lacks].into_iter().flatten().collect();
+        let mut points = self.estimates.iter().flat_map(|own| [own.k_per_s, own.t_s]).flatten();
+        let has_bars = points.any(|own| own.interval.is_some());
+        let has_bars = has_bars.then(|| String::from("Bars: 95 % intervals, where they are wider than the mark."));
+        let lacks = |own: &&MethodEstimate| [own.k_per_s, own.t_s].iter().flatten().any(|own| own.interval.is_none());
+        let lacks: Vec<&str> = self.estimates.iter().filter(lacks).map(|own| own.origin.label()).collect();
+        let lacks = (!lacks.is_empty()).then(|| format!("No interval from {}.", lacks.join(", ")));
+        let note: Vec<String> = [has_bars, lacks].into_iter().flatten().collect();
         NamedRows {
             title: self.title.clone(),
             names: self.estimates.iter().map(|own| own.origin.label().to_owned()).collect(),

@@ -30,9 +30,15 @@ pub fn capital(words: &str) -> String {
 /// The figures, one for every kind of record.
 pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
     let figure = |field: &str| {
+        let boards = results.boards.iter().filter(|board| board.field == field);
+        let mut over = boards.flat_map(|board| &board.standings).filter_map(|standing| standing.ratio.as_ref());
+        let arrow = match over.any(|ratio| ratio.value.is_none_or(|value| value > FAR)) {
+            true => format!(" An arrow: more than {FAR} times, or no answer in half of the cases."),
+            false => String::new(),
+        };
         let caption = format!(
             "{}: median of the score over that of {} in the same case, with 95 % intervals where there are six independent \
-             records or more. An arrow: more than {FAR} times, or no answer in half of the cases.",
+             records or more.{arrow}",
             capital(field),
             results.reference
         );

@@ -349,7 +349,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
             };
             let bound = compared.shown_bound(cell, panel);
             let bound = bound.map(|bound| RowItem::new(CurveOrigin::Bound.label(), RowKind::Limit(bound)));
-            compared.methods.iter().filter_map(dot).chain(bound).collect()
+            bound.into_iter().chain(compared.methods.iter().filter_map(dot)).collect()
         };
         RowsColumn {
             x: measure.ruler(panel, title),
@@ -358,13 +358,13 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
             ..RowsColumn::default()
         }
     };
-    // A number needs its quantity, a name does not.
+    // Names of trials say what they are.
     let rows = design.axes[x].contains('[').then(|| format!("Rows: {}.", design.axes[x]));
-    let note: Vec<String> = rows.into_iter().chain(compared.note(part)).collect();
+    let said: Vec<String> = rows.into_iter().chain(compared.note(part)).collect();
     NamedRows {
         title: None,
         names: group.cells.iter().map(|&cell| design.cells[cell].labels[x].clone()).collect(),
         columns: compared.titles().into_iter().enumerate().map(column).collect(),
-        note: (!note.is_empty()).then(|| note.join(" ")),
+        note: (!said.is_empty()).then(|| said.join(" ")),
     }
 }

@@ -13,8 +13,8 @@ use crate::documents::missing_moment::MissingMomentEntry;
 /// Panels of a figure at most.
 const PANELS: usize = 4;
 
-/// Times the usual size at which a moment is cut: a position that jumps would set the axis.
-const REACH: f64 = 2.5;
+/// Times the usual size at which a moment is cut over time, and over a channel: a jump would set the axis.
+const REACHES: [f64; 2] = [8.0, 2.5];
 
 /// Title of an axis over a channel.
 fn title_of(column: &str) -> String {
@@ -31,9 +31,9 @@ fn title_of(column: &str) -> String {
 fn percent(share: Option<f64>) -> String {
     match share {
         None => String::from("nothing to explain"),
-        Some(share) if share > 0.99 => String::from("explains more than 99 %"),
-        Some(share) if share < 0.01 => String::from("explains less than 1 %"),
-        Some(share) => format!("explains {:.0} %", 100.0 * share),
+        Some(share) if share > 0.99 => String::from("explains more than 99 % of the variance"),
+        Some(share) if share < 0.01 => String::from("explains less than 1 % of the variance"),
+        Some(share) => format!("explains {:.0} % of the variance", 100.0 * share),
     }
 }
 
@@ -50,23 +50,26 @@ fn banded(known: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], explai
     let dashed = Pen { dash: SHORT_DASH, ..Pen::new(RUDDER) };
     let mut layers = vec![
         Layer::band("95 % band", [lower, upper], HEADING, 0.2).within(0.3),
-        Layer::line("missing moment", middle, Pen::new(HEADING)),
+        Layer::line("missing moment (over a channel: its curve)", middle, Pen::new(HEADING)),
     ];
-    layers.extend(known.map(|name| Layer::line(name, explained, dashed)));
+    let together = |names: &String| if names.contains(", ") { format!("{names} together") } else { names.clone() };
+    layers.extend(known.map(|names| Layer::line(together(names), explained, dashed)));
     layers
 }
 
 /// The figure of one record, from its tables over time and over the channels.
 pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[MomentTable; 2]) -> Panels {
     let known = entry.explanation.as_ref();
-    let over = |x: Ruler, height: f64, layers: Vec<Layer>| {
-        let moment = Ruler::decimal("moment [° rudder]").within(REACH, Some(0.0));
+    let over = |x: Ruler, height: f64, reach: f64, layers: Vec<Layer>| {
+        let moment = Ruler::decimal("moment [° rudder]").within(reach, Some(0.0));
         Stack::over(x, vec![(PanelRow::zeroed(moment, height), layers)])
     };
     let over_time = |name: &str| PlotCurve::new(values(time, "t_s"), values(time, name));
     let ends = ["moment_rudder_deg", "lower95_rudder_deg", "upper95_rudder_deg"].map(over_time);
-    let mut stacks = vec![over(Ruler::time(), 0.24, banded(known, ends, over_time("explained_rudder_deg")))];
-    stacks.extend(entry.over.iter().take(PANELS).map(|own| {
+    let moment = banded(known, ends, over_time("explained_rudder_deg"));
+    let mut stacks = vec![over(Ruler::time(), 0.24, REACHES[0], moment)];
+    let (shown, others): (Vec<_>, Vec<_>) = entry.over.iter().partition(|own| own.shows);
+    stacks.extend(shown.iter().take(PANELS).map(|own| {
         let name = &own.column;
         let of = |what: &str| values(channels, &format!("{name}_{what}_rudder_deg"));
         let curve = |y: Vec<f64>| PlotCurve::new(values(channels, name), y);
@@ -75,12 +78,16 @@ pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[MomentTable; 2]) -
         let rows = PlotCurve::new(values(time, name), values(time, "moment_rudder_deg"));
         let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.1)];
         layers.extend(banded(known, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(of("explained"))));
-        let mut stack = over(Ruler::decimal(title_of(name)), 0.2, layers);
-        let head = if own.shows { percent(own.variance_share) } else { "zero lies inside the band".into() };
-        (stack.panels[0].head, stack.is_half) = (Some(head), true);
+        let mut stack = over(Ruler::decimal(title_of(name)), 0.2, REACHES[1], layers);
+        (stack.panels[0].head, stack.is_half) = (Some(percent(own.variance_share)), true);
         stack
     }));
-    let note = Some(format!("Moments beyond {REACH} times the usual size are cut."));
+    let others: Vec<&str> = others.iter().map(|own| own.channel.as_str()).collect();
+    let others = match others.is_empty() {
+        true => String::new(),
+        false => format!(" Not drawn, because zero lies inside the band: {}.", others.join(", ")),
+    };
+    let note = Some(format!("Moments beyond {} times the usual size are cut.{others}", REACHES[1]));
     let title = Some(format!("{}: yaw moment that the base lacks", entry.record));
     Panels { title, stacks, note, ..Panels::default() }
 }
@@ -95,10 +102,7 @@ pub fn sentence(entry: &MissingMomentEntry) -> String {
     };
     let list = |ids: &[String]| if ids.is_empty() { "no effect on the list".to_owned() } else { ids.join(", ") };
     let (over, share) = (&best.channel, percent(best.variance_share));
-    let mut text = format!(
-        "{begin}; its curve over the {over} {share} of its variance, and inside the band: {}",
-        list(&best.inside)
-    );
+    let mut text = format!("{begin}; its curve over the {over} {share}, and inside the band: {}", list(&best.inside));
     let count = telling().count();
     if count > 1 {
         let _ =

@@ -4,6 +4,7 @@
 use campaign::design::Design;
 use campaign::statistics::{distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
+use estimation::statistics::median;
 use report::figures::{
     CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind,
     RowsColumn, Ruler, Shades, Stack,
@@ -95,6 +96,9 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
 /// Half the width of the axes of clouds over the middle one of the ellipses.
 const REACH: f64 = 2.2;
 
+/// Ellipses beyond this many times the middle one have no panel: it would be empty.
+const FAR: f64 = 3.0;
+
 /// Clouds of errors in the cells whose detail was asked for, and whether there is a bound.
 pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
@@ -113,13 +117,27 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
             layers.extend(bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).within(REACH)));
             LayeredPanel { head: Some(design.methods[method].label.clone()), layers }
         };
-        let count = detail.methods.len();
+        let spread = |own: &MethodDetail| {
+            own.cloud.as_ref().map_or(0.0, |own| (own.covariance[0][0] + own.covariance[1][1]).sqrt())
+        };
+        let usual = median(&mut detail.methods.iter().map(spread).filter(|own| *own > 0.0).collect::<Vec<_>>());
+        let is_near = |(_, own): &(usize, &MethodDetail)| usual.is_none_or(|usual| spread(own) <= FAR * usual);
+        let (near, far): (Vec<_>, Vec<_>) = detail.methods.iter().enumerate().partition(is_near);
+        let far: Vec<&str> = far.iter().map(|(method, _)| design.methods[*method].label.as_str()).collect();
+        let count = near.len();
         let axis = |index: &str| Ruler::decimal(format!("error of {} [%]", symbol(index))).about_zero(REACH);
-        let panels = detail.methods.iter().enumerate().map(panel).collect();
+        let panels = near.into_iter().map(panel).collect();
         let across = if count == 4 { 2 } else { count.clamp(1, 3) };
         let multiples = Stack::multiples(across, axis("K"), PanelRow::zeroed(axis("T"), 0.24), panels);
-        let note = Some(String::from("Outlines: ellipses of 95 % of the trials, solid as found, dotted at the bound."));
-        let data = Panels { note, ..Panels::of(Stack { zero: true, ..multiples }) };
+        let points = detail.methods.iter().flat_map(|own| &own.cloud).map(|own| own.points.len()).max().unwrap_or(0);
+        let trials = summary.record(detail.cell, 0).map_or(0, |record| record.trials);
+        let mut note = format!(
+            "Outlines: ellipses of 95 % of the trials, solid as found, dotted at the bound. Points: {points} of {trials}."
+        );
+        if !far.is_empty() {
+            note += &format!(" Not drawn, for they scatter more than {FAR} times as far: {}.", far.join(", "));
+        }
+        let data = Panels { note: Some(note), ..Panels::of(Stack { zero: true, ..multiples }) };
         let known = detail.methods.iter().any(|own| own.cloud.is_some());
         known.then_some((detail.cell, bound.is_some(), data))
     };

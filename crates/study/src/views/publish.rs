@@ -73,7 +73,10 @@ pub fn put(
         write_csv(folder, "tracing.csv", &summary.tracing, |lines| {
             tracing_table::table(lines, &summary, design, true)
         })?;
-        folder.write("reliability.csv", tracing_table::reliability(&study_figures::first_trace(&summary)).to_csv())?;
+        folder.write(
+            "reliability.csv",
+            tracing_table::reliability(&study_figures::one_trace(design, &summary)).to_csv(),
+        )?;
     }
     if !summary.predictions.is_empty() {
         write_csv(folder, "predictions.csv", &summary.predictions, |lines| coverage_table::table(lines, design))?;

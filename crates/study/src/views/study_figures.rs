@@ -10,6 +10,7 @@ use super::page_files::KEY_FIGURE;
 use super::pooled_charts;
 use super::trace_charts as traces;
 use super::tracing_table::has_several;
+use campaign::design::Design;
 use campaign::showcase::Showcase;
 use campaign::store::StoredStudy;
 use campaign::summary::{Summary, TraceSummary};
@@ -87,18 +88,28 @@ fn all(stored: &StoredStudy, summary: &Summary) -> Vec<StudyFigure> {
     figures
 }
 
-/// What a person should see in the charts of one measure.
-fn reading(measure: ErrorMeasure) -> &'static str {
+/// What a person should see in a chart of one measure.
+fn reading(measure: ErrorMeasure, plot: &Plot) -> &'static str {
+    let axis = match plot {
+        Plot::Panels(own) => own.stacks[0].rows.first().map(|row| row.y.title.as_str()),
+        Plot::Rows(own) => own.columns.first().map(|column| column.x.title.as_str()),
+        Plot::Cells(_) | Plot::ZigZag(_) => None,
+    };
+    let is_of = |words: &str| axis.is_some_and(|title| title.contains(words));
     match measure {
-        ErrorMeasure::Rms => {
-            "Root mean square error of K and T with 95 % bootstrap intervals, over the Cramér–Rao bound where all cells have \
-             one. Over the bound, a line that rises where there is less noise is bias. A difference from the nearest \
-             first-order response is no error: the ship has no K and T of its own."
+        ErrorMeasure::Rms if is_of("nearest first-order") => {
+            "Root mean square difference of K and T from those of the nearest first-order response, with 95 % bootstrap \
+             intervals. It is no error: the ship has no K and T of its own."
         }
+        ErrorMeasure::Rms if is_of("over the bound") => {
+            "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals."
+        }
+        ErrorMeasure::Rms => "Root mean square error of K and T, with 95 % bootstrap intervals.",
         ErrorMeasure::Coverage => {
             "Share of quoted 95 % intervals that hold the truth, with Wilson's intervals, and their median width. Inside the \
-             grey band a method is as honest as this number of trials can tell; below it, it is too sure; above it, its \
-             intervals are wider than they need be. Methods that quote an interval in fewer than half of the trials are missing."
+             grey band about 95 % a method is as honest as this number of trials can tell; with less it is too sure; with more \
+             its intervals are wider than they need be. Methods that quote an interval in fewer than half of the trials are \
+             missing."
         }
         ErrorMeasure::Failures => {
             "Share of trials without an answer, with Wilson's intervals; methods that always answer are left out. The reasons are \
@@ -114,10 +125,12 @@ fn reading(measure: ErrorMeasure) -> &'static str {
 /// Cells of a study with traces beyond which errors of K and T are not drawn one by one.
 const MOST_TRACED: usize = 24;
 
-/// What the first of several traces said.
-pub fn first_trace(summary: &Summary) -> Vec<TraceSummary> {
-    let first = summary.tracing.first().map_or(0, |line| line.method);
-    summary.tracing.iter().filter(|line| line.method == first).cloned().collect()
+/// What one of several traces said: the first that the scenario calls what its figures are about, else the first.
+pub fn one_trace(design: &Design, summary: &Summary) -> Vec<TraceSummary> {
+    let about = &design.words.output.methods;
+    let is_about = |line: &&TraceSummary| about.contains(&design.methods[line.method].label);
+    let one = summary.tracing.iter().find(is_about).or(summary.tracing.first()).map_or(0, |line| line.method);
+    summary.tracing.iter().filter(|line| line.method == one).cloned().collect()
 }
 
 /// The words that say of which of several things a figure is.
@@ -133,26 +146,38 @@ fn stem_of(stem: &str, of: &str) -> String {
 /// Figures about what traces named.
 fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
-    // Of several traces the first is drawn: the others are in the tables.
-    let lines = first_trace(summary);
-    let first = lines.first().map_or(0, |line| line.method);
-    let whose = if has_several(design) { here(&design.methods[first].label) } else { String::new() };
+    // Of several traces one is drawn: the others are in the tables.
+    let lines = one_trace(design, summary);
+    let one = lines.first().map_or(0, |line| line.method);
+    let whose = if has_several(design) { here(&design.methods[one].label) } else { String::new() };
+    let are_hulls = !lines.is_empty() && lines.iter().all(TraceSummary::is_hull);
     let confusion = |(number, (group, map)): (usize, (String, _))| {
-        let caption = "How often each effect was named, in per cent of the trials, with 95 % intervals. A row is what the \
-                       trials lack, a column what was named; aliases count for their own name only.";
+        let rows = match are_hulls {
+            true => {
+                "A row is a hull, of which nobody knows what a first-order response lacks: no cell is right or wrong."
+            }
+            false => "A row is what the trials lack; an alias counts for its own name only.",
+        };
         let stem = if number == 0 { String::from("confusion") } else { format!("confusion-{}", slug(&group)) };
-        PageFigure::new(stem, format!("{caption}{}{whose}", here(&group)), Plot::Cells(map))
+        let of = match design.axes.get(1..).unwrap_or_default() {
+            axes if group.contains(|own: char| own.is_ascii_digit()) => here(&format!("{} {group}", axes.join(", "))),
+            _ => here(&group),
+        };
+        let caption = format!(
+            "How often each effect was named, in per cent of the trials, with 95 % intervals. {rows}{of}{whose}"
+        );
+        PageFigure::new(stem, caption, Plot::Cells(map))
     };
     let power = traces::power(&lines).map(|data| {
-        let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood \
-                       ratio it has on average against the best first-order response, cells of like ratio together, with 95 % \
-                       intervals. Curves: power of a \
-                       likelihood-ratio test with one to three parameters at the threshold that a trace has under white noise.";
+        let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood-ratio \
+                       statistic 2 ln Λ that it has on average, with 95 % intervals; of many kinds of trial those in a \
+                       third of a decade together. Curves: power of a test by 2 ln Λ with one to three parameters at the \
+                       threshold of the usual rule, a probability of 0.95, under white noise.";
         PageFigure::new("power", format!("{caption}{whose}"), data)
     });
     let reliability = traces::reliability(&lines).map(|data| {
-        let caption = "How often an effect was there, over the probability that the trace gave it: every effect on the list \
-                       counts once in every trial of a ship whose effects are known, with 95 % intervals.";
+        let caption = "How often an effect was there, over the probability that the trace gave it, with 95 % intervals: every \
+                       effect on the list counts once in every trial of a ship whose effects are known.";
         PageFigure::new("reliability", format!("{caption}{whose}"), data)
     });
     let rules = traces::rules(design, &summary.tracing).map(|plot| {
@@ -175,7 +200,7 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         for (group, plot) in charts::over_axes(design, summary, measure) {
             let stem = group.as_ref().map_or_else(|| measure.stem().to_owned(), |own| stem_of(measure.stem(), own));
             let place = group.map_or_else(String::new, |group| format!(" Here: {group}."));
-            figures.push(PageFigure::new(stem, format!("{}{place}", reading(measure)), plot));
+            figures.push(PageFigure::new(stem, format!("{}{place}", reading(measure, &plot)), plot));
         }
     }
     figures

@@ -8,7 +8,9 @@ use report::figures::{
     Ruler, Shades, Stack,
 };
 use report::paint::Paint;
-use report::palette::{CurveOrigin, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RUDDER, SOLID};
+use report::palette::{
+    BEFORE, CurveOrigin, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID,
+};
 use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
@@ -51,7 +53,8 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     // Columns stand in the order of the rows, so that what is right runs down a diagonal.
     let missing = rows.iter().flat_map(|(_, lines)| lines).flat_map(|line| &line.missing).filter(|id| *id != HULL);
     let named = missing.chain(lines.iter().flat_map(|line| line.named.keys())).map(String::as_str);
-    let columns = distinct([NOTHING].into_iter().chain(named));
+    let is_silent = lines.iter().any(|line| line.silent > 0 || line.missing.is_empty());
+    let columns = distinct(is_silent.then_some(NOTHING).into_iter().chain(named));
     let cell = |lines: &[&TraceSummary], id: &str| {
         let count = |line: &&TraceSummary| match id {
             NOTHING => line.silent,
@@ -60,7 +63,8 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
         let trials: u64 = lines.iter().map(|line| line.trials).sum();
         let named = share(lines.iter().map(count).sum(), trials).map(|share| share.times(100.0));
         let is_right = lines[0].missing.iter().any(|own| own == id) || (id == NOTHING && lines[0].missing.is_empty());
-        let is_alias = lines.iter().any(|line| line.aliases.contains(id));
+        let of_alias: u64 = lines.iter().filter_map(|line| line.aliases.get(id)).sum();
+        let is_alias = 2 * of_alias > lines.iter().map(count).sum();
         MapCell {
             value: Some(named.map_or(0.0, |share| share.value)),
             interval: named.and_then(|share| share.ci95),
@@ -73,7 +77,8 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
         title: None,
         titles: [String::from("named by the trace"), String::new()],
         columns: columns.iter().map(|id| id.replace('_', " ")).collect(),
-        rows: rows.iter().map(|(name, lines)| format!("{name} (n = {})", trials(lines))).collect(),
+        // No line ends within the count.
+        rows: rows.iter().map(|(name, lines)| format!("{name} (n\u{a0}=\u{a0}{})", trials(lines))).collect(),
         shades: Shades::Shares,
         panels: vec![(None, cells.collect())],
         note: Some(String::from(
@@ -154,9 +159,6 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
 /// Smallest expected likelihood ratio that is drawn.
 const SMALLEST: f64 = 1.0;
 
-/// Groups of cells in a decade of expected likelihood ratios: a cell alone has few trials.
-const POOLS: f64 = 3.0;
-
 /// Points of a curve of theory.
 const POINTS: usize = 80;
 
@@ -176,45 +178,64 @@ type MeasuredShare = (f64, f64, Option<[f64; 2]>);
 fn shares(
     x: Ruler,
     y_title: &str,
-    series: Vec<(&str, Vec<MeasuredShare>)>,
+    series: Vec<(String, Vec<MeasuredShare>)>,
     theory: Vec<(String, PlotCurve)>,
 ) -> Panels {
     const DASHES: [Dash; 3] = [SOLID, DASHED, DOTTED];
-    const LOOKS: [(CurveOrigin, Marker); 2] =
-        [(CurveOrigin::After, Marker::Circle), (CurveOrigin::Before, Marker::Square)];
+    const COLOURS: [Paint; FEW] = [HEADING, BEFORE, RUDDER, DIMENSION, RECORD, INK];
+    const MARKERS: [Marker; FEW] =
+        [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down, Marker::Star];
+    let looks = COLOURS.into_iter().zip(MARKERS);
     let line = |((name, curve), dash): ((String, PlotCurve), Dash)| {
         Layer::line(name, curve, Pen { width: 0.9, dash, ..Pen::new(INK) })
     };
-    let marks = |((name, points), (origin, marker)): ((&str, Vec<MeasuredShare>), (CurveOrigin, Marker))| {
-        let look = Look { colour: origin.look().colour, marker, dash: SOLID, hollow: false };
-        Layer::marks(name, look, points)
+    let marks = |((name, points), (colour, marker)): ((String, Vec<MeasuredShare>), (Paint, Marker))| {
+        Layer::marks(name, Look { colour, marker, dash: SOLID, hollow: false }, points)
     };
-    let layers = theory.into_iter().zip(DASHES).map(line).chain(series.into_iter().zip(LOOKS).map(marks)).collect();
+    let layers = theory.into_iter().zip(DASHES).map(line).chain(series.into_iter().zip(looks).map(marks)).collect();
     let row = PanelRow::new(Ruler::new(y_title, Division::Percent), 0.42);
     Panels::of(Stack::over(x, vec![(row, layers)]))
 }
 
-/// Power over the expected likelihood ratio, for cells with one missing effect.
+/// Most kinds of trial that are told apart by name, and most series of a figure.
+const FEW: usize = 6;
+
+/// Ranges a decade of the expected ratio is divided in where kinds of trial are many.
+const RANGES: f64 = 3.0;
+
+/// Power over the expected likelihood ratio, for cells with one missing effect: each by its name where they are few,
+/// else all in a range of that ratio together. Nothing where every one is named in every trial.
 pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
-    let points = |needs_search: bool| -> Vec<MeasuredShare> {
-        let is_wanted = |line: &&TraceSummary| match &line.missing[..] {
-            [only] => is_of_time(only) == needs_search,
-            _ => false,
-        };
-        let size = |line: &TraceSummary| line.expected.filter(|expected| *expected > SMALLEST).map(f64::log10);
-        let sized = lines.iter().filter(is_wanted).filter_map(|line| Some((size(line)?, line)));
-        let pool = |(_, own): (i64, Vec<(f64, &TraceSummary)>)| {
-            let count = |of: fn(&TraceSummary) -> u64| own.iter().map(|(_, line)| of(line)).sum();
-            let share = share(count(|line| line.complete), count(|line| line.trials))?.times(100.0);
-            let middle = own.iter().map(|(size, _)| size).sum::<f64>() / own.len() as f64;
-            Some((10f64.powf(middle), share.value, share.ci95))
-        };
-        grouped(sized, |(size, _)| (POOLS * size).floor() as i64).into_iter().filter_map(pool).collect()
+    let is_shown = |line: &&TraceSummary| {
+        line.missing.len() == 1 && !line.is_hull() && line.expected.is_some_and(|expected| expected > SMALLEST)
     };
-    let series = [(false, "effect of the ship or its gear"), (true, "moment that depends on time")];
-    let series = series.map(|(of_time, name)| (name, points(of_time)));
-    let series: Vec<_> = series.into_iter().filter(|(_, points)| !points.is_empty()).collect();
-    let largest = series.iter().flat_map(|(_, points)| points).map(|point| point.0).reduce(f64::max)?;
+    let shown: Vec<&TraceSummary> = lines.iter().filter(is_shown).collect();
+    if shown.iter().all(|line| line.complete == line.trials) {
+        return None;
+    }
+    let are_few = shown.len() <= FEW;
+    let expected = |line: &TraceSummary| line.expected.unwrap_or(SMALLEST);
+    let name = |line: &&TraceSummary| match (are_few, is_of_time(&line.missing[0])) {
+        (true, _) => line.missing[0].replace('_', " "),
+        (_, false) => String::from("an effect of the ship or its gear"),
+        (_, true) => String::from("a moment that depends on time"),
+    };
+    let point = |lines: &[&TraceSummary]| {
+        let share = share(lines.iter().map(|line| line.complete).sum(), lines.iter().map(|line| line.trials).sum())?;
+        let middle = (lines.iter().map(|line| expected(line).ln()).sum::<f64>() / lines.len() as f64).exp();
+        let share = share.times(100.0);
+        Some((middle, share.value, share.ci95))
+    };
+    let range = |line: &&TraceSummary| match are_few {
+        true => line.cell,
+        false => (RANGES * expected(line).log10()) as usize,
+    };
+    let points = |(name, lines)| {
+        let ranges = grouped::<_, &TraceSummary>(lines, range);
+        (name, ranges.iter().filter_map(|(_, lines)| point(lines)).collect())
+    };
+    let series = grouped(shown.iter().copied(), name).into_iter().map(points).collect();
+    let largest = shown.iter().map(|line| expected(line)).reduce(f64::max)?;
     let theory = PARAMETERS.map(|freedom| {
         let limit = ODDS + f64::from(freedom) * ROWS.ln();
         let sizes: Vec<f64> =
@@ -223,22 +244,30 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
         let plural = if freedom == 1 { "" } else { "s" };
         (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
     });
-    let x = Ruler::new("expected 2 ln (likelihood ratio) over the best first-order response", Division::Factors);
-    let note = Some(String::from("Marks: trials of missing effects of like size. Bars: 95 % intervals."));
+    let x = Ruler::new("expected 2 ln Λ against the best first-order response", Division::Factors);
+    let note = Some(String::from("Bars: 95 % intervals."));
     Some(Panels { note, ..shares(x, "trials in which it is named [%]", series, theory.into()) })
 }
 
-/// Probabilities and how often they came true, for traces of ships whose effects are known; `None` without any.
+/// Effects from which a share is drawn as one of many.
+const MANY: u64 = 30;
+
+/// Probabilities and how often they came true, for traces of ships whose effects are known; `None` where no effect was
+/// ever there.
 pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
     let point = |range: &CalibrationBin| {
         let share = share(range.present, range.effects)?.times(100.0);
         Some((100.0 * range.sum / range.effects as f64, share.value, share.ci95))
     };
-    let points: Vec<MeasuredShare> = calibration(lines).iter().filter_map(point).collect();
+    let ranges = calibration(lines);
+    let points = |few: bool| ranges.iter().filter(|own| (own.effects < MANY) == few).filter_map(point).collect();
+    let series =
+        [(format!("{MANY} effects and more"), points(false)), (format!("fewer than {MANY} effects"), points(true))];
+    let series = series.into_iter().filter(|(_, points): &(_, Vec<MeasuredShare>)| !points.is_empty()).collect();
     let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
     let x = Ruler::new("mean probability given [%]", Division::Percent);
     let theory = vec![(String::from("calibrated"), diagonal)];
-    (!points.is_empty()).then(|| shares(x, "present [%]", vec![("effects by their probability", points)], theory))
+    ranges.iter().any(|own| own.present > 0).then(|| shares(x, "present [%]", series, theory))
 }
 
 /// Effects by their probability, over all cells.
@@ -285,6 +314,25 @@ mod tests {
         let Some(Plot::Rows(data)) = rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]) else { panic!("rows") };
         assert!(matches!(data.columns[0].rows[0][0].kind, RowKind::Mark(_, 50.0, Some(_))));
         assert!(rules(&design, &lines[..2]).is_none());
+    }
+
+    /// Few kinds of trial by their names, many by ranges; nothing where every effect is always named, or none is there.
+    #[test]
+    fn power_is_drawn_where_something_is_missed() {
+        let line = |cell: usize, complete| TraceSummary {
+            missing: vec![String::from(if cell == 0 { "wave_yaw" } else { "steering_lag" })],
+            ..TraceSummary { cell, trials: 4, complete, expected: Some(20.0), ..TraceSummary::default() }
+        };
+        let marks = |lines: Vec<TraceSummary>| -> Option<Vec<(String, Vec<f64>)>> {
+            let layers = power(&lines)?.stacks.remove(0).panels.remove(0).layers.split_off(PARAMETERS.len());
+            Some(layers.into_iter().map(|layer| (layer.name.unwrap_or_default(), layer.curve.y)).collect())
+        };
+        let named = |name: &str, y: &[f64]| (name.to_owned(), y.to_vec());
+        let few = vec![named("wave yaw", &[100.0]), named("steering lag", &[25.0, 50.0])];
+        assert_eq!(marks(vec![line(0, 4), line(1, 1), line(2, 2)]), Some(few));
+        let many = marks((0..8).map(|cell| line(cell, u64::from(cell > 3))).collect()).expect("some are missed");
+        assert_eq!(many.iter().map(|(_, y)| y.len()).sum::<usize>(), many.len());
+        assert!(marks(vec![line(0, 4), line(1, 4)]).is_none() && reliability(&[line(0, 4)]).is_none());
     }
 
     /// P(χ'²₁(λ) > c) = P(|Z + √λ| > √c); for λ = 9, c = 4: Φ(1) + Φ(−5).

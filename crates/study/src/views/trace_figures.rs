@@ -11,9 +11,9 @@ use report::figures::{
     AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn,
     Ruler, Stack,
 };
-use report::number::{fixed, significant};
+use report::number::{MISSING, fixed, significant};
 use report::paint::Paint;
-use report::palette::{HEADING, Look, Marker, RECORD, RUDDER, SOLID};
+use report::palette::{HEADING, Look, Marker, RUDDER, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
@@ -174,7 +174,7 @@ fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
     let (name, colour) = match outcome {
         Outcome::Added => ("named", HEADING),
         Outcome::Alias => ("not told from one that is named", RUDDER),
-        Outcome::Rejected => ("rejected", RECORD),
+        Outcome::Rejected => ("rejected", Paint(0x8A, 0x8A, 0x8A)),
         Outcome::NotObservable => ("not observable", Paint(0xC4, 0xC4, 0xC4)),
     };
     let hollow = outcome == Outcome::NotObservable;
@@ -185,34 +185,46 @@ fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
 /// by their probability.
 pub fn evidence(document: &TraceDocument) -> PageFigure {
     let trace = &document.trace;
+    let own = |id: &str| trace.candidates.iter().find(|one| one.id == id).map(|one| one.probability);
     let named = trace.effects.iter().map(|one| {
-        (term(&one.id, &one.form, one.only.as_ref()), one.probability, Some(-one.delta_bic), Outcome::Added)
+        let (name, alone) = (term(&one.id, &one.form, one.only.as_ref()), own(&one.id).unwrap_or(one.probability));
+        let text = match one.aliases.is_empty() {
+            true => fixed(alone, 3),
+            false => format!("{} ({})", fixed(alone, 3), fixed(one.probability, 3)),
+        };
+        (name, (alone, text), Some(-one.delta_bic), Outcome::Added)
     });
     let others = trace.candidates.iter().filter(|one| trace.effects.iter().all(|effect| effect.id != one.id));
     let mut others: Vec<_> = others
         .map(|one| {
             let best = one.forms.iter().max_by(|own, other| own.probability.total_cmp(&other.probability));
             let name = best.map_or_else(|| one.id.clone(), |best| term(&one.id, &best.form, best.only.as_ref()));
-            (name, one.probability, one.delta_bic.map(|change| -change), one.outcome)
+            (name, (one.probability, fixed(one.probability, 3)), one.delta_bic.map(|change| -change), one.outcome)
         })
         .collect();
-    others.sort_by(|one, other| other.1.total_cmp(&one.1));
+    others.sort_by(|one, other| other.1.0.total_cmp(&one.1.0));
     let rows: Vec<_> = named.chain(others).collect();
-    let bar = |value: Option<f64>, outcome: Outcome, text: fn(f64) -> String| {
+    let bar = |value: f64, text: String, outcome: Outcome| {
         let (name, look) = outcome_look(outcome);
-        let item = |value| RowItem { text: Some(text(value)), ..RowItem::new(name, RowKind::Bar(look, value)) };
-        value.map(item).into_iter().collect::<Vec<RowItem>>()
+        vec![RowItem { text: Some(text), ..RowItem::new(name, RowKind::Bar(look, value)) }]
     };
     let column = |x: Ruler, room: f64, rows| RowsColumn { x, rows, zero: true, room, ..RowsColumn::default() };
-    let probability = rows.iter().map(|(_, own, _, outcome)| bar(Some(*own), *outcome, |value| fixed(value, 3)));
-    let support = rows.iter().map(|(_, _, own, outcome)| bar(*own, *outcome, |value| significant(value, 3)));
+    let probability = rows.iter().map(|(_, (own, text), _, outcome)| bar(*own, text.clone(), *outcome));
+    let support = rows.iter().map(|(_, _, own, outcome)| {
+        bar(own.unwrap_or(0.0), own.map_or_else(|| MISSING.to_owned(), |own| significant(own, 3)), *outcome)
+    });
+    let has_group = trace.effects.iter().any(|one| !one.aliases.is_empty());
     let cut = Ruler::decimal("support −ΔBIC").within(MOST_SUPPORT, Some(0.0));
+    let room = if has_group { 0.5 } else { 0.25 };
     let columns =
-        vec![column(Ruler::decimal("probability"), 0.25, probability.collect()), column(cut, 0.3, support.collect())];
+        vec![column(Ruler::decimal("probability"), room, probability.collect()), column(cut, 0.3, support.collect())];
     let names = rows.iter().map(|row| row.0.clone()).collect();
     let data = NamedRows { title: Some(document.title()), names, columns, note: None };
-    let caption =
-        "Probability of every effect with its most probable form, and the support −ΔBIC that it has beside all others.";
+    let group =
+        if has_group { " In brackets: that it, or one that the records cannot tell from it, is there." } else { "" };
+    let caption = format!(
+        "Probability of every effect with its most probable form, and the support −ΔBIC that it has beside all others.{group}"
+    );
     PageFigure::new("evidence", caption, data)
 }
 
@@ -223,7 +235,9 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
     for (entry, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
         let Ok(zigzag) = ZigZag::of(trial) else { continue };
         let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
-        let criteria: Vec<_> = entry.particulars().map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
+        // The limits are for ships: a model has none, and which ship it is a model of the record does not say.
+        let ship = entry.particulars().filter(|own| own.length >= imo::SHORTEST_M);
+        let criteria: Vec<_> = ship.map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
         for (number, word) in [(0, "first"), (1, "second")] {
             let of = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
             let Some(angle) = of(&zigzag) else { continue };
@@ -253,7 +267,8 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
     let column = RowsColumn { x: Ruler::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
     let title = Some(String::from("Overshoots of the records and of their replays"));
     let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of IMO \
-                   MSC.137(76) where one is for this zig-zag.";
+                   MSC.137(76) where one is for this zig-zag and for a ship of this length. Without a mark: that \
+                   replay has no such overshoot.";
     Some(PageFigure::new("overshoots", caption, NamedRows { title, names, columns: vec![column], note: None }))
 }
 
