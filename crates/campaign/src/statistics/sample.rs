@@ -145,9 +145,8 @@ impl Ordered {
     }
 
     /// Density by a Gaussian kernel at `points` places from one end of the middle 98 % to the other, or three quartile
-    /// distances beyond the quartiles where heavy tails reach further: places across these would be too far apart for
-    /// the kernel. Bandwidth of Silverman (1986, eq. 3.31); nothing for fewer than ten values or for values that are all
-    /// the same.
+    /// distances beyond the quartiles where heavy tails reach further: places would be too far apart for the kernel.
+    /// Bandwidth of Silverman (1986, eq. 3.31); nothing for fewer than ten values or for values that are all the same.
     pub fn density(&self, points: usize) -> Vec<(f64, f64)> {
         let quantiles = [0.01, 0.25, 0.75, 0.99].map(|p| self.quantile(p).unwrap_or(0.0));
         let n = self.len() as f64;

@@ -175,8 +175,8 @@ fn thick_stroke(theme: &Theme) -> Stroke {
 /// Rows that may stand twice below each other.
 const FEW: usize = 8;
 
-/// Draws the columns side by side, or above each other when the figure is narrow and has few rows. What reaches beyond an axis is cut
-/// and marked.
+/// Draws the columns side by side, or above each other when the figure is narrow and has few rows. What reaches beyond
+/// an axis is cut and marked.
 pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));

@@ -3,10 +3,7 @@
 use std::collections::BTreeSet;
 
 use report::PlotCurve;
-use report::figures::{
-    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, Plot, RowItem, RowKind, RowsColumn,
-    Ruler, Shades, Stack,
-};
+use report::figures::{CellMap, Division, Layer, MapCell, Outline, PanelRow, Panels, Pen, Ruler, Shades, Stack};
 use report::paint::Paint;
 use report::palette::{
     BEFORE, CurveOrigin, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID,
@@ -89,9 +86,9 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
 }
 
 /// Several traces against each other over all ships whose effects are known: trials in which exactly what is missing
-/// was named, of those whose ship lacks something, over trials in which something else was. Where no ship lacks
-/// anything, rows of the latter. Nothing for one trace.
-pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Plot> {
+/// was named, of those whose ship lacks something, over trials in which something else was. Nothing for one trace, and
+/// where no ship lacks anything.
+pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Panels> {
     let known: Vec<&TraceSummary> = lines.iter().filter(|line| !line.is_hull()).collect();
     let rules = grouped(known, |line| line.method);
     if rules.len() < 2 {
@@ -102,28 +99,10 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Plot> {
         share(own().map(|line| count(line)).sum(), own().map(|line| line.trials).sum()).map(|own| own.times(100.0))
     };
     let of_rule = |(method, own): &(usize, Vec<&TraceSummary>)| {
-        let (wrong, exact) = (share_of(own, |line| line.wrong, false)?, share_of(own, |line| line.exact, true));
+        let (wrong, exact) = (share_of(own, |line| line.wrong, false)?, share_of(own, |line| line.exact, true)?);
         Some((design.methods[*method].label.as_str(), wrong, exact))
     };
-    let rules: Vec<_> = rules.iter().map(of_rule).collect::<Option<_>>()?;
-    let both: Option<Vec<_>> = rules.iter().map(|(label, wrong, exact)| Some((*label, *wrong, (*exact)?))).collect();
-    Some(both.map_or_else(|| false_names(&rules).into(), |rules| trade_off(&rules).into()))
-}
-
-/// Title of an axis of trials in which something was named that is not missing.
-const FALSE_NAMES: &str = "trials with a false name [%]";
-
-/// Rules by their false names alone.
-fn false_names(rules: &[(&str, Statistic, Option<Statistic>)]) -> NamedRows {
-    let look = CurveOrigin::Before.look();
-    let row = |wrong: &Statistic| vec![RowItem::new("", RowKind::Mark(look, wrong.value, wrong.ci95))];
-    let rows = rules.iter().map(|(_, wrong, _)| row(wrong)).collect();
-    NamedRows {
-        names: rules.iter().map(|(label, ..)| (*label).to_owned()).collect(),
-        columns: vec![RowsColumn { x: Ruler::decimal(FALSE_NAMES), rows, zero: true, ..RowsColumn::default() }],
-        note: Some(String::from("Bars: 95 % intervals.")),
-        ..NamedRows::default()
-    }
+    Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?))
 }
 
 /// Rules as points: a colour for what stands before the comma of their labels, a shape for what stands behind it.
@@ -152,7 +131,8 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
     // The shapes stand in the key, in ink.
     layers.extend(variants.iter().map(|variant| Layer::marks(*variant, look(INK, variant), Vec::new())));
     let row = PanelRow::new(Ruler::decimal("trials named exactly [%]"), 0.42);
-    let stack = Stack { zero: true, ..Stack::over(Ruler::decimal(FALSE_NAMES), vec![(row, layers)]) };
+    let stack =
+        Stack { zero: true, ..Stack::over(Ruler::decimal("trials with a false name [%]"), vec![(row, layers)]) };
     Panels { note: Some(String::from("Best is top left. Bars: 95 % intervals.")), ..Panels::of(stack) }
 }
 
@@ -307,12 +287,11 @@ mod tests {
         };
         let lines =
             [line(0, &["wave_yaw"], 1, 1), line(0, &[], 2, 0), line(1, &["wave_yaw"], 0, 0), line(1, &[], 2, 0)];
-        let Some(Plot::Panels(data)) = rules(&design, &lines) else { panic!("two rules") };
+        let data = rules(&design, &lines).expect("two rules");
         let layers = &data.stacks[0].panels[0].layers;
         let key: Vec<&str> = layers.iter().filter_map(|layer| layer.name.as_deref()).collect();
         assert_eq!((&layers[0].curve, key), (&PlotCurve::new([25.0, 0.0], [50.0, 0.0]), vec!["bic", "0.5", "0.9"]));
-        let Some(Plot::Rows(data)) = rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]) else { panic!("rows") };
-        assert!(matches!(data.columns[0].rows[0][0].kind, RowKind::Mark(_, 50.0, Some(_))));
+        assert!(rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]).is_none());
         assert!(rules(&design, &lines[..2]).is_none());
     }
 
