@@ -8,11 +8,10 @@ use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
 use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
 use predict::motion::{self, Planar};
-use predict::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
+use predict::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull, by_keys, rows_of};
 use ship::Particulars;
 use ship::angle::{from_deg, to_deg};
 use ship::vessel::prime::{HullCoefficient, HullForm};
-use ship::vessel::prior::PARTICULARS;
 use trace::Analysis;
 use trace::analysis::Plausible;
 use trace::document::RecordNoiseEntry;
@@ -170,7 +169,6 @@ fn stored(hull: &HullEstimate, of: usize) -> StoredHull {
         expected_sd: own.sd,
     };
     let particulars = expected.particulars.filter(|_| matches!(expected.form, HullForm::Mmg(..))).unwrap_or_default();
-    let given = PARTICULARS.iter().filter_map(|own| Some((own.key.to_owned(), own.get(&particulars)?)));
     let HullReference { length, speed, propeller } = hull.reference;
     StoredHull {
         form: expected.form.as_str().to_owned(),
@@ -178,19 +176,15 @@ fn stored(hull: &HullEstimate, of: usize) -> StoredHull {
         length_m: length,
         speed_m_s: speed,
         propeller_per_s: propeller,
-        particulars: given.collect(),
+        particulars: by_keys(&particulars),
         coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
         covariance: rows_of(&hull.covariance),
         moment: RandomYawMoment {
             deviation_rudder_rad: hull.moment.deviation,
             correlation_s: hull.moment.correlation_time,
         },
+        from: None,
     }
-}
-
-/// A matrix by its rows.
-fn rows_of(matrix: &nalgebra::DMatrix<f64>) -> Vec<Vec<f64>> {
-    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
 /// Largest size of some values.

@@ -5,7 +5,8 @@
 //! cancels; what they have wrong differently does not, so both have to be of one method.
 //!
 //! F and B are drawn apart, each with the errors of its parameters and the random moment of one trial, T with the
-//! standard deviation of its reading. The moment in B stands for that in T. It reads no file and fits nothing.
+//! standard deviation of its reading. The moment in B stands for that in T. Where F is the hull of B at another
+//! loading, the errors of its trial are in both ([`crate::stored_hull`]). It reads no file and fits nothing.
 //!
 //! Source: MSC/Circ.1053 (2002), 3.4.1.2 and 3.4.1.3.
 
@@ -146,7 +147,7 @@ pub fn correct(
     record: &Trial,
     draws: usize,
 ) -> Result<Correction, PredictError> {
-    let full = &if full.files() == ballast.files() { full.clone() } else { full.clone().apart() };
+    let full = &if full.files() == ballast.files() { full.clone() } else { full.clone().apart_from(ballast) };
     let mut warnings = Vec::new();
     let speed = |mixture: &ShipMixture| mixture.first().speed_m_s;
     if let (Some(own), Some(other)) = (speed(full), speed(ballast))
@@ -365,6 +366,18 @@ mod tests {
             assert!(figure.result.holds90(figure.measured) && figure.factor.holds90(1.0), "{figure:?}");
             assert!(figure.factor.ci90[1] > figure.factor.ci90[0], "drawn apart");
         }
+    }
+
+    /// A hull that is taken from that of the trial with all that it has wrong corrects nothing, in a calm.
+    #[test]
+    fn a_hull_taken_from_that_of_the_trial_has_its_errors() {
+        let hulls = vec![testing::hull("quadratic")];
+        let ballast = IdentifiedShip { hulls, gear: None, ..testing::known() }.in_calm().expect("known");
+        let taken = vec![testing::at_same_loading(&ballast.hulls[0], 1.0)];
+        let full = mixture(IdentifiedShip { hulls: taken, ..ballast.clone() });
+        let trial = record(&mixture(testing::known()), "zig-zag:20/20", 7, from_deg(0.1));
+        let found = correct(&full, &mixture(ballast), &trial, 200).expect("sails");
+        assert_eq!(found.figures["first_overshoot_deg"].factor.ci90, [1.0, 1.0]);
     }
 
     /// A ship at full load turns more slowly than the record lasts: the rudder is held on for her.

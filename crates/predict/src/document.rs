@@ -48,9 +48,25 @@ pub struct PredictDocument {
     /// Whether a hull takes the place of the yaw response.
     #[serde(default)]
     pub hull: bool,
+    /// The loading that the hulls are taken to; none where they are at that of their records.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<OtherLoading>,
     /// Where the ship was seen.
     #[serde(default)]
     pub seen: ValidityRange,
+}
+
+/// A loading that hulls are taken to by the formulas of particulars.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OtherLoading {
+    /// The file that describes it.
+    pub file: String,
+    /// Mean draught of every model at its trials, at their scale.
+    pub draughts_at_trials_m: Vec<f64>,
+    /// Mean draught at this loading, at the same scale.
+    pub draught_m: f64,
+    /// What standard deviations are widened by.
+    pub factor: f64,
 }
 
 /// A model that takes part in a prediction.
@@ -90,9 +106,10 @@ impl PredictDocument {
         self
     }
 
-    /// The files of the models, one after the other.
+    /// The files of the models, one after the other, and that of the loading that they are taken to.
     pub fn model_files(&self) -> String {
-        self.models.iter().map(|model| model.file.as_str()).collect::<Vec<_>>().join(", ")
+        let files = self.models.iter().map(|model| model.file.as_str()).collect::<Vec<_>>().join(", ");
+        files + &self.load.as_ref().map_or_else(String::new, |load| format!(" at the loading of {}", load.file))
     }
 }
 

@@ -76,7 +76,7 @@ pub struct ValidityRange {
 }
 
 /// What is known of a ship.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct IdentifiedShip {
     /// The structures, the most probable first.
     pub members: Vec<WeightedStructure>,

@@ -80,6 +80,8 @@ pub struct ShipMixture {
     timescale: f64,
     /// Whether the draws are apart from those of any other mixture that is not.
     apart: bool,
+    /// Whether its hulls follow those of the other mixture all the same, each at another loading.
+    follows: bool,
 }
 
 /// A ship for one trial.
@@ -130,12 +132,19 @@ impl ShipMixture {
         };
         let motions = files.iter().map(motion).collect::<Result<_, _>>()?;
         let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
-        Ok(Self { parts, motions, files: files.into_iter().map(|(known, _)| known).collect(), timescale, apart: false })
+        let files = files.into_iter().map(|(known, _)| known).collect();
+        Ok(Self { parts, motions, files, timescale, apart: false, follows: false })
     }
 
-    /// The same ships drawn with other numbers, so that they have no chance in common with those of another mixture.
-    pub fn apart(self) -> Self {
-        Self { apart: true, ..self }
+    /// The same ships drawn with other numbers, so that they have no chance in common with those of another mixture,
+    /// but that of the trials where every ship has one hull and that is taken from the hull of the other.
+    pub fn apart_from(self, other: &Self) -> Self {
+        let follows = |(own, other): (&IdentifiedShip, &IdentifiedShip)| match (&own.hulls[..], &other.hulls[..]) {
+            ([own], [other]) => own.is_from(other),
+            _ => false,
+        };
+        let follows = self.files.len() == other.files.len() && self.files.iter().zip(&other.files).all(follows);
+        Self { apart: true, follows, ..self }
     }
 
     /// A time of the ship, s: about L/U.
@@ -177,10 +186,12 @@ impl ShipMixture {
             let doubt = if has(UncertaintySource::SteeringGear) { of_gear * gear.sd_rad_s } else { 0.0 };
             SteeringGear::with_rate((gear.rate_rad_s + doubt).max(0.1 * gear.rate_rad_s))
         });
-        // By the covariance of the coefficients of the hull, or of speed and drift.
-        let mut rng = key.indexed(Purpose::Specification, 2);
+        // By the covariance of the coefficients of the hull, or of speed and drift. A hull at another loading has the
+        // draws of the hull of the trials, and some of its own.
+        let of_trial = StreamKey { seed: u64::from(self.apart && !self.follows), ..key };
+        let mut rng = of_trial.indexed(Purpose::Specification, 2);
         let hull = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
-            true => hull.drawn(&mut rng),
+            true => hull.drawn(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
             false => hull.most_probable(),
         });
         let planar = known.motion.as_ref().filter(|_| hull.is_none()).map(|planar| {
@@ -226,7 +237,7 @@ impl ShipMixture {
     /// mixture that is apart follow √2, which has nothing in common with it.
     fn chosen(&self, number: u64) -> &DrawableStructure {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let step = if self.apart { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
+        let step = if self.apart && !self.follows { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
         let mut left = (0.5 + number as f64 * step).fract();
         for part in &self.parts {
             if left < part.weight {

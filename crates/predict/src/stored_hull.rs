@@ -7,8 +7,8 @@ use rand::RngExt;
 use rand_distr::StandardNormal;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use ship::vessel::prime::{HullCoefficient, HullForm};
-use ship::vessel::prior::{HullParticulars, Particular};
+use ship::vessel::prime::{HullCoefficient, HullForm, is_of_trial};
+use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
 use ship::vessel::scaled::ScaledHull;
 
 use crate::error::PredictError;
@@ -50,7 +50,7 @@ pub struct RandomYawMoment {
 }
 
 /// A hull of three degrees of freedom with what is known of its coefficients, which have no dimension.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StoredHull {
     /// `quadratic`, `cubic` or `mmg`.
     pub form: String,
@@ -72,6 +72,30 @@ pub struct StoredHull {
     pub covariance: Vec<Vec<f64>>,
     /// What the form leaves of the records.
     pub moment: RandomYawMoment,
+    /// Of a hull at another loading the one of the trials; not written to a file.
+    #[serde(skip)]
+    pub from: Option<TrialHull>,
+}
+
+/// The hull that trials left, with which that at another loading varies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrialHull {
+    /// The hull.
+    pub hull: Box<StoredHull>,
+    /// G, how far the coefficients at the other loading follow those of the hull.
+    gain: DMatrix<f64>,
+    /// Covariance of what the hull does not tell of them.
+    rest: Vec<Vec<f64>>,
+}
+
+/// Particulars by their keys, as a hull has them.
+pub fn by_keys(particulars: &HullParticulars) -> BTreeMap<String, f64> {
+    PARTICULARS.iter().filter_map(|own| Some((own.key.to_owned(), own.get(particulars)?))).collect()
+}
+
+/// A matrix by its rows.
+pub fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
 impl StoredHull {
@@ -117,6 +141,57 @@ impl StoredHull {
         let propeller_per_s = self.propeller_per_s.map(|rate| rate / second);
         Self { length_m: length, speed_m_s: speed, propeller_per_s, moment, ..self.clone() }
     }
+
+    /// The hull at another loading and at its approach speed: `expected` of its coefficients after the trials that left
+    /// this hull, their covariance C, and G, how far they follow those of this hull.
+    ///
+    /// θ = μ + G (θ₁ − θ̂₁) + e, Cov e = C − G C₁ Gᵀ: both hulls are of one trial, and what that has wrong is wrong in
+    /// both. δ_r is that of the trial, value and error: ship, sensor and side of the propeller are the same. So are the
+    /// random moment as a rudder angle, which stands for the form, and its time in L/U₀. The rate of the propeller is
+    /// the one that is given for the loading, or not known.
+    #[must_use]
+    pub fn at_loading(
+        &self,
+        ship: &HullParticulars,
+        expected: &[HullCoefficient],
+        [mut covariance, mut gain]: [DMatrix<f64>; 2],
+    ) -> Self {
+        let size = expected.len();
+        let own = DMatrix::from_fn(size, size, |row, column| self.covariance[row][column]);
+        let of_trial: Vec<usize> = (0..size).filter(|&place| is_of_trial(expected[place].key)).collect();
+        for &place in &of_trial {
+            gain.row_mut(place).fill(0.0);
+            gain.column_mut(place).fill(0.0);
+            gain[(place, place)] = 1.0;
+        }
+        let common = &gain * own * gain.transpose();
+        covariance -= &common;
+        for &place in &of_trial {
+            covariance.row_mut(place).fill(0.0);
+            covariance.column_mut(place).fill(0.0);
+        }
+        let coefficient = |(place, own): (usize, &HullCoefficient)| StoredCoefficient {
+            key: own.key.to_owned(),
+            symbol: own.symbol.to_owned(),
+            value: if is_of_trial(own.key) { self.coefficients[place].value } else { own.mean },
+            expected: own.mean,
+            expected_sd: own.sd,
+        };
+        Self {
+            propeller_per_s: ship.propeller_rate,
+            particulars: by_keys(ship),
+            coefficients: expected.iter().enumerate().map(coefficient).collect(),
+            covariance: rows_of(&(common + &covariance)),
+            from: Some(TrialHull { hull: Box::new(self.clone()), gain, rest: rows_of(&covariance) }),
+            ..self.scaled_to(self.length_m, ship.speed)
+        }
+    }
+
+    /// Whether this hull is taken from another one, at whatever scale.
+    pub(crate) fn is_from(&self, other: &Self) -> bool {
+        let is_same = |own: &Self| own.coefficients == other.coefficients && own.covariance == other.covariance;
+        self.from.as_ref().is_some_and(|from| is_same(&from.hull))
+    }
 }
 
 /// A hull that ships are drawn from.
@@ -125,8 +200,10 @@ pub(crate) struct DrawableHull {
     known: StoredHull,
     form: HullForm,
     coefficients: Vec<HullCoefficient>,
-    /// Square root of the covariance.
+    /// Square root of the covariance, of a hull at another loading that of what the trials do not tell of it.
     root: DMatrix<f64>,
+    /// The hull of the trials, and G.
+    from: Option<(Box<DrawableHull>, DMatrix<f64>)>,
 }
 
 impl DrawableHull {
@@ -139,8 +216,12 @@ impl DrawableHull {
             let expected = coefficients.len();
             return Err(PredictError::Count { what: "rows of the covariance of a hull", expected, found });
         }
-        let root = root_of(&known.covariance)?;
-        let hull = Self { known: known.clone(), form, coefficients, root };
+        let root = root_of(known.from.as_ref().map_or(&known.covariance, |from| &from.rest))?;
+        let from = known
+            .from
+            .as_ref()
+            .map(|from| Ok::<_, PredictError>((Box::new(Self::new(&from.hull)?), from.gain.clone())));
+        let hull = Self { known: known.clone(), form, coefficients, root, from: from.transpose()? };
         match hull.with(&known.values()) {
             Some(_) => Ok(hull),
             None => Err(PredictError::Hull { form: known.form.clone() }),
@@ -163,16 +244,30 @@ impl DrawableHull {
         self.with(&self.known.values()).expect("it was made once")
     }
 
-    /// A hull by the covariance of its coefficients, within their ends; what makes no ship is drawn again.
-    pub fn drawn(&self, rng: &mut impl rand::Rng) -> ScaledHull {
-        let known = DVector::from_vec(self.known.values());
+    /// A hull by the covariance of its coefficients, within their ends; what makes no ship is drawn again. At another
+    /// loading `rng` draws the hull of the trials, which this one follows, and `rest` what that does not tell of it.
+    pub fn drawn(&self, rng: &mut impl rand::Rng, rest: &mut impl rand::Rng) -> ScaledHull {
+        let known = DVector::from(self.known.values());
+        let values = match &self.from {
+            None => self.values(rng, &known),
+            Some((from, gain)) => {
+                let of_trial = DVector::from(from.known.values());
+                let step = from.values(rng, &of_trial) - of_trial;
+                self.values(rest, &(known + gain * step))
+            }
+        };
+        self.with(values.as_slice()).unwrap_or_else(|| self.most_probable())
+    }
+
+    /// Values about some, within their ends; the known ones where none are found.
+    fn values(&self, rng: &mut impl rand::Rng, about: &DVector<f64>) -> DVector<f64> {
         let is_within = |values: &DVector<f64>| {
             self.coefficients.iter().zip(values).all(|(own, value)| own.ends[0] <= *value && *value <= own.ends[1])
         };
         let mut tries = (0..MOST_TRIES)
-            .map(|_| &known + &self.root * DVector::from_fn(known.len(), |_, _| rng.sample::<f64, _>(StandardNormal)));
-        let found = tries.find_map(|values| self.with(values.as_slice()).filter(|_| is_within(&values)));
-        found.unwrap_or_else(|| self.most_probable())
+            .map(|_| about + &self.root * DVector::from_fn(about.len(), |_, _| rng.sample::<f64, _>(StandardNormal)));
+        let found = tries.find(|values| is_within(values) && self.with(values.as_slice()).is_some());
+        found.unwrap_or_else(|| self.known.values().into())
     }
 }
 
@@ -252,6 +347,28 @@ mod tests {
         }
         assert_eq!(large.moment.correlation_s, known.moment.correlation_s * time);
         assert_eq!(large.particulars, known.particulars);
+    }
+
+    /// With G the identity and three times the deviations, errors of the hull of the trial are once in that at another
+    /// loading, and eight times their variance beside them. δ_r is the same.
+    #[test]
+    fn a_hull_at_another_loading_follows_that_of_the_trial() {
+        let own = testing::hull("quadratic");
+        let [full, trial] = [testing::at_same_loading(&own, 3.0), own.clone()]
+            .map(|hull| testing::mixture(IdentifiedShip { hulls: vec![hull], ..testing::known() }));
+        let full = full.apart_from(&trial);
+        let values = |ship: &ShipMixture, number| {
+            let hull = ship.draw(number, &[UncertaintySource::Parameters]).hull.expect("a hull").hull;
+            let ship::vessel::prime::PrimeHull::Quadratic(values) = hull else { panic!("{hull:?}") };
+            [0, 8].map(|place| (values[place] - own.coefficients[place].value) / own.covariance[place][place].sqrt())
+        };
+        let [mut of_full, mut common] = [0.0; 2];
+        for number in 0..4000 {
+            let [[full, full_bias], [trial, bias]] = [&full, &trial].map(|ship| values(ship, number));
+            (of_full, common) = (of_full + full * full / 4000.0, common + full * trial / 4000.0);
+            assert_eq!(full_bias, bias);
+        }
+        assert!((of_full / 9.0 - 1.0).abs() < 0.1 && (common - 1.0).abs() < 0.15, "{of_full} {common}");
     }
 
     #[test]

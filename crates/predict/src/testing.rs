@@ -1,5 +1,6 @@
 //! A ship that tests know.
 
+use nalgebra::DMatrix;
 use ship::angle::from_deg;
 use ship::vessel::prime::HullForm;
 use ship::vessel::prior::HullParticulars;
@@ -76,7 +77,17 @@ pub(crate) fn hull(form: &str) -> StoredHull {
         covariance: (0..coefficients.len()).map(row).collect(),
         coefficients,
         moment: RandomYawMoment { deviation_rudder_rad: from_deg(0.5), correlation_s: 25.0 },
+        from: None,
     }
+}
+
+/// A hull taken from another one to the same loading, with deviations so many times those of the other.
+pub(crate) fn at_same_loading(own: &StoredHull, factor: f64) -> StoredHull {
+    let form = own.form().expect("made up");
+    let size = own.coefficients.len();
+    let covariance = DMatrix::from_fn(size, size, |i, j| factor * factor * own.covariance[i][j]);
+    let ship = HullParticulars { length: own.length_m, speed: own.speed_m_s, ..HullParticulars::default() };
+    own.at_loading(&ship, &form.coefficients(), [covariance, DMatrix::identity(size, size)])
 }
 
 /// The ships of what is known.

@@ -359,6 +359,10 @@ pub struct PredictRequest {
     /// of MODEL.json, R = T F/B (MSC/Circ.1053, 3.4.1.2)
     #[arg(long, value_name = "BALLAST.json")]
     pub ballast: Vec<PathBuf>,
+    /// Take the hulls of MODEL.json to another loading, whose [ship] and [form] are written as in a sidecar: by the
+    /// formulas of `study list priors`, with wider intervals
+    #[arg(long, value_name = "LOAD.toml")]
+    pub load: Option<PathBuf>,
     /// Also fill in the form of MSC/Circ.1053, appendix 6, as trial-form.md: its manoeuvres to both sides, measured
     /// where a record of --replay is that trial
     #[arg(long)]

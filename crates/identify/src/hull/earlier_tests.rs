@@ -92,6 +92,23 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
     assert!((light.mean - full.mean).abs() > 0.1 * full.sd, "the formulas say something of the draught");
 }
 
+/// At another loading 99/9 of the trial counts beside the 1 that was expected: what is expected follows the hull of the
+/// trials by 11/12. Without trials there is nothing to follow.
+#[test]
+fn what_is_expected_follows_the_hull_of_the_trials() {
+    let ballast = HullParticulars { draught: Some(0.3), ..SHIP };
+    let expected = ExpectedHull::of_ship(Some(&ballast), &[earlier(SHIP, "quadratic")]);
+    let [covariance, gain] = expected[0].law().expect("trials are in it");
+    let own = expected[0].form.coefficients();
+    let place = |key: &str| own.iter().position(|one| one.key == key).expect("known");
+    let of =
+        |key: &str| [gain[(place(key), place(key))], covariance[(place(key), place(key))] / own[place(key)].sd.powi(2)];
+    near(of("Nv"), [11.0 / 12.0, 1.0 / 12.0]);
+    near(of("x0"), [0.0, 1.0]);
+    near(of("delta_r"), [0.0, 1.0]);
+    assert!(ExpectedHull::of_ship(Some(&ballast), &[])[0].law().is_none());
+}
+
 /// What is known of one ship alone is no difference: it is taken for the other.
 #[test]
 fn particulars_that_are_missing_are_those_of_the_earlier_ship() {

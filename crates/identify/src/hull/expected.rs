@@ -129,6 +129,14 @@ impl ExpectedHull {
         DVector::from_iterator(self.coefficients.len(), self.coefficients.iter().map(|own| own.mean))
     }
 
+    /// Covariance C of the coefficients, and how far they follow those of the one earlier hull that is in them,
+    /// G = C (Λ − Λ₀): the identity where its trials told all, 0 where these told nothing. `None` without trials.
+    pub fn law(&self) -> Option<[DMatrix<f64>; 2]> {
+        let covariance = Cholesky::new(self.precision.clone()).filter(|_| self.has_trials)?.inverse();
+        let gain = &covariance * (&self.precision - diagonal(&self.form.coefficients()));
+        Some([covariance, gain])
+    }
+
     /// Adds what earlier trials told. What makes no normal law is left out.
     fn add(&mut self, ship: &HullParticulars, earlier: &[&EarlierHull]) {
         let mut precision = self.precision.clone();

@@ -166,6 +166,7 @@ def predict(
     replay: Any = (),
     method: Optional[str] = None,
     calm: bool = False,
+    load: Union[str, Path, None] = None,
     draws: int = 1000,
     length_m: Optional[float] = None,
     speed_m_s: Optional[float] = None,
@@ -181,6 +182,8 @@ def predict(
     :param replay: records that are held against their prediction
     :param method: the method whose answer is used; maximum likelihood where it is left out
     :param calm: whether the weather of the records is left out
+    :param load: path of a file that describes another loading, as a sidecar does: hulls are taken to it by the formulas of
+        the particulars
     :param draws: ships that are drawn
     :param length_m: length that is predicted for, m: another one than that of the records scales the ship by Froude
     :param speed_m_s: its approach speed, m/s
@@ -193,6 +196,7 @@ def predict(
         manoeuvre=strings(manoeuvres),
         method=method,
         calm=calm,
+        load=load,
         draws=draws,
         length_m=length_m,
         speed_m_s=speed_m_s,

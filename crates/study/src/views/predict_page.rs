@@ -1,10 +1,12 @@
 //! The page of a prediction: words, tables and figures.
 
+use predict::document::OtherLoading;
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
 use report::Page;
 use report::markdown::text;
 use report::number::{fixed, with_uncertainty};
+use ship::ShortNumber;
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 
@@ -17,7 +19,15 @@ pub fn words(document: &PredictDocument) -> String {
         false => "in the weather of the records",
     };
     let mut words = format!("{}: {} ships drawn, {weather}\n", document.model_files(), document.draws);
-    if document.hull {
+    if let Some(OtherLoading { draughts_at_trials_m: before, draught_m, factor, .. }) = &document.load {
+        let before: Vec<String> = before.iter().map(|draught| ShortNumber(*draught).to_string()).collect();
+        words += &format!(
+            "the ship is the hull of the form mmg, taken from a draught of {} m to {} m by the formulas of \
+             `study list priors`, standard deviations × {factor}; this was checked against no measurement\n",
+            before.join(", "),
+            ShortNumber(*draught_m)
+        );
+    } else if document.hull {
         words +=
             "the ship is the hulls of three degrees of freedom that were fitted to the records, not the yaw response\n";
     }
@@ -126,10 +136,13 @@ pub fn page(document: &PredictDocument) -> Page {
             text(&corrected_from(document))
         ));
         page.table(predict_tables::corrected(document));
-        page.say(
-            "The intervals hold the errors of both models, drawn apart, the random moment of a trial in each, and the reading \
-             of T.",
-        );
+        let drawn = match document.load {
+            Some(_) => "drawn together where F was taken from B",
+            None => "drawn apart",
+        };
+        page.say(format!(
+            "The intervals hold the errors of both models, {drawn}, the random moment of a trial in each, and the reading of T."
+        ));
         page.list(doubts(document).map(|doubt| text(&doubt)));
     }
     if document.form.is_some() {

@@ -3,6 +3,7 @@
 pub mod earlier;
 pub mod every_scale;
 pub mod fit;
+mod loading;
 mod planned;
 pub mod predict;
 pub mod publication;

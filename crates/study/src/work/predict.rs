@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use identify::hull::Likeness;
 use predict::correction::{self, Correction};
-use predict::document::ModelWeight;
+use predict::document::{ModelWeight, OtherLoading};
 use predict::form::{self, FormRecord};
 use predict::identified_ship::is_same_length;
 use predict::replay::RecordReplay;
@@ -17,6 +18,7 @@ use serde_json::Value;
 use ship::Particulars;
 use trial::{Conditions, Manoeuvre, Trial, file};
 
+use super::loading::{DescribedLoading, only_hull};
 use crate::options::{PredictRequest, ReadingOptions};
 use crate::progress::ProgressSteps;
 use crate::records::{file_of, rudder_logged_late};
@@ -127,6 +129,15 @@ impl StoredModel {
         let known = if calm { known.in_calm() } else { Ok(known) };
         Ok(Self { known: known.map_err(|error| Failure::about(shown, error))?, file: shown.to_owned(), method })
     }
+
+    /// The same with what another function makes of the ship, which is given the name of the file.
+    fn with(
+        &self,
+        make: impl FnOnce(&str, &IdentifiedShip) -> Result<IdentifiedShip, Failure>,
+    ) -> Result<Self, Failure> {
+        let known = make(&self.file, &self.known)?;
+        Ok(Self { known, file: self.file.clone(), method: self.method.clone() })
+    }
 }
 
 /// What a prediction is made from.
@@ -200,8 +211,8 @@ fn predictions(
 
 /// Predicts the manoeuvres and replays the records.
 ///
-/// Fails when a model cannot be brought to the scale that is asked for, when a record does not say how the ship began,
-/// and when hardly any drawn ship comes to the end of every manoeuvre.
+/// Fails when a model cannot be brought to the scale or loading that is asked for, when a record does not say how the
+/// ship began, and when hardly any drawn ship comes to the end of every manoeuvre.
 pub fn predict(
     request: &PredictRequest,
     input: PredictInput,
@@ -209,6 +220,8 @@ pub fn predict(
     warnings: &mut Vec<String>,
 ) -> Result<PredictDocument, Failure> {
     let PredictInput { models, ballast, records, current, declared } = input;
+    let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
+    let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
     let (draws, scale) = (request.draws as usize, asked_scale(&request.reading));
     let mut in_still_water = |record| turn::without_current(at_own_scale(record, warnings), current);
     let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
@@ -231,17 +244,8 @@ pub fn predict(
     steps.finish();
     let particulars = mixture.particulars();
     let files = |models: &[StoredModel]| -> Vec<String> { models.iter().map(|model| model.file.clone()).collect() };
-    let held = records.iter().zip(&corrections).map(|((trial, current), correction)| FormRecord {
-        trial,
-        correction: correction.as_ref(),
-        current: *current,
-    });
-    let held: Vec<FormRecord> = held.collect();
-    let fill = || form::fill(&predictions, particulars, &files(models).join(", "), &held, declared);
-    let form = request.form.then(fill);
-    let (form, form_remarks) = form.map(|form| (form.entries, form.remarks)).unzip();
     let weight = 1.0 / models.len() as f64;
-    Ok(PredictDocument {
+    let mut document = PredictDocument {
         schema: String::from("predict/1"),
         models: files(models).into_iter().map(|file| ModelWeight { file, weight }).collect(),
         draws,
@@ -251,13 +255,55 @@ pub fn predict(
         imo: particulars.map(|own| imo::criteria(&predictions, own)).unwrap_or_default(),
         manoeuvres: predictions,
         replays,
-        corrected: corrections.into_iter().flatten().collect(),
-        form,
-        form_remarks,
+        corrected: corrections.iter().flatten().cloned().collect(),
         ballast: files(ballast),
         hull: !mixture.first().hulls.is_empty(),
+        load: taken.as_ref().map(|(.., load)| load.clone()),
         seen: mixture.first().seen,
-    })
+        ..PredictDocument::default()
+    };
+    if request.form {
+        fill_form(&mut document, particulars, &records, &corrections, declared);
+    }
+    Ok(document)
+}
+
+/// Puts the form of MSC/Circ.1053 into a document that holds all else.
+fn fill_form(
+    document: &mut PredictDocument,
+    particulars: Option<Particulars>,
+    records: &[(Trial, Option<Current>)],
+    corrections: &[Option<Correction>],
+    declared: Option<(&str, &Conditions)>,
+) {
+    let held = records.iter().zip(corrections).map(|((trial, current), correction)| FormRecord {
+        trial,
+        correction: correction.as_ref(),
+        current: *current,
+    });
+    let held: Vec<FormRecord> = held.collect();
+    let filled = form::fill(&document.manoeuvres, particulars, &document.model_files(), &held, declared);
+    (document.form, document.form_remarks) = (Some(filled.entries), Some(filled.remarks));
+}
+
+/// Some models at another loading, those of the ship at her trials with the same hulls, and what is said of it.
+fn at_loading(
+    path: &Path,
+    models: &[StoredModel],
+    ballast: &[StoredModel],
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<StoredModel>, Vec<StoredModel>, OtherLoading), Failure> {
+    let loading = DescribedLoading::of_file(path)?;
+    let mut draughts = Vec::new();
+    let mut taken = |file: &str, known: &IdentifiedShip| {
+        let (ship, draught) = loading.of_ship(file, known, warnings)?;
+        draughts.push(draught);
+        Ok(ship)
+    };
+    let models = models.iter().map(|model| model.with(&mut taken)).collect::<Result<_, _>>()?;
+    let ballast = ballast.iter().map(|model| model.with(only_hull)).collect::<Result<_, _>>()?;
+    let (draught_m, factor) = (loading.draught(), Likeness::OtherHull.factor());
+    Ok((models, ballast, OtherLoading { file: loading.file, draughts_at_trials_m: draughts, draught_m, factor }))
 }
 
 /// Whether a record is of a ship of this length, m, as far as is known.

@@ -8,14 +8,18 @@ use crate::desk::{Desk, zig_zag_csv};
 
 const KVLCC2: [&str; 4] = ["--length-m", "320", "--speed-m-s", "7.97"];
 
-/// A zig-zag of a ship of the registry without noise, with its speed; a row every 4 s.
 fn record(ship: &str, angle_deg: f64, change_deg: f64) -> String {
     let ship = ship::ships::find(ship).expect("it is in the registry");
+    zig_zag_with_speed(Vessel::ship(&ship), angle_deg, change_deg)
+}
+
+/// A zig-zag of a hull without noise, with its speed; a row every 4 s.
+pub fn zig_zag_with_speed(ship: Vessel, angle_deg: f64, change_deg: f64) -> String {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(angle_deg), from_deg(change_deg));
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.34)),
         recording: Recording { period: 4.0, duration: Some(1200.0), ..Recording::default() },
-        ..Simulation::new(Vessel::ship(&ship), manoeuvre)
+        ..Simulation::new(ship, manoeuvre)
     };
     let truth = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a manoeuvre").truth;
     let speed = truth.speed.as_ref().expect("a hull has a speed");

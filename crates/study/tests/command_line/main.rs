@@ -8,6 +8,7 @@ mod commands;
 mod desk;
 mod earlier;
 mod formulas;
+mod loadings;
 mod logs;
 mod monte_carlo;
 mod names;

@@ -1,0 +1,226 @@
+//! Models that `--load` takes to another loading of the ship: by what the formulas of her particulars say of it, and by
+//! how she departed from them at her trials. Only hulls of the MMG form are taken, since no other has a draught.
+
+use std::path::Path;
+
+use campaign::earlier::hulls_of;
+use identify::hull::ExpectedHull;
+use predict::IdentifiedShip;
+use scenario::failure::Failure;
+use ship::ShortNumber;
+use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, priors};
+use trial::{Sidecar, file};
+
+/// The form that is made from particulars.
+const FORM: &str = "mmg";
+
+/// What has to be known of the ship at her trials; the displacement stands for the last.
+const NEEDED: [&str; 3] = ["beam-m", "draught-m", "block-coefficient"];
+
+/// A loading, as a file describes it.
+#[derive(Debug)]
+pub struct DescribedLoading {
+    /// The file, as messages call it.
+    pub file: String,
+    /// What it says; length and speed are 0 where it does not say them.
+    given: HullParticulars,
+}
+
+impl DescribedLoading {
+    /// What `[ship]` and `[form]` of a file say, read as those of a sidecar.
+    ///
+    /// Fails as a sidecar does, and for a file without a draught.
+    pub fn of_file(path: &Path) -> Result<Self, Failure> {
+        let given = Sidecar::load(path).map_err(Failure::input)?.hull();
+        let loading = Self { file: file::called(path).display().to_string(), given };
+        match given.draught {
+            Some(_) => Ok(loading),
+            None => Err(loading.refused("it has no draught-m; give the mean draught of the loading under [form]")),
+        }
+    }
+
+    /// The mean draught, m.
+    pub fn draught(&self) -> f64 {
+        self.given.draught.unwrap_or_default()
+    }
+
+    fn refused(&self, problem: impl std::fmt::Display) -> Failure {
+        Failure::about(&self.file, problem)
+    }
+
+    /// The ship at this loading, with one hull, and her draught at the trials, m; `shown` is what messages call her
+    /// model.
+    ///
+    /// Her hull is the one that is expected at this loading after the trials. Her steering gear is the same, yaw rates
+    /// grow with the approach speed, and the yaw response, which knows no draught, takes no part.
+    ///
+    /// Fails as [`only_hull`] does, for a loading of another ship, and for the one of the trials.
+    pub fn of_ship(
+        &self,
+        shown: &str,
+        ship: &IdentifiedShip,
+        warnings: &mut Vec<String>,
+    ) -> Result<(IdentifiedShip, f64), Failure> {
+        let mut ship = only_hull(shown, ship)?;
+        let earlier = hulls_of(&ship).map_err(|error| Failure::about(shown, error))?;
+        let own = earlier[0].particulars;
+        let to = self.particulars(shown, &own)?;
+        self.warn_of_kept(&to, warnings);
+        let expected = ExpectedHull::of_ship(Some(&to), &earlier).into_iter().find(|own| own.form.as_str() == FORM);
+        let hull = expected.and_then(|own| Some(ship.hulls[0].at_loading(&to, &own.coefficients, own.law()?)));
+        let none = || self.refused(format!("the hull of {shown} makes no ship at this loading; check the numbers"));
+        ship.hulls = vec![hull.filter(|hull| hull.check().is_ok()).ok_or_else(none)?];
+        let faster = to.speed / own.speed;
+        ship.speed_m_s = ship.speed_m_s.map(|speed| speed * faster);
+        ship.approach_yaw_rate_rad_s *= faster;
+        ship.seen.yaw_rate_rad_s *= faster;
+        Ok((ship, own.draught.unwrap_or_default()))
+    }
+
+    /// Warns of what is taken as at the trials, though it changes with the loading.
+    fn warn_of_kept(&self, to: &HullParticulars, warnings: &mut Vec<String>) {
+        let HullParticulars { block_coefficient, displacement, x_g, .. } = self.given;
+        let fullness = to.block_coefficient.filter(|_| block_coefficient.or(displacement).is_none());
+        let kept = [("block-coefficient", fullness), ("x-g-m", to.x_g.filter(|_| x_g.is_none()))];
+        for (key, value) in kept.into_iter().filter_map(|(key, value)| Some((key, value?))) {
+            let advice = "it changes with the loading, so give it where it is known";
+            let value = ShortNumber::rounded(value, 4);
+            warnings.push(format!("{}: {key} = {value} is taken, as at the trials; {advice}", self.file));
+        }
+    }
+
+    /// Particulars of the ship at this loading; `own` are those at the trials. What is not said stays, but for mass and
+    /// revolutions, which are of one loading. What is not known of rudder and propeller is assumed once for both.
+    fn particulars(&self, shown: &str, own: &HullParticulars) -> Result<HullParticulars, Failure> {
+        let mut to = completed(own).map_err(|error| Failure::about(shown, error))?;
+        (to.displacement, to.propeller_rate) = (None, None);
+        to.block_coefficient = to.block_coefficient.filter(|_| self.given.displacement.is_none());
+        for particular in &PARTICULARS {
+            if let Some(value) = particular.get(&self.given) {
+                particular.set(&mut to, value);
+            }
+        }
+        let differing = to.differing(own);
+        let cure = match () {
+            () if !to.has_length_of(own) => "length-m is another; give it at the scale of that model",
+            () if differing.contains(&"beam-m") => "beam-m is another; give a loading of the same ship",
+            () if differing.is_empty() => "all is within 2 % of it; leave --load out, or give another draught-m",
+            () => return completed(&to).map_err(|error| self.refused(error)),
+        };
+        Err(self.refused(format!("this is no other loading of the ship of {shown}: {cure}")))
+    }
+}
+
+/// The ship with no other hull than the one that can be taken to another loading; `shown` is what messages call her
+/// model.
+///
+/// Fails where there is none, and where its draught, beam or block coefficient is not known.
+pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, Failure> {
+    let mut ship = ship.clone();
+    ship.hulls.retain(|own| own.form == FORM);
+    let knows = |key: &str| ship.hulls.iter().all(|own| own.particulars.contains_key(key));
+    let is_missing = |key: &&str| !knows(key) && !(*key == NEEDED[2] && knows("displacement-t"));
+    let lacks = match ship.hulls.is_empty() {
+        true => format!("hull of the form {FORM}"),
+        false => NEEDED.into_iter().filter(is_missing).collect::<Vec<_>>().join(", "),
+    };
+    if lacks.is_empty() {
+        return Ok(ship);
+    }
+    let cure = "fit records with a speed column again, with length, speed, beam, draught and block coefficient of the \
+                trial as options (--draught-m, …) or under [ship] of a sidecar";
+    Err(Failure::about(shown, format!("it has no {lacks}, so --load cannot take it to another loading; {cure}")))
+}
+
+/// Particulars with what is typical where nothing is given, the block coefficient by the displacement.
+fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsError> {
+    let mut all = *given;
+    for own in priors(given)?.assumed {
+        if let Some(particular) = Particular::named(own.key) {
+            particular.set(&mut all, own.value);
+        }
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use predict::stored_hull::{StoredCoefficient, StoredHull, by_keys};
+    use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
+
+    /// A tanker in ballast.
+    fn at_trial() -> HullParticulars {
+        let (beam, draught, x_g, propeller_rate) = (Some(58.0), Some(10.5), Some(3.0), Some(1.7));
+        let form = HullParticulars { beam, draught, x_g, propeller_rate, ..HullParticulars::default() };
+        HullParticulars { length: 320.0, speed: 8.0, block_coefficient: Some(0.77), ..form }
+    }
+
+    /// What the formulas say at some particulars.
+    fn formulas(at: &HullParticulars) -> Vec<HullCoefficient> {
+        HullForm::mmg(&priors(at).expect("a ship")).coefficients()
+    }
+
+    /// Her hull at a loading, and the warnings; at the trial it is half a standard deviation above the formulas, known
+    /// to a hundredth of one.
+    fn taken(given: HullParticulars) -> (StoredHull, Vec<String>) {
+        let own = formulas(&at_trial());
+        let entry = |i: usize, j: usize| if i == j { (0.01 * own[i].sd).powi(2) } else { 0.0 };
+        let coefficient = |own: &HullCoefficient| {
+            let (key, symbol, value) = (own.key.into(), own.symbol.into(), own.mean + 0.5 * own.sd);
+            StoredCoefficient { key, symbol, value, expected: own.mean, expected_sd: own.sd }
+        };
+        let hull = StoredHull {
+            form: FORM.into(),
+            length_m: 320.0,
+            speed_m_s: 8.0,
+            particulars: by_keys(&at_trial()),
+            coefficients: own.iter().map(coefficient).collect(),
+            covariance: (0..own.len()).map(|i| (0..own.len()).map(|j| entry(i, j)).collect()).collect(),
+            ..StoredHull::default()
+        };
+        let ship = IdentifiedShip { hulls: vec![StoredHull::default(), hull], ..IdentifiedShip::default() };
+        let (loading, mut warnings) = (DescribedLoading { file: "full.toml".into(), given }, Vec::new());
+        let (mut ship, _) = loading.of_ship("fit.json", &ship, &mut warnings).expect("another loading");
+        assert_eq!(ship.hulls.len(), 1);
+        (ship.hulls.remove(0), warnings)
+    }
+
+    /// The difference of the formulas and the departure of the ship from them, but of what depends on friction or
+    /// belongs to the trial; three times as uncertain. Rudder and propeller that nobody knows are those of one ship.
+    #[test]
+    fn the_hull_is_that_of_the_formulas_with_her_departure() {
+        let at_load = |own: HullParticulars| {
+            let (draught, block_coefficient) = (Some(20.8), Some(0.81));
+            HullParticulars { speed: 7.5, draught, block_coefficient, x_g: Some(11.0), propeller_rate: None, ..own }
+        };
+        let (hull, warnings) = taken(at_load(HullParticulars::default()));
+        let to = hull.particulars().expect("known");
+        assert_eq!((to, warnings.len()), (at_load(completed(&at_trial()).expect("a ship")), 0));
+        for (place, (formula, before)) in formulas(&to).into_iter().zip(formulas(&at_trial())).enumerate() {
+            let (truth, sd) = match formula.key {
+                key if is_of_trial(key) => (0.5 * before.sd, 0.01 * before.sd),
+                key if is_of_friction(key) => (formula.mean, formula.sd),
+                _ => (formula.mean + 0.5 * before.sd, 0.03 * before.sd),
+            };
+            let (value, found) = (hull.coefficients[place].value, hull.covariance[place][place].sqrt());
+            assert!((value - truth).abs() < 2e-3 * before.sd, "{}: {value} {truth}", formula.key);
+            assert!((found / sd - 1.0).abs() < 0.01, "{}: {found} {sd}", formula.key);
+        }
+    }
+
+    /// What is not given stays, with a word; the displacement tells the block coefficient.
+    #[test]
+    fn what_a_loading_does_not_say_stays() {
+        let bare = HullParticulars { draught: Some(20.8), ..HullParticulars::default() };
+        let (hull, warnings) = taken(bare);
+        let to = hull.particulars().expect("known");
+        assert_eq!((to.block_coefficient, to.x_g, to.speed, to.propeller_rate), (Some(0.77), Some(3.0), 8.0, None));
+        assert!(
+            warnings[0].contains("block-coefficient = 0.77 is taken") && warnings[1].contains("x-g-m = 3 is taken")
+        );
+        let (hull, warnings) = taken(HullParticulars { displacement: Some(3.2e8), ..bare });
+        let told = hull.particulars().expect("known").block_coefficient.expect("told");
+        assert!((told - 0.809).abs() < 1e-3 && warnings.len() == 1, "{told} {warnings:?}");
+    }
+}
