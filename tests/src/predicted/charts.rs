@@ -15,8 +15,8 @@ use super::figure::{ForecastFigure, ForecastGroup, ForecastScore, KINDS};
 use super::forecast::{PredictedSteady, PredictedTrack};
 use super::turn::TurnTrack;
 
-/// Largest rudder of steady turns, degrees.
-const LARGEST: f64 = 40.0;
+/// Largest rudder of steady turns that is drawn, degrees.
+const LARGEST: f64 = 38.1;
 
 /// Drawn ships that a figure shows.
 const SHOWN: usize = 40;

@@ -110,7 +110,9 @@ fn reached(figures: &[ForecastFigure]) -> Table {
     let rates = those(figures, is_steady);
     let within: Vec<&&ForecastFigure> = rates.iter().filter(|own| own.error().abs() <= 10.0).collect();
     let circles: BTreeSet<&str> = rates.iter().map(|own| own.trial).collect();
-    let is = format!("{} of {} ({} circles, five models)", within.len(), rates.len(), circles.len());
+    let models: BTreeSet<&str> = rates.iter().map(|own| own.fitted.as_str()).collect();
+    let counts = format!("{} circles, {} of five models", circles.len(), models.len());
+    let is = format!("{} of {} ({counts})", within.len(), rates.len());
     row("steady rates of Esso Osaka's circles within 10 %", is, within.len() == rates.len());
     table
 }

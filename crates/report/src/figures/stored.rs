@@ -164,8 +164,8 @@ impl Replays {
             time.title.clear();
         }
         stacks.insert(0, Stack::over(time, vec![(PanelRow::new(Ruler::heading(), 0.28), upper)]));
-        let cut = Some(String::from("Curves that leave their panel are cut."));
-        Panels { title: self.title.clone(), stacks, cut, ..Panels::default() }
+        let note = (!self.replays.is_empty()).then(|| String::from("What leaves its panel is cut."));
+        Panels { title: self.title.clone(), stacks, note, ..Panels::default() }
     }
 }
 

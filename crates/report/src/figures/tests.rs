@@ -362,7 +362,7 @@ fn what_runs_off_is_cut_and_says_so() {
     };
     let svg = Plot::from(data.panels()).draw(&Theme::screen()).svg().to_owned();
     // 25 degrees times 40, reached at the top of the sine.
-    assert!(svg.contains("least-squares, rms 40°, up to 1000°") && svg.contains("are cut"));
+    assert!(svg.contains("least-squares, rms 40°, up to 1000°") && svg.contains("is cut"));
     let drawn = |layers: Vec<Layer>, cut: &str| {
         let data =
             Panels { cut: Some(cut.into()), ..Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.2), layers)]) };
