@@ -119,10 +119,10 @@ pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, F
     let mut ship = ship.clone();
     ship.hulls.retain(|own| own.form == FORM);
     let knows = |key: &str| ship.hulls.iter().all(|own| own.particulars.contains_key(key));
-    let is_missing = |key: &&str| !knows(key) && !(*key == NEEDED[2] && knows("displacement-t"));
+    let is_known = |key: &str| knows(key) || key == "block-coefficient" && knows("displacement-t");
     let lacks = match ship.hulls.is_empty() {
         true => format!("hull of the form {FORM}"),
-        false => NEEDED.into_iter().filter(is_missing).collect::<Vec<_>>().join(", "),
+        false => NEEDED.into_iter().filter(|key| !is_known(key)).collect::<Vec<_>>().join(", "),
     };
     if lacks.is_empty() {
         return Ok(ship);

@@ -129,7 +129,7 @@ fn holds90(figure: &Value, truth: &Value) -> bool {
 #[test]
 fn a_loading_that_cannot_be_taken_is_refused() {
     let desk = with_trial();
-    let refused = |words: &str, part: &str| _ = desk.run(&self::words(words)).is_refused(2, &[part]);
+    let refused = |words: &str, part: &str| desk.run(&self::words(words)).is_refused(2, &[part]);
     for (text, part) in [
         ("[form]\ndraught-m = 6.6", "load.toml: this is no other loading of the ship of f/fit.json: all is within 2 %"),
         ("[form]\ndraught-m = 22", "load.toml: B/d (draught-m) is 1.091, expected 1.2 to 8"),
