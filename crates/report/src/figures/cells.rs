@@ -5,8 +5,9 @@
 use super::panels::Division;
 use crate::axis::PlotAxis;
 use crate::figure::Drawing;
-use crate::layout::{AxisSide, Grid, Sheet};
+use crate::layout::{AxisSide, Grid, NAMES, Sheet};
 use crate::legend::{KeyEntry, KeySample};
+use crate::lines::wrap;
 use crate::number::{self, MISSING, significant};
 use crate::paint::Paint;
 use crate::palette::{DOTTED, Dash, GRID, HEADING, INK, PAPER, SOLID};
@@ -104,6 +105,8 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
         (false, true) => 1.75 * theme.tick_font,
         (false, false) => 2.0 * theme.tick_font,
     };
+    let lines = data.rows.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len()).max();
+    let pitch = pitch.max((0.3 + 1.15 * lines.unwrap_or(1) as f64) * theme.tick_font);
     let height = (data.rows.len().max(1) as f64 + 0.2) * pitch;
     let column = AxisSide::new(PlotAxis::columns(data.columns.clone()), data.titles[0].clone());
     let row = (AxisSide::new(PlotAxis::names(data.rows.clone()), data.titles[1].clone()), height);
