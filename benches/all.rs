@@ -1,5 +1,6 @@
 //! Measures every piece of work with criterion; its filters and options work as usual (`cargo bench -p kempf-benches --
-//! identify`). The pieces are defined in `kempf_benches::works`, `ratios` makes their tables.
+//! identify`). The pieces are defined in `kempf_benches::works`, `ratios` makes their tables. `cargo test` makes one pass
+//! of all but the slow ones.
 
 use criterion::Criterion;
 use kempf_benches::works;
@@ -9,8 +10,10 @@ const FEW_SAMPLES: usize = 10;
 
 fn main() {
     let mut criterion = Criterion::default().configure_from_args();
+    let is_measured = std::env::args().any(|own| own == "--bench");
     for group in works::all().into_iter().chain([works::outside(env!("CARGO_BIN_EXE_echo"))]) {
-        for work in group.rows.into_iter().map(|row| row.work) {
+        let works = group.rows.into_iter().map(|row| row.work);
+        for work in works.filter(|work| is_measured || !work.is_slow) {
             let mut benches = criterion.benchmark_group(group.name);
             if work.is_slow {
                 benches.sample_size(FEW_SAMPLES);

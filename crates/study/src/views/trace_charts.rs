@@ -5,9 +5,7 @@ use std::collections::BTreeSet;
 use report::PlotCurve;
 use report::figures::{CellMap, Division, Layer, MapCell, Outline, PanelRow, Panels, Pen, Ruler, Shades, Stack};
 use report::paint::Paint;
-use report::palette::{
-    BEFORE, CurveOrigin, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID,
-};
+use report::palette::{BEFORE, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
 use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
