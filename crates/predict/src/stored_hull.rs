@@ -147,8 +147,8 @@ impl StoredHull {
     ///
     /// θ = μ + G (θ₁ − θ̂₁) + e, Cov e = C − G C₁ Gᵀ: both hulls are of one trial, and what that has wrong is wrong in
     /// both. δ_r is that of the trial, value and error: ship, sensor and side of the propeller are the same. So are the
-    /// random moment as a rudder angle, which stands for the form, and its time in L/U₀. The rate of the propeller is
-    /// the one that is given for the loading, or not known.
+    /// random moment as a rudder angle, which stands for the form, and its time in L/U₀. The rate of the propeller
+    /// is not known.
     #[must_use]
     pub fn at_loading(
         &self,
@@ -178,7 +178,7 @@ impl StoredHull {
             expected_sd: own.sd,
         };
         Self {
-            propeller_per_s: ship.propeller_rate,
+            propeller_per_s: None,
             particulars: by_keys(ship),
             coefficients: expected.iter().enumerate().map(coefficient).collect(),
             covariance: rows_of(&(common + &covariance)),

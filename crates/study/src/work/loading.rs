@@ -6,6 +6,7 @@ use std::path::Path;
 use campaign::earlier::hulls_of;
 use identify::hull::ExpectedHull;
 use predict::IdentifiedShip;
+use predict::stored_hull::StoredHull;
 use scenario::failure::Failure;
 use ship::ShortNumber;
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, priors};
@@ -67,9 +68,13 @@ impl DescribedLoading {
         let to = self.particulars(shown, &own)?;
         self.warn_of_kept(&to, warnings);
         let expected = ExpectedHull::of_ship(Some(&to), &earlier).into_iter().find(|own| own.form.as_str() == FORM);
-        let hull = expected.and_then(|own| Some(ship.hulls[0].at_loading(&to, &own.coefficients, own.law()?)));
+        let at_loading = |own: ExpectedHull| {
+            let hull = ship.hulls[0].at_loading(&to, &own.coefficients, own.law()?);
+            Some(StoredHull { propeller_per_s: self.given.propeller_rate, ..hull })
+        };
+        let hull = expected.and_then(at_loading).filter(|hull| hull.check().is_ok());
         let none = || self.refused(format!("the hull of {shown} makes no ship at this loading; check the numbers"));
-        ship.hulls = vec![hull.filter(|hull| hull.check().is_ok()).ok_or_else(none)?];
+        ship.hulls = vec![hull.ok_or_else(none)?];
         let faster = to.speed / own.speed;
         ship.speed_m_s = ship.speed_m_s.map(|speed| speed * faster);
         ship.approach_yaw_rate_rad_s *= faster;
@@ -79,9 +84,12 @@ impl DescribedLoading {
 
     /// Warns of what is taken as at the trials, though it changes with the loading.
     fn warn_of_kept(&self, to: &HullParticulars, warnings: &mut Vec<String>) {
-        let HullParticulars { block_coefficient, displacement, x_g, .. } = self.given;
-        let fullness = to.block_coefficient.filter(|_| block_coefficient.or(displacement).is_none());
-        let kept = [("block-coefficient", fullness), ("x-g-m", to.x_g.filter(|_| x_g.is_none()))];
+        let HullParticulars { block_coefficient, displacement, x_g, propeller_rate, .. } = self.given;
+        let kept = [
+            ("block-coefficient", to.block_coefficient.filter(|_| block_coefficient.or(displacement).is_none())),
+            ("x-g-m", to.x_g.filter(|_| x_g.is_none())),
+            ("propeller-rps", to.propeller_rate.filter(|_| propeller_rate.is_none())),
+        ];
         for (key, value) in kept.into_iter().filter_map(|(key, value)| Some((key, value?))) {
             let advice = "it changes with the loading, so give it where it is known";
             let value = ShortNumber::rounded(value, 4);
@@ -89,16 +97,20 @@ impl DescribedLoading {
         }
     }
 
-    /// Particulars of the ship at this loading; `own` are those at the trials. What is not said stays, but for mass and
-    /// revolutions, which are of one loading. What is not known of rudder and propeller is assumed once for both.
+    /// Particulars of the ship at this loading; `own` are those at the trials. What is not said stays, but for the
+    /// mass; revolutions stay in proportion to the speed, so that both are told by one formula. What is not known of
+    /// rudder and propeller is assumed once for both.
     fn particulars(&self, shown: &str, own: &HullParticulars) -> Result<HullParticulars, Failure> {
         let mut to = completed(own).map_err(|error| Failure::about(shown, error))?;
-        (to.displacement, to.propeller_rate) = (None, None);
+        to.displacement = None;
         to.block_coefficient = to.block_coefficient.filter(|_| self.given.displacement.is_none());
         for particular in &PARTICULARS {
             if let Some(value) = particular.get(&self.given) {
                 particular.set(&mut to, value);
             }
+        }
+        if self.given.propeller_rate.is_none() {
+            to.propeller_rate = own.propeller_rate.map(|rate| rate * to.speed / own.speed);
         }
         let differing = to.differing(own);
         let cure = match () {
@@ -146,7 +158,7 @@ fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsErro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use predict::stored_hull::{StoredCoefficient, StoredHull, by_keys};
+    use predict::stored_hull::{StoredCoefficient, by_keys};
     use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
 
     /// A tanker in ballast.
@@ -192,11 +204,13 @@ mod tests {
     fn the_hull_is_that_of_the_formulas_with_her_departure() {
         let at_load = |own: HullParticulars| {
             let (draught, block_coefficient) = (Some(20.8), Some(0.81));
-            HullParticulars { speed: 7.5, draught, block_coefficient, x_g: Some(11.0), propeller_rate: None, ..own }
+            HullParticulars { speed: 7.5, draught, block_coefficient, x_g: Some(11.0), ..own }
         };
         let (hull, warnings) = taken(at_load(HullParticulars::default()));
         let to = hull.particulars().expect("known");
-        assert_eq!((to, warnings.len()), (at_load(completed(&at_trial()).expect("a ship")), 0));
+        let same_ship =
+            HullParticulars { propeller_rate: Some(1.7 * 7.5 / 8.0), ..completed(&at_trial()).expect("a ship") };
+        assert_eq!((to, hull.propeller_per_s, warnings.len()), (at_load(same_ship), None, 1), "{warnings:?}");
         for (place, (formula, before)) in formulas(&to).into_iter().zip(formulas(&at_trial())).enumerate() {
             let (truth, sd) = match formula.key {
                 key if is_of_trial(key) => (0.5 * before.sd, 0.01 * before.sd),
@@ -215,12 +229,15 @@ mod tests {
         let bare = HullParticulars { draught: Some(20.8), ..HullParticulars::default() };
         let (hull, warnings) = taken(bare);
         let to = hull.particulars().expect("known");
-        assert_eq!((to.block_coefficient, to.x_g, to.speed, to.propeller_rate), (Some(0.77), Some(3.0), 8.0, None));
+        assert_eq!(
+            (to.block_coefficient, to.x_g, to.speed, to.propeller_rate),
+            (Some(0.77), Some(3.0), 8.0, Some(1.7))
+        );
         assert!(
             warnings[0].contains("block-coefficient = 0.77 is taken") && warnings[1].contains("x-g-m = 3 is taken")
         );
         let (hull, warnings) = taken(HullParticulars { displacement: Some(3.2e8), ..bare });
         let told = hull.particulars().expect("known").block_coefficient.expect("told");
-        assert!((told - 0.809).abs() < 1e-3 && warnings.len() == 1, "{told} {warnings:?}");
+        assert!((told - 0.809).abs() < 1e-3 && warnings.len() == 2, "{told} {warnings:?}");
     }
 }
