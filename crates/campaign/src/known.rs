@@ -83,12 +83,15 @@ impl<'a> RecordFacts<'a> {
     }
 
     /// The same with speed and drift: the hulls that these records speak for, where length and speed are known, all of
-    /// them begin away from rest, and they tell a speed, or an analysis or earlier trials told her hull; else two
+    /// them begin away from rest, and they have a speed, or an analysis or earlier trials told her hull; else two
     /// equations beside the yaw response where they have speed or position. As it was where nothing can be fitted.
     pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
         let Some(length) = self.length else { return self };
+        let has = |trial: &Trial, channel: Channel| trial.channel(channel).is_some();
+        let has_speed =
+            |trial: &Trial| has(trial, Channel::Speed) || has(trial, Channel::Surge) && has(trial, Channel::Sway);
         let was_told = !earlier.is_empty() || analysis.is_some_and(|analysis| !analysis.hulls.is_empty());
-        let tells_hull = was_told || self.trials.iter().all(hull::has_speed);
+        let tells_hull = was_told || self.trials.iter().all(has_speed);
         // Structures may replay the records nearer, and know no speed of a manoeuvre that was not made.
         let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
         fitted.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));

@@ -45,8 +45,8 @@ pub use expected::{EarlierHull, ExpectedHull, Likeness, is_other_froude_number};
 pub use moment::RandomMoment;
 pub use objective::HullDeviations;
 use objective::{HullObjective, variances};
+pub use track::HullReference;
 use track::HullTrack;
-pub use track::{HullReference, has_speed};
 
 /// How a search proceeds.
 const RULES: Rules = Rules {

@@ -146,13 +146,6 @@ impl HullTrack {
     }
 }
 
-/// Whether a record tells the speed of the ship: by itself, by surge and sway, or by positions.
-pub fn has_speed(trial: &Trial) -> bool {
-    let channels: [&[Channel]; 3] =
-        [&[Channel::Speed], &[Channel::Surge, Channel::Sway], &[Channel::North, Channel::East]];
-    channels.iter().any(|all| all.iter().all(|own| trial.channel(*own).is_some()))
-}
-
 /// Speed over ground of every row: the straight way between the first and the last position within half a [`WAY`] of
 /// it, over the time between them. NaN where there are no two.
 ///

@@ -332,7 +332,7 @@ fn labels_carry_symbol_and_unit() {
         ("intervals", "Arrows: beyond the axis."),
         ("clouds", "no estimate"),
         ("map", "– is not defined."),
-        ("shares", "indistinguishable from it"),
+        ("shares", "mostly cannot be told from it"),
         ("track", "drawn ships"),
         ("aside", "maximum-likelihood"),
     ] {
