@@ -1,6 +1,6 @@
 //! Measures every piece of work with criterion; its filters and options work as usual (`cargo bench -p kempf-benches --
-//! identify`). The pieces are defined in `kempf_benches::works`, `ratios` makes their tables. `cargo test` makes one pass
-//! of all but the slow ones.
+//! identify`). The pieces are defined in `kempf_benches::works`, `ratios` makes their tables. `cargo test` makes one
+//! pass of all but the slow ones.
 
 use criterion::Criterion;
 use kempf_benches::works;

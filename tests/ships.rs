@@ -98,8 +98,8 @@ fn has_sides(ship: &Ship) -> bool {
     matches!(ship.model, Model::Hull(_)) && ship.id != "s175"
 }
 
-/// Response ships and S175 have no side; other hulls are evened first: the propeller force of the Mariner and the tanker,
-/// wake and flow straightening of the MMG hulls differ by side.
+/// Response ships and S175 have no side; other hulls are evened first: the propeller force of the Mariner and the
+/// tanker, wake and flow straightening of the MMG hulls differ by side.
 #[test]
 fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
     let mut vessels: Vec<(String, Vessel, f64, f64)> = ships::all()
