@@ -359,7 +359,7 @@ pub struct PredictRequest {
     /// of MODEL.json, R = T F/B (MSC/Circ.1053, 3.4.1.2)
     #[arg(long, value_name = "BALLAST.json")]
     pub ballast: Vec<PathBuf>,
-    /// Take the hulls of MODEL.json to another loading, whose [ship] and [form] are written as in a sidecar: by the
+    /// Take the hulls of MODEL.json to another loading, whose tables ship and form are written as in a sidecar: by the
     /// formulas of `study list priors`, with wider intervals
     #[arg(long, value_name = "LOAD.toml")]
     pub load: Option<PathBuf>,
