@@ -54,6 +54,8 @@ const XH: f64 = -0.48;
 pub struct ContainerHull {
     /// n D, m/s.
     tip: f64,
+    /// dN'/dδ on the straight approach.
+    rudder_slope: f64,
 }
 
 impl ContainerHull {
@@ -63,7 +65,10 @@ impl ContainerHull {
         let [k0, k1] = THRUST;
         let wanted = -X[0] / ((1.0 - DEDUCTION) * 2.0 * (DIAMETER / L).powi(2));
         let half = -0.5 * k1 * (1.0 - WAKE);
-        Self { tip: U * (half + (half * half + k0 * wanted).sqrt()) / k0 }
+        let tip = U * (half + (half * half + k0 * wanted).sqrt()) / k0;
+        let (hull, step) = (Self { tip, rudder_slope: 0.0 }, 1e-6);
+        let rudder_slope = (XR + AH * XH) * hull.rudder_force([1.0, 0.0, 0.0], step, U) / step;
+        Self { rudder_slope, ..hull }
     }
 
     /// Normal force of the rudder over ½ρL²U², at prime velocities.
@@ -76,12 +81,6 @@ impl ContainerHull {
         let uR = EPSILON * (uP * uP + 8.0 * KAPPA * thrust_coefficient(uP, q) * q * q / PI).max(0.0).sqrt();
         let lift = 6.13 * ASPECT / (ASPECT + 2.25) * AREA / PARTICULARS.length.powi(2);
         -lift * (uR * uR + vR * vR) * (rudder + vR.atan2(uR)).sin()
-    }
-
-    /// dN'/dδ on the straight approach.
-    fn rudder_slope(&self) -> f64 {
-        let step = 1e-6;
-        (XR + AH * XH) * self.rudder_force([1.0, 0.0, 0.0], step, PARTICULARS.speed) / step
     }
 }
 
@@ -127,9 +126,8 @@ impl Hull for ContainerHull {
             + RESISTANCE * force * sin
             + (M + MY) * v * r;
         let across = lateral(Y, v, r) + (1.0 + AH) * force * cos - (M + MX) * u * r;
-        let moment = lateral(N, v, r)
-            + (XR + AH * XH) * force * cos
-            + self.rudder_slope() * input.disturbance * (U0 / U).powi(2);
+        let moment =
+            lateral(N, v, r) + (XR + AH * XH) * force * cos + self.rudder_slope * input.disturbance * (U0 / U).powi(2);
         let det = (M + MY) * INERTIA - COUPLING * COUPLING;
         let unit = U * U / L;
         Acceleration {
