@@ -112,10 +112,15 @@ pub fn comparable<'a>(
     Some((methods, to_nearest))
 }
 
+/// What the title of an axis says of errors in units of the bound.
+pub const OVER_BOUND: &str = "/ Cramér–Rao bound";
+/// What it says of differences from the response that is nearest to the ship.
+pub const TO_NEAREST: &str = "from the nearest first-order response";
+
 /// Titles of the axes of root mean square errors of K and of T.
 pub fn rms_title(symbol: &str, to_nearest: bool) -> String {
     match to_nearest {
-        true => format!("rms difference of {symbol} from the nearest first-order response [%]"),
+        true => format!("rms difference of {symbol} {TO_NEAREST} [%]"),
         false => format!("rms error of {symbol} [%]"),
     }
 }
@@ -150,7 +155,7 @@ impl<'a> ComparedMethods<'a> {
     fn titles(&self) -> Vec<String> {
         let of_both = |words: &str| ["K", "T"].map(|symbol| words.replace('#', symbol));
         match self.measure {
-            ErrorMeasure::Rms if self.over_bound => of_both("rms error of # / Cramér–Rao bound").to_vec(),
+            ErrorMeasure::Rms if self.over_bound => of_both(&format!("rms error of # {OVER_BOUND}")).to_vec(),
             ErrorMeasure::Rms => ["K", "T"].map(|symbol| rms_title(symbol, self.to_nearest)).to_vec(),
             ErrorMeasure::Coverage => {
                 [of_both("95 % intervals that hold # [%]"), of_both("median interval width of # [%]")].concat()

@@ -97,11 +97,11 @@ fn reading(measure: ErrorMeasure, plot: &Plot) -> &'static str {
     };
     let is_of = |words: &str| axis.is_some_and(|title| title.contains(words));
     match measure {
-        ErrorMeasure::Rms if is_of("nearest first-order") => {
+        ErrorMeasure::Rms if is_of(charts::TO_NEAREST) => {
             "Root mean square difference of K and T from those of the nearest first-order response, with 95 % bootstrap \
              intervals. It is no error: the ship has no K and T of its own."
         }
-        ErrorMeasure::Rms if is_of("over the bound") => {
+        ErrorMeasure::Rms if is_of(charts::OVER_BOUND) => {
             "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals."
         }
         ErrorMeasure::Rms => "Root mean square error of K and T, with 95 % bootstrap intervals.",

@@ -3,6 +3,7 @@
 
 use std::fs;
 
+use campaign::manifest::ProgramRevision;
 use study::work::publication::{ProgramStamp, published_files};
 
 use crate::desk::{Desk, interrupted, of_repository};
@@ -153,7 +154,7 @@ fn published_results_belong_to_the_scenarios() {
 }
 
 /// The program that made each folder of the published results.
-fn programs() -> Vec<(String, Option<campaign::manifest::ProgramRevision>)> {
+fn programs() -> Vec<(String, Option<ProgramRevision>)> {
     let published = of_repository("results/published");
     let names = campaign::disk::names(&published).expect("the folder is there");
     let program = |name: &String| {
@@ -174,10 +175,7 @@ fn published_results_are_of_one_program() {
     let programs = programs();
     let (_, first) = &programs[0];
     assert!(first.as_ref().is_some_and(|first| !first.git_dirty && first.git_revision.is_some()), "{first:?}");
-    let is_same = |name: &str, program: &Option<campaign::manifest::ProgramRevision>| match program
-        .as_ref()
-        .zip(first.as_ref())
-    {
+    let is_same = |name: &str, program: &Option<ProgramRevision>| match program.as_ref().zip(first.as_ref()) {
         Some((own, first)) if name == TIMES => own.version == first.version && !own.git_dirty,
         _ => program == first,
     };
