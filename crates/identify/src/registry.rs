@@ -75,27 +75,41 @@ pub const USUAL: [&str; 6] = [
 
 #[cfg(test)]
 mod tests {
+    use crate::fourier_projected::{self, Order};
     use crate::savitzky_golay::SavitzkyGolay;
-    use crate::{external, fourier_published, least_squares, output_error, srivc};
+    use crate::{characteristic_points, external, fourier_published, least_squares, output_error, srivc};
 
     use super::IdentifierSettings as Of;
 
-    /// Counts that would take all memory or all time, and numbers whose size has to be seen.
+    /// Counts that would take all memory or all time, numbers whose size has to be seen, and those of no meaning.
     #[test]
-    fn settings_that_cannot_end_are_refused() {
+    fn settings_out_of_range_are_refused() {
         let published = |settings: fourier_published::Settings| Of::FourierPublished(settings);
         let triples = |triples| published(fourier_published::Settings { triples, ..Default::default() });
         let error = |settings| Of::OutputError(settings);
         let default = output_error::Settings::default;
-        let smoothing = Some(SavitzkyGolay { window_samples: 1_000_000_001, order: 3 });
+        let smoothed = |window_samples, order| {
+            let smoothing = Some(SavitzkyGolay { window_samples, order });
+            Of::LeastSquares(least_squares::Settings { smoothing, ..Default::default() })
+        };
+        let projected =
+            |harmonics| Of::FourierProjected(fourier_projected::Settings { harmonics, ..Default::default() });
+        let points = |half_width_s, condition_limit| {
+            let default = characteristic_points::Settings::default();
+            Of::CharacteristicPoints(characteristic_points::Settings { half_width_s, condition_limit, ..default })
+        };
         for (settings, key, found) in [
             (triples(usize::MAX), "triples", "18446744073709551615"),
             (triples(10_001), "triples", "10001"),
-            (
-                Of::LeastSquares(least_squares::Settings { smoothing, ..Default::default() }),
-                "window-samples",
-                "1000000001",
-            ),
+            (triples(0), "triples", "0"),
+            (smoothed(1_000_000_001, 3), "window-samples", "1000000001"),
+            (smoothed(14, 3), "window-samples", "14"),
+            (smoothed(3, 3), "window-samples", "3"),
+            (smoothed(15, 1), "order", "1"),
+            (projected(Order::Fixed(65)), "harmonics.fixed", "65"),
+            (projected(Order::Gcv { reach: 1.0 }), "harmonics.reach", "1"),
+            (points(Some(-1.0), 1e6), "half-width-s", "-1"),
+            (points(None, 0.5), "condition-limit", "0.5"),
             (error(output_error::Settings { iterations: 1001, ..default() }), "iterations", "1001"),
             (error(output_error::Settings { grid_per_decade: 1001, ..default() }), "grid-per-decade", "1001"),
             (

@@ -162,20 +162,6 @@ mod tests {
         b: [-0.002_578, 0.001_26],
     };
 
-    /// Values of an independent computation, to the three decimals it printed.
-    #[test]
-    #[expect(clippy::approx_constant, reason = "T2' happens to be near 1/π")]
-    fn indices_of_the_s175_container_ship() {
-        let prime = S175.indices().expect("a stable hull");
-        for (value, expected) in [(prime.K, 2.731), (prime.T1, 4.443), (prime.T2, 0.318), (prime.T3, 0.789)] {
-            assert_relative_eq!(value, expected, epsilon = 6e-4);
-        }
-        let at_7 = prime.at(Particulars { length: 175.0, speed: 7.0 });
-        assert_relative_eq!(at_7.K, 0.109, epsilon = 6e-4);
-        assert_relative_eq!(at_7.first_order_T(), 99.0, epsilon = 0.6);
-        assert!(!at_7.is_course_unstable());
-    }
-
     /// The free motion of M ν' + N ν = 0 must decay or grow as exp(−t/T1) and exp(−t/T2), whatever the sign.
     #[test]
     fn time_constants_are_roots_of_the_free_motion_for_stable_and_unstable_hulls() {

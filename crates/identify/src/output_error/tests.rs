@@ -86,17 +86,6 @@ fn no_start_beats_the_scan() {
     }
 }
 
-#[test]
-fn missing_headings_cost_information_and_nothing_else() {
-    let truth = FirstOrder::from_indices(0.1, 16.3, 0.0);
-    let full = exact_record(&truth, State::default(), 271, 1.0);
-    let mut heading = full.heading().to_vec();
-    (0..271).filter(|k| k % 3 == 1 || (100..130).contains(k)).for_each(|k| heading[k] = f64::NAN);
-    let gappy = record("gappy", full.time().to_vec(), heading, full.rudder().to_vec());
-    let estimate = method().identify(&[gappy]).expect("noise-free");
-    assert_relative_eq!(estimate.response.T(), 16.3, max_relative = 1e-8);
-}
-
 /// A heading that swings by itself, at another frequency than the rudder: no K can be read off it.
 #[test]
 fn a_heading_that_does_not_answer_the_rudder_is_refused() {

@@ -1,50 +1,11 @@
-//! Optima, periods and refusals known from an independent computation.
+//! Local optima, periods and refusals known from an independent computation.
 
-use super::super::fit;
 use super::*;
-use crate::testing::{Case, Start, Truth};
+use crate::testing::{Case, Truth};
 use approx::assert_abs_diff_eq;
-
-fn curve(case: &Case, fundamental: Fundamental) -> super::super::FourierFit {
-    let Truth { time, heading, .. } = case.truth();
-    fit(&time, &heading, 8, &fundamental).expect("a zig-zag has a series").curve
-}
 
 fn ten_twenty() -> Case {
     Case { heading_deg: 20.0, ..Case::default() }
-}
-
-/// Global optima of noise-free records of K = 0.1, T = 16.3, from an independent computation: w ± 0.0003 rad/s,
-/// R² ± 2e-5, condition number within a factor 1.5.
-#[test]
-fn global_optima_are_the_known_ones() {
-    let twenty = Case { rudder_deg: 20.0, ..ten_twenty() };
-    for (case, w, r_squared, condition) in [
-        (Case::default(), 0.02039, 0.99989, 10.0),
-        (ten_twenty(), 0.01620, 0.99987, 1.2e3),
-        (twenty, 0.01807, 0.99996, 1.3e2),
-        (Case { start: Start::Rest, ..ten_twenty() }, 0.01109, 0.99984, 1.4e6),
-    ] {
-        let fit = curve(&case, Fundamental::Global);
-        assert_abs_diff_eq!(fit.fundamental, w, epsilon = 3e-4);
-        assert_abs_diff_eq!(fit.r_squared, r_squared, epsilon = 2e-5);
-        assert!((fit.condition / condition).ln().abs() < 1.5f64.ln(), "{} for {condition}", fit.condition);
-    }
-}
-
-/// Local optima from the peak of the transform, same source and tolerances.
-#[test]
-fn a_search_from_the_peak_stays_at_the_zig_zag_period() {
-    for (case, w, r_squared, condition) in [
-        (Case::default(), 0.05395, 0.99828, 1.6),
-        (Case { start: Start::Rest, ..Case::default() }, 0.05377, 0.99274, 1.6),
-        (ten_twenty(), 0.03929, 0.99981, 1.9),
-    ] {
-        let fit = curve(&case, Fundamental::FftPeak);
-        assert_abs_diff_eq!(fit.fundamental, w, epsilon = 3e-4);
-        assert_abs_diff_eq!(fit.r_squared, r_squared, epsilon = 2e-5);
-        assert!((fit.condition / condition).ln().abs() < 1.5f64.ln(), "{} for {condition}", fit.condition);
-    }
 }
 
 /// From 2π/T_rec and π/T_rec the local search ends in the global optimum of 10/10 and 10/20; from 2π/T_rec 20/20
