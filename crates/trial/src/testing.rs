@@ -62,9 +62,10 @@ impl Plant {
             .unzip()
     }
 
-    /// Times at which the rudder starts to move, the first execute included; for finite rudder rates.
+    /// Times at which the rudder starts to move, the first execute included.
     pub fn execute_times(&self, duration: f64) -> Vec<f64> {
-        self.pieces(duration).iter().filter(|piece| piece.slope != 0.0).map(|piece| piece.time).collect()
+        let moves = |piece: &&Piece| piece.slope != 0.0 || self.rate.is_infinite();
+        self.pieces(duration).iter().skip(1).filter(moves).map(|piece| piece.time).collect()
     }
 
     fn pieces(&self, duration: f64) -> Vec<Piece> {

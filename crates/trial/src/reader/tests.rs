@@ -315,26 +315,6 @@ fn a_hundred_million_rows_are_refused_before_they_are_read() {
 }
 
 #[test]
-fn paths_that_lead_to_no_table_are_named() {
-    let folder = tempfile::tempdir().expect("a folder for the test");
-    let message = |path: &Path| read(path).expect_err("there is no table").to_string();
-    assert!(message(&folder.path().join("none.csv")).contains("none.csv: there is no such file"));
-    assert!(message(folder.path()).contains("this is a folder"));
-    let path = folder.path().join("run.csv");
-    let sidecar = Sidecar::beside(&path);
-    std::fs::write(&path, simple()).expect("the folder is writable");
-    std::fs::write(&sidecar, "[table]\nskip-lines = true\n").expect("the folder is writable");
-    let text = message(&path);
-    assert!(text.contains("run.trial.toml: line 2: ") && text.contains("expected usize"), "{text}");
-    assert!(message(&sidecar).contains("describes a table"));
-    std::fs::write(&sidecar, "[part]\nfrom-s = 10\nuntil-s = 200\nevery = 2\n").expect("the folder is writable");
-    let trial = read(&path).expect("the sidecar beside the table is found").trial;
-    assert_eq!((trial.len(), trial.time()[0], trial.time()[1]), (96, 10.0, 12.0));
-    assert_eq!(read_with(&path, None).expect("the sidecar is left aside").trial.len(), 240);
-    assert!(matches!(read_with(&path, Some(Path::new("none.trial.toml"))), Err(ReadError::Sidecar(_))));
-}
-
-#[test]
 fn a_sidecar_that_does_not_fit_its_table_is_named_with_its_line() {
     let fault = |sidecar: &str, line: usize, part: &str| {
         let error = parse_with(simple(), sidecar).expect_err(sidecar);
