@@ -1,8 +1,8 @@
-//! A trial that was made in ballast, corrected to full load by two models of the ship.
+//! A trial that was made in ballast, corrected to full load, or to another loading, by two models of the ship.
 //!
 //! R = T F / B of every figure of merit: T is measured in the condition of the trial, B is told of the same manoeuvre
-//! by a model of the ship in that condition, F by a model of the ship at full load. What both models have wrong alike
-//! cancels; what they have wrong differently does not, so both have to be of one method.
+//! by a model of the ship in that condition, F by a model of the ship at the other loading. What both models have wrong
+//! alike cancels; what they have wrong differently does not, so both have to be of one method.
 //!
 //! F and B are drawn apart, each with the errors of its parameters and the random moment of one trial, T with the
 //! standard deviation of its reading. The moment in B stands for that in T. Where F is the hull of B at another
@@ -43,7 +43,10 @@ const AT_THE_END: [&str; 4] = ["steady_rate_deg_s", "speed_loss_share", "drift_a
 /// Seed of the readings of T; those of ships are 0 and 1.
 const READING: u64 = 2;
 
-/// A figure of merit corrected to full load, in the unit of its name.
+/// The loading of the criteria, in the words of messages and pages; another one goes by its file.
+pub const FULL_LOAD: &str = "full load";
+
+/// A figure of merit corrected to another loading, in the unit of its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Corrected {
     /// T, measured in the condition of the trial.
@@ -55,7 +58,7 @@ pub struct Corrected {
     pub result: PredictionInterval,
     /// F/B.
     pub factor: PredictionInterval,
-    /// F, told of the ship at full load.
+    /// F, told of the ship at that loading.
     pub full: PredictionInterval,
     /// B, told of the ship in the condition of the trial.
     pub ballast: PredictionInterval,
@@ -63,7 +66,7 @@ pub struct Corrected {
     pub warnings: Vec<String>,
 }
 
-/// A record that was corrected to full load.
+/// A record that was corrected to another loading.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Correction {
     /// The file as the user named it.
@@ -71,7 +74,7 @@ pub struct Correction {
     /// Name of the record.
     #[serde(default)]
     pub name: String,
-    /// Models at full load, where these have names.
+    /// Models at that loading, where these have names.
     pub full: Vec<String>,
     /// Models in the condition of the trial, where these have names.
     pub ballast: Vec<String>,
@@ -81,10 +84,11 @@ pub struct Correction {
     pub warnings: Vec<String>,
 }
 
-/// Where two models differ that are to be held against each other, before they are scaled to a record.
+/// Where two models differ that are to be held against each other, before they are scaled to a record; `loading` is
+/// that of the first.
 ///
 /// Structures are those of the most probable member. Source: MSC/Circ.1053 (2002), 3.4.1.3: B and F by one method.
-pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip) -> Vec<String> {
+pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str) -> Vec<String> {
     let structure = |known: &IdentifiedShip| {
         if !known.hulls.is_empty() {
             return String::from("a hull");
@@ -99,7 +103,7 @@ pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip) -> Vec<String>
     let [of_full, of_trial] = [full, trial].map(structure);
     let mut warnings = Vec::new();
     if of_full != of_trial {
-        warnings.push(different("structure", &of_full, &of_trial));
+        warnings.push(different("structure", &of_full, &of_trial, loading));
     }
     let is_same = match (full.length_m, trial.length_m) {
         (Some(one), Some(other)) => is_same_length(one, other),
@@ -108,14 +112,14 @@ pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip) -> Vec<String>
     if !is_same {
         let [own, other] = [full, trial]
             .map(|known| known.length_m.map_or_else(|| String::from("unknown"), |length| format!("{length} m")));
-        warnings.push(different("scale", &format!("length {own}"), &other));
+        warnings.push(different("scale", &format!("length {own}"), &other, loading));
     }
     warnings
 }
 
-/// Two models that differ in something.
-pub fn different(what: &str, full: &str, trial: &str) -> String {
-    format!("different {what}: {full} at full load, {trial} in the condition of the trial")
+/// Two models that differ in something, the first at `loading`.
+pub fn different(what: &str, full: &str, trial: &str, loading: &str) -> String {
+    format!("different {what}: {full} at {loading}, {trial} in the condition of the trial")
 }
 
 /// Draws of one ship after the other; `None` for one that does not come to the end.
@@ -131,7 +135,8 @@ struct ManoeuvreOfBoth {
     shown: Vec<(&'static str, Quantity)>,
 }
 
-/// Corrects what a record shows to full load; both ships have to be of its scale.
+/// Corrects what a record shows to a loading, [`FULL_LOAD`] or another in the words of messages; both ships have to be
+/// of its scale.
 ///
 /// R = T F/B, draw by draw; the 50 and 90 % intervals hold the errors of both models, the random moment of one trial
 /// each and the reading of T. Two mixtures of the same files are drawn alike, so that F/B is 1. A zig-zag is steered as
@@ -145,6 +150,7 @@ pub fn correct(
     full: &ShipMixture,
     ballast: &ShipMixture,
     record: &Trial,
+    loading: &str,
     draws: usize,
 ) -> Result<Correction, PredictError> {
     let full = &if full.files() == ballast.files() { full.clone() } else { full.clone().apart_from(ballast) };
@@ -154,7 +160,7 @@ pub fn correct(
         && (own / other - 1.0).abs() > SAME_SPEED
     {
         let [own, other] = [own, other].map(|speed| format!("{speed:.2} m/s"));
-        warnings.push(different("approach speeds", &own, &other) + "; F/B holds that, too");
+        warnings.push(different("approach speeds", &own, &other, loading) + "; F/B holds that, too");
     }
     let zigzag = Measured::of(record).ok().filter(|zigzag| zigzag.executes.len() > 1);
     let made = match &zigzag {
@@ -162,13 +168,13 @@ pub fn correct(
         None => turned(full, ballast, record, draws)?,
     };
     let Some(made) = made else { return Ok(Correction::default()) };
-    for (ship, own, condition) in
-        [(full, &made.full, "full load"), (ballast, &made.trial, "the condition of the trial")]
-    {
+    for (ship, own, condition) in [
+        (full, &made.full, format!("at {loading}")),
+        (ballast, &made.trial, String::from("in the condition of the trial")),
+    ] {
         enough(format!("{} ({condition})", record.name()), own.iter().flatten().count(), draws)?;
         if ship.is_unseen(made.rudder, own.iter().flatten().map(|result| result.largest_rate)) {
-            let at = if condition == "full load" { "at" } else { "in" };
-            warnings.push(format!("the model {at} {condition} is extrapolated beyond its records"));
+            warnings.push(format!("the model {condition} is extrapolated beyond its records"));
         }
     }
     let readings: Vec<f64> = drawn(draws, |replicate| {
@@ -305,7 +311,7 @@ mod tests {
         let (mut held, mut all) = (0, 0);
         for number in 0..30_u64 {
             let trial = record(&ballast, "zig-zag:20/20", 1000 + number, from_deg(0.1));
-            let found = correct(&full, &ballast, &trial, 150).expect("both sail");
+            let found = correct(&full, &ballast, &trial, FULL_LOAD, 150).expect("both sail");
             let manoeuvre = crate::standard::steered(&kind, full.timescale()).expect("steered");
             // R is the manoeuvre of the record, with its rudder and its straight approach.
             let mut ship = full.draw(2000 + number, &UncertaintySource::ALL);
@@ -337,7 +343,7 @@ mod tests {
         });
         let truth = full.predict(&"zig-zag:20/20".parse().expect("known"), 4, false).expect("sails");
         let trial = record(&ballast, "zig-zag:20/20", 0, from_deg(0.02));
-        let found = correct(&full, &ballast, &trial, 40).expect("both sail");
+        let found = correct(&full, &ballast, &trial, FULL_LOAD, 40).expect("both sail");
         for name in ["first_overshoot_deg", "second_overshoot_deg", "initial_turning_time_s"] {
             let own = truth.figures[name].interval.median;
             let figure = &found.figures[name];
@@ -356,11 +362,11 @@ mod tests {
         copy.members[0].weight = 0.5;
         let [ballast, copy] = [ballast, copy].map(mixture);
         let trial = record(&ballast, "zig-zag:20/20", 7, from_deg(0.1));
-        let same = correct(&ballast, &ballast, &trial, 60).expect("sails");
+        let same = correct(&ballast, &ballast, &trial, FULL_LOAD, 60).expect("sails");
         for figure in same.figures.values() {
             assert_eq!(figure.factor.ci90, [1.0, 1.0], "{figure:?}");
         }
-        let other = correct(&copy, &ballast, &trial, 200).expect("sails");
+        let other = correct(&copy, &ballast, &trial, FULL_LOAD, 200).expect("sails");
         assert!(other.figures.len() > 5);
         for figure in other.figures.values() {
             assert!(figure.result.holds90(figure.measured) && figure.factor.holds90(1.0), "{figure:?}");
@@ -376,7 +382,7 @@ mod tests {
         let taken = vec![testing::at_same_loading(&ballast.hulls[0], 1.0)];
         let full = mixture(IdentifiedShip { hulls: taken, ..ballast.clone() });
         let trial = record(&mixture(testing::known()), "zig-zag:20/20", 7, from_deg(0.1));
-        let found = correct(&full, &mixture(ballast), &trial, 200).expect("sails");
+        let found = correct(&full, &mixture(ballast), &trial, FULL_LOAD, 200).expect("sails");
         assert_eq!(found.figures["first_overshoot_deg"].factor.ci90, [1.0, 1.0]);
     }
 
@@ -388,7 +394,7 @@ mod tests {
         full.members[0].parameters[1] *= 0.5;
         let [full, ballast] = [full, ballast].map(mixture);
         let trial = record(&ballast, "turning-circle:15", 3, from_deg(0.1));
-        let found = correct(&full, &ballast, &trial, 60).expect("both sail");
+        let found = correct(&full, &ballast, &trial, FULL_LOAD, 60).expect("both sail");
         let names: Vec<&String> = found.figures.keys().collect();
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);
         let time = &found.figures[1];
@@ -399,10 +405,10 @@ mod tests {
     #[test]
     fn models_that_do_not_pair_up_are_told() {
         let [mut full, ballast] = ships();
-        assert!(differences(&full, &ballast).is_empty());
+        assert!(differences(&full, &ballast, FULL_LOAD).is_empty());
         full.members[0].effects.clear();
         full.length_m = Some(300.0);
-        let said = differences(&full, &ballast);
+        let said = differences(&full, &ballast, FULL_LOAD);
         assert!(said[0].contains("nonlinear_damping") && said[1].contains("300 m"), "{said:?}");
     }
 
@@ -415,10 +421,10 @@ mod tests {
         }
         let [full, vague, exact] = [full, ballast, testing::known()].map(mixture);
         let trial = record(&exact, "zig-zag:20/20", 0, from_deg(0.1));
-        let found = correct(&full, &vague, &trial, 200).expect("most sail");
+        let found = correct(&full, &vague, &trial, FULL_LOAD, 200).expect("most sail");
         let first = &found.figures["first_overshoot_deg"];
         assert!(first.warnings.iter().any(|warning| warning.starts_with("F/B is known to ±")), "{first:?}");
-        let strange = correct(&full, &full, &trial, 100).expect("sails");
+        let strange = correct(&full, &full, &trial, FULL_LOAD, 100).expect("sails");
         let outside = |figure: &Corrected| figure.warnings.iter().any(|warning| warning.contains("not in ["));
         assert!(strange.figures.values().any(outside), "{:?}", strange.figures);
     }

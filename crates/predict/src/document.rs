@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::correction::Correction;
+use crate::correction::{Correction, FULL_LOAD};
 use crate::form::ImoFormEntry;
 use crate::identified_ship::ValidityRange;
 use crate::imo::PredictedCriterion;
@@ -33,7 +33,7 @@ pub struct PredictDocument {
     pub replays: Vec<RecordReplay>,
     /// Criteria of IMO, where length and speed are known.
     pub imo: Vec<PredictedCriterion>,
-    /// The records that were corrected to full load.
+    /// The records that were corrected to full load, or to the loading of `load`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub corrected: Vec<Correction>,
     /// The form of MSC/Circ.1053, where it was asked for.
@@ -67,6 +67,13 @@ pub struct OtherLoading {
     pub draught_m: f64,
     /// What standard deviations are widened by.
     pub factor: f64,
+}
+
+impl OtherLoading {
+    /// The loading in the words of messages and pages: full load where there is none.
+    pub fn name(load: Option<&Self>) -> String {
+        load.map_or_else(|| FULL_LOAD.into(), |load| format!("the loading of {}", load.file))
+    }
 }
 
 /// A model that takes part in a prediction.
@@ -109,7 +116,7 @@ impl PredictDocument {
     /// The files of the models, one after the other, and that of the loading that they are taken to.
     pub fn model_files(&self) -> String {
         let files = self.models.iter().map(|model| model.file.as_str()).collect::<Vec<_>>().join(", ");
-        files + &self.load.as_ref().map_or_else(String::new, |load| format!(" at the loading of {}", load.file))
+        if self.load.is_some() { format!("{files} at {}", OtherLoading::name(self.load.as_ref())) } else { files }
     }
 }
 

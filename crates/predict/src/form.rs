@@ -224,7 +224,10 @@ fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<Imo
         }
         let is_partial = record.loading() == Some(Loading::Partial);
         let load = if is_partial { ", at partial load, not corrected" } else { "" };
-        let sd = quantity.sd.map_or_else(String::new, |sd| format!(" ± {}", one_digit(sd)));
+        let sd = quantity.sd.map_or_else(String::new, |sd| match sd < 1.0 {
+            true => format!(" ± {}", ship::ShortNumber::rounded(sd, 1)),
+            false => format!(" ± {sd:.0}"),
+        });
         let source = format!("measured, {file}{sd}{load}");
         Some((
             is_partial,
@@ -280,11 +283,6 @@ fn fixed(value: f64, decimals: usize) -> String {
         Some(rest) => format!("−{rest}"),
         None => text,
     }
-}
-
-/// A standard deviation with one digit that is not zero.
-fn one_digit(value: f64) -> String {
-    if value < 1.0 { ship::ShortNumber::rounded(value, 1).to_string() } else { format!("{value:.0}") }
 }
 
 /// The interval of nine tenths of the draws.
@@ -359,40 +357,6 @@ mod tests {
         assert_eq!(names[4..], ["turning-circle -35", "turning-circle 35"]);
     }
 
-    /// One side is measured, the other predicted; what nobody declared is missing.
-    #[test]
-    fn every_entry_names_its_source() {
-        let ship = testing::mixture(testing::known());
-        let trial = record(&ship, "zig-zag:-10/10", calm(Loading::Full));
-        let records = [FormRecord { trial: &trial, correction: None, current: None }];
-        let form = fill(&predictions(&ship), ship.particulars(), "fit.json", &records, None);
-        let port = entry(&form, "10°/10°", "1st overshoot angle", Some("port"));
-        let starboard = entry(&form, "10°/10°", "1st overshoot angle", Some("starboard"));
-        assert!(port.source.starts_with("measured, ") && !port.source.contains("partial"), "{port:?}");
-        assert!(starboard.source.starts_with("predicted from fit.json, 90 % ["), "{starboard:?}");
-        assert!(starboard.extrapolated == Some(false) && starboard.probability_of_passing.is_some());
-        // L/V = 12.5 s: 11.25 and 26.875 deg.
-        assert!((port.limit.expect("known") - 11.25).abs() < 1e-12);
-        let value = |entry: &ImoFormEntry| entry.value.as_ref().and_then(Value::as_f64);
-        let (value, told) = (value(port).expect("measured"), starboard.median.expect("predicted"));
-        assert!((value - told).abs() < 1.5 && port.sd.is_some_and(|sd| sd < 0.2), "{port:?} {told}");
-        let turning = entry(&form, "initial", "distance to turn 10° with 10° rudder", Some("port"));
-        assert!(turning.source.starts_with("measured, "), "{turning:?}");
-        assert_eq!(entry(&form, "ship", "L/B", None).value, Some(5.0.into()));
-        assert_eq!(entry(&form, "ship", "B/T", None).value, Some(3.0.into()));
-        assert_eq!(entry(&form, "ship", "total rudder area/LT", None).value, Some(0.02.into()));
-        assert_eq!(entry(&form, "trials", "water depth/trial draught", None).value, Some(12.0.into()));
-        assert_eq!(entry(&form, "ship", "rudder type", None).source, "not in the records");
-        let loading = entry(&form, "manoeuvring", "loading condition", None);
-        assert_eq!(loading.value, Some("tested at full load".into()));
-        // No speed and no drift: nobody tells the circle; nobody ever tells the stopping trial.
-        assert!(entry(&form, "circle", "advance", Some("port")).source.contains("are not known"));
-        assert!(entry(&form, "stopping", "track reach", None).value.is_none());
-        for part in ["sea state 6", "tried to port only", "20/20 zig-zag: not tried", "no speed is recorded"] {
-            assert!(form.remarks.iter().any(|remark| remark.contains(part)), "{part}: {:?}", form.remarks);
-        }
-    }
-
     #[test]
     fn a_trial_at_partial_load_is_corrected_or_said_to_be_so() {
         let [full, ballast]: [IdentifiedShip; 2] = std::array::from_fn(|_| testing::known());
@@ -401,7 +365,7 @@ mod tests {
             testing::mixture(known)
         });
         let trial = record(&ballast, "zig-zag:20/20", calm(Loading::Partial));
-        let correction = correction::correct(&full, &ballast, &trial, 60).expect("both sail");
+        let correction = correction::correct(&full, &ballast, &trial, correction::FULL_LOAD, 60).expect("both sail");
         let told = predictions(&full);
         let with = |correction| {
             fill(&told, full.particulars(), "", &[FormRecord { trial: &trial, correction, current: None }], None)

@@ -18,7 +18,7 @@
 //! | a record that is a turn, and the current it shows | [`turn`] |
 //! | steady turns and the unstable loop | [`steady`] |
 //! | the criteria of IMO | [`imo`] |
-//! | a trial in ballast corrected to full load | [`correction`] |
+//! | a trial in ballast corrected to another loading | [`correction`] |
 //! | the form of MSC/Circ.1053 | [`form`] |
 //! | all of it as a file holds it | [`document`] |
 //!

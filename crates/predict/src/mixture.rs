@@ -75,6 +75,8 @@ struct DrawableStructure {
 pub struct ShipMixture {
     parts: Vec<DrawableStructure>,
     files: Vec<IdentifiedShip>,
+    /// Probability of every file.
+    shares: Vec<f64>,
     /// Square roots of the covariances of speed and drift of every file.
     motions: Vec<DMatrix<f64>>,
     timescale: f64,
@@ -107,9 +109,9 @@ impl ShipMixture {
     /// Takes what several files say of one ship, each with its weight; fails for what no file of this program holds.
     pub fn new(files: Vec<(IdentifiedShip, f64)>) -> Result<Self, PredictError> {
         let total: f64 = files.iter().map(|(_, weight)| weight).sum();
+        let shares: Vec<f64> = files.iter().map(|(_, weight)| weight / total).collect();
         let mut parts = Vec::new();
-        for (file, (known, of_file)) in files.iter().enumerate() {
-            let share = of_file / total;
+        for (file, ((known, _), share)) in files.iter().zip(&shares).enumerate() {
             let of_structures: f64 = known.members.iter().map(|member| member.weight).sum();
             let structures = known.members.iter().map(|member| (member, member.weight / of_structures));
             let structures =
@@ -119,7 +121,7 @@ impl ShipMixture {
                 parts.extend(structures);
                 continue;
             }
-            let beside = likeliest(&structures).ok_or(PredictError::Empty)?;
+            let beside = likeliest(structures.iter()).ok_or(PredictError::Empty)?;
             let of_hulls: f64 = known.hulls.iter().map(|hull| hull.weight).sum();
             for own in &known.hulls {
                 let (hull, weight) = (DrawableHull::new(own)?, checked(share * own.weight / of_hulls, own.weight)?);
@@ -133,7 +135,7 @@ impl ShipMixture {
         let motions = files.iter().map(motion).collect::<Result<_, _>>()?;
         let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
         let files = files.into_iter().map(|(known, _)| known).collect();
-        Ok(Self { parts, motions, files, timescale, apart: false, follows: false })
+        Ok(Self { parts, motions, files, shares, timescale, apart: false, follows: false })
     }
 
     /// The same ships drawn with other numbers, so that they have no chance in common with those of another mixture,
@@ -162,7 +164,7 @@ impl ShipMixture {
         &self.files
     }
 
-    /// The most probable ship, without chance.
+    /// The most probable ship of the most probable file, without chance.
     pub fn most_probable(&self) -> DrawnShip {
         self.draw(0, &[])
     }
@@ -229,8 +231,10 @@ impl ShipMixture {
         disturbances
     }
 
+    /// The likeliest of the likeliest file, the first of several: a file does not lose by having several hulls.
     fn likeliest(&self) -> &DrawableStructure {
-        likeliest(&self.parts).expect("there is a structure")
+        let file = (0..self.files.len()).rev().max_by(|one, other| self.shares[*one].total_cmp(&self.shares[*other]));
+        likeliest(self.parts.iter().filter(|part| Some(part.file) == file)).expect("there is a structure")
     }
 
     /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of a
@@ -250,8 +254,8 @@ impl ShipMixture {
 }
 
 /// The most probable one, the first of several.
-fn likeliest(parts: &[DrawableStructure]) -> Option<&DrawableStructure> {
-    parts.iter().rev().max_by(|one, other| one.weight.total_cmp(&other.weight))
+fn likeliest<'a>(parts: impl DoubleEndedIterator<Item = &'a DrawableStructure>) -> Option<&'a DrawableStructure> {
+    parts.rev().max_by(|one, other| one.weight.total_cmp(&other.weight))
 }
 
 /// A weight that is one; `stored` is what the file says.
@@ -318,6 +322,7 @@ impl DrawableStructure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stored_hull::StoredHull;
     use crate::testing;
 
     /// Mean and covariance of the draws are those that are known.
@@ -356,6 +361,19 @@ mod tests {
         let simple = (0..1000).filter(|&k| is_simple(k)).count();
         assert!((240..=260).contains(&simple), "{simple}");
         assert!((0..100).all(|k| mixture.draw(k, &[]).response.parameters().len() == 4));
+    }
+
+    /// Of two files that are as probable it is the first, though its two hulls share what the one of the other has.
+    #[test]
+    fn the_most_probable_ship_is_of_the_most_probable_file() {
+        let hull = |weight| StoredHull { weight, ..testing::hull("quadratic") };
+        let [several, mut alone] =
+            [vec![hull(0.4), hull(0.6)], vec![hull(1.0)]].map(|hulls| IdentifiedShip { hulls, ..testing::known() });
+        alone.members[0].parameters[0] *= 1.1;
+        let of_several = several.members[0].parameters.clone();
+        let mixture = ShipMixture::new(vec![(several, 1.0), (alone, 1.0)]).expect("made up");
+        assert_eq!(mixture.most_probable().response.parameters(), of_several);
+        assert_eq!(mixture.likeliest().weight, 0.3);
     }
 
     /// A rudder that was logged late gives a negative dead time; no ship has one.

@@ -63,7 +63,8 @@ pub fn rest(document: &PredictDocument) -> String {
     if !document.corrected.is_empty() {
         let table = predict_tables::corrected(document).to_text();
         rest += &format!(
-            "\nCorrected to full load, R = T F/B (MSC/Circ.1053, 3.4.1.2)\n{}\n{table}",
+            "\nCorrected to {}, R = T F/B (MSC/Circ.1053, 3.4.1.2)\n{}\n{table}",
+            OtherLoading::name(document.load.as_ref()),
             corrected_from(document)
         );
         doubts(document).for_each(|doubt| rest += &format!("{doubt}\n"));
@@ -129,10 +130,11 @@ pub fn page(document: &PredictDocument) -> Page {
         page.list(document.replays.iter().map(|own| format!("{}: {}", text(&own.name), coverage(own))));
     }
     if !document.corrected.is_empty() {
-        page.part("Corrected to full load");
+        let loading = text(&OtherLoading::name(document.load.as_ref()));
+        page.part(format!("Corrected to {loading}"));
         page.say(format!(
             "R = T F/B (MSC/Circ.1053, 3.4.1.2): T is measured, B is what the model of the condition of the trial does in the \
-             same manoeuvre, F what the model at full load does. {}",
+             same manoeuvre, F what the model at {loading} does. {}",
             text(&corrected_from(document))
         ));
         page.table(predict_tables::corrected(document));

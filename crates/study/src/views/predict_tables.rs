@@ -83,7 +83,7 @@ pub fn criteria(document: &PredictDocument) -> Table {
     table
 }
 
-/// Every figure that was corrected to full load.
+/// Every figure that was corrected to another loading.
 pub fn corrected(document: &PredictDocument) -> Table {
     let mut table = Table::headed(
         "record | figure | unit | T measured | .F/B | F/B 90 % | .R | R 50 % | R 90 % | \

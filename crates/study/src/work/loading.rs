@@ -117,9 +117,24 @@ impl DescribedLoading {
             () if !to.has_length_of(own) => "length-m is another; give it at the scale of that model",
             () if differing.contains(&"beam-m") => "beam-m is another; give a loading of the same ship",
             () if differing.is_empty() => "all is within 2 % of it; leave --load out, or give another draught-m",
-            () => return completed(&to).map_err(|error| self.refused(error)),
+            () => return completed(&to).map_err(|error| self.out_of_the_water(&to, error)),
         };
         Err(self.refused(format!("this is no other loading of the ship of {shown}: {cure}")))
+    }
+
+    /// What is wrong with the ship at this loading; at a light draught it is her rudder or propeller, not the scale.
+    fn out_of_the_water(&self, to: &HullParticulars, error: ParticularsError) -> Failure {
+        let parts = [("rudder-height-m", "rudder", "height"), ("propeller-diameter-m", "propeller", "diameter")];
+        let part = parts.into_iter().find(|(key, ..)| *key == error.key && error.value > error.range[1]);
+        let size = Particular::named(error.key).and_then(|particular| particular.get(to));
+        let Some(((key, part, measure), size)) = part.zip(size) else { return self.refused(error) };
+        let [draught, size, share, most] =
+            [self.draught(), size, error.value, error.range[1]].map(|value| ShortNumber::rounded(value, 4));
+        self.refused(format!(
+            "at draught-m = {draught} the {part} ({key} = {size}) is out of the water too far: its {measure} is {share} \
+             draughts, expected at most {most}; give a deeper draught-m, or the {measure} under water as {key} \
+             under [ship]"
+        ))
     }
 }
 

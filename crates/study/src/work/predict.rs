@@ -19,7 +19,7 @@ use ship::Particulars;
 use trial::{Conditions, Manoeuvre, Trial, file};
 
 use super::loading::{DescribedLoading, only_hull};
-use crate::options::{PredictRequest, ReadingOptions};
+use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
 use crate::records::{file_of, rudder_logged_late};
 
@@ -169,11 +169,6 @@ fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
     kinds
 }
 
-/// Length and speed that are predicted for; a speed that is not given is NaN.
-fn asked_scale(options: &ReadingOptions) -> Option<Particulars> {
-    Some(Particulars { length: options.ship.length_m?, speed: options.ship.speed().unwrap_or(f64::NAN) })
-}
-
 /// The manoeuvres that drawn ships come to the end of, and why the last of the others is lost; `file` is what messages
 /// call the model.
 fn predictions(
@@ -222,7 +217,9 @@ pub fn predict(
     let PredictInput { models, ballast, records, current, declared } = input;
     let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
-    let (draws, scale) = (request.draws as usize, asked_scale(&request.reading));
+    // A speed that is not given is NaN.
+    let (draws, ship) = (request.draws as usize, &request.reading.ship);
+    let scale = ship.length_m.map(|length| Particulars { length, speed: ship.speed().unwrap_or(f64::NAN) });
     let mut in_still_water = |record| turn::without_current(at_own_scale(record, warnings), current);
     let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
     let first = models[0].file.clone();
@@ -234,9 +231,11 @@ pub fn predict(
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
         return Err(refused(error));
     }
+    let loading = OtherLoading::name(taken.as_ref().map(|(.., load)| load));
     let (mut replays, mut corrections) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
     for (record, current) in &records {
-        let (replayed, correction) = held_against((record, *current), [models, ballast], (scale, draws), warnings)?;
+        let (replayed, correction) =
+            held_against((record, *current), ([models, ballast], &loading), (scale, draws), warnings)?;
         replays.push(replayed);
         corrections.push(correction);
         steps.advance();
@@ -323,11 +322,11 @@ fn at_own_scale(record: Trial, warnings: &mut Vec<String>) -> Trial {
     record.with_particulars(own)
 }
 
-/// A record beside its replay, and corrected to full load where there is a model of its condition; `models` are those
-/// at full load and those in the condition of the record.
+/// A record beside its replay, and corrected to `loading` where there is a model of its condition; models are those at
+/// that loading and those in the condition of the record.
 fn held_against(
     (record, current): (&Trial, Option<Current>),
-    [full, ballast]: [&[StoredModel]; 2],
+    ([full, ballast], loading): ([&[StoredModel]; 2], &str),
     (asked, draws): (Option<Particulars>, usize),
     warnings: &mut Vec<String>,
 ) -> Result<(RecordReplay, Option<Correction>), Failure> {
@@ -345,24 +344,24 @@ fn held_against(
     if ballast.is_empty() {
         return Ok((replayed, None));
     }
-    let mut correction = match correction::correct(&scaled(full)?, &own, record, draws) {
+    let mut correction = match correction::correct(&scaled(full)?, &own, record, loading, draws) {
         Ok(correction) => correction,
         Err(error @ PredictError::Lost { .. }) => {
-            warnings.push(format!("{file}: {error}; it is not corrected to full load"));
+            warnings.push(format!("{file}: {error}; it is not corrected to {loading}"));
             return Ok((replayed, None));
         }
         Err(error) => return Err(Failure::about(file, error)),
     };
     if correction.figures.is_empty() {
         warnings.push(format!(
-            "{file}: it shows no figure of a zig-zag or a turn from its first execute on; it is not corrected to full \
-             load"
+            "{file}: it shows no figure of a zig-zag or a turn from its first execute on; it is not corrected to \
+             {loading}"
         ));
         return Ok((replayed, None));
     }
-    let mut of_models = correction::differences(&full[0].known, &ballast[0].known);
+    let mut of_models = correction::differences(&full[0].known, &ballast[0].known, loading);
     if full[0].method != ballast[0].method {
-        of_models.push(correction::different("methods", &full[0].method, &ballast[0].method));
+        of_models.push(correction::different("methods", &full[0].method, &ballast[0].method, loading));
     }
     correction.warnings.splice(0..0, of_models);
     [correction.full, correction.ballast] =

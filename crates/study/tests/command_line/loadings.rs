@@ -114,12 +114,18 @@ fn a_ship_tried_in_ballast_is_predicted_at_full_load() {
     assert!(all > 30 && 10 * held >= 9 * all && 10 * nearer >= 9 * all, "{held} and {nearer} of {all}");
     let correct = "--load full.toml --ballast f/fit.json --replay run.csv --form --draws 300 --out c ";
     let run = desk.run(&words(&["predict f/fit.json ", correct, TRIAL].concat()));
-    let from = "F from f/fit.json at the loading of full.toml, B from f/fit.json";
+    let from = "Corrected to the loading of full.toml, R = T F/B (MSC/Circ.1053, 3.4.1.2)\n\
+                F from f/fit.json at the loading of full.toml, B from f/fit.json";
     assert!(run.is_done().out.contains(from) && run.err.contains("x-g-m = 0 is taken"), "{}\n{}", run.out, run.err);
     let first = &desk.json("c/predict.json")["corrected"][0]["figures"]["first_overshoot_deg"];
     let truth = &truth["manoeuvres"][1]["figures"]["first_overshoot_deg"];
     assert!(holds90(first, truth) && number(&first["factor"]["ci90"][0]) > 1.2, "{truth} {first}");
     assert!(desk.text("c/trial-form.md").contains("f/fit.json at the loading of full.toml"));
+    let report = desk.text("c/report.md");
+    assert!(
+        report.contains("## Corrected to the loading of full.toml") && !report.contains("full load does"),
+        "{report}"
+    );
 }
 
 fn holds90(figure: &Value, truth: &Value) -> bool {
@@ -133,6 +139,15 @@ fn a_loading_that_cannot_be_taken_is_refused() {
     for (text, part) in [
         ("[form]\ndraught-m = 6.6", "load.toml: this is no other loading of the ship of f/fit.json: all is within 2 %"),
         ("[form]\ndraught-m = 22", "load.toml: B/d (draught-m) is 1.091, expected 1.2 to 8"),
+        (
+            "[form]\ndraught-m = 3.5",
+            "load.toml: at draught-m = 3.5 the rudder (rudder-height-m = 5.5) is out of the water too far: its height is \
+             1.571 draughts, expected at most 1.5",
+        ),
+        (
+            "[ship]\nlength-m = 160\nspeed-m-s = 7.7\nrudder-height-m = 3.2\n[form]\ndraught-m = 3.5",
+            "load.toml: at draught-m = 3.5 the propeller (propeller-diameter-m = 4.8) is out of the water too far",
+        ),
         ("[ship]\nlength-m = 32\nspeed-m-s = 3.4\ndraught-m = 1.9", "length-m is another"),
         ("[form]\nbeam-m = 25\ndraught-m = 9.5", "beam-m is another"),
         ("[form]\nbeam-m = 24", "load.toml: it has no draught-m"),
