@@ -353,7 +353,8 @@ fn covariances_are_positive_definite_and_intervals_hold_the_estimate() {
         for trials in [vec![one.clone()], vec![one, other]] {
             let found = identify(method.as_ref(), &trials);
             let mut quantities = vec![found.K(), found.T(), found.rudder_bias()];
-            quantities.extend(found.robust_indices().into_iter().flatten());
+            let robust = found.robust.iter().map(|covariance| covariance.indices(&found.response));
+            quantities.extend(robust.flat_map(|(k, t)| [k, t]));
             quantities.iter().for_each(|quantity| assert_encloses(method.id(), quantity));
             match &found.uncertainty {
                 Uncertainty::Covariance(covariance) => {

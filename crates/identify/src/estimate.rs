@@ -138,13 +138,6 @@ impl Estimate {
             Uncertainty::None { .. } => Quantity::bare(value),
         }
     }
-
-    /// K, T and δ_r with the errors of the robust covariance, where there is one.
-    pub fn robust_indices(&self) -> Option<[Quantity; 3]> {
-        let covariance = self.robust.as_ref()?;
-        let response = &self.response;
-        Some([index_K(response, covariance), index_T(response, covariance), bias(response, covariance)])
-    }
 }
 
 impl Covariance {
@@ -196,10 +189,6 @@ impl Covariance {
         };
         Some((0..=CORNERS).map(corner).collect())
     }
-
-    fn sd_along(&self, gradient: &Vector3<f64>) -> f64 {
-        gradient.dot(&(self.matrix * gradient)).max(0.0).sqrt()
-    }
 }
 
 /// Two-sided 95 % quantile of Student's t, or of the normal distribution without degrees of freedom.
@@ -222,7 +211,8 @@ fn known(value: f64, sd: Option<f64>, ci95: Option<[f64; 2]>) -> Quantity {
 fn index_K(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let (a, b) = (response.inverse_T, response.K_over_T);
     let value = response.K();
-    let sd = covariance.sd_along(&Vector3::new(-b / (a * a), 1.0 / a, 0.0));
+    let gradient = Vector3::new(-b / (a * a), 1.0 / a, 0.0);
+    let sd = gradient.dot(&(covariance.matrix * gradient)).max(0.0).sqrt();
     let m = &covariance.matrix;
     let z2 = covariance.quantile95().powi(2);
     // (b − K a)² = z² (s_bb − 2 K s_ab + K² s_aa), a quadratic in K.

@@ -118,8 +118,11 @@ impl Identifier for External {
                     self.pool.give_back(process);
                     return answer.map_err(|words| IdentifyError::outside(&words))?.estimate();
                 }
-                // What a process did before must not show in a row: a new one is asked once more.
-                Err(error) if before > 0 && error.may_be_of_the_past() => {
+                // What a process did before must not show in a row: a new one is asked once more. Not after silence,
+                // which would take the time twice.
+                Err(ProcessError::Ended(_) | ProcessError::TooLong { .. } | ProcessError::Nonsense(_))
+                    if before > 0 =>
+                {
                     process.kill();
                     process = self.pool.start()?;
                 }

@@ -101,7 +101,8 @@ impl<'a> SchemaWalk<'a> {
             Value::Number(number) => LeftOut::Value(number.as_f64().map_or_else(String::new, |own| own.to_string())),
             value => LeftOut::Value(value.as_str().map_or_else(|| value.to_string(), str::to_owned)),
         };
-        keys.push(ScenarioKey { key: key.to_owned(), unit, default, meaning: in_one_line(meaning) });
+        let meaning = meaning.split_whitespace().collect::<Vec<_>>().join(" ");
+        keys.push(ScenarioKey { key: key.to_owned(), unit, default, meaning });
         // A further manoeuvre has the keys of the first.
         if !AS_BEFORE.contains(&key) {
             let mark = if is_list_of_tables { "[]." } else { "." };
@@ -139,11 +140,6 @@ fn names(value: &Value) -> Vec<&str> {
         .flat_map(|one| one["enum"].as_array().into_iter().flatten().chain(Some(&one["const"])))
         .filter_map(Value::as_str)
         .collect()
-}
-
-/// Lines of a comment as one.
-fn in_one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

@@ -178,15 +178,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn misspelt_names_are_recognised() {
-        let known = ["rate-deg-s", "lag-s", "maximum-deg"];
-        assert_eq!(nearest("rate-deg", &known), Some("rate-deg-s"));
-        assert_eq!(nearest("maximun-deg", &known), Some("maximum-deg"));
-        assert_eq!(nearest("colour", &known), None);
-        assert_eq!(nearest("colour", &[] as &[&str]), None);
-    }
-
-    #[test]
     fn paths_keep_dots_in_names() {
         let set = KeyPath::dotted("sweep.0.points.1.set").child("recording.sampling-s");
         assert_eq!(set.parts().len(), 6);

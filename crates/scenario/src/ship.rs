@@ -237,35 +237,3 @@ pub fn schema(_: &mut SchemaGenerator) -> Schema {
         "type": "object", "minProperties": 1, "maxProperties": 1, "additionalProperties": false, "properties": ships,
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn built(text: &str) -> Result<Ship, String> {
-        let named: NamedNumbers = toml::from_str(text).expect("numbers by name");
-        build(&named).map_err(|fault| format!("{fault:?}"))
-    }
-
-    #[test]
-    fn a_hull_is_made_of_her_particulars() {
-        let ship = built("[hull]\nlength-m = 320\nspeed-m-s = 7.97\nbeam-m = 58\ndraught-m = 20.8\n").expect("a ship");
-        assert_eq!(ship.particulars, Some(Particulars { length: 320.0, speed: 7.97 }));
-        assert!(ship.first_order().is_none());
-    }
-
-    #[test]
-    fn particulars_of_no_ship_are_refused_at_their_key() {
-        let scale = "[hull]\nlength-m = 320\nspeed-m-s = 7.97\n";
-        for (own, part) in [
-            ("beam-m = 1.27\n", "L/B (beam-m) is 252"),
-            ("rudder-area-m2 = -3\n", "rudder-area-m2 is -3"),
-            ("breadth-m = 58\n", "has no key `breadth-m`"),
-        ] {
-            let fault = built(&format!("{scale}{own}")).err().expect("no ship");
-            assert!(fault.contains(part), "{fault}");
-        }
-        let fault = built("[hull]\nlength-m = 320\n").err().expect("no speed");
-        assert!(fault.contains("speed-m-s"), "{fault}");
-    }
-}

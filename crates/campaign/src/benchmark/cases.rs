@@ -57,11 +57,6 @@ impl BenchTask {
             _ => Some("rms error of the heading [°]"),
         }
     }
-
-    /// Whether a record is predicted that was not fitted.
-    pub fn is_prediction(self) -> bool {
-        matches!(self, Self::OtherSide | Self::OtherAmplitude | Self::Circle)
-    }
 }
 
 /// The field of all measured records.

@@ -20,7 +20,8 @@ pub struct OverallRanking {
 
 /// Ranks methods over the tasks in which a record is predicted that was not fitted; `None` without such a task.
 pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking> {
-    let fields = by_field(cases, BenchTask::is_prediction);
+    let is_prediction = |task| matches!(task, BenchTask::OtherSide | BenchTask::OtherAmplitude | BenchTask::Circle);
+    let fields = by_field(cases, is_prediction);
     let boards = fields.iter().map(|((task, field), _)| (*task, (*field).to_owned())).collect();
     // Every method is asked for every prediction.
     let of_boards: Vec<MeanRanks> = fields.iter().map(|(_, cases)| MeanRanks::of(cases, methods)).collect();

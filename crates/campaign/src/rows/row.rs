@@ -121,11 +121,6 @@ impl StudyRow {
         }
     }
 
-    /// The Cramér–Rao bound of this answer: there is none for a base with effects.
-    pub fn bound_of_truth(&self) -> Option<[f64; 3]> {
-        self.bound.filter(|_| self.traced.is_none() || self.own_k_per_s.is_none())
-    }
-
     /// Relative errors of K, (K̂ − K)/K, of T, and of K/T, the slope of the response to the rudder at its beginning.
     pub fn errors(&self) -> [Option<f64>; 3] {
         let ([k, t], [true_k, true_t]) = ([self.k_per_s, self.t_s], self.truth());

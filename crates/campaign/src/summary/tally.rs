@@ -213,9 +213,11 @@ impl Running {
         let truths = [k, t, k.zip(t).map(|(k, t)| k / t)];
         let intervals = [row.k_ci95_per_s, row.t_ci95_s, None];
         let answers = [row.k_per_s, row.t_s, None];
+        // There is no Cramér–Rao bound for a base with effects.
+        let bound = row.bound.filter(|_| row.traced.is_none() || row.own_k_per_s.is_none());
         for (place, index) in self.indices.iter_mut().enumerate() {
             let truth = truths[place];
-            let bound = row.bound_of_truth().zip(truth).map(|(sd, truth)| 100.0 * sd[place] / truth.abs());
+            let bound = bound.zip(truth).map(|(sd, truth)| 100.0 * sd[place] / truth.abs());
             let error = |end: f64, truth: f64| 100.0 * (end - truth) / truth.abs();
             let interval = intervals[place].zip(truth).map(|(ends, truth)| ends.map(|end| error(end, truth)));
             index.add((row.replicate, errors[place]), bound, interval, answers[place]);

@@ -30,13 +30,6 @@ pub enum ProcessError {
     Nonsense(String),
 }
 
-impl ProcessError {
-    /// Whether an earlier trial may be to blame. Silence is not asked for twice: it would take the time twice.
-    pub fn may_be_of_the_past(&self) -> bool {
-        matches!(self, Self::Ended(_) | Self::TooLong { .. } | Self::Nonsense(_))
-    }
-}
-
 impl From<ProcessError> for IdentifyError {
     fn from(error: ProcessError) -> Self {
         match error {

@@ -98,13 +98,13 @@ impl Spread {
             let least_squares = srivc().solve(&[Record::new(&trial)], &true_filter, Left::Regressors).expect("steered");
             let Shared { a, b, .. } = least_squares.point.shared;
             let estimate = srivc().identify(&[trial]).expect("steered");
-            let robust = estimate.robust_indices().expect("a robust covariance");
+            let robust = estimate.robust.as_ref().expect("a robust covariance").indices(&estimate.response);
             let found = [estimate.K(), estimate.T(), estimate.rudder_bias()];
             for i in 0..2 {
                 spread.value[i].push(found[i].value / truth[i]);
                 spread.least_squares[i].push([b / a, 1.0 / a][i] / truth[i]);
                 spread.quoted[i].push(found[i].sd.expect("a covariance") / truth[i]);
-                spread.robust[i].push(robust[i].sd.expect("a covariance") / truth[i]);
+                spread.robust[i].push([robust.0, robust.1][i].sd.expect("a covariance") / truth[i]);
             }
             for i in 0..3 {
                 let [lo, hi] = found[i].ci95.expect("bounded");

@@ -35,11 +35,6 @@ fn share(share: WilsonShare) -> String {
     format!("{} [{low}, {high}]", fixed(100.0 * share.count as f64 / share.of as f64, 0))
 }
 
-/// What a board is of, in words.
-pub fn board_name(board: &Board) -> String {
-    format!("{}, {}", board.task.title(), board.field)
-}
-
 /// A number of things, empty where there are none.
 fn count(count: usize) -> String {
     if count == 0 { String::new() } else { count.to_string() }
@@ -163,7 +158,8 @@ pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
     for board in &results.boards {
         for (place, standing) in board.standings.iter().enumerate().filter(|(_, own)| own.method == method) {
             let mut line = cells(standing, board.task == BenchTask::Indices);
-            line[0] = format!("{} ({} of {})", board_name(board), place + 1, board.standings.len());
+            let (task, field, of) = (board.task.title(), &board.field, board.standings.len());
+            line[0] = format!("{task}, {field} ({} of {of})", place + 1);
             line.insert(1, board.cases.to_string());
             table.push(line);
         }

@@ -12,18 +12,17 @@ use super::bench_figures::capital;
 /// What stands for an entry that nobody can fill in.
 const EMPTY: &str = "–";
 
-/// Decimals of a measured result: as many as its standard deviation supports.
-fn decimals_of(sd: Option<f64>) -> usize {
-    sd.filter(|sd| *sd > 0.0).map_or(DECIMALS, |sd| ((-sd.log10()).ceil().max(0.0) as usize).min(DECIMALS))
-}
-
 /// A value as it is filled in, without its unit. Numbers of one side are results, others are declared.
 fn filled(entry: &ImoFormEntry) -> String {
     if let (Some(median), Some(ci90)) = (entry.median, entry.ci90) {
         return fixed(median, PredictionInterval { median, ci50: ci90, ci90 }.decimals().min(DECIMALS));
     }
     match entry.value.as_ref().map(|value| value.as_f64().ok_or(value)) {
-        Some(Ok(number)) if entry.side.is_some() => fixed(number, decimals_of(entry.sd)),
+        // As many decimals of a measured result as its standard deviation supports.
+        Some(Ok(number)) if entry.side.is_some() => {
+            let supported = |sd: f64| ((-sd.log10()).ceil().max(0.0) as usize).min(DECIMALS);
+            fixed(number, entry.sd.filter(|sd| *sd > 0.0).map_or(DECIMALS, supported))
+        }
         Some(Ok(number)) => significant(number, if number.fract() == 0.0 { 1 } else { 3 }),
         Some(Err(words)) => words.as_str().unwrap_or_default().to_owned(),
         None => EMPTY.to_owned(),

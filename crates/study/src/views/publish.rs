@@ -2,7 +2,6 @@
 
 use std::io::Write as _;
 
-use campaign::design::Design;
 use campaign::disk;
 use campaign::folder::ResultFolder;
 use campaign::store::StoredStudy;
@@ -81,7 +80,7 @@ pub fn put(
     if !summary.predictions.is_empty() {
         write_csv(folder, "predictions.csv", &summary.predictions, |lines| coverage_table::table(lines, design))?;
     }
-    let brief = is_readable(design).then(|| tables::summary_in_brief(&summary, design));
+    let brief = (design.cells.len() <= LISTED_CELLS).then(|| tables::summary_in_brief(&summary, design));
     if let Some(brief) = &brief {
         folder.write("summary.md", brief.to_markdown())?;
     }
@@ -103,10 +102,6 @@ const SUMMARY: &str = "summary.csv";
 
 /// Cells that are listed one by one for a person to read; more are in `summary.csv`.
 const LISTED_CELLS: usize = 500;
-
-fn is_readable(design: &Design) -> bool {
-    design.cells.len() <= LISTED_CELLS
-}
 
 /// Lines that are turned into text at a time.
 const PIECE: usize = 250;

@@ -1,17 +1,5 @@
 use super::*;
 
-#[test]
-fn the_published_benchmark_is_whole() {
-    let published = Definition::published(None).unwrap_or_else(|failure| panic!("{failure}"));
-    let of = |task: BenchTask| published.sets.iter().flat_map(|set| &set.questions).filter(|q| q.task == task).count();
-    // 8 + 3 + 5 measured records, 3 + 3 simulated cells; pairs of 8, of 2 and of 2.
-    assert_eq!(BenchTask::ALL.map(of), [22, 3, 8, 66, 10, 12]);
-    assert_eq!(published.sets.len(), 3 + 3 + 3 + 12);
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(embedded::PLACE);
-    let read = Definition::read(&file, None).unwrap_or_else(|failure| panic!("{failure}"));
-    assert_eq!(read.sha256, published.sha256, "the files on the disk are those in the program");
-}
-
 const GOOD: &str = r#"
 name = "own"
 reference = "output-error"

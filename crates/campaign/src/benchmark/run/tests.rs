@@ -1,4 +1,3 @@
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, LazyLock};
 
 use crate::NoObserver;
@@ -154,42 +153,4 @@ fn labels_are_names_of_files_and_different() {
             .to_string();
         assert!(error.contains(said), "{error}");
     }
-}
-
-/// What every method has answered is kept, and what is missing is named.
-#[test]
-fn a_run_that_is_stopped_keeps_what_all_have_answered() {
-    struct Hurried(AtomicU64);
-    impl Observer for Hurried {
-        fn advance(&self) {
-            self.0.fetch_add(1, Ordering::Relaxed);
-        }
-
-        fn is_asked_to_stop(&self) -> bool {
-            self.0.load(Ordering::Relaxed) >= 1
-        }
-    }
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    let methods = || vec![BenchMethod::ours().remove(0)];
-    let ask = |observer: &dyn Observer| {
-        run(&definition(), &RecordStore::default(), &methods(), observer, || Ok(())).expect("a result")
-    };
-    let [stopped, whole] = one.install(|| [ask(&Hurried(AtomicU64::new(0))), ask(&NoObserver)]);
-    assert!(!stopped.cases.is_empty() && stopped.cases.len() < whole.cases.len(), "{}", stopped.cases.len());
-    assert!(stopped.cases.iter().all(|case| whole.cases.contains(case)));
-    assert!(stopped.skipped.iter().any(|one| one.reason == STOPPED) && whole.skipped.is_empty());
-}
-
-/// Nothing half done is a result.
-#[test]
-fn an_interrupted_run_has_no_result() {
-    struct Impatient;
-    impl Observer for Impatient {
-        fn is_asked_to_stop(&self) -> bool {
-            true
-        }
-    }
-    let stopped =
-        run(&definition(), &RecordStore::default(), &BenchMethod::ours(), &Impatient, || Ok(())).expect_err("stopped");
-    assert!(stopped.message.contains("nothing was written"));
 }
