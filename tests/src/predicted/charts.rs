@@ -77,8 +77,8 @@ pub fn overshoots(figures: &[ForecastFigure]) -> PageFigure {
         let line = PlotCurve::new([0.0, largest], [0.0, largest]);
         let layers = vec![
             marks("later overshoots", red, false),
+            Layer::new("from single records", PlotCurve { x, y }, LayerKind::Dots(RECORD)).within(0.1),
             marks("first overshoot", blue, true),
-            Layer::new("from single records", PlotCurve { x, y }, LayerKind::Dots(RECORD)),
             Layer::line("predicted = measured", line, Pen { dash: DASHED, ..Pen::new(INK).width(0.8) }),
         ];
         let [first, later] = errors(overshoots.iter().filter(|own| own.group == group));
@@ -113,40 +113,33 @@ pub fn track((number, own): (usize, &PredictedTrack)) -> PageFigure {
     layers.push(Layer::line("measured", curve(&own.measured), Pen::new(INK).width(1.8)));
     let predicted = Pen { dash: DASHED, ..Pen::new(HEADING).width(1.4) };
     layers.push(Layer::line("most probable ship", curve(&own.probable), predicted));
-    for (track, colour, hollow) in [(&own.measured, INK, false), (&own.probable, HEADING, true)] {
-        let marks = [("heading changed by 90° (advance)", Marker::Up), ("by 180° (tactical diameter)", Marker::Square)];
-        for ((name, marker), place) in marks.into_iter().zip(track.quarters()) {
-            let look = Look { colour, marker, dash: SOLID, hollow };
-            let name = if hollow { "the same of the most probable ship (hollow)" } else { name };
-            layers.push(Layer::marks(name, look, place.iter().map(|(x, y)| (*x, *y, None)).collect()));
-        }
-    }
     let [measured, probable] = [&own.measured, &own.probable].map(TurnTrack::quarters);
     let both = |place: usize, of: fn((f64, f64)) -> f64| -> String {
         let shown = |found: Option<(f64, f64)>| found.map_or_else(String::new, |own| significant(of(own).abs(), 3));
-        format!("{} L measured, {} L most probable", shown(measured[place]), shown(probable[place]))
+        format!("{} L, predicted {} L (hollow)", shown(measured[place]), shown(probable[place]))
     };
-    let said =
-        vec![format!("advance: {}", both(0, |own| own.1)), format!("tactical diameter: {}", both(1, |own| own.0))];
+    let names = [format!("advance: {}", both(0, |own| own.1)), format!("tactical diameter: {}", both(1, |own| own.0))];
+    for (quarters, colour, hollow) in [(measured, INK, false), (probable, HEADING, true)] {
+        for ((name, marker), place) in names.iter().zip([Marker::Up, Marker::Square]).zip(quarters) {
+            let look = Look { colour, marker, dash: SOLID, hollow };
+            let name = if hollow { "" } else { name };
+            layers.push(Layer::marks(name, look, place.iter().map(|(x, y)| (*x, *y, None)).collect()));
+        }
+    }
     let row = PanelRow::new(Ruler::decimal("north [L]"), 0.62);
     let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [L]"), vec![(row, layers)]) };
     let side = if own.rudder_deg < 0.0 { "port" } else { "starboard" };
-    let what = format!("{}: {:.0}° of rudder to {side}", own.title, own.rudder_deg.abs());
+    let what = format!("{}: {:.0}° circle to {side}", own.title, own.rudder_deg.abs());
     // The tactical diameter lies across the approach.
     let excess = measured[1].zip(probable[1]).map(|(measured, probable)| 100.0 * (probable.0 / measured.0 - 1.0));
-    let title = excess.map_or_else(
-        || what.clone(),
-        |own| {
-            let side = if own < 0.0 { "small" } else { "large" };
-            format!("{what}. Its tactical diameter is predicted {:.0} % too {side}", own.abs())
-        },
-    );
+    let words = |own: f64| format!(", diameter {:.0} % too {}", own.abs(), if own < 0.0 { "small" } else { "large" });
+    let title = format!("{what}{}", excess.map_or_else(String::new, words));
     let caption = format!(
         "{what}. A turning circle that was not fitted, from the execute on, in lengths of the ship; a current that the \
          record shows is taken out. Steps in the measured track are those of positions that the record has with three \
          digits."
     );
-    let data = Panels { title: Some(title), said, ..Panels::of(stack) };
+    let data = Panels { title: Some(title), ..Panels::of(stack) };
     PageFigure::new(format!("circle-{}", number + 1), caption, data)
 }
 
@@ -181,7 +174,7 @@ pub fn steady(ships: &[PredictedSteady], figures: &[ForecastFigure]) -> PageFigu
     let note = format!("Models with which no circle could be sailed are left out: {left_out}.");
     let rates: Vec<&ForecastFigure> = figures.iter().filter(|own| own.name == "steady_rate_deg_s").collect();
     let held = rates.iter().filter(|own| own.compared.inside90).count();
-    let title = format!("Steady turns: {held} of {} predictions hold the measured yaw rate", rates.len());
+    let title = format!("Steady turns: 90 % intervals hold {held} of {} measured yaw rates", rates.len());
     PageFigure::new(
         "steady-turns",
         caption,

@@ -106,8 +106,8 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Panels> {
     Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?))
 }
 
-/// How often each of several traces named something of ships that lack nothing, with the bound that so few trials leave;
-/// nothing for one trace, and where a ship lacks something.
+/// How often each of several traces named something of ships that lack nothing, with the bound that so few trials
+/// leave; nothing for one trace, and where a ship lacks something.
 pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     let rules = grouped(lines, |line| line.method);
     if rules.len() < 2 || lines.iter().any(|line| !line.missing.is_empty()) {
