@@ -12,7 +12,7 @@ use crate::layout::{AxisSide, Grid, Sheet};
 use crate::legend::{KeyEntry, KeySample};
 use crate::number::significant;
 use crate::paint::Paint;
-use crate::palette::{DASHED, INK, Look, QUIET, SHORT_DASH};
+use crate::palette::{DASHED, INK, Look, SHORT_DASH};
 use crate::panel::Panel;
 use crate::scene::{Anchor, Canvas, Layer as Height, Stroke, TextLine};
 use crate::theme::Theme;
@@ -212,8 +212,7 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     }
     outside.is_cut |= cut;
     let head = |panel: &LayeredPanel| {
-        let is_one =
-            |own: &&Layer| stack.across.is_some() && !matches!(own.kind, LayerKind::Marks(_)) && own.colour() != QUIET;
+        let is_one = |own: &&Layer| stack.across.is_some() && !matches!(own.kind, LayerKind::Marks(_));
         let sample = panel.layers.first().filter(is_one).and_then(|own| own.sample(&theme, 1.0));
         panel.head.as_ref().map(|head| KeyEntry::new(sample.unwrap_or(KeySample::Nothing), head.clone()))
     };
@@ -344,11 +343,7 @@ fn draw_marks(place: &Panel, scene: &mut Canvas, theme: &Theme, own: (&PlotCurve
     }
     let (top, bottom) = (place.rect.y, place.rect.bottom());
     let stroke = Stroke::solid(look.colour, joined.map_or(0.8, |pen| 0.7 * pen.width) * theme.line);
-    let size = match (joined, look.colour == QUIET) {
-        (Some(_), true) => 0.65,
-        (Some(_), false) => 0.9,
-        (None, _) => 1.0,
-    };
+    let size = if joined.is_some() { 0.9 } else { 1.0 };
     let mut line: Vec<Option<PagePoint>> = Vec::new();
     let mut marks: Vec<(PagePoint, bool)> = Vec::new();
     for (row, (x, &y)) in across.iter().zip(&curve.y).enumerate() {
