@@ -20,7 +20,8 @@ const HEAD: &str = "# What the work costs\n\n\
 fn main() -> Result<(), Box<dyn Error>> {
     let criterion = std::env::var_os("CRITERION_HOME").map_or_else(in_target, PathBuf::from);
     let mut figure = None;
-    let (mut report, mut numbers) = (HEAD.to_owned(), Table::new(NUMBERS.map(TableColumn::left)));
+    let mut numbers = Table::new(NUMBERS.map(TableColumn::left));
+    let mut report = format!("{HEAD}\nProcessor: {}, {} threads.\n", processor(), cores());
     // The group of outside estimators is only named here, so its program need not be there.
     for group in works::all().into_iter().chain([works::outside("echo")]) {
         let rows = compared(&group, &criterion);
@@ -50,45 +51,44 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The group that has a figure, and the stem of that.
 const FIGURE: (&str, &str) = ("identify", "identification");
 
-const CAPTION: &str = "Time of one identification on one core, with 95 % intervals. Hollow: another library, or other settings of \
-    a method; the line is SRIVC of that library.";
+const CAPTION: &str = "Time of one identification on one core over that of SRIVC of dsmc from the same heading, with 95 % intervals. \
+    Left of the line a method is faster.";
 
-/// The rival that identifications are held against.
-const RIVAL: &str = "dsmc SRIVC, heading";
-
-/// Times of identifications, the shortest first.
+/// Times of our methods over that of the rival, the shortest first.
 fn identification(rows: &[ComparedWork]) -> NamedRows {
-    let mut rows: Vec<&ComparedWork> = rows.iter().collect();
-    rows.sort_by(|one, other| one.time.value.total_cmp(&other.time.value));
-    let name = |row: &ComparedWork| row.row.work.name.clone();
-    let look = |(number, row): (usize, &&ComparedWork)| {
-        let label = name(row);
-        match label.split_once(", ") {
-            _ if label.starts_with("dsmc") => CurveOrigin::Variant { label, method: "external".to_owned(), number },
-            Some((method, _)) => CurveOrigin::Variant { method: method.to_owned(), label, number: 0 },
-            None => CurveOrigin::Method(label),
-        }
+    // Methods with their usual settings, beside the rival.
+    let is_method = |row: &&ComparedWork| !row.row.work.name.contains(", ") && !row.row.work.name.starts_with("dsmc");
+    let mut rows: Vec<(&ComparedWork, CriterionTime)> =
+        rows.iter().filter(is_method).filter_map(|row| Some((row, row.ratio()?))).collect();
+    rows.sort_by(|(_, one), (_, other)| one.value.total_cmp(&other.value));
+    let mark = |(row, ratio): &(&ComparedWork, CriterionTime)| {
+        let look = CurveOrigin::Method(row.row.work.name.clone()).look();
+        vec![RowItem::new("", RowKind::Mark(look, ratio.value, Some(ratio.interval)))]
     };
-    let mark = |(number, row): (usize, &&ComparedWork)| {
-        let time = row.time.times(1e3);
-        vec![RowItem::new("", RowKind::Mark(look((number, row)).look(), time.value, Some(time.interval)))]
+    let name = |(row, _): &(&ComparedWork, CriterionTime)| {
+        let time = in_unit(row.time.value, |size| significant(row.time.value / size, 2));
+        format!("{}, {time}", row.row.work.name)
     };
-    let time_of = |wanted: &str| rows.iter().find(|row| name(row) == wanted).map(|row| row.time);
-    let ratio = time_of("output-error").zip(time_of(RIVAL)).map(|(own, rival)| own.over(&rival).value);
+    let faster = rows.iter().filter(|(_, ratio)| ratio.interval[1] < 1.0).count();
     let column = RowsColumn {
-        x: Ruler::new("time of a fit [ms]", Division::Factors),
-        rows: rows.iter().enumerate().map(mark).collect(),
-        reference: time_of(RIVAL).map(|rival| Reference95::line(1e3 * rival.value)),
+        x: Ruler::new("time of a fit / time of SRIVC of dsmc", Division::Factors),
+        rows: rows.iter().map(mark).collect(),
+        reference: Some(Reference95::line(1.0)),
         ..RowsColumn::default()
     };
     NamedRows {
-        title: ratio.map(|own| format!("Output error takes {} times as long as SRIVC of dsmc", significant(own, 2))),
-        names: rows.iter().map(|row| name(row)).collect(),
+        title: Some(format!("{faster} of {} methods fit faster than the rival, SRIVC of the library dsmc", rows.len())),
+        names: rows.iter().map(name).collect(),
         columns: vec![column],
-        note: Some(String::from(
-            "Hollow: another library, dsmc, or other settings. Line: its SRIVC, from the heading.",
-        )),
+        note: Some(String::from("Left of the line a method is faster. Times on one core; bars: 95 % intervals.")),
     }
+}
+
+/// The model of the processor, as Linux tells it.
+fn processor() -> String {
+    let told = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = told.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    model.map_or_else(|| String::from(std::env::consts::ARCH), |(_, model)| model.to_owned())
 }
 
 /// Where criterion keeps its estimates: `criterion` in the target folder that this program is in.

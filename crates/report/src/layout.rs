@@ -329,8 +329,12 @@ impl Sheet {
     fn horizontal_labels(&mut self, rect: &Rect, ticks: &Ticks, side: &AxisSide) -> f64 {
         let theme = self.theme;
         let mut base = rect.bottom() + self.tick_length() + 1.05 * theme.tick_font;
-        if side.axis.is_columns() && !fits(ticks, rect.w, &theme) {
-            // Names too long to stand side by side are turned and end at their tick.
+        let pitch = rect.w / ticks.major.len().max(1) as f64 - 0.4 * theme.tick_font;
+        let has_room =
+            |(_, label): &(f64, String)| label.split(' ').all(|word| text_width(word, theme.tick_font, false) <= pitch);
+        let is_names = side.axis.is_columns();
+        if is_names && !fits(ticks, rect.w, &theme) && !ticks.major.iter().all(has_room) {
+            // Names with words too long to stand side by side are turned and end at their tick.
             let top = rect.bottom() + self.tick_length() + 0.3 * theme.tick_font;
             for (f, label) in &ticks.major {
                 let text =
@@ -340,10 +344,17 @@ impl Sheet {
             }
             base = top + label_width(ticks, &theme);
         } else {
+            let mut lowest = base;
             for (f, label) in &ticks.major {
-                let text = TextLine::new(label.as_str(), theme.tick_font).anchor(Anchor::Middle);
-                self.scene.text(Layer::Frame, (rect.x + f * rect.w, base), text);
+                let lines = wrap(label, theme.tick_font, false, if is_names { pitch } else { f64::INFINITY });
+                for (index, line) in lines.into_iter().enumerate() {
+                    let down = base + 1.15 * theme.tick_font * index as f64;
+                    let text = TextLine::new(line, theme.tick_font).anchor(Anchor::Middle);
+                    self.scene.text(Layer::Frame, (rect.x + f * rect.w, down), text);
+                    lowest = lowest.max(down);
+                }
             }
+            base = lowest;
         }
         let mut y = base + 0.25 * theme.label_font;
         for line in wrap(&side.title, theme.label_font, false, rect.w + theme.label_font) {

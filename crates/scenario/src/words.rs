@@ -31,7 +31,7 @@ pub struct Presentation {
     pub figure: Option<String>,
     /// Title of that figure: what it shows, in a sentence.
     pub title: Option<String>,
-    /// Labels of the methods that figure is about; the others are grey. Of several traces the first of them is drawn.
+    /// Labels of the methods that figure is about; others are grey or left out. Of several traces the first is drawn.
     pub methods: Vec<String>,
     /// Stems of the figures that are made beside it; all there are when left out.
     pub figures: Option<Vec<String>>,

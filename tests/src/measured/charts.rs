@@ -3,7 +3,7 @@
 use campaign::statistics::grouped;
 use identify::{Identifier, output_error};
 use report::figures::{Division, Layer, NamedRows, PanelRow, Panels, RowItem, RowKind, RowsColumn, Ruler, Stack};
-use report::palette::{BEFORE, HEADING, Look, Marker, SOLID};
+use report::palette::{BEFORE, Look, Marker, SOLID};
 use report::{CurveOrigin, PageFigure, symbol};
 use trial::{Quantity, Trial};
 
@@ -15,18 +15,18 @@ pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
     let ship = |own: &&MeasuredAnalysis| {
         let set = own.set.name.split(',').next().unwrap_or_default();
         let basin = own.set.folder.rsplit('_').next().unwrap_or_default().to_uppercase();
-        if set == "KVLCC2" { format!("{set} {basin}") } else { set.to_owned() }
+        if set == "KVLCC2" { format!("{set}, {basin}") } else { set.to_owned() }
     };
     let ships = grouped(analyses, ship);
     let rows = |of: ReplayError| -> Vec<Vec<RowItem>> {
         let pair = |own: &MeasuredAnalysis| {
             let [before, after] = own.held_out(of);
             let base = Look { colour: BEFORE, marker: Marker::Circle, dash: SOLID, hollow: true };
-            let traced = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };
+            let traced = CurveOrigin::Method(String::from("trace"));
             vec![
                 RowItem::new("", RowKind::Thin([before.min(after), before.max(after)])),
                 RowItem::new("first-order base", RowKind::Mark(base, before, None)),
-                RowItem::new("traced", RowKind::Mark(traced, after, None)),
+                RowItem::new(traced.label(), RowKind::Mark(traced.look(), after, None)),
             ]
         };
         ships.iter().flat_map(|(_, own)| [Vec::new()].into_iter().chain(own.iter().map(|own| pair(own)))).collect()
@@ -60,7 +60,8 @@ pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
             ],
             title: Some(title),
             note: Some(String::from(
-                "Rows: name of the fitted record, or how many were fitted together. One mark: both coincide.",
+                "Rows: the fitted zig-zag (rudder/heading angle, side of the first execute, or propeller turns a second), or how \
+                 many were fitted together. One mark: both coincide.",
             )),
         },
     )
@@ -73,9 +74,33 @@ fn short(label: &str) -> String {
             let circles = if pool.contains("circles") { ", to circles" } else { "" };
             format!("{} together{circles}", pool.matches("zigzag_").count())
         }
-        None => label.trim_start_matches("zigzag_").to_owned(),
+        None => {
+            let words = IN_WORDS.iter().find(|(record, _)| label.strip_prefix("zigzag_") == Some(record));
+            words.map_or(label, |(_, words)| words).to_owned()
+        }
     }
 }
+
+/// Zig-zags in words: HSVA and MARIN by the side of the first execute, Esso Osaka by the turns of the propeller.
+const IN_WORDS: [(&str, &str); 17] = [
+    ("20_10_s", "20/10 starboard"),
+    ("10_10_s", "10/10 starboard"),
+    ("35_05", "35/5 starboard"),
+    ("30_05", "30/5 starboard"),
+    ("20_05", "20/5 starboard"),
+    ("15_05", "15/5 starboard"),
+    ("10_05", "10/5 starboard"),
+    ("05_01", "5/1 starboard"),
+    ("20", "20/20 port"),
+    ("-20", "20/20 starboard"),
+    ("10", "10/10 port"),
+    ("13_57_45", "20/20 at 15 1/s"),
+    ("13_04_24", "20/20 at 16.7 1/s"),
+    ("13_14_21", "30/30 at 16.7 1/s"),
+    ("13_42_53", "30/30 at 10 1/s"),
+    ("14_10_05", "20/20 at 12 1/s"),
+    ("30_inter_xy", "zig-zag"),
+];
 
 /// K′, T′ and root mean square yaw rate r′ of one record.
 struct PrimeIndex {
@@ -126,5 +151,8 @@ pub fn amplitude(sets: &[&MeasuredSet], scratch: &std::path::Path) -> Outcome<Pa
         "KVLCC2 has no K and T: first-order indices of single zig-zags, by output error with 95 % intervals (white noise: \
          they hold no error of the model), without dimension (L/U), over the yaw rate in the record.{arrow}"
     );
-    Ok(PageFigure::new("amplitude", caption, Panels::of(Stack::over(x, rows.into()))))
+    let title = String::from("KVLCC2 has no K and T of her own: both change with the yaw rate of the zig-zag");
+    let note = Some(String::from("A mark is a zig-zag. Bars: 95 % intervals."));
+    let data = Panels { title: Some(title), note, ..Panels::of(Stack::over(x, rows.into())) };
+    Ok(PageFigure::new("amplitude", caption, data))
 }

@@ -6,7 +6,7 @@ use report::figures::{
     Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Reference95, RowItem, RowsColumn,
     Ruler, Stack,
 };
-use report::number::significant;
+use report::number::{fixed, significant};
 use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
@@ -19,7 +19,7 @@ use super::turn::TurnTrack;
 const LARGEST: f64 = 38.1;
 
 /// Drawn ships that a figure shows.
-const SHOWN: usize = 40;
+const SHOWN: usize = 20;
 
 /// Fewest figures whose share is drawn.
 const FEWEST: usize = 5;
@@ -52,9 +52,6 @@ fn by_overshoot(figures: &[ForecastFigure]) -> Vec<PredictedOvershoot<'_>> {
     own.into_iter().map(|(_, models)| PredictedOvershoot::of(models)).collect()
 }
 
-/// Stem of the figure that stands for the page.
-pub const OVERSHOOTS: &str = "overshoots";
-
 /// Median sizes of the errors of first and of later overshoots over all models.
 fn errors<'a>(overshoots: impl Iterator<Item = &'a PredictedOvershoot<'a>> + Clone) -> [String; 2] {
     [true, false].map(|is_first| {
@@ -80,24 +77,26 @@ pub fn overshoots(figures: &[ForecastFigure]) -> PageFigure {
         let line = PlotCurve::new([0.0, largest], [0.0, largest]);
         let layers = vec![
             marks("later overshoots", red, false),
+            Layer::new("from single records", PlotCurve { x, y }, LayerKind::Dots(RECORD)).within(0.1),
             marks("first overshoot", blue, true),
-            Layer::new("from each record", PlotCurve { x, y }, LayerKind::Dots(RECORD)),
             Layer::line("predicted = measured", line, Pen { dash: DASHED, ..Pen::new(INK).width(0.8) }),
         ];
         let [first, later] = errors(overshoots.iter().filter(|own| own.group == group));
-        LayeredPanel { head: Some(format!("{}: {first}°, {later}°", group.words())), layers }
+        let words = group.words().trim_start_matches("KVLCC2: ");
+        LayeredPanel { head: Some(format!("{words}: {first}°, {later}°")), layers }
     };
     let groups = ForecastGroup::ALL.into_iter().filter(|group| overshoots.iter().any(|own| own.group == *group));
-    let row = PanelRow::new(Ruler::decimal("predicted overshoot [°]").within(2.0, None), 0.36);
-    let stack = Stack::multiples(2, Ruler::decimal("measured overshoot [°]"), row, groups.map(panel).collect());
+    let row = PanelRow::new(Ruler::decimal("predicted overshoot [°]").within(2.0, None), 0.28);
+    let stack = Stack::multiples(3, Ruler::decimal("measured overshoot [°]"), row, groups.map(panel).collect());
     let caption = "Overshoots of trials that were not fitted, predicted against measured: medians from every single record as \
                    dots, the middle one of them as a mark with its 90 % interval.";
     let [first, later] = errors(overshoots.iter());
-    let title = format!("Overshoots that were not fitted are predicted to {first}° (first) and {later}° (later)");
-    let note =
-        "Bars: 90 % intervals. In the title and above the panels: median errors of first and of later overshoots.";
+    let title =
+        format!("KVLCC2: overshoots that were not fitted are predicted to {first}° (first) and {later}° (later)");
+    let note = "Degrees in the title and above the panels: median errors of first and of later overshoots. Bars: 90 % \
+                intervals.";
     let data = Panels { title: Some(title), note: Some(note.to_owned()), ..Panels::of(stack) };
-    PageFigure::new(OVERSHOOTS, caption, data)
+    PageFigure::new("overshoots", caption, data)
 }
 
 fn curve(track: &TurnTrack) -> PlotCurve {
@@ -114,36 +113,38 @@ pub fn track((number, own): (usize, &PredictedTrack)) -> PageFigure {
     layers.push(Layer::line("measured", curve(&own.measured), Pen::new(INK).width(1.8)));
     let predicted = Pen { dash: DASHED, ..Pen::new(HEADING).width(1.4) };
     layers.push(Layer::line("most probable ship", curve(&own.probable), predicted));
-    for (track, colour, hollow) in [(&own.measured, INK, false), (&own.probable, HEADING, true)] {
-        let marks = [("heading changed by 90° (advance)", Marker::Up), ("by 180° (tactical diameter)", Marker::Square)];
-        for ((name, marker), place) in marks.into_iter().zip(track.quarters()) {
-            let look = Look { colour, marker, dash: SOLID, hollow };
-            let name = if hollow { "the same of the most probable ship (hollow)" } else { name };
-            layers.push(Layer::marks(name, look, place.iter().map(|(x, y)| (*x, *y, None)).collect()));
-        }
-    }
     let [measured, probable] = [&own.measured, &own.probable].map(TurnTrack::quarters);
     let both = |place: usize, of: fn((f64, f64)) -> f64| -> String {
         let shown = |found: Option<(f64, f64)>| found.map_or_else(String::new, |own| significant(of(own).abs(), 3));
-        format!("{} L measured, {} L most probable", shown(measured[place]), shown(probable[place]))
+        format!("{} L, predicted {} L (hollow)", shown(measured[place]), shown(probable[place]))
     };
-    let said =
-        vec![format!("advance: {}", both(0, |own| own.1)), format!("tactical diameter: {}", both(1, |own| own.0))];
+    let names = [format!("advance: {}", both(0, |own| own.1)), format!("tactical diameter: {}", both(1, |own| own.0))];
+    for (quarters, colour, hollow) in [(measured, INK, false), (probable, HEADING, true)] {
+        for ((name, marker), place) in names.iter().zip([Marker::Up, Marker::Square]).zip(quarters) {
+            let look = Look { colour, marker, dash: SOLID, hollow };
+            let name = if hollow { "" } else { name };
+            layers.push(Layer::marks(name, look, place.iter().map(|(x, y)| (*x, *y, None)).collect()));
+        }
+    }
     let row = PanelRow::new(Ruler::decimal("north [L]"), 0.62);
     let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [L]"), vec![(row, layers)]) };
     let side = if own.rudder_deg < 0.0 { "port" } else { "starboard" };
-    let title = format!("{}: {:.0}° of rudder to {side}", own.title, own.rudder_deg.abs());
+    let what = format!("{}: {:.0}° circle to {side}", own.title, own.rudder_deg.abs());
+    // The tactical diameter lies across the approach.
+    let excess = measured[1].zip(probable[1]).map(|(measured, probable)| 100.0 * (probable.0 / measured.0 - 1.0));
+    let words = |own: f64| format!(", diameter {:.0} % too {}", own.abs(), if own < 0.0 { "small" } else { "large" });
+    let title = format!("{what}{}", excess.map_or_else(String::new, words));
     let caption = format!(
-        "{title}. A turning circle that was not fitted, from the execute on, in lengths of the ship; a current that the \
+        "{what}. A turning circle that was not fitted, from the execute on, in lengths of the ship; a current that the \
          record shows is taken out. Steps in the measured track are those of positions that the record has with three \
          digits."
     );
-    let data = Panels { title: Some(title), said, ..Panels::of(stack) };
+    let data = Panels { title: Some(title), ..Panels::of(stack) };
     PageFigure::new(format!("circle-{}", number + 1), caption, data)
 }
 
 /// Steady turns of two ships.
-pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
+pub fn steady(ships: &[PredictedSteady], figures: &[ForecastFigure]) -> PageFigure {
     let stack = |own: &PredictedSteady| {
         let curve = |of: &predict::steady::SteadyCurve| {
             let points = of.rudder.iter().zip(&of.yaw_rate).map(|(rudder, rate)| (to_deg(*rudder), to_deg(*rate)));
@@ -171,15 +172,29 @@ pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
                    propeller a second. A line ends where the ship has no faster steady turn.";
     let left_out: usize = ships.iter().map(|own| own.left_out).sum();
     let note = format!("Models with which no circle could be sailed are left out: {left_out}.");
+    let rates: Vec<&ForecastFigure> = figures.iter().filter(|own| own.name == "steady_rate_deg_s").collect();
+    let held = rates.iter().filter(|own| own.compared.inside90).count();
+    let title = format!("Steady turns: 90 % intervals hold {held} of {} measured yaw rates", rates.len());
     PageFigure::new(
         "steady-turns",
         caption,
-        Panels { stacks, note: (left_out > 0).then_some(note), ..Panels::default() },
+        Panels { title: Some(title), stacks, note: (left_out > 0).then_some(note), ..Panels::default() },
     )
 }
 
 /// A value with its interval, where it has one.
 type WithInterval = (f64, Option<[f64; 2]>);
+
+/// What intervals hold of zig-zags and of turning circles, in words.
+fn by_trial(figures: &[ForecastFigure]) -> String {
+    let held = |is_circle: bool| {
+        let is_of = |own: &&ForecastFigure| own.kind().is_some() && own.trial.starts_with("turn") == is_circle;
+        let own: Vec<&ForecastFigure> = figures.iter().filter(is_of).collect();
+        let inside = own.iter().filter(|own| own.compared.inside90).count();
+        fixed(100.0 * inside as f64 / own.len().max(1) as f64, 0)
+    };
+    format!("zig-zags {} %, of circles {} %", held(false), held(true))
+}
 
 /// Share that 90 % intervals hold beside their width, kind by kind.
 pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
@@ -217,5 +232,11 @@ pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
          figures were independent), and the median width of the intervals. Grey: 85 to 95 %, which was to be reached. \
          What rests on fewer than {FEWEST} figures is left out."
     );
-    PageFigure::new("coverage", caption, NamedRows { names, columns: vec![held, width], ..NamedRows::default() })
+    let judged = || figures.iter().filter(|own| own.kind().is_some());
+    let inside = judged().filter(|own| own.compared.inside90).count();
+    let all = judged().count();
+    let title = format!("90 % intervals hold {inside} of {all} predicted figures: of {}", by_trial(figures));
+    let note = Some(String::from("Grey: 85 to 95 %. Bars: 95 % intervals."));
+    let data = NamedRows { title: Some(title), names, columns: vec![held, width], note };
+    PageFigure::new("coverage", caption, data)
 }

@@ -187,7 +187,7 @@ pub fn write(forecasts: &Forecasts, results: &Path) -> Outcome<()> {
     page.table(reached(figures));
     page.figures([charts::overshoots(figures)]);
     page.figures(tracks.iter().enumerate().map(charts::track));
-    page.figures([charts::steady(steady), charts::coverage(figures)]);
+    page.figures([charts::steady(steady, figures), charts::coverage(figures)]);
     page.part("How well, figure by figure");
     page.say(SCORES);
     page.table(scores(figures));
@@ -196,8 +196,7 @@ pub fn write(forecasts: &Forecasts, results: &Path) -> Outcome<()> {
     page.say(COMMAND);
     fs::create_dir_all(results)?;
     for figure in page.drawings() {
-        let theme = if figure.stem == charts::OVERSHOOTS { Theme::column() } else { Theme::screen() };
-        fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&theme).png()?)?;
+        fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::column()).png()?)?;
     }
     fs::write(results.join("README.md"), page.to_markdown())?;
     fs::write(results.join("predicted.csv"), rows(figures).to_csv())?;

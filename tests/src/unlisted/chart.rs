@@ -10,13 +10,13 @@ use super::truths::{Kind, Truth};
 
 /// What was said, in the order of the columns.
 const SAID: [(&str, &[Judgement]); 7] = [
-    ("right name", &[Judgement::Right]),
-    ("located", &[Judgement::Located]),
-    ("unexplained", &[Judgement::Unexplained]),
-    ("clean", &[Judgement::Clean]),
-    ("alias", &[Judgement::Alias]),
-    ("only noise", &[Judgement::Noise]),
-    ("wrong name", &[Judgement::Wrong, Judgement::Elsewhere]),
+    ("named right", &[Judgement::Right]),
+    ("placed in time", &[Judgement::Located]),
+    ("called unexplained", &[Judgement::Unexplained]),
+    ("called complete", &[Judgement::Clean]),
+    ("named an alias", &[Judgement::Alias]),
+    ("taken for noise", &[Judgement::Noise]),
+    ("named wrong", &[Judgement::Wrong, Judgement::Elsewhere]),
 ];
 
 /// Whether that is right to say of a ship.
@@ -49,24 +49,24 @@ pub fn outcomes(truths: &[Truth], outcomes: &[Outcome]) -> PageFigure {
     let listed = right(|kind| matches!(kind, Kind::Listed { .. }));
     let unlisted = right(|kind| matches!(kind, Kind::Unlisted { .. }));
     let map = CellMap {
-        title: Some(format!("Listed effects in other formulas: {listed} trials; effects on no list: {unlisted}")),
+        title: Some(format!("Known effects in other formulas: {listed} trials; unknown effects: {unlisted}")),
         titles: [String::from("said by the trace"), String::new()],
         columns: SAID.iter().map(|(words, _)| (*words).to_owned()).collect(),
-        rows: (truths.iter().enumerate())
-            .map(|(ship, truth)| {
+        rows: (truths.iter())
+            .map(|truth| {
                 let kind = match truth.kind {
-                    Kind::Listed { .. } => "listed: ",
-                    Kind::Unlisted { .. } => "no list: ",
-                    Kind::Nothing => "",
+                    Kind::Listed { .. } => "known",
+                    Kind::Unlisted { .. } => "unknown",
+                    Kind::Nothing => "nothing missing",
                 };
-                format!("{kind}{} ({})", truth.name, of_ship(ship).count())
+                format!("{kind}: {}", truth.name)
             })
             .collect(),
         shades: Shades::Shares,
         panels: vec![(None, cells.collect())],
         note: Some(String::from(
-            "Shares of the trials (number behind the name) in per cent. Located: a moment in time, at the right time. \
-             Unexplained: said so. Clean: nothing missing. Alias: not to be told from the truth.",
+            "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on no \
+             list. Alias: not to be told from the truth.",
         )),
     };
     let caption = "What was said of every ship, both noises together, with 95 % intervals (Wilson). A wrong name is an effect \

@@ -126,7 +126,8 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
         bar(&mut sheet, (*division, title), theme, &range);
     }
     let undefined = data.all().any(|cell| cell.value.is_none()).then_some("– is not defined.");
-    let note: Vec<&str> = data.note.as_deref().into_iter().chain(undefined).collect();
+    let small = two_lines.then_some("Small: 95 % intervals, where there is room.");
+    let note: Vec<&str> = data.note.as_deref().into_iter().chain(small).chain(undefined).collect();
     if !note.is_empty() {
         sheet.note(&note.join(" "));
     }

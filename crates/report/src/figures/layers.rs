@@ -1,6 +1,6 @@
 //! Draws [`Panels`]: axes over their layers, the layers, and what has to be said of what lies outside.
 
-use super::panels::{AxisLine, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Ruler, Stack};
+use super::panels::{Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Ruler, Stack};
 use super::reach::{Extents, INTERVALS, robust};
 use super::shared::{ACROSS_PAD, PAD, asides, record, shaded, zero_line, zero_upright};
 use super::{aside, equal};
@@ -12,7 +12,7 @@ use crate::layout::{AxisSide, Grid, Sheet};
 use crate::legend::{KeyEntry, KeySample};
 use crate::number::significant;
 use crate::paint::Paint;
-use crate::palette::{DASHED, INK, Look, QUIET, SHORT_DASH};
+use crate::palette::{DASHED, INK, Look, SHORT_DASH};
 use crate::panel::Panel;
 use crate::scene::{Anchor, Canvas, Layer as Height, Stroke, TextLine};
 use crate::theme::Theme;
@@ -32,10 +32,10 @@ struct Unshown {
     names: Vec<String>,
 }
 
-/// The figure as it fits a narrow page: names in a key, and more than two panels side by side as small multiples.
+/// The figure as it fits a narrow page: names in a key, and more than three panels side by side as small multiples.
 fn narrowed(data: &Panels) -> Panels {
     let mut data = Panels { names_aside: false, ..data.clone() };
-    for stack in data.stacks.iter_mut().filter(|own| own.across.is_none() && own.rows.len() == 1 && own.x.len() > 2) {
+    for stack in data.stacks.iter_mut().filter(|own| own.across.is_none() && own.rows.len() == 1 && own.x.len() > 3) {
         stack.across = Some(3);
         stack.x.truncate(1);
     }
@@ -106,8 +106,15 @@ fn entries(data: &Panels, theme: &Theme) -> Vec<KeyEntry> {
             entries.extend(layer.sample(theme, 1.0 - light).map(|sample| KeyEntry::new(sample, name.clone())));
         }
     }
+    let marks = data.stacks.iter().flat_map(|stack| &stack.marks);
+    entries.extend(marks.map(|mark| KeyEntry::new(KeySample::Upright(mark_stroke(theme)), mark.label.clone())));
     entries.extend(data.said.iter().map(|text| KeyEntry::new(KeySample::Nothing, text.clone())));
     entries
+}
+
+/// How a value with a name of its own is marked.
+fn mark_stroke(theme: &Theme) -> Stroke {
+    Stroke::solid(INK, theme.thin).dashed(SHORT_DASH)
 }
 
 /// Panels of a stack side by side.
@@ -205,8 +212,7 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     }
     outside.is_cut |= cut;
     let head = |panel: &LayeredPanel| {
-        let is_one =
-            |own: &&Layer| stack.across.is_some() && !matches!(own.kind, LayerKind::Marks(_)) && own.colour() != QUIET;
+        let is_one = |own: &&Layer| stack.across.is_some() && !matches!(own.kind, LayerKind::Marks(_));
         let sample = panel.layers.first().filter(is_one).and_then(|own| own.sample(&theme, 1.0));
         panel.head.as_ref().map(|head| KeyEntry::new(sample.unwrap_or(KeySample::Nothing), head.clone()))
     };
@@ -217,11 +223,10 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     for (index, (place, panel)) in sheet.grid_within(grid, (from, width)).iter().zip(&stack.panels).enumerate() {
         let row = &stack.rows[if stack.across.is_some() { 0 } else { index / count }];
         background(place, &mut sheet.scene, &theme, stack, row);
-        for mark in &stack.marks {
-            let down = if panel.head.is_some() { -0.45 } else { 1.2 };
-            let beside = (index < count || panel.head.is_some()).then_some(down * theme.small_font);
-            draw_mark(place, &mut sheet.scene, &theme, mark, beside);
-        }
+        stack
+            .marks
+            .iter()
+            .for_each(|mark| place.vertical(&mut sheet.scene, Height::Grid, mark.at, mark_stroke(&theme)));
         for layer in &panel.layers {
             dots += draw_layer(sheet, place, layer, &theme, outside);
         }
@@ -260,20 +265,6 @@ fn background(place: &Panel, scene: &mut Canvas, theme: &Theme, stack: &Stack, r
     }
     if let Some(reference) = &row.reference {
         reference.horizontal(place, scene, theme);
-    }
-}
-
-/// A line across the frame, its name beside it, so far below its upper end: above the frame where a head stands too.
-fn draw_mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, mark: &AxisLine, down: Option<f64>) {
-    panel.vertical(scene, Height::Grid, mark.at, Stroke::solid(INK, theme.thin).dashed(SHORT_DASH));
-    let text = TextLine::new(mark.label.as_str(), theme.small_font);
-    let Some(x) = panel.across(mark.at).filter(|x| panel.rect.contains((*x, panel.rect.y))) else { return };
-    let gap = 0.4 * theme.small_font;
-    let is_right = x + gap + text.width() < panel.rect.right();
-    let (place, anchor) = if is_right { (x + gap, Anchor::Start) } else { (x - gap, Anchor::End) };
-    if let Some(down) = down {
-        // Under the curves, which its ground would hide.
-        scene.text_on_ground(Height::Grid, (place, panel.rect.y + down), text.anchor(anchor));
     }
 }
 
@@ -352,11 +343,7 @@ fn draw_marks(place: &Panel, scene: &mut Canvas, theme: &Theme, own: (&PlotCurve
     }
     let (top, bottom) = (place.rect.y, place.rect.bottom());
     let stroke = Stroke::solid(look.colour, joined.map_or(0.8, |pen| 0.7 * pen.width) * theme.line);
-    let size = match (joined, look.colour == QUIET) {
-        (Some(_), true) => 0.65,
-        (Some(_), false) => 0.9,
-        (None, _) => 1.0,
-    };
+    let size = if joined.is_some() { 0.9 } else { 1.0 };
     let mut line: Vec<Option<PagePoint>> = Vec::new();
     let mut marks: Vec<(PagePoint, bool)> = Vec::new();
     for (row, (x, &y)) in across.iter().zip(&curve.y).enumerate() {

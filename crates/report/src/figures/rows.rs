@@ -175,8 +175,8 @@ fn thick_stroke(theme: &Theme) -> Stroke {
 /// Rows that may stand twice below each other.
 const FEW: usize = 8;
 
-/// Draws the columns side by side, or above each other when the figure is narrow and has few rows. What reaches beyond
-/// an axis is cut and marked.
+/// Draws the columns side by side, in a narrow figure above each other, or two by two where they have many rows. What
+/// reaches beyond an axis is cut and marked.
 pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
@@ -188,13 +188,15 @@ pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
     let pitch = heights[0].max(heights[1]).max(if is_wide { 2.6 } else { 0.0 }) * theme.tick_font;
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
     let row = (AxisSide::new(PlotAxis::names(data.names.clone()), ""), height);
-    let sides = data.columns.iter().map(|column| AxisSide::new(axis(column), column.x.title.clone()));
-    // Two columns over many rows would be too tall below each other.
-    let is_stacked = theme.is_narrow() && (data.columns.len() != 2 || data.names.len() <= FEW);
-    let panels = match is_stacked {
-        true => sides.flat_map(|side| sheet.grid(Grid::stack(side, vec![row.clone()]))).collect(),
-        false => sheet.grid(Grid::new(sides.collect(), vec![row])),
+    let sides: Vec<AxisSide> =
+        data.columns.iter().map(|column| AxisSide::new(axis(column), column.x.title.clone())).collect();
+    let across = match theme.is_narrow() {
+        true if data.names.len() <= FEW => 1,
+        true => 2,
+        false => sides.len().max(1),
     };
+    let panels: Vec<Panel> =
+        sides.chunks(across).flat_map(|part| sheet.grid(Grid::new(part.to_vec(), vec![row.clone()]))).collect();
     let mut beyond = false;
     for (panel, column) in panels.iter().zip(&data.columns) {
         beyond |= draw(panel, &mut sheet.scene, theme, (column, pitch));

@@ -198,5 +198,5 @@ fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Res
     for method in &results.methods {
         pages.write(&format!("{method}.md"), bench_page::of_method(results, method).to_markdown())?;
     }
-    write_page(folder, bench_page::page(results), Some(theme))
+    write_page(folder, bench_page::page(results), Some(&theme.of_key_figure()))
 }

@@ -9,7 +9,7 @@ use scenario::TRACE;
 
 use campaign::curves;
 use campaign::design::{CellFacts, Design};
-use campaign::statistics::{Statistic, Z95, grouped};
+use campaign::statistics::{Statistic, grouped};
 use campaign::summary::{Performance, Summary};
 
 /// What a chart over the axes of a design shows.
@@ -68,12 +68,9 @@ impl ErrorMeasure {
         }
     }
 
-    /// What its values are held against; `trials` stand behind each of them.
-    fn reference(self, panel: usize, trials: u64) -> Option<Reference95> {
-        (self == Self::Coverage && panel < 2 && trials > 0).then(|| {
-            let reach = Z95 * (95.0 * 5.0 / trials as f64).sqrt();
-            Reference95 { value: 95.0, band: [95.0 - reach, (95.0 + reach).min(100.0)] }
-        })
+    /// What its values are held against.
+    fn reference(self, panel: usize) -> Option<Reference95> {
+        (self == Self::Coverage && panel < 2).then(|| Reference95::line(95.0))
     }
 }
 
@@ -86,6 +83,8 @@ const WORTHLESS: f64 = 100.0;
 /// Error below which an answer is exact, per cent.
 const EXACT: f64 = 1e-4;
 
+/// What is said of intervals.
+pub const BARS: &str = "Bars: 95 % intervals; none seen: within the mark.";
 /// What is said of errors that are worth nothing.
 pub const CUT_NOTE: &str = "Arrows: rms error of more than 100 % of the true value.";
 /// What is said of errors that are exact.
@@ -112,15 +111,10 @@ pub fn comparable<'a>(
     Some((methods, to_nearest))
 }
 
-/// What the title of an axis says of errors in units of the bound.
-pub const OVER_BOUND: &str = "/ Cramér–Rao bound";
-/// What it says of differences from the response that is nearest to the ship.
-pub const TO_NEAREST: &str = "from the nearest first-order response";
-
 /// Titles of the axes of root mean square errors of K and of T.
 pub fn rms_title(symbol: &str, to_nearest: bool) -> String {
     match to_nearest {
-        true => format!("rms difference of {symbol} {TO_NEAREST} [%]"),
+        true => format!("rms difference of {symbol} from the nearest first-order response [%]"),
         false => format!("rms error of {symbol} [%]"),
     }
 }
@@ -155,13 +149,40 @@ impl<'a> ComparedMethods<'a> {
     fn titles(&self) -> Vec<String> {
         let of_both = |words: &str| ["K", "T"].map(|symbol| words.replace('#', symbol));
         match self.measure {
-            ErrorMeasure::Rms if self.over_bound => of_both(&format!("rms error of # {OVER_BOUND}")).to_vec(),
+            ErrorMeasure::Rms if self.over_bound => of_both("rms error of # / Cramér–Rao bound").to_vec(),
             ErrorMeasure::Rms => ["K", "T"].map(|symbol| rms_title(symbol, self.to_nearest)).to_vec(),
             ErrorMeasure::Coverage => {
                 [of_both("95 % intervals that hold # [%]"), of_both("median interval width of # [%]")].concat()
             }
             ErrorMeasure::Failures => vec!["trials without answer [%]".to_owned()],
             ErrorMeasure::Validation => vec!["median error of an unseen heading [°]".to_owned()],
+        }
+    }
+
+    /// What a person should see.
+    fn reading(&self) -> &'static str {
+        match self.measure {
+            ErrorMeasure::Rms if self.over_bound => {
+                "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals."
+            }
+            ErrorMeasure::Rms if self.to_nearest => {
+                "Root mean square difference of K and T from those of the nearest first-order response, with 95 % bootstrap \
+                 intervals. It is no error: the ship has no K and T of its own."
+            }
+            ErrorMeasure::Rms => "Root mean square error of K and T, with 95 % bootstrap intervals.",
+            ErrorMeasure::Coverage => {
+                "Share of quoted 95 % intervals that hold the truth, with Wilson's intervals, and their median width. Below \
+                 the line at 95 % a method is too sure; above it its intervals are wider than they need be. Methods that \
+                 quote an interval in fewer than half of the trials are missing."
+            }
+            ErrorMeasure::Failures => {
+                "Share of trials without an answer, with Wilson's intervals; methods that always answer are left out. The \
+                 reasons are listed below."
+            }
+            ErrorMeasure::Validation => {
+                "Median error of the heading on the validation manoeuvre, its rudder replayed through the answer: what K \
+                 and T are worth for prediction. Where all methods agree, the error is that of the model."
+            }
         }
     }
 
@@ -194,12 +215,6 @@ impl<'a> ComparedMethods<'a> {
         if self.over_bound { Some(1.0) } else { self.bound(cell, panel).filter(|_| !self.to_nearest) }
     }
 
-    fn reference(&self, panel: usize, groups: &[ChartGroup]) -> Option<Reference95> {
-        let cells = groups.iter().flat_map(|group| &group.cells);
-        let records = cells.filter_map(|&cell| self.summary.record(cell, 0));
-        self.measure.reference(panel, records.map(|record| record.trials).min().unwrap_or(0))
-    }
-
     /// What is said under a figure some of whose values are drawn elsewhere.
     fn note(&self, groups: &[ChartGroup]) -> Option<String> {
         let cells = || groups.iter().flat_map(|group| &group.cells);
@@ -210,12 +225,7 @@ impl<'a> ComparedMethods<'a> {
         let is_cut = figures.iter().any(|(_, is_worthless)| *is_worthless);
         let is_exact = self.measure == ErrorMeasure::Rms && figures.iter().any(|(figure, _)| figure.value == EXACT);
         let has_bars = figures.iter().any(|(figure, is_worthless)| figure.ci95.is_some() && !is_worthless);
-        let remarks = [
-            (has_bars, "Bars: 95 % intervals; none seen: within the mark."),
-            (self.measure == ErrorMeasure::Coverage, "Grey band: what chance leaves of 95 %."),
-            (is_cut, CUT_NOTE),
-            (is_exact, EXACT_NOTE),
-        ];
+        let remarks = [(has_bars, BARS), (is_cut, CUT_NOTE), (is_exact, EXACT_NOTE)];
         let said: Vec<&str> = remarks.into_iter().filter(|(holds, _)| *holds).map(|(_, remark)| remark).collect();
         (!said.is_empty()).then(|| said.join(" "))
     }
@@ -229,8 +239,12 @@ const WIDE: f64 = 12.0;
 
 /// Charts of a measure over the last axis that is a number, else over the names of the last axis; points of the other
 /// axes side by side where they are few, else one chart each, with the names of these points. Nothing where there is no
-/// axis or nothing to show.
-pub fn over_axes(design: &Design, summary: &Summary, measure: ErrorMeasure) -> Vec<(Option<String>, Plot)> {
+/// axis or nothing to show. With each the name of its points and what a person should see.
+pub fn over_axes(
+    design: &Design,
+    summary: &Summary,
+    measure: ErrorMeasure,
+) -> Vec<(Option<String>, &'static str, Plot)> {
     let is_number = |axis: &usize| design.cells.iter().all(|cell| cell.values[*axis].is_some());
     let has_several =
         |axis: &usize| design.cells.iter().any(|cell| cell.labels[*axis] != design.cells[0].labels[*axis]);
@@ -263,7 +277,7 @@ pub fn over_axes(design: &Design, summary: &Summary, measure: ErrorMeasure) -> V
             (None, [group]) => Plot::Rows(named(&compared, x, group)),
             _ => Plot::Panels(curves(&compared, x, part)),
         };
-        Some(((part.len() < groups.len()).then(|| part[0].name.clone()), plot))
+        Some(((part.len() < groups.len()).then(|| part[0].name.clone()), compared.reading(), plot))
     };
     parts.filter_map(chart).collect()
 }
@@ -308,7 +322,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
     let across = Ruler::new(design.axes[x].clone(), if is_wide { Division::Factors } else { Division::Decimal });
     let height = if groups.len() == 1 && titles.len() < 3 { 0.3 } else { 0.24 };
     let row = |(panel, title): (usize, &String)| PanelRow {
-        reference: compared.reference(panel, groups),
+        reference: measure.reference(panel),
         ..PanelRow::new(measure.ruler(panel, title.clone()), height)
     };
     let panel = |panel: usize, group: &ChartGroup| {
@@ -358,7 +372,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
         };
         RowsColumn {
             x: measure.ruler(panel, title),
-            reference: compared.reference(panel, part),
+            reference: measure.reference(panel),
             rows: group.cells.iter().map(of).collect(),
             ..RowsColumn::default()
         }

@@ -1,7 +1,7 @@
 //! The figure that stands for a study: its finding above it, T alone where a figure shows errors of K and of T, the
-//! methods it is about in colour and the others grey.
+//! methods it is about in colour; the others are left out of curves, and grey in rows.
 
-use report::figures::{Layer, LayerKind, NamedRows, Panels, Pen, Plot, RowItem, RowKind, RowPlace, Stack};
+use report::figures::{LayerKind, NamedRows, Panels, Plot, RowItem, RowKind, RowPlace, Stack};
 use report::palette::{Look, Marker, QUIET};
 use report::{CurveOrigin, palette::SOLID};
 
@@ -43,42 +43,24 @@ fn of_panels(data: &mut Panels, about: &[String]) {
         data.names_aside = true;
         keep_t(stack);
         for panel in &mut stack.panels {
-            for layer in &mut panel.layers {
-                if is_quiet(layer.name.as_ref(), about)
-                    && let LayerKind::Marks(marks) = &layer.kind
-                {
-                    others.extend(layer.name.take());
-                    let dash = marks.joined.map_or(SOLID, |pen| pen.dash);
-                    layer.kind = LayerKind::Line(Pen { dash, ..Pen::new(QUIET).width(0.8) });
-                    layer.room = Some(BESIDE);
-                }
-            }
-            // What the figure is about stands over the rest.
-            let is_quiet = |layer: &Layer| matches!(&layer.kind, LayerKind::Line(pen) if pen.colour == QUIET);
-            panel.layers.sort_by_key(|layer| !is_quiet(layer));
+            let left_out = panel.layers.extract_if(.., |layer| is_quiet(layer.name.as_ref(), about));
+            others.extend(left_out.filter_map(|layer| layer.name));
         }
     }
-    let others = distinct(others);
-    let grey = match others.len() {
+    let left_out = match distinct(others).len() {
         0 => return,
-        1..=NAMED => format!("Grey: {}.", others.join("; ")),
-        _ => String::from("Grey: other methods."),
+        1 => String::from("Left out: one other method."),
+        count => format!("Left out: {count} other methods."),
     };
     let layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
     let is_cut = layers
         .filter(|layer| matches!(layer.kind, LayerKind::Marks(_)))
         .any(|own| own.curve.y.contains(&f64::INFINITY));
-    // What is said of arrows and of the exact holds for marks, and lines have none.
+    // What is said of arrows and of the exact may hold for what is left out alone.
     let note = data.note.take().unwrap_or_default().replace(EXACT_NOTE, "");
     let note = if is_cut { note } else { note.replace(CUT_NOTE, "") };
-    data.note = Some(format!("{grey} {note}").trim_end().to_owned());
+    data.note = Some(format!("{} {left_out}", note.trim()).trim_start().to_owned());
 }
-
-/// Methods beside those a figure is about that its note names.
-const NAMED: usize = 3;
-
-/// Share of the range of what a figure is about by which the others may widen an axis.
-const BESIDE: f64 = 0.2;
 
 /// Leaves the rows of K out, and hands their heads on.
 fn keep_t(stack: &mut Stack) {
@@ -113,7 +95,7 @@ fn of_rows(data: &mut NamedRows, about: &[String]) {
 
 #[cfg(test)]
 mod tests {
-    use report::figures::{LayeredPanel, PanelRow, RowsColumn, Ruler};
+    use report::figures::{Layer, LayeredPanel, PanelRow, RowsColumn, Ruler};
 
     use super::*;
 
@@ -125,7 +107,9 @@ mod tests {
     fn rows_of_t_stay_with_the_heads_of_their_columns() {
         let panel = |column: usize, row: usize| LayeredPanel {
             head: (row == 0).then(|| format!("column {column}")),
-            layers: vec![Layer::marks(method("srivc").0, method("srivc").1, vec![(row as f64, 1.0, None)])],
+            layers: ["output-error", "srivc"]
+                .map(|id| Layer::marks(method(id).0, method(id).1, vec![(row as f64, 1.0, None)]))
+                .into(),
         };
         let titles = ["95 % intervals that hold K [%]", "… that hold T [%]", "width of K [%]", "width of T [%]"];
         let stack = Stack {
@@ -139,9 +123,8 @@ mod tests {
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
         assert_eq!(panels[1].head.as_deref(), Some("column 1"));
-        let LayerKind::Line(pen) = &panels[0].layers[0].kind else { panic!() };
-        assert!(pen.colour == QUIET && panels[0].layers[0].name.is_none());
-        assert_eq!(data.note.as_deref(), Some("Grey: srivc."));
+        assert_eq!((panels[0].layers.len(), panels[0].layers[0].name.as_deref()), (1, Some("output-error")));
+        assert_eq!(data.note.as_deref(), Some("Left out: one other method."));
     }
 
     #[test]

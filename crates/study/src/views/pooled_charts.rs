@@ -12,7 +12,7 @@ use report::figures::{
 use report::palette::{DASHED, DOTTED, INK};
 use report::{CurveOrigin, PlotCurve, symbol};
 
-use super::charts::{ErrorMeasure, comparable, origin, rms_title};
+use super::charts::{BARS, ErrorMeasure, comparable, origin, rms_title};
 
 /// Fewest points of an axis that make a map.
 const MAP: usize = 3;
@@ -179,7 +179,7 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
         title: None,
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
-        note: Some(String::from("Marks: means, whose 95 % intervals are bars; none seen: within the mark.")),
+        note: Some(format!("Rows: {}. Marks: means. {BARS}", design.axes[last])),
     };
     Some((rows, design.methods[summary.reference].label.clone()))
 }

@@ -88,40 +88,6 @@ fn all(stored: &StoredStudy, summary: &Summary) -> Vec<StudyFigure> {
     figures
 }
 
-/// What a person should see in a chart of one measure.
-fn reading(measure: ErrorMeasure, plot: &Plot) -> &'static str {
-    let axis = match plot {
-        Plot::Panels(own) => own.stacks[0].rows.first().map(|row| row.y.title.as_str()),
-        Plot::Rows(own) => own.columns.first().map(|column| column.x.title.as_str()),
-        Plot::Cells(_) | Plot::ZigZag(_) => None,
-    };
-    let is_of = |words: &str| axis.is_some_and(|title| title.contains(words));
-    match measure {
-        ErrorMeasure::Rms if is_of(charts::TO_NEAREST) => {
-            "Root mean square difference of K and T from those of the nearest first-order response, with 95 % bootstrap \
-             intervals. It is no error: the ship has no K and T of its own."
-        }
-        ErrorMeasure::Rms if is_of(charts::OVER_BOUND) => {
-            "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals."
-        }
-        ErrorMeasure::Rms => "Root mean square error of K and T, with 95 % bootstrap intervals.",
-        ErrorMeasure::Coverage => {
-            "Share of quoted 95 % intervals that hold the truth, with Wilson's intervals, and their median width. Inside the \
-             grey band about 95 % a method is as honest as this number of trials can tell; with less it is too sure; with more \
-             its intervals are wider than they need be. Methods that quote an interval in fewer than half of the trials are \
-             missing."
-        }
-        ErrorMeasure::Failures => {
-            "Share of trials without an answer, with Wilson's intervals; methods that always answer are left out. The reasons are \
-             listed below."
-        }
-        ErrorMeasure::Validation => {
-            "Median error of the heading on the validation manoeuvre, its rudder replayed through the answer: what K and T are \
-             worth for prediction. Where all methods agree, the error is that of the model."
-        }
-    }
-}
-
 /// Cells of a study with traces beyond which errors of K and T are not drawn one by one.
 const MOST_TRACED: usize = 24;
 
@@ -170,7 +136,7 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     };
     let power = traces::power(&lines).map(|data| {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood-ratio \
-                       statistic 2 ln Λ that it has on average, with 95 % intervals; of many kinds of trial those in a \
+                       statistic 2 ln Λ against the best first-order response that it has on average, with 95 % intervals; of many kinds of trial those in a \
                        third of a decade together. Curves: power of a test by 2 ln Λ with one to three parameters at the \
                        threshold of the usual rule, a probability of 0.95, under white noise.";
         PageFigure::new("power", format!("{caption}{whose}"), data)
@@ -185,8 +151,13 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
                        and nothing else, of those whose ship lacks something, with Wilson's 95 % intervals.";
         PageFigure::new("rules", caption, plot)
     });
+    let false_names = traces::false_names(design, &summary.tracing).map(|plot| {
+        let caption = "Trials with a false name where nothing is missing, with Wilson's 95 % intervals: how often every rule \
+                       invents an effect at most.";
+        PageFigure::new("false-names", caption, plot)
+    });
     let confusions = traces::confusions(design, &lines).into_iter().enumerate().map(confusion);
-    rules.into_iter().chain(confusions).chain(power).chain(reliability).collect()
+    rules.into_iter().chain(false_names).chain(confusions).chain(power).chain(reliability).collect()
 }
 
 /// Errors over the axes. What a trace finds has its own figures; of many cells the errors would be a figure each.
@@ -197,10 +168,10 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         if !summary.tracing.is_empty() && design.cells.len() > MOST_TRACED {
             break;
         }
-        for (group, plot) in charts::over_axes(design, summary, measure) {
+        for (group, reading, plot) in charts::over_axes(design, summary, measure) {
             let stem = group.as_ref().map_or_else(|| measure.stem().to_owned(), |own| stem_of(measure.stem(), own));
             let place = group.map_or_else(String::new, |group| format!(" Here: {group}."));
-            figures.push(PageFigure::new(stem, format!("{}{place}", reading(measure, &plot)), plot));
+            figures.push(PageFigure::new(stem, format!("{reading}{place}"), plot));
         }
     }
     figures

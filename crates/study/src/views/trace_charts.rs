@@ -2,11 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use report::PlotCurve;
-use report::figures::{CellMap, Division, Layer, MapCell, Outline, PanelRow, Panels, Pen, Ruler, Shades, Stack};
+use report::figures::{
+    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
+    Shades, Stack,
+};
 use report::paint::Paint;
 use report::palette::{BEFORE, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
-use scenario::HULL;
+use report::{CurveOrigin, PlotCurve};
+use scenario::{HULL, TRACE};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
@@ -77,8 +80,8 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
         shades: Shades::Shares,
         panels: vec![(None, cells.collect())],
         note: Some(String::from(
-            "Shares of the trials in per cent, with 95 % intervals where there is room; empty: never named. A trace may name \
-             several effects, so that a row may exceed 100.",
+            "Shares of the trials in per cent; empty: never named. A trace may name several effects, so that a row may \
+             exceed 100.",
         )),
     }
 }
@@ -101,6 +104,36 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Panels> {
         Some((design.methods[*method].label.as_str(), wrong, exact))
     };
     Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?))
+}
+
+/// How often each of several traces named something of ships that lack nothing, with the bound that so few trials
+/// leave; nothing for one trace, and where a ship lacks something.
+pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
+    let rules = grouped(lines, |line| line.method);
+    if rules.len() < 2 || lines.iter().any(|line| !line.missing.is_empty()) {
+        return None;
+    }
+    let look = CurveOrigin::Method(TRACE.to_owned()).look();
+    let row = |(_, own): &(usize, Vec<&TraceSummary>)| {
+        let [wrong, trials] = [|line: &&TraceSummary| line.wrong, |line: &&TraceSummary| line.trials]
+            .map(|count| own.iter().map(count).sum::<u64>());
+        let share = share(wrong, trials)?.times(100.0);
+        let text = share.ci95.map(|[_, upper]| format!("{wrong} of {trials}: up to {upper:.0} %"));
+        Some(vec![RowItem { text, ..RowItem::new("", RowKind::Mark(look, share.value, share.ci95)) }])
+    };
+    let column = RowsColumn {
+        x: Ruler::decimal("trials with a false name [%]"),
+        rows: rules.iter().map(row).collect::<Option<_>>()?,
+        zero: true,
+        room: 0.9,
+        ..RowsColumn::default()
+    };
+    Some(NamedRows {
+        names: rules.iter().map(|(method, _)| design.methods[*method].label.clone()).collect(),
+        columns: vec![column],
+        note: Some(String::from("Nothing is missing in any trial. Bars: 95 % intervals.")),
+        ..NamedRows::default()
+    })
 }
 
 /// Rules as points: a colour for what stands before the comma of their labels, a shape for what stands behind it.
@@ -222,7 +255,7 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
         let plural = if freedom == 1 { "" } else { "s" };
         (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
     });
-    let x = Ruler::new("expected 2 ln Λ against the best first-order response", Division::Factors);
+    let x = Ruler::new("size of the effect: expected 2 ln Λ", Division::Factors);
     let note = Some(String::from("Bars: 95 % intervals."));
     Some(Panels { note, ..shares(x, "trials in which it is named [%]", series, theory.into()) })
 }
@@ -290,7 +323,11 @@ mod tests {
         let key: Vec<&str> = layers.iter().filter_map(|layer| layer.name.as_deref()).collect();
         assert_eq!((&layers[0].curve, key), (&PlotCurve::new([25.0, 0.0], [50.0, 0.0]), vec!["bic", "0.5", "0.9"]));
         assert!(rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]).is_none());
-        assert!(rules(&design, &lines[..2]).is_none());
+        assert!(rules(&design, &lines[..2]).is_none() && false_names(&design, &lines).is_none());
+        // Of ships that lack nothing the bound is shown: Wilson's of 0 of 2.
+        let clean = false_names(&design, &[line(0, &[], 2, 0), line(1, &[], 1, 1)]).expect("two rules");
+        let text = |row: usize| clean.columns[0].rows[row][0].text.as_deref();
+        assert_eq!((text(0), text(1)), (Some("0 of 2: up to 66 %"), Some("1 of 2: up to 91 %")));
     }
 
     /// Few kinds of trial by their names, many by ranges; nothing where every effect is always named, or none is there.
