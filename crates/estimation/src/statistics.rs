@@ -12,10 +12,12 @@ pub fn median(values: &mut [f64]) -> Option<f64> {
     Some(lower.map_or(upper, |lower| 0.5 * (lower + upper)))
 }
 
-/// The middle value, the upper of two where their number is even; found in linear time, for very many values.
+/// The middle one of the finite values, the upper of two where their number is even; found in linear time, for very
+/// many values.
 ///
-/// `None` for an empty set. The values are reordered.
-pub fn upper_median(values: &mut [f64]) -> Option<f64> {
+/// `None` without any.
+pub fn upper_median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
@@ -54,7 +56,7 @@ mod tests {
         assert_eq!(median(&mut [3.0, 1.0, 2.0, 7.0]), Some(2.5));
         assert_eq!(median(&mut [-3.0, -1.0, -2.0, -7.0]), Some(-2.5));
         assert_eq!(median(&mut []), None);
-        assert_eq!([upper_median(&mut [3.0, 1.0, 2.0, 7.0]), upper_median(&mut [])], [Some(3.0), None]);
+        assert_eq!([upper_median([3.0, f64::NAN, 1.0, 2.0, 7.0]), upper_median([])], [Some(3.0), None]);
     }
 
     #[test]

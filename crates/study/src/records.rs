@@ -278,8 +278,8 @@ fn ship(
     }
     let file = path.display();
     let first = log.channel(Channel::Speed).map(|speed| &speed[..speed.len().div_ceil(10)]);
-    let mut speeds: Vec<f64> = first.into_iter().flatten().copied().filter(|speed| *speed > 0.0).collect();
-    let Some(speed) = upper_median(&mut speeds) else {
+    let speeds = first.into_iter().flatten().copied().filter(|speed| *speed > 0.0);
+    let Some(speed) = upper_median(speeds) else {
         let advice = "give the approach speed beside --length-m, --speed-kn or --speed-m-s";
         return Err(Failure::about(path, format!("the record has no speed; {advice}")));
     };

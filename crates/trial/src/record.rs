@@ -242,8 +242,7 @@ impl Trial {
     pub fn sampling_period(&self) -> f64 {
         const ENOUGH: usize = 100_000;
         let pairs = self.time().windows(2).step_by(self.len() / ENOUGH + 1);
-        let mut steps: Vec<f64> = pairs.map(|pair| pair[1] - pair[0]).collect();
-        upper_median(&mut steps).expect("a record has rows")
+        upper_median(pairs.map(|pair| pair[1] - pair[0])).expect("a record has rows")
     }
 
     /// Heading of every row, rad, unwrapped; NaN where it was not recorded.

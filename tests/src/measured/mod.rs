@@ -66,7 +66,7 @@ pub fn folder() -> PathBuf {
 
 /// Runs a program that works on the measured records and writes into the folder that is its only argument.
 pub fn into_results(usual: &str, run: fn(&Path) -> sets::Outcome<()>) -> ExitCode {
-    let Some(results) = std::env::args_os().nth(1).map(PathBuf::from) else {
+    let Some(results) = std::env::args_os().nth(1).filter(|own| own != "--help").map(PathBuf::from) else {
         eprintln!("give the folder of the results, for instance {usual}");
         return ExitCode::from(2);
     };

@@ -34,9 +34,8 @@ impl HullReference {
     /// That of a trial; `None` where its length or speed is not known.
     pub fn of(trial: &Trial) -> Option<Self> {
         let own = trial.particulars()?;
-        let read = |rates: &[f64]| rates.iter().copied().filter(|rate| rate.is_finite()).collect::<Vec<f64>>();
-        let propeller = trial.channel(Channel::PropellerRate).and_then(|rates| upper_median(&mut read(rates)));
-        let propeller = propeller.filter(|rate| *rate > 0.0);
+        let rates = trial.channel(Channel::PropellerRate);
+        let propeller = rates.and_then(|rates| upper_median(rates.iter().copied())).filter(|rate| *rate > 0.0);
         Some(Self { length: own.length, speed: own.speed, propeller })
     }
 

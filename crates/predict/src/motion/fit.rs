@@ -1,5 +1,6 @@
 //! The coefficients from records, by output error.
 
+use estimation::statistics::upper_median;
 use nalgebra::DMatrix;
 use trial::Trial;
 
@@ -7,7 +8,7 @@ use super::circle::track;
 use super::coefficients::{BOUNDS, COEFFICIENTS, PlanarCoefficients, SYMBOLS, TYPICAL};
 use super::error::{MotionError, positive};
 use super::planar::{MotionRecordFit, Planar, Residual, pooled};
-use super::record::{MotionOutput, MotionRecord, median, range};
+use super::record::{MotionOutput, MotionRecord, range};
 use super::search::GroupedSquares;
 
 /// Range of the heading that at least one record must have, rad (5°).
@@ -46,7 +47,7 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     positive("length", length)?;
     let with_output = trials.iter().filter_map(|trial| MotionRecord::of(trial, length).transpose());
     let records = with_output.collect::<Result<Vec<_>, _>>()?;
-    let speed = median(records.iter().map(|record| record.approach.speed));
+    let speed = upper_median(records.iter().map(|record| record.approach.speed));
     let speed = speed.ok_or(MotionError::NoOutput { records: trials.len() })?;
     let found = records.iter().map(|record| range(&record.heading)).fold(0.0, f64::max);
     if found < TURNS {
@@ -65,7 +66,7 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     }
     let covariance = problem.squares().covariance(&at, &SYMBOLS)?;
     let records = problem.summary(&at);
-    let approach_speed = median(records.iter().map(|record| record.approach_speed)).expect("there are records");
+    let approach_speed = upper_median(records.iter().map(|record| record.approach_speed)).expect("there are records");
     Ok(Planar {
         coefficients: coefficients(&at),
         length,

@@ -94,11 +94,6 @@ pub(crate) fn range(values: &[f64]) -> f64 {
     (ends[1] - ends[0]).max(0.0)
 }
 
-/// The median of what is finite.
-pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    upper_median(&mut values.filter(|value| value.is_finite()).collect::<Vec<f64>>())
-}
-
 /// Readings that are missing lie on the straight line between their neighbours, or are the nearest one; NaN without
 /// any.
 pub(crate) fn filled(time: &[f64], values: &[f64]) -> Vec<f64> {
@@ -196,7 +191,8 @@ impl<'a> MotionRecord<'a> {
             Some(rate) => filled(time, rate),
             None => smoothed(time, &heading, WINDOW * length / guess).1,
         };
-        let beginning = |values: Option<&[f64]>| values.and_then(|v| median(v.iter().copied().take(APPROACH_ROWS)));
+        let beginning =
+            |values: Option<&[f64]>| values.and_then(|v| upper_median(v.iter().copied().take(APPROACH_ROWS)));
         let start = [beginning(surge.or(speed)).unwrap_or(guess), beginning(sway).unwrap_or(0.0)];
         Ok(Some(Self { name: trial.name(), time, rudder, heading, yaw_rate, outputs, approach, start, current }))
     }

@@ -1,6 +1,7 @@
 //! How far an axis goes: over what has to be seen, and over what may be cut as far as there is room.
 
-use super::shared::median;
+use estimation::statistics::upper_median;
+
 use crate::axis;
 
 /// What of wild data an axis shows: so many times the middle extent from a centre.
@@ -78,9 +79,9 @@ impl Extents {
     /// What lies within the reach of an axis, and of what lies in it by a part, that part.
     fn within(&self, AxisReach { times, centre, .. }: AxisReach) -> Vec<(f64, f64)> {
         let middles = self.core.iter().map(|(lo, hi)| 0.5 * (lo + hi));
-        let centre = centre.or_else(|| median(middles)).unwrap_or(0.0);
+        let centre = centre.or_else(|| upper_median(middles)).unwrap_or(0.0);
         let extents = self.core.iter().map(|(lo, hi)| (lo - centre).abs().max((hi - centre).abs()));
-        let usual = median(extents.filter(|own| *own > 0.0)).unwrap_or(f64::INFINITY);
+        let usual = upper_median(extents.filter(|own| *own > 0.0)).unwrap_or(f64::INFINITY);
         let room = times * usual.max(LEAST_USUAL * centre.abs());
         let (least, most) = (centre - room, centre + room);
         let near = self.core.iter().filter(|(lo, hi)| *lo <= most && *hi >= least);

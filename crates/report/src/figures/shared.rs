@@ -1,6 +1,5 @@
 //! What kinds of figure share: records, areas, lines of reference, marks that stand side by side.
 
-use estimation::statistics::upper_median;
 use serde::{Deserialize, Serialize};
 
 use crate::clip::Rect;
@@ -49,11 +48,6 @@ pub(super) fn shaded(panel: &Panel, scene: &mut Canvas, [lower, upper]: [&PlotCu
     };
     let outline = edge(lower).into_iter().chain(edge(upper).into_iter().rev());
     scene.fill(Layer::Grid, outline.collect::<Vec<_>>(), colour, opacity);
-}
-
-/// The middle one of the finite values, the upper of two.
-pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    upper_median(&mut values.filter(|v| v.is_finite()).collect::<Vec<f64>>())
 }
 
 /// Places with those that are nearer to each other than `gap` moved aside, as far as they need about their middle:

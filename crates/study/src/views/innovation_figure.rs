@@ -51,8 +51,7 @@ fn ranks(count: usize) -> Vec<usize> {
 /// The figure of the innovations of a record at times (s), in standard deviations of the noise that was found; `None`
 /// where they are few.
 pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Option<PageFigure> {
-    let mut intervals: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let spacing = upper_median(&mut intervals).unwrap_or_default();
+    let spacing = upper_median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or_default();
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     if time.len() != values.len() || sorted.len() < FEWEST || spacing <= 0.0 {
         return None;

@@ -62,8 +62,8 @@ pub(crate) fn deviations<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterato
 fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
     const ENOUGH: usize = 100_000;
     let every = values.len() / ENOUGH + 1;
-    let mut sizes: Vec<f64> = deviations(time, values).step_by(every).map(|(_, deviation)| deviation.abs()).collect();
-    upper_median(&mut sizes).filter(|_| sizes.len() > 2 * CLIPPED).map(|size| 1.4826 * size)
+    let sizes: Vec<f64> = deviations(time, values).step_by(every).map(|(_, deviation)| deviation.abs()).collect();
+    Some(sizes).filter(|sizes| sizes.len() > 2 * CLIPPED).and_then(upper_median).map(|size| 1.4826 * size)
 }
 
 /// Takes single readings of one and the same value as missing where both neighbours are far from it and near each

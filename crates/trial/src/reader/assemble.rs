@@ -74,8 +74,7 @@ fn shortest(turn: f64) -> f64 {
 
 /// Median time between instants, s.
 fn usual_interval(time: &[f64]) -> Option<f64> {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    upper_median(&mut steps)
+    upper_median(time.windows(2).map(|pair| pair[1] - pair[0]))
 }
 
 /// The readings of the channels of a table; nothing of what it does not know.

@@ -14,9 +14,9 @@ pub(super) fn spread(time: &mut [f64]) -> Option<usize> {
     }
     begins.push(time.len());
     let steps = begins.windows(2).filter(|pair| pair[1] < time.len()).map(|pair| time[pair[1]] - time[pair[0]]);
-    let width = upper_median(&mut steps.collect::<Vec<f64>>())?;
+    let width = upper_median(steps)?;
     let inner = begins[1..begins.len() - 1].windows(2).map(|pair| (pair[1] - pair[0]) as f64);
-    let usual = upper_median(&mut inner.collect::<Vec<f64>>())? as usize;
+    let usual = upper_median(inner)? as usize;
     let last = begins.len() - 2;
     for (number, pair) in begins.windows(2).enumerate() {
         let rows = pair[1] - pair[0];

@@ -237,8 +237,7 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
         }
     }
     // A second in minutes is 0.016667: no clock counts seconds in such steps.
-    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if let Some(step) = upper_median(&mut steps) {
+    if let Some(step) = upper_median(times.windows(2).map(|pair| pair[1] - pair[0])) {
         let is_round = |step: f64| (100.0 * step - (100.0 * step).round()).abs() < 0.02;
         if step < 1.0 && !is_round(step) && is_round(60.0 * step) {
             return Err(refusal());

@@ -2,9 +2,10 @@
 //! kind goes first (true heading before magnetic, speed through the water before speed over ground), then the one with
 //! the most readings, then the one that appeared first. What was chosen among several is said.
 
+use estimation::statistics::upper_median;
 use ship::angle::to_deg;
 
-use super::epochs::{median, rounded};
+use super::epochs::rounded;
 use super::log::NmeaInstrument;
 use super::sentence::{Slot, turned};
 use crate::channel::Channel;
@@ -333,7 +334,7 @@ struct Nearest<'a> {
 
 impl<'a> Nearest<'a> {
     fn new(time: &'a [f64], values: &'a [f64]) -> Self {
-        let usual = median(time.windows(2).map(|pair| pair[1] - pair[0]));
+        let usual = upper_median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(f64::INFINITY);
         Self { time, values, place: 0, farthest: 3.0 * usual }
     }
 

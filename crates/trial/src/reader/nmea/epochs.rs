@@ -79,7 +79,7 @@ fn spread_stamps(at: &mut [f64]) -> bool {
 fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     let mut lengths: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     lengths.push(*lengths.last()?);
-    let usual = median(lengths.iter().copied());
+    let usual = upper_median(lengths.iter().copied())?;
     Some((lengths, usual))
 }
 
@@ -229,12 +229,6 @@ fn drop_rows(instrument: &mut NmeaInstrument) {
 /// Seconds to the microsecond: finer than any clock here, and without what subtracting large numbers leaves.
 pub(super) fn rounded(time: f64) -> f64 {
     (time * 1e6).round() / 1e6
-}
-
-/// The middle one of some lengths, s; infinite where there is none.
-pub(super) fn median(lengths: impl Iterator<Item = f64>) -> f64 {
-    let mut lengths: Vec<f64> = lengths.collect();
-    upper_median(&mut lengths).unwrap_or(f64::INFINITY)
 }
 
 pub(super) fn are(number: usize) -> &'static str {
