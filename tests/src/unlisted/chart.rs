@@ -59,7 +59,7 @@ pub fn outcomes(truths: &[Truth], outcomes: &[Outcome]) -> PageFigure {
                     Kind::Unlisted { .. } => "unknown",
                     Kind::Nothing => "nothing missing",
                 };
-                format!("{kind}: {}", truth.name)
+                format!("{kind}: {}", truth.name).replace(" %", "\u{a0}%")
             })
             .collect(),
         shades: Shades::Shares,
