@@ -105,6 +105,28 @@ fn whatever_a_program_does_the_reason_is_told() {
     assert!(error.starts_with("outside: not started: "), "{error}");
 }
 
+/// The fourth trial is not waited for, and its reason is that of those that were; a study that ends forgets it.
+#[test]
+fn a_program_that_hangs_is_given_up_after_three_silences() {
+    let settings = Settings { timeout_s: 0.4, ..Settings::new([ESTIMATOR, "silent"]) };
+    let silent = settings.build(Path::new("")).expect("valid settings");
+    let outside = silent.outside().expect("it is another program");
+    let ask = || {
+        let start = std::time::Instant::now();
+        let error = silent.identify(&[record(4)]).expect_err("it does not answer");
+        (error.to_string(), start.elapsed().as_secs_f64())
+    };
+    let first: Vec<(String, f64)> = (0..3).map(|_| ask()).collect();
+    assert!(first.iter().all(|(_, seconds)| *seconds >= 0.4), "{first:?}");
+    let (reason, seconds) = ask();
+    assert!(reason == first[0].0 && seconds < 0.2, "{reason} after {seconds} s");
+    let notice = outside.notice().expect("it was given up");
+    assert!(notice.contains("silent") && notice.contains("given up"), "{notice}");
+    assert_eq!(outside.notice(), None, "it is told once");
+    outside.end();
+    assert!(ask().1 >= 0.4, "the next study asks again");
+}
+
 /// A script that waits for a program is ended with it.
 #[cfg(unix)]
 #[test]
@@ -293,6 +315,23 @@ fn further_records_of_a_ship_are_asked_about_together() {
     let rows = rows(&desk.path().join("out"));
     let row = rows.iter().find(|row| (row.cell, row.replicate, row.method) == (1, 3, 1)).expect("a row");
     assert_eq!(row.t_s, Some(mean));
+}
+
+#[test]
+fn what_a_program_says_beside_its_answers_is_kept_within_bounds() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let study = scenario_of(&[&["says"], &["chatters"]], "", &desk.path().join("outside.toml"));
+    let folder = desk.path().join("out");
+    run(&study, 2, &folder, &NoObserver);
+    let log = fs::read_to_string(folder.join("external-mine-0.log")).expect("a log");
+    let named = log.matches(&format!("trial {} of 101 rows", number(&study, 1, 3))).count();
+    assert_eq!((log.lines().count(), named), (24, 1), "{log}");
+    let long = fs::metadata(folder.join("external-mine-1.log")).expect("a log").len();
+    assert!((1 << 20..(1 << 20) + 100).contains(&long), "{long} bytes");
+    // It is no part of the study, and grows with it.
+    run(&study, 2, &folder, &NoObserver);
+    assert!(fs::metadata(folder.join("external-mine-0.log")).expect("a log").len() > log.len() as u64);
+    assert!(!fs::read_to_string(folder.join("manifest.toml")).expect("a manifest").contains(".log"));
 }
 
 /// The commands that were told.

@@ -308,4 +308,31 @@ mod tests {
         let log: Vec<f64> = of("log-uniform = { from = 0.3, to = 5.0 }").iter().map(|x| x.ln()).collect();
         moments(&log, 0.5 * (0.3_f64.ln() + 5.0_f64.ln()), (5.0_f64 / 0.3).ln() / 12.0_f64.sqrt());
     }
+
+    #[test]
+    fn a_replicate_has_the_same_ship_in_every_cell() {
+        let draw = draw("uniform = { from = 0.5, to = 3.0 }").expect("valid");
+        let at = |cell: u64, replicate: u64| draw.value(&StreamKey { seed: 1, cell, replicate });
+        assert_eq!(at(0, 5), at(7, 5));
+        assert_ne!(at(0, 5), at(0, 6));
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_refused() {
+        for wrong in [
+            "",
+            "normal = { mean = 1.0, sd = 0.0 }",
+            "normal = { mean = nan, sd = 1.0 }",
+            "log-normal = { median = -1.0, sigma = 0.3 }",
+            "uniform = { from = 3.0, to = 0.5 }",
+            "uniform = { from = 0.0, to = inf }",
+            "uniform = { from = -1e308, to = 1e308 }",
+            "log-uniform = { from = 0.0, to = 5.0 }",
+            "normal = { mean = 0.0, sd = 1.0 }\nuniform = { from = 0.0, to = 1.0 }",
+            "normal = { mean = 0.0, sd = 1.0 }\nbetween = [8.0, 9.0]",
+            "uniform = { from = 0.0, to = 1.0 }\nbetween = [1.0, 0.0]",
+        ] {
+            assert!(draw(wrong).is_err(), "{wrong}");
+        }
+    }
 }

@@ -67,6 +67,23 @@ fn first_line(text: &str) -> Range<usize> {
 mod tests {
     use super::*;
 
+    const TEXT: &str = "# note\nseed = 1\n[sensor]\nheading-noise-deg = -0.1\n[[identifier]]\nsrivc = {}\n[[identifier]]\nlabel = \"x\"\n\
+         [[sweep]]\npoints = [{ set = { \"a.b\" = 3 } }]\n";
+
+    fn at(path: &str, mark: AtFault) -> &str {
+        &TEXT[span(TEXT, &KeyPath::dotted(path), mark)]
+    }
+
+    #[test]
+    fn finds_names_and_values_in_tables_and_lists() {
+        assert_eq!(at("sensor.heading-noise-deg", AtFault::Value), "-0.1");
+        assert_eq!(at("sensor.heading-noise-deg", AtFault::Name), "heading-noise-deg");
+        assert_eq!(at("identifier.1.label", AtFault::Value), "\"x\"");
+        let swept = KeyPath::dotted("sweep.0.points.0.set").child("a.b");
+        assert_eq!(&TEXT[span(TEXT, &swept, AtFault::Value)], "3");
+        assert_eq!(&TEXT[span(TEXT, &swept, AtFault::Name)], "\"a.b\"");
+    }
+
     #[test]
     fn finds_a_letter_of_a_text() {
         let marked = |text: &str, at: usize| {
@@ -76,5 +93,12 @@ mod tests {
         assert_eq!(marked("[[effect]]\nformula = \"é = c * x\"\n", 8), (31, String::from("x")));
         assert_eq!(marked("effect = [{ formula = 'c *' }]\n", 3), (26, String::from("'")));
         assert_eq!(marked("[[effect]]\nformula = \"c\\u002a\"\n", 1).1, "\"c\\u002a\"");
+    }
+
+    #[test]
+    fn falls_back_to_the_nearest_key_above() {
+        assert_eq!(at("sensor.no-such-key", AtFault::Value), "sensor");
+        assert_eq!(at("nothing.here", AtFault::Value), "seed = 1");
+        assert_eq!(span("", &KeyPath::default(), AtFault::Name), 0..0);
     }
 }

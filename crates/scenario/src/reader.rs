@@ -268,3 +268,84 @@ fn kind_of(key: &KeyPath) -> &'static str {
         _ => "setting",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, Deserialize)]
+    #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+    struct Trial {
+        sampling_s: f64,
+        #[serde(default)]
+        rows: Option<usize>,
+        #[serde(default)]
+        side: Side,
+        #[serde(default)]
+        methods: Vec<Method>,
+    }
+
+    #[derive(Debug, Default, PartialEq, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    enum Side {
+        #[default]
+        Port,
+        Starboard,
+    }
+
+    #[derive(Debug, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    enum Method {
+        Srivc(Settings),
+    }
+
+    #[derive(Debug, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Settings {
+        #[serde(default)]
+        limit: f64,
+    }
+
+    fn read(text: &str) -> Result<Trial, KeyFault> {
+        document(&text.parse::<Table>().expect("well formed"))
+    }
+
+    #[test]
+    fn reads_what_is_right() {
+        let trial =
+            read("sampling-s = 1\nrows = 3\nside = \"starboard\"\n[[methods]]\nsrivc.limit = 2.5").expect("right");
+        assert_eq!((trial.sampling_s, trial.rows, trial.side), (1.0, Some(3), Side::Starboard));
+        let Method::Srivc(settings) = &trial.methods[0];
+        assert_eq!(settings.limit, 2.5);
+    }
+
+    #[test]
+    fn every_fault_has_its_key() {
+        for (text, key, found) in [
+            ("", "", "a scenario has no key `sampling-s`"),
+            ("sampling = 1", "sampling", "a scenario has no key `sampling`"),
+            ("sampling-s = \"x\"", "sampling-s", "`sampling-s` is the text \"x\""),
+            ("sampling-s = 1\nrows = -2", "rows", "`rows` is -2"),
+            ("sampling-s = 1\nrows = 2.5", "rows", "`rows` is 2.5"),
+            ("sampling-s = 1\nside = \"left\"", "side", "`side` is the text \"left\""),
+            ("sampling-s = 1\nmethods = 3", "methods", "`methods` is 3"),
+            ("sampling-s = 1\n[[methods]]\nsrivk = {}", "methods.0.srivk", "no setting is called `srivk`"),
+            ("sampling-s = 1\nmethods = [\"srivc\"]", "methods.0", "`methods.0` is the text \"srivc\""),
+            ("sampling-s = 1\n[[methods]]\n", "methods.0", "`methods.0` names nothing"),
+            (
+                "sampling-s = 1\n[[methods]]\nsrivc.limt = 1",
+                "methods.0.srivc.limt",
+                "`methods.0.srivc` has no key `limt`",
+            ),
+            (
+                "sampling-s = 1\n[[methods]]\nsrivc.limit = true",
+                "methods.0.srivc.limit",
+                "`methods.0.srivc.limit` is true",
+            ),
+            ("sampling-s = 1\nrows = 1979-05-27", "rows", "`rows` is the date 1979-05-27"),
+        ] {
+            let problem = read(text).expect_err(text);
+            assert_eq!((problem.key.to_string().as_str(), problem.found.as_str()), (key, found), "{text}");
+        }
+    }
+}

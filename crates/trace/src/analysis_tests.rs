@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use ship::effects::{Effect, listed};
+use ship::effects::{Effect, Formula, listed};
 use trial::Trial;
 
 use crate::testing::{TrialPlan, record, ship, wandering};
-use crate::{Analysis, Rule, Settings, Watcher, trace, watched};
+use crate::{Analysis, EffectId, Rule, Selection, Settings, Watcher, trace, watched};
 
 /// A record of a ship whose damping grows with the cube of its yaw rate.
 fn damped(plan: TrialPlan) -> Trial {
@@ -29,6 +29,17 @@ fn a_random_moment_is_no_effect_of_the_ship() {
         let analysis = traced(&[wandering(30.0, seed)]);
         let ship = ["second_order", "nonlinear_damping", "speed_loss", "rudder_saturation", "port_starboard_asymmetry"];
         assert!(named(&analysis).iter().all(|id| !ship.contains(id)), "seed {seed}: {:?}", named(&analysis));
+    }
+}
+
+#[test]
+fn several_records_are_left_out_in_turn() {
+    let trials = [10.0, 15.0, 20.0].map(|rudder_deg| damped(TrialPlan { rudder_deg, ..TrialPlan::default() }));
+    let analysis = traced(&trials);
+    assert_eq!(analysis.left_out.len(), 3);
+    for fold in analysis.left_out.iter().flatten() {
+        let [before, after] = [&fold.before, &fold.after].map(|on| on.errors.heading.to_degrees());
+        assert!(before > 0.3 && after < 0.25 * before, "{before} and {after} deg");
     }
 }
 
@@ -55,6 +66,40 @@ fn nobody_has_to_wait_for_the_folds() {
 }
 
 #[test]
+fn what_is_asked_for_is_in_the_model_and_what_is_excluded_is_not() {
+    let id = |name: &str| EffectId::find(name).expect("on the list");
+    let trial = damped(TrialPlan::default());
+    let with = |selection: Selection| {
+        let settings = Settings { selection, ..Settings::default() };
+        trace(std::slice::from_ref(&trial), &[], &settings)
+    };
+    let only = with(Selection::only(vec![id("speed_loss")])).expect("a base");
+    assert_eq!(named(&only), ["speed_loss"]);
+    let without = with(Selection { without: vec![id("nonlinear_damping")], ..Selection::default() }).expect("a base");
+    assert!(!named(&without).contains(&"nonlinear_damping"));
+    let lacking = with(Selection::only(vec![id("sway_coupling_measured")])).expect_err("no sway");
+    assert!(lacking.to_string().contains("sway"), "{lacking}");
+}
+
+/// A formula is a candidate like those of the list: named where it acts, with its text, and not where it does not.
+#[test]
+fn a_formula_is_named_where_it_acts() {
+    let bank = Formula::read("bank = c * tanh(k * psi)").expect("a formula");
+    let selection = Selection { formulas: vec![Arc::clone(&bank)], ..Selection::default() };
+    let settings = Settings { selection, ..Settings::default() };
+    let banked = record(&ship(vec![(bank, vec![-0.05, 8.0])]), TrialPlan::default());
+    let analysis = trace(&[banked], &[], &settings).expect("a base");
+    assert_eq!(named(&analysis), ["bank"], "{:?}", analysis.document.candidates);
+    let effect = &analysis.document.effects[0];
+    assert_eq!(effect.form, "c * tanh(k * psi)");
+    let errors = &analysis.identification[0];
+    assert!(errors.after.errors.heading < 0.3 * errors.before.errors.heading);
+    let other = trace(&[damped(TrialPlan::default())], &[], &settings).expect("a base");
+    assert_eq!(named(&other), ["nonlinear_damping"]);
+    assert!(other.document.candidates.iter().any(|one| one.id == "bank"), "it is on the list");
+}
+
+#[test]
 fn both_rules_name_what_is_clear() {
     let trial = damped(TrialPlan::default());
     for rule in Rule::ALL {
@@ -75,4 +120,12 @@ fn bands_hold_the_record() {
             (one.after.coverage().expect("a band").share(), one.after.width().expect("a band").to_degrees());
         assert!((0.85..=1.0).contains(&coverage) && (0.15..0.6).contains(&width), "{coverage}, {width} deg");
     }
+}
+
+#[test]
+fn a_document_is_read_as_it_was_written() {
+    let analysis = traced(&[damped(TrialPlan::default())]);
+    let text = serde_json::to_string(&analysis.document).expect("plain data");
+    let again: crate::Document = serde_json::from_str(&text).expect("the same");
+    assert_eq!(serde_json::to_string(&again).expect("plain data"), text);
 }

@@ -50,6 +50,14 @@ fn main() -> io::Result<()> {
             }
             // Its third trial is too much for it.
             "tires" if answered == 2 => std::process::exit(7),
+            "says" => {
+                eprintln!("trial {trial} of {} rows", question["t_s"].as_array().map_or(0, Vec::len));
+                writeln!(output, "{answer}")?;
+            }
+            "chatters" => {
+                eprintln!("{}", "x".repeat(1 << 19));
+                writeln!(output, "{answer}")?;
+            }
             _ => writeln!(output, "{answer}")?,
         }
     }
