@@ -71,7 +71,7 @@ fn identification(rows: &[ComparedWork]) -> NamedRows {
     };
     let faster = rows.iter().filter(|(_, ratio)| ratio.interval[1] < 1.0).count();
     let column = RowsColumn {
-        x: Ruler::new("time of a fit / time of SRIVC of dsmc", Division::Factors),
+        x: Ruler::new("time over that of SRIVC of dsmc", Division::Factors),
         rows: rows.iter().map(mark).collect(),
         reference: Some(Reference95::line(1.0)),
         ..RowsColumn::default()
@@ -80,7 +80,9 @@ fn identification(rows: &[ComparedWork]) -> NamedRows {
         title: Some(format!("{faster} of {} methods fit faster than the rival, SRIVC of the library dsmc", rows.len())),
         names: rows.iter().map(name).collect(),
         columns: vec![column],
-        note: Some(String::from("Left of the line a method is faster. Times on one core; bars: 95 % intervals.")),
+        note: Some(String::from(
+            "Left of the line a method is faster. Times on one core; bars: 95 % intervals; none seen: within the mark.",
+        )),
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::clip::PagePoint;
 use crate::lines::{self, LEADING};
 use crate::paint::Paint;
-use crate::palette::{CurveOrigin, Look};
+use crate::palette::{CurveOrigin, Dash, INK, Look};
 use crate::scene::{Canvas, Ink, Layer, Stroke, TextLine};
 use crate::theme::Theme;
 
@@ -19,6 +19,8 @@ pub(crate) enum KeySample {
     LineAndMarker(Stroke, Look),
     /// A short line from bottom to top.
     Upright(Stroke),
+    /// An outlined cell.
+    Outline(Dash),
     /// A ship seen from above.
     Hull(Paint),
 }
@@ -48,14 +50,16 @@ impl KeyEntry {
             KeySample::Area(stroke) => Some(Ink::of(stroke.colour)),
             KeySample::Dots(colour) => Some(Ink::of(colour)),
             KeySample::Marker(look) => Some(Ink::of(look.colour)),
-            KeySample::Nothing | KeySample::Upright(_) | KeySample::Hull(_) => None,
+            KeySample::Nothing | KeySample::Upright(_) | KeySample::Outline(_) | KeySample::Hull(_) => None,
         }
     }
 
     fn sample_width(&self, theme: &Theme) -> f64 {
         match self.sample {
             KeySample::Nothing => 0.0,
-            KeySample::Dots(_) | KeySample::Marker(_) | KeySample::Upright(_) => 1.6 * theme.small_font,
+            KeySample::Dots(_) | KeySample::Marker(_) | KeySample::Upright(_) | KeySample::Outline(_) => {
+                1.6 * theme.small_font
+            }
             KeySample::Line(_) | KeySample::Area(_) | KeySample::LineAndMarker(..) | KeySample::Hull(_) => {
                 2.9 * theme.small_font
             }
@@ -94,6 +98,13 @@ impl KeyEntry {
             KeySample::Upright(stroke) => {
                 let half = 0.5 * theme.small_font;
                 scene.line(Layer::Note, [(centre.0, middle - half), (centre.0, middle + half)], stroke);
+            }
+            KeySample::Outline(dash) => {
+                let half = 0.45 * theme.small_font;
+                let [left, right] = [centre.0 - half, centre.0 + half];
+                let [top, bottom] = [middle - half, middle + half];
+                let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+                scene.line(Layer::Note, corners, Stroke::solid(INK, 1.4 * theme.line).dashed(dash));
             }
             KeySample::Hull(colour) => scene.hull(Layer::Note, centre, (1.0, 0.0), 1.6 * theme.small_font, colour),
         }

@@ -5,12 +5,19 @@ use crate::fonts::text_width;
 /// Line spacing, in font sizes.
 pub(crate) const LEADING: f64 = 1.35;
 
-/// Splits a text at (breaking) spaces into lines of at most `width` points; a longer word is broken, after a mark such
-/// as a dot where it has one.
+/// Splits a text at (breaking) spaces into lines of at most `width` points; a unit in brackets and a per cent sign stay
+/// with the word before them. A longer word is broken, after a mark such as a dot where it has one.
 pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     // Not at every white space: a no-break space keeps a symbol and its value together.
-    for word in text.split(' ').filter(|word| !word.is_empty()) {
+    let mut words = text.split(' ').filter(|word| !word.is_empty()).peekable();
+    while let Some(word) = words.next() {
+        let unit = words.peek().filter(|next| next.starts_with(['[', '%']));
+        let with_unit = unit.map(|unit| format!("{word} {unit}")).filter(|both| text_width(both, size, bold) <= width);
+        if with_unit.is_some() {
+            words.next();
+        }
+        let word = with_unit.as_deref().unwrap_or(word);
         let longer = lines.last().map(|line| format!("{line} {word}"));
         match longer.filter(|line| text_width(line, size, bold) <= width) {
             Some(line) => *lines.last_mut().expect("a longer line extends one that is there") = line,
@@ -42,6 +49,8 @@ mod tests {
     #[test]
     fn text_wraps_at_spaces_and_long_words_are_broken() {
         assert_eq!(wrap("one two three", 10.0, false, 45.0), ["one two", "three"]);
+        assert_eq!(wrap("sample time [s]", 10.0, false, 60.0), ["sample", "time [s]"]);
+        assert_eq!(wrap("Bars: 95 % intervals", 10.0, false, 50.0), ["Bars:", "95 %", "intervals"]);
         assert_eq!(wrap("indivisible", 10.0, false, 1.0), ["indivisible"]);
         assert_eq!(wrap("a ship.first-order.T-s", 10.0, false, 60.0), ["a", "ship.first-", "order.T-s"]);
         assert_eq!(wrap("mmmmmm", 10.0, false, 30.0), ["mmm", "mmm"]);

@@ -137,23 +137,11 @@ impl SecondOrderIndices {
     pub fn first_order_T(&self) -> f64 {
         self.T1 + self.T2 - self.T3
     }
-
-    /// Whether a disturbance of a straight course grows: T1 < 0 (or T2 < 0).
-    pub fn is_course_unstable(&self) -> bool {
-        self.T1 < 0.0 || self.T2 < 0.0
-    }
-
-    /// The indices in units of L and L/U.
-    pub fn prime(&self, particulars: Particulars) -> PrimeIndices {
-        let unit = particulars.length / particulars.speed;
-        PrimeIndices { K: self.K * unit, T1: self.T1 / unit, T2: self.T2 / unit, T3: self.T3 / unit }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use approx::assert_relative_eq;
 
     /// Sway-yaw part of the S175 container ship (Son and Nomoto 1982).
     const S175: PrimeSwayYaw = PrimeSwayYaw {
@@ -196,14 +184,5 @@ mod tests {
         assert!(matches!(swinging.indices(), Err(LinearError::Oscillatory { .. })));
         let adrift = PrimeSwayYaw { b: [0.0, 0.0], ..S175 };
         assert_eq!(adrift.indices(), Err(LinearError::NoSteering));
-    }
-
-    #[test]
-    fn prime_and_back_is_the_identity() {
-        let particulars = Particulars { length: 160.93, speed: 7.7175 };
-        let prime = S175.indices().expect("a stable hull");
-        let back = prime.at(particulars).prime(particulars);
-        assert_relative_eq!(back.K, prime.K, max_relative = 1e-14);
-        assert_relative_eq!(back.T3, prime.T3, max_relative = 1e-14);
     }
 }

@@ -25,11 +25,15 @@ pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
             let traced = CurveOrigin::Method(String::from("trace"));
             vec![
                 RowItem::new("", RowKind::Thin([before.min(after), before.max(after)])),
-                RowItem::new("first-order base", RowKind::Mark(base, before, None)),
                 RowItem::new(traced.label(), RowKind::Mark(traced.look(), after, None)),
+                // Over it, so that both are seen where they coincide.
+                RowItem::new("first-order base", RowKind::Mark(base, before, None)),
             ]
         };
-        ships.iter().flat_map(|(_, own)| [Vec::new()].into_iter().chain(own.iter().map(|own| pair(own)))).collect()
+        ships
+            .iter()
+            .flat_map(|(_, own)| [RowItem::heading()].into_iter().chain(own.iter().map(|own| pair(own))))
+            .collect()
     };
     let column = |title: &str, of| RowsColumn {
         x: Ruler::new(title, Division::Factors),
@@ -42,8 +46,9 @@ pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
     };
     let better = analyses.iter().filter(is_better).count();
     let all = analyses.len();
-    let title =
-        format!("Records that were not fitted: the traced model replays them better in {better} of {all} analyses");
+    let title = format!(
+        "Whole replays of records that were not fitted: the traced model is better in {better} of {all} analyses"
+    );
     let names = ships
         .iter()
         .flat_map(|(ship, own)| [format!("{ship}:")].into_iter().chain(own.iter().map(|own| short(&own.label))));
@@ -75,22 +80,19 @@ fn short(label: &str) -> String {
             format!("{} together{circles}", pool.matches("zigzag_").count())
         }
         None => {
-            let words = IN_WORDS.iter().find(|(record, _)| label.strip_prefix("zigzag_") == Some(record));
-            words.map_or(label, |(_, words)| words).to_owned()
+            let record = label.strip_prefix("zigzag_").unwrap_or_default();
+            // HSVA: rudder and heading, all to starboard first.
+            let angles = record.trim_end_matches("_s").split_once('_');
+            let angles = angles.and_then(|(rudder, heading)| Some((rudder.parse().ok()?, heading.parse().ok()?)));
+            let hsva = angles.map(|(rudder, heading): (u32, u32)| format!("{rudder}/{heading} starboard"));
+            let words = || IN_WORDS.iter().find(|(known, _)| *known == record).map_or(label, |(_, words)| words);
+            hsva.unwrap_or_else(|| words().to_owned())
         }
     }
 }
 
-/// Zig-zags in words: HSVA and MARIN by the side of the first execute, Esso Osaka by the turns of the propeller.
-const IN_WORDS: [(&str, &str); 17] = [
-    ("20_10_s", "20/10 starboard"),
-    ("10_10_s", "10/10 starboard"),
-    ("35_05", "35/5 starboard"),
-    ("30_05", "30/5 starboard"),
-    ("20_05", "20/5 starboard"),
-    ("15_05", "15/5 starboard"),
-    ("10_05", "10/5 starboard"),
-    ("05_01", "5/1 starboard"),
+/// Zig-zags in words: MARIN by the side of the first execute, Esso Osaka by the turns of the propeller.
+const IN_WORDS: [(&str, &str); 9] = [
     ("20", "20/20 port"),
     ("-20", "20/20 starboard"),
     ("10", "10/10 port"),

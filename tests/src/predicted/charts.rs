@@ -11,7 +11,7 @@ use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID}
 use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 
-use super::figure::{ForecastFigure, ForecastGroup, ForecastScore, KINDS};
+use super::figure::{FigureKind, ForecastFigure, ForecastGroup, ForecastScore, KINDS};
 use super::forecast::{PredictedSteady, PredictedTrack};
 use super::turn::TurnTrack;
 
@@ -83,18 +83,18 @@ pub fn overshoots(figures: &[ForecastFigure]) -> PageFigure {
         ];
         let [first, later] = errors(overshoots.iter().filter(|own| own.group == group));
         let words = group.words().trim_start_matches("KVLCC2: ");
-        LayeredPanel { head: Some(format!("{words}: {first}°, {later}°")), layers }
+        LayeredPanel { head: Some(format!("{words}: first\u{a0}{first}°, later\u{a0}{later}°")), layers }
     };
     let groups = ForecastGroup::ALL.into_iter().filter(|group| overshoots.iter().any(|own| own.group == *group));
     let row = PanelRow::new(Ruler::decimal("predicted overshoot [°]").within(2.0, None), 0.28);
     let stack = Stack::multiples(3, Ruler::decimal("measured overshoot [°]"), row, groups.map(panel).collect());
     let caption = "Overshoots of trials that were not fitted, predicted against measured: medians from every single record as \
                    dots, the middle one of them as a mark with its 90 % interval.";
-    let [first, later] = errors(overshoots.iter());
-    let title =
-        format!("KVLCC2: overshoots that were not fitted are predicted to {first}° (first) and {later}° (later)");
-    let note = "Degrees in the title and above the panels: median errors of first and of later overshoots. Bars: 90 % \
-                intervals.";
+    let of_basin =
+        |is_hsva: bool| errors(overshoots.iter().filter(|own| (own.group == ForecastGroup::Hsva) == is_hsva));
+    let [[hsva, _], [marin, _]] = [true, false].map(of_basin);
+    let title = format!("KVLCC2: first overshoots are predicted to {hsva}° (HSVA) and {marin}° (MARIN)");
+    let note = "Degrees: median errors. Bars: 90 % intervals.";
     let data = Panels { title: Some(title), note: Some(note.to_owned()), ..Panels::of(stack) };
     PageFigure::new("overshoots", caption, data)
 }
@@ -144,7 +144,7 @@ pub fn track((number, own): (usize, &PredictedTrack)) -> PageFigure {
 }
 
 /// Steady turns of two ships.
-pub fn steady(ships: &[PredictedSteady], figures: &[ForecastFigure]) -> PageFigure {
+pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
     let stack = |own: &PredictedSteady| {
         let curve = |of: &predict::steady::SteadyCurve| {
             let points = of.rudder.iter().zip(&of.yaw_rate).map(|(rudder, rate)| (to_deg(*rudder), to_deg(*rate)));
@@ -157,9 +157,12 @@ pub fn steady(ships: &[PredictedSteady], figures: &[ForecastFigure]) -> PageFigu
             .iter()
             .map(|ship| Layer::line("most probable ship of a model", curve(ship), Pen::new(HEADING).width(1.3)));
         let mut layers: Vec<Layer> = drawn.chain(probable).collect();
-        let look = Look { colour: RUDDER, marker: Marker::Diamond, dash: SOLID, hollow: false };
+        let mark = |marker, hollow| Look { colour: if hollow { INK } else { RUDDER }, marker, dash: SOLID, hollow };
+        layers.push(
+            Layer::marks("90 % interval of a circle", mark(Marker::Circle, true), own.circles.clone()).within(0.1),
+        );
         let points = own.measured.iter().map(|(rudder, rate)| (*rudder, *rate, None)).collect();
-        layers.push(Layer::marks("measured circle", look, points));
+        layers.push(Layer::marks("measured circle", mark(Marker::Diamond, false), points));
         let panels = vec![LayeredPanel { head: Some(own.title.clone()), layers }];
         let rows = vec![PanelRow::zeroed(Ruler::yaw_rate(), 0.42)];
         // As far to either side, whatever is cut.
@@ -169,12 +172,13 @@ pub fn steady(ships: &[PredictedSteady], figures: &[ForecastFigure]) -> PageFigu
     let stacks = ships.iter().map(stack).collect();
     let caption = "Steady turns: the yaw rate that belongs to every rudder angle up to 38°, as the most probable ship of each \
                    model and drawn ships have it, and measured circles, those of the Esso Osaka at 10 turns of the \
-                   propeller a second. A line ends where the ship has no faster steady turn.";
+                   propeller a second, with the 90 % intervals that the same models give them, side by side. A line ends where \
+                   the ship has no faster steady turn.";
     let left_out: usize = ships.iter().map(|own| own.left_out).sum();
     let note = format!("Models with which no circle could be sailed are left out: {left_out}.");
-    let rates: Vec<&ForecastFigure> = figures.iter().filter(|own| own.name == "steady_rate_deg_s").collect();
-    let held = rates.iter().filter(|own| own.compared.inside90).count();
-    let title = format!("Steady turns: 90 % intervals hold {held} of {} measured yaw rates", rates.len());
+    let held: usize = ships.iter().map(|own| own.held).sum();
+    let all: usize = ships.iter().map(|own| own.circles.len()).sum();
+    let title = format!("Steady turns: {held} of {all} intervals hold the measured yaw rate");
     PageFigure::new(
         "steady-turns",
         caption,
@@ -185,17 +189,6 @@ pub fn steady(ships: &[PredictedSteady], figures: &[ForecastFigure]) -> PageFigu
 /// A value with its interval, where it has one.
 type WithInterval = (f64, Option<[f64; 2]>);
 
-/// What intervals hold of zig-zags and of turning circles, in words.
-fn by_trial(figures: &[ForecastFigure]) -> String {
-    let held = |is_circle: bool| {
-        let is_of = |own: &&ForecastFigure| own.kind().is_some() && own.trial.starts_with("turn") == is_circle;
-        let own: Vec<&ForecastFigure> = figures.iter().filter(is_of).collect();
-        let inside = own.iter().filter(|own| own.compared.inside90).count();
-        fixed(100.0 * inside as f64 / own.len().max(1) as f64, 0)
-    };
-    format!("zig-zags {} %, of circles {} %", held(false), held(true))
-}
-
 /// Share that 90 % intervals hold beside their width, kind by kind.
 pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
     let score = |group: ForecastGroup, kind| {
@@ -203,6 +196,16 @@ pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
             figures.iter().filter(|own| own.group == group && own.kind() == Some(kind)).collect();
         ForecastScore::of(&of).filter(|score| score.count >= FEWEST)
     };
+    // Of zig-zags and of circles what all their intervals hold, the kinds that are judged, and counts.
+    let parts = [("zig-zags", false), ("circles", true)].map(|(name, is_circle)| {
+        let is_of = |own: &&ForecastFigure| own.kind().is_some() && own.trial.starts_with("turn") == is_circle;
+        let own: Vec<&ForecastFigure> = figures.iter().filter(is_of).collect();
+        let is_there = |kind: &FigureKind| own.iter().any(|own| own.kind() == Some(*kind));
+        let inside = own.iter().filter(|own| own.compared.inside90).count();
+        let share = fixed(100.0 * inside as f64 / own.len().max(1) as f64, 0);
+        let kinds: Vec<FigureKind> = KINDS.into_iter().filter(is_there).collect();
+        (format!("{name} {share} %"), kinds, [inside, own.len()])
+    });
     let rows = |item: &dyn Fn(&ForecastScore) -> WithInterval| -> Vec<Vec<RowItem>> {
         let of_kind = |kind| {
             let marks = ForecastGroup::ALL.into_iter().enumerate().filter_map(|(number, group)| {
@@ -212,7 +215,9 @@ pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
             });
             marks.collect()
         };
-        KINDS.into_iter().map(of_kind).collect()
+        let part =
+            |kinds: &[FigureKind]| [vec![RowItem::heading()], kinds.iter().copied().map(of_kind).collect()].concat();
+        parts.iter().flat_map(|(_, kinds, _)| part(kinds)).collect()
     };
     let held = RowsColumn {
         x: Ruler::decimal("held by the 90 % interval [%]"),
@@ -226,17 +231,19 @@ pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
         rows: rows(&|own| (100.0 * own.relative_width, None)),
         ..RowsColumn::default()
     };
-    let names = KINDS.into_iter().map(|kind| kind.words.to_owned()).collect();
+    let named = parts.iter().flat_map(|(held, kinds, _)| {
+        [format!("{held}:")].into_iter().chain(kinds.iter().map(|kind| kind.words.to_owned()))
+    });
+    let names = named.collect();
     let caption = format!(
         "How often the 90 % interval holds what was measured, with the 95 % interval of that share (Wilson, as if all \
          figures were independent), and the median width of the intervals. Grey: 85 to 95 %, which was to be reached. \
          What rests on fewer than {FEWEST} figures is left out."
     );
-    let judged = || figures.iter().filter(|own| own.kind().is_some());
-    let inside = judged().filter(|own| own.compared.inside90).count();
-    let all = judged().count();
-    let title = format!("90 % intervals hold {inside} of {all} predicted figures: of {}", by_trial(figures));
-    let note = Some(String::from("Grey: 85 to 95 %. Bars: 95 % intervals."));
-    let data = NamedRows { title: Some(title), names, columns: vec![held, width], note };
+    let [inside, all] = [0, 1].map(|place| parts.iter().map(|(.., counts)| counts[place]).sum::<usize>());
+    let [(zig_zags, ..), (circles, ..)] = &parts;
+    let title = format!("90 % intervals hold {inside} of {all} predicted figures: of {zig_zags}, of {circles}");
+    let note = format!("{all} figures; a mark rests on {FEWEST} or more. Grey: 85 to 95 %. Bars: 95 % intervals.");
+    let data = NamedRows { title: Some(title), names, columns: vec![held, width], note: Some(note) };
     PageFigure::new("coverage", caption, data)
 }

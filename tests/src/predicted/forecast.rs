@@ -55,7 +55,14 @@ pub struct PredictedSteady {
     pub left_out: usize,
     /// Rudder, deg, and yaw rate, deg/s, of measured circles.
     pub measured: Vec<(f64, f64)>,
+    /// What each model says of each of them: median with its 90 % interval, models beside each other.
+    pub circles: Vec<(f64, f64, Option<[f64; 2]>)>,
+    /// How many of these intervals hold what was measured.
+    pub held: usize,
 }
+
+/// Distance of the intervals of several models at one rudder, deg.
+const BESIDE: f64 = 1.1;
 
 /// Everything that is predicted.
 #[derive(Default)]
@@ -180,17 +187,24 @@ fn steady(
         probable.extend(curves.next());
         drawn.extend(curves.take(FIGURE / sailed.len()));
     }
-    let rate_of = |name: &str| {
-        let own = figures.iter().find(|own| own.trial == name && own.name == "steady_rate_deg_s")?;
-        Some(own.compared.measured)
-    };
-    let measured = circles.iter().filter_map(|(name, trial)| {
-        let turn = HeldTurn::of(trial)?;
-        let faster = first.particulars()?.speed / trial.particulars()?.speed;
-        Some((to_deg(turn.side * turn.rudder), turn.side * faster * rate_of(name)?))
-    });
+    let (mut measured, mut intervals, mut held) = (Vec::new(), Vec::new(), 0);
+    for (name, trial) in circles {
+        let facts = (HeldTurn::of(trial), first.particulars(), trial.particulars());
+        let (Some(turn), Some(wanted), Some(own)) = facts else { continue };
+        // Yaw rates go with the speed; a turn to port has a negative one.
+        let (rudder, factor) = (to_deg(turn.side * turn.rudder), turn.side * wanted.speed / own.speed);
+        let rates = || figures.iter().filter(|own| own.trial == *name && own.name == "steady_rate_deg_s");
+        measured.extend(rates().next().map(|own| (rudder, factor * own.compared.measured)));
+        for (number, ship) in sailed.iter().enumerate() {
+            let Some(own) = rates().find(|own| own.fitted == ship.fitted).map(|own| &own.compared) else { continue };
+            let aside = BESIDE * (number as f64 - 0.5 * (sailed.len() - 1) as f64);
+            let interval = own.interval.ci90.map(|end| factor * end);
+            intervals.push((rudder + aside, factor * own.interval.median, Some(interval)));
+            held += usize::from(own.inside90);
+        }
+    }
     let left_out = ships.len() - sailed.len();
-    Ok(PredictedSteady { title, probable, drawn, left_out, measured: measured.collect() })
+    Ok(PredictedSteady { title, probable, drawn, left_out, measured, circles: intervals, held })
 }
 
 /// Every record of a set that is named, read.

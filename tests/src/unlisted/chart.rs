@@ -50,7 +50,7 @@ pub fn outcomes(truths: &[Truth], outcomes: &[Outcome]) -> PageFigure {
     let unlisted = right(|kind| matches!(kind, Kind::Unlisted { .. }));
     let map = CellMap {
         title: Some(format!("Known effects in other formulas: {listed} trials; unknown effects: {unlisted}")),
-        titles: [String::from("said by the trace"), String::new()],
+        titles: [String::from("said by the trace"), String::from("truth")],
         columns: SAID.iter().map(|(words, _)| (*words).to_owned()).collect(),
         rows: (truths.iter())
             .map(|truth| {

@@ -10,7 +10,7 @@ use crate::legend::{KeyEntry, KeySample};
 use crate::lines::wrap;
 use crate::number::{self, MISSING, significant};
 use crate::paint::Paint;
-use crate::palette::{DOTTED, Dash, GRID, HEADING, INK, PAPER, SOLID};
+use crate::palette::{DOTTED, GRID, HEADING, INK, PAPER, SOLID};
 use crate::panel::Panel;
 use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
 use crate::theme::Theme;
@@ -94,11 +94,9 @@ impl CellMap {
 /// Draws the panels in rows of as many as fit.
 pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
-    let box_of = |dash: Dash| KeySample::Line(Stroke::solid(INK, 1.4 * theme.line).dashed(dash));
-    let outlines =
-        [(Outline::Right, SOLID, "outlined: right"), (Outline::Alias, DOTTED, "mostly cannot be told from it")];
+    let outlines = [(Outline::Right, SOLID, "right"), (Outline::Alias, DOTTED, "mostly cannot be told from it")];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
-    sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(box_of(dash), *name)).collect::<Vec<_>>());
+    sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(KeySample::Outline(dash), *name)).collect::<Vec<_>>());
     let count = data.panels.len().max(1);
     let two_lines = data.is_shares() && !theme.is_narrow() && data.all().any(|cell| bracket(cell).is_some());
     let pitch = match (data.is_shares(), theme.is_narrow()) {
@@ -108,9 +106,14 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
     };
     let lines = data.rows.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len()).max();
     let pitch = pitch.max((0.3 + 1.15 * lines.unwrap_or(1) as f64) * theme.tick_font);
-    let height = (data.rows.len().max(1) as f64 + 0.2) * pitch;
-    let column = AxisSide::new(PlotAxis::columns(data.columns.clone()), data.titles[0].clone());
-    let row = (AxisSide::new(PlotAxis::names(data.rows.clone()), data.titles[1].clone()), height);
+    let count_of = |names: &[String]| names.len().max(1) as f64;
+    let height = count_of(&data.rows) * pitch;
+    // The frame stands at the edges of the cells.
+    let framed = |axis: PlotAxis, names: &[String]| axis.between(-0.5, count_of(names) - 0.5);
+    let columns = framed(PlotAxis::columns(data.columns.clone()), &data.columns);
+    let rows = framed(PlotAxis::names(data.rows.clone()), &data.rows);
+    let (column, row) =
+        (AxisSide::new(columns, data.titles[0].clone()), (AxisSide::new(rows, data.titles[1].clone()), height));
     let heads = data.panels.iter().map(|(head, _)| Some(KeyEntry::new(KeySample::Nothing, head.clone()?)));
     let heads = heads.collect();
     let range = Range::of(data);

@@ -29,6 +29,8 @@ pub enum RowKind {
     Bar(Look, f64),
     /// A line from the bottom to the top of the row.
     Limit(f64),
+    /// No value: the name of the row is a heading of those below it.
+    Heading,
     /// A distribution: value and density, ascending; its quantiles 2.5, 25, 50, 75 and 97.5 %.
     Violin(Look, Vec<(f64, f64)>, [f64; 5]),
 }
@@ -66,6 +68,11 @@ impl RowItem {
         Self { name, kind, place: RowPlace::Aside(0.0), soft: false, text: None }
     }
 
+    /// A row that is a heading.
+    pub fn heading() -> Vec<Self> {
+        vec![Self::new("", RowKind::Heading)]
+    }
+
     /// A mark that stands below those before it in its row.
     pub fn below(name: impl Into<String>, look: Look, value: f64, interval: Option<[f64; 2]>) -> Self {
         Self { place: RowPlace::Below, ..Self::new(name, RowKind::Mark(look, value, interval)) }
@@ -76,12 +83,12 @@ impl RowItem {
         Self { soft: true, ..self }
     }
 
-    /// Whether it stands for a value, and not only for an interval of one.
+    /// Whether it stands for a value, and not only for an interval of one; a heading needs none.
     fn is_value(&self) -> bool {
         match self.kind {
             RowKind::Mark(_, value, _) | RowKind::Bar(_, value) => !value.is_nan(),
             RowKind::Limit(_) | RowKind::Thin(_) | RowKind::Thick(_) => false,
-            RowKind::Violin(..) => true,
+            RowKind::Violin(..) | RowKind::Heading => true,
         }
     }
 
@@ -96,6 +103,7 @@ impl RowItem {
             RowKind::Thin(_) => KeySample::Line(Stroke::solid(HEADING, theme.line)),
             RowKind::Thick(_) => KeySample::Line(thick_stroke(theme)),
             RowKind::Limit(_) => KeySample::Upright(limit_stroke(theme)),
+            RowKind::Heading => KeySample::Nothing,
         }
     }
 
@@ -109,6 +117,7 @@ impl RowItem {
             RowKind::Thin(ends) | RowKind::Thick(ends) => ends.to_vec(),
             RowKind::Bar(_, value) => vec![0.0, *value],
             RowKind::Limit(value) => vec![*value],
+            RowKind::Heading => Vec::new(),
             RowKind::Violin(_, _, quantiles) => {
                 // The middle of a distribution is seen before its ends are.
                 let rooms = [(1, BOXES), (2, MEDIANS), (3, BOXES)];
@@ -256,7 +265,7 @@ fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (column, pitch): (&Row
         panel.vertical(scene, Layer::Data, *value, pen.stroke(theme));
     }
     let mut beyond = false;
-    let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..));
+    let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..) | RowKind::Heading);
     let is_estimated = column.rows.iter().flatten().all(is_estimate);
     for (row, items) in column.rows.iter().enumerate() {
         let Some(middle) = panel.up(row as f64) else { continue };
@@ -305,7 +314,10 @@ fn draw_item(
             let mut beyond = false;
             if let Some(ends) = interval {
                 let cap = 0.9 * theme.marker;
-                let inside = |x: &f64| panel.rect.contains((*x, y));
+                // Ends behind the mark itself would give it another shape.
+                let middle = panel.across(*value);
+                let is_apart = |x: &f64| middle.is_none_or(|middle| (x - middle).abs() > 1.1 * theme.marker);
+                let inside = |x: &f64| panel.rect.contains((*x, y)) && is_apart(x);
                 for x in ends.iter().filter_map(|end| panel.across(*end)).filter(inside).filter(|_| is_alone) {
                     scene.line(Layer::Data, [(x, y - cap), (x, y + cap)], stroke);
                 }
@@ -323,6 +335,7 @@ fn draw_item(
             }
             false
         }
+        RowKind::Heading => false,
         RowKind::Violin(look, density, quantiles) => {
             violin(panel, scene, theme, (look, density, quantiles), (y, pitch))
         }
@@ -354,7 +367,8 @@ fn mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, (look, value, y): (&Lo
 /// Half the height of a violin, as a share of its row.
 const HALF: f64 = 0.42;
 
-/// Density, box of the quartiles, whiskers and median; tells whether it reaches beyond the axis.
+/// Density, box of the quartiles, whiskers and median, the ends of the whiskers as numbers beside what is too narrow to
+/// be seen; tells whether it reaches beyond the axis.
 fn violin(
     panel: &Panel,
     scene: &mut Canvas,
@@ -383,6 +397,17 @@ fn violin(
     let corners = [(left, y - half), (right, y - half), (right, y + half), (left, y + half)];
     scene.fill(Layer::Data, corners, look.colour, 0.85);
     if rect.contains((places[2], y)) {
+        if places[4] - places[0] < 2.0 * theme.marker {
+            let ends = format!("{} to {}", significant(q[0], 2), significant(q[4], 2));
+            let text = TextLine::new(ends, theme.small_font);
+            let apart = 1.6 * theme.marker;
+            let (anchor, x) = match places[2] + apart + text.width() < rect.right() {
+                true => (Anchor::Start, places[2] + apart),
+                false => (Anchor::End, places[2] - apart),
+            };
+            let place = (x, y + text.centring());
+            scene.text_on_ground(Layer::Note, place, text.anchor(anchor));
+        }
         scene.disc(Layer::Data, (places[2], y), 0.55 * theme.marker + 0.4 * theme.thin, INK, 1.0);
         scene.disc(Layer::Data, (places[2], y), 0.55 * theme.marker, PAPER, 1.0);
     }

@@ -152,7 +152,7 @@ impl<'a> ComparedMethods<'a> {
             ErrorMeasure::Rms if self.over_bound => of_both("rms error of # / Cramér–Rao bound").to_vec(),
             ErrorMeasure::Rms => ["K", "T"].map(|symbol| rms_title(symbol, self.to_nearest)).to_vec(),
             ErrorMeasure::Coverage => {
-                [of_both("95 % intervals that hold # [%]"), of_both("median interval width of # [%]")].concat()
+                [of_both("95 % intervals that hold # [%]"), of_both("median width for # [%]")].concat()
             }
             ErrorMeasure::Failures => vec!["trials without answer [%]".to_owned()],
             ErrorMeasure::Validation => vec!["median error of an unseen heading [°]".to_owned()],

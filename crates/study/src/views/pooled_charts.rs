@@ -87,7 +87,8 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
         let trials = summary.record(detail.cell, 0).map_or(0, |record| record.trials);
         let known = columns.iter().flat_map(|column| &column.rows).any(|row| !row.is_empty());
         let names = (0..detail.methods.len()).map(|method| design.methods[method].label.clone()).collect();
-        let note = Some(String::from("Shape: density. Box: quartiles, with the median. Line: 2.5 to 97.5 %."));
+        let note =
+            Some(String::from("Shape: density. Box: quartiles, with the median. Line, or numbers: 2.5 to 97.5 %."));
         (trials >= 10 && known).then_some((detail.cell, NamedRows { title: None, names, columns, note }))
     };
     summary.details.iter().filter_map(of_cell).collect()
@@ -189,26 +190,40 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
 /// half of the widths; nothing without predictions.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
-    let dot = |of: Of, outer: usize, (cell, method): (usize, usize)| {
-        let lines = summary.predictions.iter().filter(|line| (line.cell, line.method) == (cell, method));
-        let mut shares: Vec<f64> = lines.map(of).collect();
-        shares.sort_by(f64::total_cmp);
-        let last = shares.len().checked_sub(1)?;
-        let cut = last * outer / 100;
-        let mean = shares.iter().sum::<f64>() / shares.len() as f64;
-        let middle = if outer > 0 { 0.5 * (shares[last / 2] + shares[last.div_ceil(2)]) } else { mean };
-        let origin = origin(design, method);
-        Some(RowItem::below(origin.label(), origin.look(), middle, Some([shares[cut], shares[last - cut]])))
-    };
+    let several = design.cells.len() > 1;
     let column = |x: Ruler, of: Of, outer: usize, lines: Vec<(String, Pen, f64)>| {
-        let row = |cell: usize| (0..design.methods.len()).filter_map(|method| dot(of, outer, (cell, method))).collect();
-        RowsColumn { x, rows: (0..design.cells.len()).map(row).collect(), lines, ..RowsColumn::default() }
+        // Mean or median, and the ends of what lies around it.
+        let summed = |mut values: Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            let last = values.len().checked_sub(1)?;
+            let cut = last * outer / 100;
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            let middle = if outer > 0 { 0.5 * (values[last / 2] + values[last.div_ceil(2)]) } else { mean };
+            Some((middle, [values[cut], values[last - cut]]))
+        };
+        let of_method = |method: usize| -> Vec<Option<RowItem>> {
+            let origin = origin(design, method);
+            let item = |value, bar| RowItem::below(origin.label(), origin.look(), value, bar);
+            let is_of = |line: &&PredictionSummary, cell| (line.cell, line.method) == (cell, method);
+            let of_cell = |cell| summed(summary.predictions.iter().filter(|line| is_of(line, cell)).map(of).collect());
+            let cells: Vec<_> = (0..design.cells.len()).map(of_cell).collect();
+            // The last row is of the marks of all others.
+            let all = summed(cells.iter().flatten().map(|(value, _)| *value).collect()).filter(|_| several);
+            let rows = cells.into_iter().map(|own| own.map(|(value, bar)| item(value, Some(bar))));
+            rows.chain(several.then(|| all.map(|(value, _)| item(value, None)))).collect()
+        };
+        let columns: Vec<_> = (0..design.methods.len()).map(of_method).collect();
+        let row = |row: usize| columns.iter().filter_map(|column| column[row].clone()).collect();
+        let rows = (0..design.cells.len() + usize::from(several)).map(row).collect();
+        RowsColumn { x, rows, lines, ..RowsColumn::default() }
     };
+    let names = design.cells.iter().map(|cell| cell.labels.join(", "));
+    let names = names.chain(several.then(|| String::from("all"))).collect();
     let inside = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
     let width = |line: &PredictionSummary| 100.0 * line.width() / line.truth().abs();
     (!summary.predictions.is_empty()).then(|| NamedRows {
         title: None,
-        names: design.cells.iter().map(|cell| cell.labels.join(", ")).collect(),
+        names,
         columns: vec![
             column(
                 Ruler::new("90 % intervals that hold [%]", Division::Percent),

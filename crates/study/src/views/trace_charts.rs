@@ -73,7 +73,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     let cells = rows.iter().map(|(_, lines)| columns.iter().map(|id| cell(lines, id)).collect());
     CellMap {
         title: None,
-        titles: [String::from("named by the trace"), String::new()],
+        titles: [String::from("named by the trace"), String::from("missing")],
         columns: columns.iter().map(|id| id.replace('_', " ")).collect(),
         // No line ends within the count.
         rows: rows.iter().map(|(name, lines)| format!("{name} (n\u{a0}=\u{a0}{})", trials(lines))).collect(),

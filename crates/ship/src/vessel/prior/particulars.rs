@@ -71,118 +71,77 @@ impl Particular {
     }
 }
 
+/// How a particular is read, and how it is put.
+type ParticularAccess = (fn(&HullParticulars) -> Option<f64>, fn(&mut HullParticulars, f64));
+
+/// ParticularAccess to a field that may be missing, or to one that is zero where it is.
+macro_rules! access {
+    (optional $field:ident) => {
+        (|own| own.$field, |own, value| own.$field = Some(value))
+    };
+    (needed $field:ident) => {
+        (|own| (own.$field != 0.0).then_some(own.$field), |own, value| own.$field = value)
+    };
+}
+
+/// A particular from key, symbol, unit and meaning, its range, its access and what it is in a form.
+const fn particular(
+    [key, symbol, unit, meaning]: [&'static str; 4],
+    range: [f64; 2],
+    (get, set): ParticularAccess,
+    of_form: Option<fn(&HullDimensions) -> f64>,
+) -> Particular {
+    Particular { key, symbol, unit, meaning, range, get, set, of_form }
+}
+
 /// Every particular.
 pub const PARTICULARS: [Particular; 11] = [
-    Particular {
-        key: "length-m",
-        symbol: "L",
-        unit: "m",
-        meaning: "Length between perpendiculars",
-        range: [0.1, 1000.0],
-        get: |own| (own.length != 0.0).then_some(own.length),
-        set: |own, value| own.length = value,
-        of_form: None,
-    },
-    Particular {
-        key: "beam-m",
-        symbol: "B",
-        unit: "m",
-        meaning: "Beam",
-        range: [0.01, 200.0],
-        get: |own| own.beam,
-        set: |own, value| own.beam = Some(value),
-        of_form: Some(|form| form.B),
-    },
-    Particular {
-        key: "draught-m",
-        symbol: "d",
-        unit: "m",
-        meaning: "Mean draught",
-        range: [0.005, 50.0],
-        get: |own| own.draught,
-        set: |own, value| own.draught = Some(value),
-        of_form: Some(|form| form.d),
-    },
-    Particular {
-        key: "block-coefficient",
-        symbol: "C_b",
-        unit: "1",
-        meaning: "Block coefficient",
-        range: [0.3, 1.0],
-        get: |own| own.block_coefficient,
-        set: |own, value| own.block_coefficient = Some(value),
-        of_form: Some(|form| form.Cb),
-    },
-    Particular {
-        key: "speed-m-s",
-        symbol: "U",
-        unit: "m/s",
-        meaning: "Approach speed",
-        range: [0.01, 100.0],
-        get: |own| (own.speed != 0.0).then_some(own.speed),
-        set: |own, value| own.speed = value,
-        of_form: None,
-    },
-    Particular {
-        key: "rudder-area-m2",
-        symbol: "A_R",
-        unit: "m²",
-        meaning: "Area of the rudder, of all rudders together",
-        range: [1e-5, 500.0],
-        get: |own| own.rudder_area,
-        set: |own, value| own.rudder_area = Some(value),
-        of_form: Some(|form| form.AR),
-    },
-    Particular {
-        key: "rudder-height-m",
-        symbol: "H_R",
-        unit: "m",
-        meaning: "Height of the rudder",
-        range: [0.005, 50.0],
-        get: |own| own.rudder_height,
-        set: |own, value| own.rudder_height = Some(value),
-        of_form: Some(|form| form.HR),
-    },
-    Particular {
-        key: "propeller-diameter-m",
-        symbol: "D_P",
-        unit: "m",
-        meaning: "Diameter of the propeller",
-        range: [0.005, 15.0],
-        get: |own| own.propeller_diameter,
-        set: |own, value| own.propeller_diameter = Some(value),
-        of_form: Some(|form| form.DP),
-    },
-    Particular {
-        key: "propeller-rps",
-        symbol: "n",
-        unit: "1/s",
-        meaning: "Revolutions of the propeller at the approach speed",
-        range: [0.05, 100.0],
-        get: |own| own.propeller_rate,
-        set: |own, value| own.propeller_rate = Some(value),
-        of_form: None,
-    },
-    Particular {
-        key: "displacement-t",
-        symbol: "Δ",
-        unit: "t",
-        meaning: "Displacement",
-        range: [1e-4, 1e6],
-        get: |own| own.displacement.map(|mass| mass / TONNE),
-        set: |own, value| own.displacement = Some(value * TONNE),
-        of_form: None,
-    },
-    Particular {
-        key: "x-g-m",
-        symbol: "x_G",
-        unit: "m",
-        meaning: "Centre of gravity, forward of midship",
-        range: [-100.0, 100.0],
-        get: |own| own.x_g,
-        set: |own, value| own.x_g = Some(value),
-        of_form: Some(|form| form.xG),
-    },
+    particular(["length-m", "L", "m", "Length between perpendiculars"], [0.1, 1000.0], access!(needed length), None),
+    particular(["beam-m", "B", "m", "Beam"], [0.01, 200.0], access!(optional beam), Some(|form| form.B)),
+    particular(["draught-m", "d", "m", "Mean draught"], [0.005, 50.0], access!(optional draught), Some(|form| form.d)),
+    particular(
+        ["block-coefficient", "C_b", "1", "Block coefficient"],
+        [0.3, 1.0],
+        access!(optional block_coefficient),
+        Some(|form| form.Cb),
+    ),
+    particular(["speed-m-s", "U", "m/s", "Approach speed"], [0.01, 100.0], access!(needed speed), None),
+    particular(
+        ["rudder-area-m2", "A_R", "m²", "Area of the rudder, of all rudders together"],
+        [1e-5, 500.0],
+        access!(optional rudder_area),
+        Some(|form| form.AR),
+    ),
+    particular(
+        ["rudder-height-m", "H_R", "m", "Height of the rudder"],
+        [0.005, 50.0],
+        access!(optional rudder_height),
+        Some(|form| form.HR),
+    ),
+    particular(
+        ["propeller-diameter-m", "D_P", "m", "Diameter of the propeller"],
+        [0.005, 15.0],
+        access!(optional propeller_diameter),
+        Some(|form| form.DP),
+    ),
+    particular(
+        ["propeller-rps", "n", "1/s", "Revolutions of the propeller at the approach speed"],
+        [0.05, 100.0],
+        access!(optional propeller_rate),
+        None,
+    ),
+    particular(
+        ["displacement-t", "Δ", "t", "Displacement"],
+        [1e-4, 1e6],
+        (|own| own.displacement.map(|mass| mass / TONNE), |own, value| own.displacement = Some(value * TONNE)),
+        None,
+    ),
+    particular(
+        ["x-g-m", "x_G", "m", "Centre of gravity, forward of midship"],
+        [-100.0, 100.0],
+        access!(optional x_g),
+        Some(|form| form.xG),
+    ),
 ];
 
 /// A ratio that ships have, with the particular that it stands in for.
