@@ -99,9 +99,9 @@ impl PlotAxis {
         Self::new(-0.6, names.len().max(1) as f64 - 0.4, AxisScale::Names(names))
     }
 
-    /// A list of short names along a horizontal axis, one unit each, the first at the left.
+    /// Short names along a horizontal axis, one unit each, the first at the left; the axis ends where they do.
     pub(crate) fn columns(names: Vec<String>) -> Self {
-        Self::new(-0.6, names.len().max(1) as f64 - 0.4, AxisScale::Columns(names))
+        Self::new(-0.5, names.len().max(1) as f64 - 0.5, AxisScale::Columns(names))
     }
 
     /// The same axis with ticks at the multiples of `step`, as long as there are two.

@@ -25,6 +25,11 @@ pub(crate) enum KeySample {
     Hull(Paint),
 }
 
+/// How cells are outlined.
+pub(crate) fn outline_stroke(dash: Dash, theme: &Theme) -> Stroke {
+    Stroke::solid(INK, 1.4 * theme.line).dashed(dash)
+}
+
 /// A sample and its name.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct KeyEntry {
@@ -104,7 +109,7 @@ impl KeyEntry {
                 let [left, right] = [centre.0 - half, centre.0 + half];
                 let [top, bottom] = [middle - half, middle + half];
                 let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-                scene.line(Layer::Note, corners, Stroke::solid(INK, 1.4 * theme.line).dashed(dash));
+                scene.line(Layer::Note, corners, outline_stroke(dash, theme));
             }
             KeySample::Hull(colour) => scene.hull(Layer::Note, centre, (1.0, 0.0), 1.6 * theme.small_font, colour),
         }

@@ -6,7 +6,7 @@ use super::panels::Division;
 use crate::axis::PlotAxis;
 use crate::figure::Drawing;
 use crate::layout::{AxisSide, Grid, NAMES, Sheet};
-use crate::legend::{KeyEntry, KeySample};
+use crate::legend::{KeyEntry, KeySample, outline_stroke};
 use crate::lines::wrap;
 use crate::number::{self, MISSING, significant};
 use crate::paint::Paint;
@@ -106,14 +106,11 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
     };
     let lines = data.rows.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len()).max();
     let pitch = pitch.max((0.3 + 1.15 * lines.unwrap_or(1) as f64) * theme.tick_font);
-    let count_of = |names: &[String]| names.len().max(1) as f64;
-    let height = count_of(&data.rows) * pitch;
+    let count_of_rows = data.rows.len().max(1) as f64;
     // The frame stands at the edges of the cells.
-    let framed = |axis: PlotAxis, names: &[String]| axis.between(-0.5, count_of(names) - 0.5);
-    let columns = framed(PlotAxis::columns(data.columns.clone()), &data.columns);
-    let rows = framed(PlotAxis::names(data.rows.clone()), &data.rows);
-    let (column, row) =
-        (AxisSide::new(columns, data.titles[0].clone()), (AxisSide::new(rows, data.titles[1].clone()), height));
+    let rows = PlotAxis::names(data.rows.clone()).between(-0.5, count_of_rows - 0.5);
+    let column = AxisSide::new(PlotAxis::columns(data.columns.clone()), data.titles[0].clone());
+    let row = (AxisSide::new(rows, data.titles[1].clone()), count_of_rows * pitch);
     let heads = data.panels.iter().map(|(head, _)| Some(KeyEntry::new(KeySample::Nothing, head.clone()?)));
     let heads = heads.collect();
     let range = Range::of(data);
@@ -247,9 +244,8 @@ fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (x, y): (usize, usize)
         scene.line(Layer::Data, [(right, top), (right, bottom)], hair);
     }
     if let Some(outline) = cell.outline {
-        let width = 1.4 * theme.line;
-        let [a, b, c, d] = corners(0.5 * width);
-        let stroke = Stroke::solid(INK, width).dashed(if outline == Outline::Right { SOLID } else { DOTTED });
+        let stroke = outline_stroke(if outline == Outline::Right { SOLID } else { DOTTED }, theme);
+        let [a, b, c, d] = corners(0.5 * stroke.width);
         scene.line(Layer::Frame, [a, b, c, d, a, b], stroke);
     }
     if range.is_shares && opacity == 0.0 {

@@ -197,9 +197,9 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
             values.sort_by(f64::total_cmp);
             let last = values.len().checked_sub(1)?;
             let cut = last * outer / 100;
+            let ends = [values[cut], values[last - cut]];
             let mean = values.iter().sum::<f64>() / values.len() as f64;
-            let middle = if outer > 0 { 0.5 * (values[last / 2] + values[last.div_ceil(2)]) } else { mean };
-            Some((middle, [values[cut], values[last - cut]]))
+            Some((if outer > 0 { median(&mut values)? } else { mean }, ends))
         };
         let of_method = |method: usize| -> Vec<Option<RowItem>> {
             let origin = origin(design, method);
