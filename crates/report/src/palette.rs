@@ -182,13 +182,20 @@ pub fn method_ids() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(id, _)| *id)
 }
 
-/// A variant has the colour of its method, a hollow marker and a dash of its own; of estimators outside each has its
-/// own colour too.
+/// A variant has a shade of the colour of its method, a hollow marker and a dash of its own; of estimators outside each
+/// has its own colour.
 fn variant_look(method: &str, number: usize) -> Look {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
     let (marker, dash) = (MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()]);
-    let colour = if method == EXTERNAL { OUTSIDE[number % OUTSIDE.len()] } else { method_look(method).colour };
+    let shade = |part: u8| (f64::from(part) * 0.6_f64.powi((number % 3) as i32)) as u8;
+    let colour = match method {
+        EXTERNAL => OUTSIDE[number % OUTSIDE.len()],
+        method => {
+            let Paint(red, green, blue) = method_look(method).colour;
+            Paint(shade(red), shade(green), shade(blue))
+        }
+    };
     Look { marker, dash, hollow: true, colour }
 }
 
@@ -233,10 +240,11 @@ mod tests {
     }
 
     #[test]
-    fn variants_keep_the_colour_of_their_method() {
+    fn variants_have_shades_of_the_colour_of_their_method() {
         let variant = |number| CurveOrigin::Variant { label: "other".into(), method: "srivc".into(), number }.look();
         let method = CurveOrigin::Method("srivc".into()).look();
-        assert_eq!((variant(0).colour, variant(1).colour), (method.colour, method.colour));
+        assert_eq!(variant(0).colour, method.colour);
+        assert_eq!(variant(1).colour, Paint(0x51, 0x14, 0x33));
         assert!(variant(0).marker != variant(1).marker && variant(0).dash != variant(1).dash);
     }
 

@@ -70,18 +70,20 @@ fn axis_title(task: BenchTask) -> &'static str {
     }
 }
 
-/// Which methods leave less of the fitted records than the reference, as far as chance can be ruled out.
+/// Which methods are better than the reference in which tasks, as far as chance can be ruled out.
 fn finding(boards: &[&Board], reference: &str) -> String {
-    let fitted = boards.iter().find(|board| board.task == BenchTask::Identify);
     let is_better = |standing: &&LeaderboardRow| {
         let upper = standing.ratio.and_then(|ratio| ratio.ci95?[1]);
         upper.is_some_and(|upper| upper < 1.0)
     };
-    let better = fitted.into_iter().flat_map(|board| &board.standings).filter(is_better);
-    match better.map(|standing| standing.method.as_str()).collect::<Vec<_>>()[..] {
-        [] => format!("no method fits clearly better than {reference}"),
-        [only] => format!("only {only} fits clearly better than {reference}"),
-        ref some => format!("{} fit clearly better than {reference}", some.join(" and ")),
+    let of_task = |board: &&Board| {
+        let better = board.standings.iter().filter(is_better).map(|standing| standing.method.as_str());
+        let better = better.collect::<Vec<_>>().join(" and ");
+        (!better.is_empty()).then(|| format!("{better} ({})", axis_title(board.task)))
+    };
+    match boards.iter().filter_map(of_task).collect::<Vec<_>>()[..] {
+        [] => format!("no method is clearly better than {reference}"),
+        ref some => format!("clearly better than {reference}: {}", some.join(", ")),
     }
 }
 

@@ -85,6 +85,8 @@ const EXACT: f64 = 1e-4;
 
 /// What is said of intervals.
 pub const BARS: &str = "Bars: 95 % intervals; none seen: within the mark.";
+/// What is said of the share that intervals promise to hold.
+const LINE: &str = "Line: 95 %.";
 /// What is said of errors that are worth nothing.
 pub const CUT_NOTE: &str = "Arrows: rms error of more than 100 % of the true value.";
 /// What is said of errors that are exact.
@@ -225,7 +227,8 @@ impl<'a> ComparedMethods<'a> {
         let is_cut = figures.iter().any(|(_, is_worthless)| *is_worthless);
         let is_exact = self.measure == ErrorMeasure::Rms && figures.iter().any(|(figure, _)| figure.value == EXACT);
         let has_bars = figures.iter().any(|(figure, is_worthless)| figure.ci95.is_some() && !is_worthless);
-        let remarks = [(has_bars, BARS), (is_cut, CUT_NOTE), (is_exact, EXACT_NOTE)];
+        let is_share = self.measure == ErrorMeasure::Coverage;
+        let remarks = [(is_share, LINE), (has_bars, BARS), (is_cut, CUT_NOTE), (is_exact, EXACT_NOTE)];
         let said: Vec<&str> = remarks.into_iter().filter(|(holds, _)| *holds).map(|(_, remark)| remark).collect();
         (!said.is_empty()).then(|| said.join(" "))
     }

@@ -1,7 +1,7 @@
 //! The figure that stands for a study: its finding above it, T alone where a figure shows errors of K and of T, the
 //! methods it is about in colour; the others are left out of curves, and grey in rows.
 
-use report::figures::{LayerKind, NamedRows, Panels, Plot, RowItem, RowKind, RowPlace, Stack};
+use report::figures::{Layer, LayerKind, LayeredPanel, NamedRows, Panels, Plot, RowItem, RowKind, RowPlace, Stack};
 use report::palette::{Look, Marker, QUIET};
 use report::{CurveOrigin, palette::SOLID};
 
@@ -33,7 +33,8 @@ fn is_of_k(title: &str) -> bool {
 }
 
 fn of_panels(data: &mut Panels, about: &[String]) {
-    let mut others: Vec<String> = Vec::new();
+    let (mut others, mut said) = (Vec::new(), Vec::new());
+    let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
         if stack.across.is_some() {
             // Small multiples are of one method each.
@@ -46,20 +47,30 @@ fn of_panels(data: &mut Panels, about: &[String]) {
             let left_out = panel.layers.extract_if(.., |layer| is_quiet(layer.name.as_ref(), about));
             others.extend(left_out.filter_map(|layer| layer.name));
         }
+        let own = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
+        let all = distinct(stack.panels.iter().flat_map(own));
+        for panel in &stack.panels {
+            let missing = all.iter().filter(|name| !own(panel).contains(name));
+            said.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few answers.")));
+        }
     }
-    let left_out = match distinct(others).len() {
-        0 => return,
-        1 => String::from("Left out: one other method."),
-        count => format!("Left out: {count} other methods."),
-    };
-    let layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
-    let is_cut = layers
-        .filter(|layer| matches!(layer.kind, LayerKind::Marks(_)))
-        .any(|own| own.curve.y.contains(&f64::INFINITY));
-    // What is said of arrows and of the exact may hold for what is left out alone.
-    let note = data.note.take().unwrap_or_default().replace(EXACT_NOTE, "");
-    let note = if is_cut { note } else { note.replace(CUT_NOTE, "") };
-    data.note = Some(format!("{} {left_out}", note.trim()).trim_start().to_owned());
+    let mut note = data.note.take().unwrap_or_default();
+    let others = distinct(others).len();
+    if others > 0 {
+        // What is said of arrows and of the exact may hold for what is left out alone.
+        note = note.replace(EXACT_NOTE, "");
+        let mut layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
+        if !layers.any(|layer| marks(layer).is_some() && layer.curve.y.contains(&f64::INFINITY)) {
+            note = note.replace(CUT_NOTE, "");
+        }
+        said.push(if others == 1 {
+            String::from("Left out: one other method.")
+        } else {
+            format!("Left out: {others} other methods.")
+        });
+    }
+    said.insert(0, note.trim().to_owned());
+    data.note = Some(said.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
 }
 
 /// Leaves the rows of K out, and hands their heads on.
@@ -95,7 +106,7 @@ fn of_rows(data: &mut NamedRows, about: &[String]) {
 
 #[cfg(test)]
 mod tests {
-    use report::figures::{Layer, LayeredPanel, PanelRow, RowsColumn, Ruler};
+    use report::figures::{PanelRow, RowsColumn, Ruler};
 
     use super::*;
 

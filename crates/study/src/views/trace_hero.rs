@@ -31,13 +31,10 @@ fn title(document: &TraceDocument) -> String {
         [first @ .., last] => format!("With {} and {last}", first.join(", ")),
     };
     let error = &document.trace.error;
-    let records = |count: usize| if count == 1 { "record" } else { "records" };
     let [fitted, held] = [&error.identification, &error.validation];
     format!(
-        "{with} the heading error is {:.0} % of a first-order response’s on {} fitted {}, {:.0} % on {} held out",
+        "{with} the heading error is {:.0} % of a first-order response’s, {:.0} % on {} held out",
         100.0 * ratio(fitted.iter()),
-        fitted.len(),
-        records(fitted.len()),
         100.0 * ratio(held.iter()),
         held.len(),
     )
