@@ -136,7 +136,8 @@ fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
     manifest_of_rows(folder)?.ok_or_else(|| {
         let problem = match unfinished::is_in(folder) {
             Ok(true) => "the study in it is not finished; run it again to go on",
-            _ => "there are no rows in it; expected the folder of a finished study",
+            _ if !folder.exists() => "there is no such folder",
+            _ => "there are no rows in it; expected the folder of a finished study, fit, trace or prediction",
         };
         Failure::about(folder, problem)
     })

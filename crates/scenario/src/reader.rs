@@ -195,7 +195,7 @@ impl ReadFault {
             }
             Self::MissingKey(name) => KeyFault::name(
                 key,
-                format!("{place} has no key `{name}`"),
+                format!("{place} lacks the key `{name}`"),
                 format!("expected `{name}` here"),
                 match name {
                     "ship" => "add the ship, for instance [ship.yukun]; `study list ships` names them".to_owned(),
@@ -322,7 +322,7 @@ mod tests {
     #[test]
     fn every_fault_has_its_key() {
         for (text, key, found) in [
-            ("", "", "a scenario has no key `sampling-s`"),
+            ("", "", "a scenario lacks the key `sampling-s`"),
             ("sampling = 1", "sampling", "a scenario has no key `sampling`"),
             ("sampling-s = \"x\"", "sampling-s", "`sampling-s` is the text \"x\""),
             ("sampling-s = 1\nrows = -2", "rows", "`rows` is -2"),

@@ -168,7 +168,7 @@ pub enum SimulateError {
         yaw_rate: f64,
     },
     /// The ship never reached the heading at which something was to happen.
-    #[error("after execute {execute} the heading never deviated by {} rad within {} s", ShortNumber(*.angle), ShortNumber(*.waited))]
+    #[error("after execute {execute} the heading never deviated by {}° within {} s", ShortNumber(.angle.to_degrees()), ShortNumber(*.waited))]
     NeverReached {
         /// Executes made so far.
         execute: usize,

@@ -51,7 +51,7 @@ impl Coefficient {
 pub const SOURCE_OF_RATIOS: &str = "typical: KVLCC2, KCS, ONRT, Esso Osaka, SEIUN MARU";
 
 /// A particular that was not given.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
     /// Which one.
     pub key: &'static str,
@@ -60,7 +60,7 @@ pub struct Assumed {
     /// Standard deviation of that.
     pub sd: f64,
     /// The ratio it follows from.
-    pub formula: &'static str,
+    pub formula: String,
 }
 
 /// The prior of a hull.
@@ -112,7 +112,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
     }
     let assumed = PARTICULARS.iter().filter_map(|particular| {
         let of = |form: &HullDimensions| particular.of_form.map_or(f64::NAN, |of| of(form));
-        let formula = RATIOS.iter().find(|ratio| ratio.fills == particular.key)?.text;
+        let formula = RATIOS.iter().find(|ratio| ratio.fills == particular.key)?.text();
         let missing = particular.get(given).is_none() && particular.of_form.is_some();
         missing.then(|| Assumed { key: particular.key, value: of(&form), sd: spread(&of).sqrt(), formula })
     });

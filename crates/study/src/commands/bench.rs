@@ -23,7 +23,7 @@ use crate::outside::{self, NamedCommand};
 use crate::screen::{self, CommandOutput};
 use crate::terminal::Terminal;
 use crate::views::page_files::{REPORT, write_page};
-use crate::views::{bench_figures, bench_page, bench_tables};
+use crate::views::{bench_page, bench_tables};
 
 /// What other programs read.
 const BENCH: &str = "bench.json";
@@ -192,7 +192,6 @@ fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Res
     folder.keep(BENCH, results.json().on("describe", &path)?)?;
     folder.write(ROWS, bench_tables::rows(results).to_csv())?;
     folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
-    bench_figures::remove(folder)?;
     let pages = folder.inside(METHODS)?;
     pages.remove_all(|name| name.ends_with(".md"))?;
     for method in &results.methods {

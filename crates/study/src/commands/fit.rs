@@ -9,7 +9,7 @@ use report::Theme;
 use scenario::failure::Failure;
 
 use crate::documents::fit::{FIT, FitCurves, FitDocument};
-use crate::documents::{self, CURVES, read_json};
+use crate::documents::{self, CURVES, folder_for, read_json};
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, CommandOutput};
@@ -29,7 +29,8 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let others = read_others(&request.validate, &request.reading, &mut warnings)?;
     warn_of_repetition(&trials, &others, &mut warnings);
     let theme = request.style.theme()?;
-    let hold = || ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")));
+    let place = folder_for(FIT, &common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
+    let hold = || ResultFolder::hold(&place);
     // What other programs say has a place from the start; a record that is refused leaves no folder.
     let outside: Vec<_> = methods.iter().filter_map(|(label, method)| Some((label, method.outside()?))).collect();
     let early = (!outside.is_empty()).then(hold).transpose()?;

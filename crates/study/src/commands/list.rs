@@ -191,7 +191,7 @@ fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Fail
     let digits = |value: f64| report::number::significant(value, 3);
     for Assumed { key, value, sd, formula } in prior.assumed {
         let symbol = Particular::named(key).map_or("", |particular| particular.symbol);
-        table.push([key, symbol, &digits(value), &digits(sd), formula, prior::SOURCE_OF_RATIOS]);
+        table.push([key, symbol, &digits(value), &digits(sd), &formula, prior::SOURCE_OF_RATIOS]);
     }
     for own in &prior.coefficients {
         table.push([own.key(), own.symbol(), &digits(own.mean), &digits(own.sd), own.formula(), own.source()]);

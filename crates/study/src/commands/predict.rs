@@ -9,7 +9,7 @@ use report::Theme;
 use trial::file::called;
 use trial::{Sidecar, Trial};
 
-use crate::documents::{self, CURVES, read_json};
+use crate::documents::{self, CURVES, PREDICT, folder_for, read_json};
 use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
 use crate::screen::{self, CommandOutput};
@@ -18,9 +18,6 @@ use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
 use crate::work::predict::{PredictInput, StoredModel, predict};
 use campaign::folder::ResultFolder;
 use scenario::failure::Failure;
-
-/// What other programs read.
-pub const PREDICT: &str = "predict.json";
 
 /// The form of MSC/Circ.1053.
 const FORM: &str = "trial-form.md";
@@ -36,6 +33,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
              corrected to full load with --replay",
         ));
     }
+    let place = folder_for(PREDICT, &common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     let mut warnings = Vec::new();
     let mut read = |paths: &[PathBuf]| -> Result<Vec<StoredModel>, Failure> {
         paths.iter().map(|path| StoredModel::of_file(path, request, &mut warnings)).collect()
@@ -55,7 +53,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let declared = file.as_deref().zip(declared.as_ref().map(|sidecar| &sidecar.conditions));
     let input = PredictInput { models: &models, ballast: &ballast, records, current, declared };
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
-    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
+    let folder = ResultFolder::hold(&place)?;
     documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
     show(&folder, folder.path(), theme.as_ref(), common, &warnings)
 }

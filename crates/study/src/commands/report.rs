@@ -9,8 +9,9 @@ use campaign::store::{self, StoredStudy};
 use clap::Args;
 use scenario::failure::Failure;
 
-use super::predict::{self, PREDICT};
+use super::predict;
 use super::{fit, trace};
+use crate::documents::PREDICT;
 use crate::documents::fit::FIT;
 use crate::documents::trace::TRACE;
 use crate::options::{Common, StudyFigureOptions};

@@ -8,8 +8,8 @@ use report::Theme;
 use scenario::failure::Failure;
 
 use crate::documents::curves::TraceCurves;
-use crate::documents::read_json;
 use crate::documents::trace::{TRACE, TraceDocument};
+use crate::documents::{folder_for, read_json};
 use crate::interrupt;
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
@@ -31,8 +31,9 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let trials = without(request, read_all(&request.trials, &request.reading, &mut warnings)?);
     let others = without(request, read_others(&request.validate, &request.reading, &mut warnings)?);
     warn_of_repetition(&trials, &others, &mut warnings);
+    let place = folder_for(TRACE, &common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
     let traced = trace([&trials, &others], &settings, &priors, common.quiet, &mut warnings)?;
-    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
+    let folder = ResultFolder::hold(&place)?;
     traced.write(&folder)?;
     show(&folder, folder.path(), theme.as_ref(), common, &warnings)?;
     if interrupt::is_asked() { Err(Failure::work(STOPPED)) } else { Ok(()) }

@@ -15,9 +15,10 @@ pub mod truth;
 pub mod verdict;
 
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use campaign::disk;
+use campaign::files::MANIFEST;
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
 use serde::Serialize;
@@ -26,12 +27,27 @@ use serde::de::DeserializeOwned;
 use crate::screen;
 use answers::{CommandAnswer, Versioned};
 
+/// Name of the file with a prediction.
+pub const PREDICT: &str = "predict.json";
+
 /// Name of the file with the curves of the figures of a fit or a prediction.
 pub const CURVES: &str = "curves.json";
 
 /// The text of a document. Fails where a type cannot be written as JSON.
 pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(document).map(|text| text + "\n")
+}
+
+/// A folder for the results of one command. Fails when those of another one are there: their page would be lost.
+pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
+    let others = [fit::FIT, trace::TRACE, PREDICT, MANIFEST].into_iter().filter(|own| *own != document);
+    match others.map(|own| place.join(own)).find(|path| path.is_file()) {
+        Some(path) => Err(Failure::input(format!(
+            "{} is the result of another command; give another folder with --out",
+            path.display()
+        ))),
+        None => Ok(place.to_owned()),
+    }
 }
 
 /// Keeps the document of a command in a folder. Fails when the file cannot be written.
@@ -61,7 +77,7 @@ pub fn read_json<T: DeserializeOwned>(path: &Path, command: &str) -> Result<(T, 
 }
 
 /// Most bytes of a document or a table of curves.
-const LARGEST: u64 = 1 << 30;
+pub const LARGEST: u64 = 1 << 30;
 
 /// The text of a file that a command wrote. Fails when there is none, and when it is too large or no file.
 fn read_text(path: &Path) -> Result<String, Failure> {

@@ -2,24 +2,15 @@
 
 use campaign::benchmark::board::{Board, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
-use campaign::folder::ResultFolder;
 use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
 use report::{CurveOrigin, PageFigure};
-use scenario::failure::Failure;
 use scenario::name::slug;
 
 /// A score over that of the reference beyond which an arrow stands for it.
 const FAR: f64 = 100.0;
 
-/// Beginning of the names of the figures, and of those that an earlier version drew beside them.
+/// Beginning of the names of the figures.
 const RATIOS: &str = "ratios";
-const FORMER: &str = "scores";
-
-/// Removes what an earlier run may have drawn.
-pub fn remove(folder: &ResultFolder) -> Result<(), Failure> {
-    let is_figure = |name: &str| [FORMER, RATIOS].iter().any(|stem| name.starts_with(&format!("{stem}-")));
-    folder.remove_all(|name| is_figure(name) && [".svg", ".png"].iter().any(|kind| name.ends_with(kind)))
-}
 
 /// A sentence that begins with a capital.
 pub fn capital(words: &str) -> String {

@@ -1,10 +1,13 @@
 //! A page as files: its figures as SVG and PNG, `report.md`, and `report.html` made of both.
 
+use campaign::disk;
 use campaign::folder::ResultFolder;
 use rayon::prelude::*;
 use report::html::{self, Images};
 use report::{Page, PageFigure, Theme};
 use scenario::failure::{Failure, OnPath};
+
+use crate::documents;
 
 /// The page as Markdown.
 pub const REPORT: &str = "report.md";
@@ -20,17 +23,30 @@ pub const KEY_FIGURE: &str = "hero";
 /// Fails when the style has limits for an axis that is in none of the figures, and when a file cannot be written, with
 /// the first failure in the order of the page.
 pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> Result<(), Failure> {
-    let page = match theme {
-        Some(theme) => {
-            draw(folder, &page, theme)?;
-            page
-        }
-        None => page.without_figures(),
-    };
+    let page = if theme.is_some() { page } else { page.without_figures() };
+    remove_former(folder, &page)?;
+    if let Some(theme) = theme {
+        draw(folder, &page, theme)?;
+    }
     let markdown = page.to_markdown();
     let browser = html::page(&markdown, &page.folded(), &|stem| Images::written(folder.path(), stem));
     folder.write(REPORT, markdown)?;
     folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
+}
+
+/// Removes the figures of the page that stood there before, which may be of another ship, but those that are drawn anew.
+fn remove_former(folder: &ResultFolder, page: &Page) -> Result<(), Failure> {
+    let place = folder.path().join(REPORT);
+    let former = disk::read(&place, documents::LARGEST).on("read", &place)?.unwrap_or_default();
+    let former = String::from_utf8_lossy(&former);
+    let images = former.split("](").filter_map(|rest| rest.split_once(')')?.0.strip_suffix(".png"));
+    let has = |stem: &str, kind: &str| folder.path().join(stem).with_extension(kind).is_file();
+    let is_old = |stem: &&str| has(stem, "svg") && page.drawings().all(|figure| figure.stem != *stem);
+    let old: Vec<&str> = images.filter(is_old).collect();
+    folder.remove_all(|name| {
+        let stem = name.strip_suffix(".png").or_else(|| name.strip_suffix(".svg"));
+        stem.is_some_and(|stem| old.contains(&stem))
+    })
 }
 
 fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure> {

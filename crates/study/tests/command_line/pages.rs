@@ -31,8 +31,14 @@ fn every_report_has_a_page_for_a_browser() {
     assert!(fit.contains("data-series=\"output-error, rms") && fit.contains("<th scope=\"row\">output-error</th>"));
     let traced = page(&desk, "t");
     assert!(traced.contains("data-series=\"before") && traced.contains("data-series=\"after"));
+    desk.file("other.csv", zig_zag_csv());
+    desk.draw(&["fit", "run.csv", "--validate", "other.csv", "--out", "f", "--quiet"]).is_done();
+    let of_other = ["fit-other.png", "fit-other.svg", "replay-other.csv"].map(|name| desk.path("f").join(name));
+    assert!(of_other.iter().all(|path| path.is_file()));
     desk.draw(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
     assert_eq!(page(&desk, "f"), fit, "the same bytes");
+    assert!(!of_other.iter().any(|path| path.exists()), "what an earlier fit left");
+    desk.run(&["trace", "run.csv", "--out", "f"]).is_refused(2, &["f/fit.json", "another command", "--out"]);
 }
 
 #[test]

@@ -121,7 +121,11 @@ fn a_missing_key_is_named_where_it_belongs() {
         3,
         &["names no method"],
     );
-    refused(&changed("[ship.yukun]", "[ship.first-order]\nK-per-s = 0.1"), 5, &["`ship.first-order` has no key `T-s`"]);
+    refused(
+        &changed("[ship.yukun]", "[ship.first-order]\nK-per-s = 0.1"),
+        5,
+        &["`ship.first-order` lacks the key `T-s`"],
+    );
     refused(
         &changed("[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 20.0", "[manoeuvre]"),
         7,

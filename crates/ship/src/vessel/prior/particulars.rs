@@ -154,76 +154,35 @@ pub(super) struct Ratio {
     /// What no ship goes beyond.
     range: [f64; 2],
     of: fn(&HullDimensions) -> f64,
-    pub text: &'static str,
+}
+
+impl Ratio {
+    const fn new(
+        [name, fills]: [&'static str; 2],
+        [mean, sd]: [f64; 2],
+        range: [f64; 2],
+        of: fn(&HullDimensions) -> f64,
+    ) -> Self {
+        Self { name, fills, mean, sd, range, of }
+    }
+
+    /// What ships have, in words.
+    pub fn text(&self) -> String {
+        format!("{} = {} ± {}", self.name, self.mean, self.sd)
+    }
 }
 
 /// Mean and standard deviation over KVLCC2, KCS, ONRT, Esso Osaka and SEIUN MARU, those of rudder and propeller
 /// without ONRT, which has two of either. Sources: particulars of SIMMAN 2014, of the 3 m model of Esso Osaka (Osaka
 /// University, mmg-1p1r-simulator) and of SEIUN MARU (mmgdynamics).
 pub(super) const RATIOS: [Ratio; 7] = [
-    Ratio {
-        name: "L/B",
-        fills: "beam-m",
-        mean: 6.6,
-        sd: 1.1,
-        range: [2.0, 12.0],
-        of: |form| form.L / form.B,
-        text: "L/B = 6.6 ± 1.1",
-    },
-    Ratio {
-        name: "B/d",
-        fills: "draught-m",
-        mean: 2.9,
-        sd: 0.35,
-        range: [1.2, 8.0],
-        of: |form| form.B / form.d,
-        text: "B/d = 2.9 ± 0.35",
-    },
-    Ratio {
-        name: "C_b",
-        fills: "block-coefficient",
-        mean: 0.67,
-        sd: 0.15,
-        range: [0.3, 1.0],
-        of: |form| form.Cb,
-        text: "C_b = 0.67 ± 0.15",
-    },
-    Ratio {
-        name: "A_R/(L d)",
-        fills: "rudder-area-m2",
-        mean: 0.019,
-        sd: 0.003,
-        range: [0.005, 0.1],
-        of: |form| form.AR / (form.L * form.d),
-        text: "A_R/(L d) = 0.019 ± 0.003",
-    },
-    Ratio {
-        name: "H_R/d",
-        fills: "rudder-height-m",
-        mean: 0.78,
-        sd: 0.12,
-        range: [0.2, 1.5],
-        of: |form| form.HR / form.d,
-        text: "H_R/d = 0.78 ± 0.12",
-    },
-    Ratio {
-        name: "D_P/d",
-        fills: "propeller-diameter-m",
-        mean: 0.6,
-        sd: 0.18,
-        range: [0.15, 1.3],
-        of: |form| form.DP / form.d,
-        text: "D_P/d = 0.6 ± 0.18",
-    },
-    Ratio {
-        name: "x_G/L",
-        fills: "x-g-m",
-        mean: 0.0,
-        sd: 0.02,
-        range: [-0.1, 0.1],
-        of: |form| form.xG / form.L,
-        text: "x_G/L = 0 ± 0.02",
-    },
+    Ratio::new(["L/B", "beam-m"], [6.6, 1.1], [2.0, 12.0], |form| form.L / form.B),
+    Ratio::new(["B/d", "draught-m"], [2.9, 0.35], [1.2, 8.0], |form| form.B / form.d),
+    Ratio::new(["C_b", "block-coefficient"], [0.67, 0.15], [0.3, 1.0], |form| form.Cb),
+    Ratio::new(["A_R/(L d)", "rudder-area-m2"], [0.019, 0.003], [0.005, 0.1], |form| form.AR / (form.L * form.d)),
+    Ratio::new(["H_R/d", "rudder-height-m"], [0.78, 0.12], [0.2, 1.5], |form| form.HR / form.d),
+    Ratio::new(["D_P/d", "propeller-diameter-m"], [0.6, 0.18], [0.15, 1.3], |form| form.DP / form.d),
+    Ratio::new(["x_G/L", "x-g-m"], [0.0, 0.02], [-0.1, 0.1], |form| form.xG / form.L),
 ];
 
 /// Froude numbers of displacement ships that are steered. A model that is declared with the length of her ship, or a
@@ -332,7 +291,8 @@ impl HullParticulars {
             cure,
         )?;
         for Ratio { name, fills, range, of, .. } in RATIOS {
-            let cure = "all lengths have to be of one ship and one scale, in metres";
+            let cure = "all lengths have to be of one ship and one scale, in metres; what is not given is estimated from her \
+                        length (`study list priors`)";
             within(fills, format!("{name} ({fills})"), of(form), range, "1", cure)?;
         }
         if let Some(volume) = self.volume() {
