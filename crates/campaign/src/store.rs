@@ -137,7 +137,9 @@ fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
         let problem = match unfinished::is_in(folder) {
             Ok(true) => "the study in it is not finished; run it again to go on",
             _ if !folder.exists() => "there is no such folder",
-            _ => "there are no rows in it; expected the folder of a finished study, fit, trace or prediction",
+            _ => {
+                "there are no rows in it; expected the folder of a finished study, fit, trace, prediction or benchmark"
+            }
         };
         Failure::about(folder, problem)
     })

@@ -26,7 +26,7 @@ use crate::views::page_files::{REPORT, write_page};
 use crate::views::{bench_page, bench_tables};
 
 /// What other programs read.
-const BENCH: &str = "bench.json";
+pub const BENCH: &str = "bench.json";
 
 /// One row for every answer.
 const ROWS: &str = "rows.csv";
@@ -132,26 +132,32 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
     let is_stopped = results.skipped.iter().any(|one| one.reason == STOPPED);
     let aside = is_stopped.then(|| folder.inside(UNFINISHED)).transpose()?;
     let folder = aside.as_ref().unwrap_or(&folder);
-    publish(&results, folder, &theme)?;
-
-    let notes: String = results.skipped.iter().map(|one| format!("skipped: {}\n", skipped(one))).collect();
-    let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
-    let naming = match results.naming.is_empty() {
-        true => String::new(),
-        false => format!("\n{}", bench_tables::naming_totals(&results).to_text()),
-    };
-    let head = format!("{}: {} questions\n", results.definition.name, results.cases.len());
-    let output = CommandOutput {
-        words: [&head, &naming],
-        table: &bench_tables::leaderboard(&results),
-        notes: &notes,
-        document: &results.json().on("describe", &folder.path().join(BENCH))?,
-    };
-    screen::tell(common, &output, &[])?;
+    show(&results, folder, &theme, common)?;
     match is_stopped {
         true => Err(Failure::work(format!("{STOPPED}; what they all have is in {}", folder.path().display()))),
         false => Ok(()),
     }
+}
+
+/// Writes the tables, pages and figures of a benchmark and prints the leaderboards.
+///
+/// Fails when they cannot be written.
+pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, common: &Common) -> Result<(), Failure> {
+    publish(results, folder, theme)?;
+    let notes: String = results.skipped.iter().map(|one| format!("skipped: {}\n", skipped(one))).collect();
+    let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
+    let naming = match results.naming.is_empty() {
+        true => String::new(),
+        false => format!("\n{}", bench_tables::naming_totals(results).to_text()),
+    };
+    let head = format!("{}: {} questions\n", results.definition.name, results.cases.len());
+    let output = CommandOutput {
+        words: [&head, &naming],
+        table: &bench_tables::leaderboard(results),
+        notes: &notes,
+        document: &results.json().on("describe", &folder.path().join(BENCH))?,
+    };
+    screen::tell(common, &output, &[])
 }
 
 /// Who takes part: the methods of the project, or those of them that are named, and outside estimators behind them.

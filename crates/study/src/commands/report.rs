@@ -1,5 +1,5 @@
-//! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace or a prediction, from what is
-//! stored and nothing else.
+//! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace, a prediction or a benchmark, from
+//! what is stored and nothing else.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -9,11 +9,11 @@ use campaign::store::{self, StoredStudy};
 use clap::Args;
 use scenario::failure::Failure;
 
-use super::predict;
-use super::{fit, trace};
-use crate::documents::PREDICT;
+use super::bench::{self, BENCH};
+use super::{fit, predict, trace};
 use crate::documents::fit::FIT;
 use crate::documents::trace::TRACE;
+use crate::documents::{PREDICT, read_json};
 use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
@@ -21,7 +21,7 @@ use crate::views::publish::publish;
 /// What `study report` is asked to do.
 #[derive(Debug, Clone, Args)]
 pub struct ReportRequest {
-    /// Folder of a finished study, a fit, a trace or a prediction
+    /// Folder of a finished study, a fit, a trace, a prediction or a benchmark
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
     /// Show report.html in a browser
@@ -32,8 +32,8 @@ pub struct ReportRequest {
     pub style: StudyFigureOptions,
 }
 
-/// Makes tables, figures and the pages of a finished study, a fit, a trace or a prediction where it is stored, or in
-/// `--out`; with `open` shows the page in a browser.
+/// Makes tables, figures and the pages of a finished study, a fit, a trace, a prediction or a benchmark where it is
+/// stored, or in `--out`; with `open` shows the page in a browser.
 pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     let ReportRequest { folder: stored, open, style } = request;
     let folder = common.out.as_deref().unwrap_or(stored);
@@ -44,6 +44,7 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
         () if has(TRACE) => trace::show(&held()?, stored, Some(&theme()?), common, &[])?,
         () if has(FIT) => fit::show(&held()?, stored, Some(&theme()?), common)?,
         () if has(PREDICT) => predict::show(&held()?, stored, Some(&theme()?), common, &[])?,
+        () if has(BENCH) => bench::show(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?,
         () => rebuild(stored, style, common)?,
     }
     if *open { show(&folder.join(BROWSER)) } else { Ok(()) }

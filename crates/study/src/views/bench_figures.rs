@@ -73,8 +73,8 @@ fn finding(boards: &[&Board], reference: &str) -> String {
         (!better.is_empty()).then(|| format!("{better} ({})", axis_title(board.task)))
     };
     match boards.iter().filter_map(of_task).collect::<Vec<_>>()[..] {
-        [] => format!("no method is clearly better than {reference}"),
-        ref some => format!("clearly better than {reference}: {}", some.join(", ")),
+        [] => format!("{reference} is clearly beaten by none"),
+        ref some => format!("{reference} is clearly beaten by {}", some.join(", ")),
     }
 }
 
