@@ -93,7 +93,7 @@ pub fn overshoots(figures: &[ForecastFigure]) -> PageFigure {
     let of_basin =
         |is_hsva: bool| errors(overshoots.iter().filter(|own| (own.group == ForecastGroup::Hsva) == is_hsva));
     let [[hsva, _], [marin, _]] = [true, false].map(of_basin);
-    let title = format!("KVLCC2: first overshoots are predicted to {hsva}° (HSVA) and {marin}° (MARIN)");
+    let title = format!("KVLCC2: median error of first overshoots {hsva}° at HSVA, {marin}° over all of MARIN’s");
     let note = "Degrees: median errors. Bars: 90 % intervals.";
     let data = Panels { title: Some(title), note: Some(note.to_owned()), ..Panels::of(stack) };
     PageFigure::new("overshoots", caption, data)

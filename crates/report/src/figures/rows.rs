@@ -263,9 +263,6 @@ fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (column, pitch): (&Row
     if column.zero {
         zero_upright(panel, scene, theme);
     }
-    if let Some(reference) = &column.reference {
-        reference.vertical(panel, scene, theme);
-    }
     for (_, pen, value) in &column.lines {
         panel.vertical(scene, Layer::Data, *value, pen.stroke(theme));
     }
@@ -295,6 +292,10 @@ fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (column, pitch): (&Row
             let place = (panel.rect.x + panel.rect.w / 2.0, middle + text.centring());
             scene.text_on_ground(Layer::Note, place, text);
         }
+    }
+    // Over the ground of the rows.
+    if let Some(reference) = &column.reference {
+        reference.vertical(panel, scene, theme);
     }
     beyond
 }

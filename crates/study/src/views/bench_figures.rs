@@ -106,7 +106,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         names: others.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
         note: Some(format!(
-            "Left of the line a method is better than {}. Medians over the cases; bars: 95 % intervals, from six independent \
+            "Score: rms heading error; of K and T the larger error. Left of the line a method is better than {}. Medians over the cases; bars: 95 % intervals, from six independent \
              records on.",
             results.reference
         )),

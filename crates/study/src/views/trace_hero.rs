@@ -33,10 +33,11 @@ fn title(document: &TraceDocument) -> String {
     let error = &document.trace.error;
     let [fitted, held] = [&error.identification, &error.validation];
     format!(
-        "{with} the heading error is {:.0} % of a first-order response’s, {:.0} % on {} held out",
+        "{with} the heading error is {:.0} % of a first-order response’s, {:.0} % on {} held-out {}",
         100.0 * ratio(fitted.iter()),
         100.0 * ratio(held.iter()),
         held.len(),
+        if held.len() == 1 { "record" } else { "records" },
     )
 }
 

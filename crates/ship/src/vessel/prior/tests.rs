@@ -164,7 +164,7 @@ fn what_is_missing_widens_the_prior() {
     let assumed: Vec<&str> = bare.assumed.iter().map(|one| one.key).collect();
     let missing = ["beam-m", "draught-m", "block-coefficient", "rudder-area-m2", "rudder-height-m"];
     assert_eq!(assumed[..5], missing);
-    let draught = bare.assumed[1];
+    let draught = &bare.assumed[1];
     // L/(6.6 · 2.9), and the spreads of both ratios.
     assert!((draught.value - 16.72).abs() < 0.01 && (draught.sd / draught.value - 0.208).abs() < 0.01, "{draught:?}");
 }
