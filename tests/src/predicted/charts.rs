@@ -3,8 +3,8 @@
 use campaign::statistics::grouped;
 use estimation::statistics::median;
 use report::figures::{
-    Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Reference95, RowItem, RowsColumn,
-    Ruler, Stack,
+    Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Reference95, RowItem, RowKind,
+    RowsColumn, Ruler, Stack,
 };
 use report::number::{fixed, significant};
 use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
@@ -12,7 +12,7 @@ use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 
 use super::figure::{FigureKind, ForecastFigure, ForecastGroup, ForecastScore, KINDS};
-use super::forecast::{PredictedSteady, PredictedTrack};
+use super::forecast::{PredictedRate, PredictedSteady, PredictedTrack};
 use super::turn::TurnTrack;
 
 /// Largest rudder of steady turns that is drawn, degrees.
@@ -157,12 +157,9 @@ pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
             .iter()
             .map(|ship| Layer::line("most probable ship of a model", curve(ship), Pen::new(HEADING).width(1.3)));
         let mut layers: Vec<Layer> = drawn.chain(probable).collect();
-        let mark = |marker, hollow| Look { colour: if hollow { INK } else { RUDDER }, marker, dash: SOLID, hollow };
-        layers.push(
-            Layer::marks("90 % interval of a circle", mark(Marker::Circle, true), own.circles.clone()).within(0.1),
-        );
+        let look = Look { colour: RUDDER, marker: Marker::Diamond, dash: SOLID, hollow: false };
         let points = own.measured.iter().map(|(rudder, rate)| (*rudder, *rate, None)).collect();
-        layers.push(Layer::marks("measured circle", mark(Marker::Diamond, false), points));
+        layers.push(Layer::marks("measured circle", look, points));
         let panels = vec![LayeredPanel { head: Some(own.title.clone()), layers }];
         let rows = vec![PanelRow::zeroed(Ruler::yaw_rate(), 0.42)];
         // As far to either side, whatever is cut.
@@ -172,17 +169,49 @@ pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
     let stacks = ships.iter().map(stack).collect();
     let caption = "Steady turns: the yaw rate that belongs to every rudder angle up to 38°, as the most probable ship of each \
                    model and drawn ships have it, and measured circles, those of the Esso Osaka at 10 turns of the \
-                   propeller a second, with the 90 % intervals that the same models give them, side by side. A line ends where \
-                   the ship has no faster steady turn.";
+                   propeller a second. A line ends where the ship has no faster steady turn.";
     let left_out: usize = ships.iter().map(|own| own.left_out).sum();
     let note = format!("Models with which no circle could be sailed are left out: {left_out}.");
-    let held: usize = ships.iter().map(|own| own.held).sum();
-    let all: usize = ships.iter().map(|own| own.circles.len()).sum();
-    let title = format!("Steady turns: {held} of {all} intervals hold the measured yaw rate");
+    let title = String::from("Steady turns of drawn ships, and measured circles");
     PageFigure::new(
         "steady-turns",
         caption,
         Panels { title: Some(title), stacks, note: (left_out > 0).then_some(note), ..Panels::default() },
+    )
+}
+
+/// Yaw rates of measured circles as every model predicts them, row by row.
+pub fn rates(ships: &[PredictedSteady]) -> PageFigure {
+    let look = |inside: bool| Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: !inside };
+    let row = |own: &PredictedRate| {
+        let name = if own.inside { "interval holds the measured rate" } else { "it does not" };
+        vec![RowItem::new(name, RowKind::Mark(look(own.inside), own.ratio, Some(own.ci90)))]
+    };
+    let rows = ships.iter().flat_map(|ship| [RowItem::heading()].into_iter().chain(ship.circles.iter().map(row)));
+    let rudder = |own: &PredictedRate| format!("{:.0}°", own.rudder_deg);
+    let names =
+        ships.iter().flat_map(|ship| [format!("{}:", ship.title)].into_iter().chain(ship.circles.iter().map(rudder)));
+    let all = || ships.iter().flat_map(|ship| &ship.circles);
+    let column = RowsColumn {
+        x: Ruler::new("predicted / measured yaw rate", Division::Factors),
+        rows: rows.collect(),
+        reference: Some(Reference95::line(1.0)),
+        ..RowsColumn::default()
+    };
+    let data = NamedRows {
+        title: Some(format!(
+            "Steady turns: {} of {} intervals hold the measured yaw rate",
+            all().filter(|own| own.inside).count(),
+            all().count()
+        )),
+        names: names.collect(),
+        columns: vec![column],
+        note: Some(String::from("Rows: rudder angle of a circle, predicted from one model. Bars: 90 % intervals.")),
+    };
+    PageFigure::new(
+        "turn-rates",
+        "The yaw rates of these circles as each model predicts them, over what was measured.",
+        data,
     )
 }
 

@@ -55,14 +55,21 @@ pub struct PredictedSteady {
     pub left_out: usize,
     /// Rudder, deg, and yaw rate, deg/s, of measured circles.
     pub measured: Vec<(f64, f64)>,
-    /// What each model says of each of them: median with its 90 % interval, models beside each other.
-    pub circles: Vec<(f64, f64, Option<[f64; 2]>)>,
-    /// How many of these intervals hold what was measured.
-    pub held: usize,
+    /// What each model says of each of them.
+    pub circles: Vec<PredictedRate>,
 }
 
-/// Distance of the intervals of several models at one rudder, deg.
-const BESIDE: f64 = 1.1;
+/// The yaw rate of a circle that a model predicts.
+pub struct PredictedRate {
+    /// Rudder, deg, positive to port.
+    pub rudder_deg: f64,
+    /// Median, over what was measured.
+    pub ratio: f64,
+    /// Its 90 % interval.
+    pub ci90: [f64; 2],
+    /// Whether that holds what was measured.
+    pub inside: bool,
+}
 
 /// Everything that is predicted.
 #[derive(Default)]
@@ -187,7 +194,7 @@ fn steady(
         probable.extend(curves.next());
         drawn.extend(curves.take(FIGURE / sailed.len()));
     }
-    let (mut measured, mut intervals, mut held) = (Vec::new(), Vec::new(), 0);
+    let (mut measured, mut rated) = (Vec::new(), Vec::new());
     for (name, trial) in circles {
         let facts = (HeldTurn::of(trial), first.particulars(), trial.particulars());
         let (Some(turn), Some(wanted), Some(own)) = facts else { continue };
@@ -195,16 +202,16 @@ fn steady(
         let (rudder, factor) = (to_deg(turn.side * turn.rudder), turn.side * wanted.speed / own.speed);
         let rates = || figures.iter().filter(|own| own.trial == *name && own.name == "steady_rate_deg_s");
         measured.extend(rates().next().map(|own| (rudder, factor * own.compared.measured)));
-        for (number, ship) in sailed.iter().enumerate() {
-            let Some(own) = rates().find(|own| own.fitted == ship.fitted).map(|own| &own.compared) else { continue };
-            let aside = BESIDE * (number as f64 - 0.5 * (sailed.len() - 1) as f64);
-            let interval = own.interval.ci90.map(|end| factor * end);
-            intervals.push((rudder + aside, factor * own.interval.median, Some(interval)));
-            held += usize::from(own.inside90);
-        }
+        let of_ship = |ship: &&&TracedShip| {
+            let own = &rates().find(|own| own.fitted == ship.fitted)?.compared;
+            let [ratio, lower, upper] =
+                [own.interval.median, own.interval.ci90[0], own.interval.ci90[1]].map(|rate| rate / own.measured);
+            Some(PredictedRate { rudder_deg: rudder, ratio, ci90: [lower, upper], inside: own.inside90 })
+        };
+        rated.extend(sailed.iter().filter_map(of_ship));
     }
     let left_out = ships.len() - sailed.len();
-    Ok(PredictedSteady { title, probable, drawn, left_out, measured, circles: intervals, held })
+    Ok(PredictedSteady { title, probable, drawn, left_out, measured, circles: rated })
 }
 
 /// Every record of a set that is named, read.

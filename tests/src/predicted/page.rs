@@ -187,7 +187,7 @@ pub fn write(forecasts: &Forecasts, results: &Path) -> Outcome<()> {
     page.table(reached(figures));
     page.figures([charts::overshoots(figures)]);
     page.figures(tracks.iter().enumerate().map(charts::track));
-    page.figures([charts::steady(steady), charts::coverage(figures)]);
+    page.figures([charts::steady(steady), charts::rates(steady), charts::coverage(figures)]);
     page.part("How well, figure by figure");
     page.say(SCORES);
     page.table(scores(figures));
