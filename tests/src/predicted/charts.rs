@@ -172,7 +172,7 @@ pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
                    propeller a second. A line ends where the ship has no faster steady turn.";
     let left_out: usize = ships.iter().map(|own| own.left_out).sum();
     let note = format!("Models with which no circle could be sailed are left out: {left_out}.");
-    let title = String::from("Steady turns of drawn ships, and measured circles");
+    let title = String::from("Steady turns of drawn ships and measured circles");
     PageFigure::new(
         "steady-turns",
         caption,
@@ -184,11 +184,11 @@ pub fn steady(ships: &[PredictedSteady]) -> PageFigure {
 pub fn rates(ships: &[PredictedSteady]) -> PageFigure {
     let look = |inside: bool| Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: !inside };
     let row = |own: &PredictedRate| {
-        let name = if own.inside { "interval holds the measured rate" } else { "it does not" };
+        let name = if own.inside { "holds the measured rate" } else { "does not hold it" };
         vec![RowItem::new(name, RowKind::Mark(look(own.inside), own.ratio, Some(own.ci90)))]
     };
     let rows = ships.iter().flat_map(|ship| [RowItem::heading()].into_iter().chain(ship.circles.iter().map(row)));
-    let rudder = |own: &PredictedRate| format!("{:.0}°", own.rudder_deg);
+    let rudder = |own: &PredictedRate| format!("{}°", fixed(own.rudder_deg, 0));
     let names =
         ships.iter().flat_map(|ship| [format!("{}:", ship.title)].into_iter().chain(ship.circles.iter().map(rudder)));
     let all = || ships.iter().flat_map(|ship| &ship.circles);
