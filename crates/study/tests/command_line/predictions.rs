@@ -8,13 +8,22 @@ fn record(name: &str) -> String {
     of_repository(&format!("scenarios/records/{name}.csv")).to_string_lossy().into_owned()
 }
 
-/// A desk with the answer of every method on the record of a first-order ship.
+/// A desk with the answer of every method on the record of a first-order ship, and that record with a sidecar,
+/// `run.csv`.
 fn with_fit() -> Desk {
     let desk = Desk::new();
-    let first = record("first-order");
-    let ship = ["--length-m", "75", "--speed-m-s", "6.2"];
-    desk.run(&[&["fit", &first, "--out", "f", "--quiet"][..], &ship].concat()).is_done();
+    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
+    desk.file("run.trial.toml", DECLARED);
+    let fit = ["fit", &record("first-order"), "--out", "f", "--quiet", "--length-m", "75", "--speed-m-s", "6.2"];
+    desk.run(&fit).is_done();
     desk
+}
+
+/// Another ship than that of the fit.
+fn changed(desk: &Desk, name: &str, change: impl Fn(&mut Value)) {
+    let mut json = desk.json("f/fit.json");
+    json["ships"].as_object_mut().expect("ships").values_mut().for_each(change);
+    desk.file(name, json.to_string());
 }
 
 fn figure<'a>(json: &'a Value, kind: &str, name: &str) -> &'a Value {
@@ -100,10 +109,11 @@ fn a_trace_predicts_and_its_own_record_is_inside() {
     assert!((measured - median).abs() < 0.5, "{overshoot}");
 }
 
-/// Two files are a mixture; a calm has no process noise; another length is scaled by Froude.
+/// Two files are a mixture of one ship; a calm has no process noise; another length is scaled by Froude.
 #[test]
 fn models_are_mixed_calmed_and_scaled() {
     let desk = with_fit();
+    changed(&desk, "model.json", |ship| (ship["length_m"], ship["speed_m_s"]) = (3.0.into(), 1.24.into()));
     let run = ["predict", "f/fit.json", "f/fit.json", "--calm", "--draws", "100", "--manoeuvre", "zig-zag:10/10"];
     desk.run(&[&run[..], &["--out", "c"]].concat()).is_done();
     let json = desk.json("c/predict.json");
@@ -117,17 +127,65 @@ fn models_are_mixed_calmed_and_scaled() {
     desk.run(&[&run[..], &["--out", "s", "--length-m", "300"]].concat()).is_done();
     let (larger, _) = time(&desk.json("s/predict.json"));
     assert!((larger / own - 2.0).abs() < 0.01, "four times as long is twice as slow: {own} {larger}");
+    let both = ["predict", "f/fit.json", "model.json", "--draws", "50", "--manoeuvre", "zig-zag:10/10", "--out", "m"];
+    let sizes = "model.json: its ship is 3.00 m long at 1.24 m/s, that of f/fit.json 75.00 m long at 6.20 m/s";
+    desk.run(&both).is_refused(2, &[sizes, "give --length-m and --speed-kn", "one at a time"]);
+    let run = desk.run(&[&both[..], &["--length-m", "300", "--speed-m-s", "1.2"]].concat());
+    assert!(run.is_done().err.contains("300 m at 1.200 m/s is a Froude number of 0.022"), "{}", run.err);
+    let json = desk.json("m/predict.json");
+    assert_eq!((&json["length_m"], &json["speed_m_s"]), (&300.0.into(), &1.2.into()));
+}
+
+/// A record with four executes has the one cycle of the transient, and so has what is predicted for it.
+#[test]
+fn a_period_is_of_the_cycles_of_the_record() {
+    let desk = with_fit();
+    let text = desk.text("run.csv");
+    desk.file("run.csv", text.lines().take(195).collect::<Vec<_>>().join("\n"));
+    desk.run(&["predict", "f/fit.json", "--replay", "run.csv", "--draws", "200", "--out", "p"]).is_done();
+    let figures = &desk.json("p/predict.json")["replays"][0]["figures"];
+    for key in ["measured", "median"] {
+        let of = |name: &str| figures[name][key].as_f64().unwrap_or_else(|| panic!("{name}: {figures}"));
+        let cycle = of("fourth_execute_s") - of("second_execute_s");
+        assert!(figures["fifth_execute_s"].is_null() && (of("period_s") - cycle).abs() < 0.02, "{key}: {figures}");
+    }
+}
+
+/// The ship of the sidecar, 105 m long, is the scale of all that is predicted. A circle with 10° of rudder answers none
+/// of the criteria, which are of no ship of 75 m.
+#[test]
+fn the_ship_of_the_record_is_the_scale() {
+    let desk = with_fit();
+    let first = record("first-order");
+    let (sidecar, asked) = (first.replace(".csv", ".trial.toml"), ["--replay", &first, "--length-m", "75"]);
+    let predicted = |rest: &[&str]| {
+        let run = "predict f/fit.json --manoeuvre zig-zag:10/10 --manoeuvre turning-circle:10 --draws 50 --out p";
+        desk.run(&run.split(' ').chain(rest.iter().copied()).collect::<Vec<_>>()).is_done();
+        let (words, json) = (desk.text("p/report.md"), desk.json("p/predict.json"));
+        assert!(json["imo"].as_array().expect("a list").iter().all(|one| one["manoeuvre"] == "zig-zag 10/10"));
+        let time = figure(&json, "zig-zag 10/10", "second_execute_s")["median"].as_f64().expect("a number");
+        (time, words.contains("the criteria are for ships of 100 m and above"))
+    };
+    let (own, is_said) = predicted(&[]);
+    assert!(is_said && desk.text("f/report.md").contains("the criteria are for ships of 100 m and above"));
+    let length_over_speed = |length: f64, speed: f64| (length / speed) / (75.0 / 6.2);
+    for (rest, slower, is_short) in [
+        (&["--replay", &first][..], length_over_speed(105.0, 8.591_222), false),
+        (&["--columns", &sidecar], length_over_speed(105.0, 8.591_222), false),
+        (&[&asked[..], &["--speed-m-s", "6"]].concat(), length_over_speed(75.0, 6.0), true),
+    ] {
+        let (time, is_said) = predicted(rest);
+        assert!((time / own / slower - 1.0).abs() < 0.01 && is_said == is_short, "{rest:?}: {time} {own}");
+    }
+    let both = ["predict", "f/fit.json", "--replay", &first, "--replay", "run.csv"];
+    desk.run(&both).is_refused(2, &["run.csv: its ship is 75.00 m long", "105.00 m long", "give --length-m"]);
 }
 
 /// A ship whose rudder is off by 20 deg makes no 10/10, but a circle.
 #[test]
 fn a_manoeuvre_that_the_model_cannot_make_is_left_out() {
     let desk = with_fit();
-    let mut json = desk.json("f/fit.json");
-    for ship in json["ships"].as_object_mut().expect("ships").values_mut() {
-        ship["members"][0]["parameters"][2] = (-0.35).into();
-    }
-    desk.file("off.json", json.to_string());
+    changed(&desk, "off.json", |ship| ship["members"][0]["parameters"][2] = (-0.35).into());
     let run = desk.run(&["predict", "off.json", "--draws", "50", "--out", "p"]);
     assert!(run.is_done().err.contains("zig-zag 10/10: only 0 of 50"), "{}", run.err);
     let kinds = desk.json("p/predict.json")["manoeuvres"].as_array().map(Vec::len);
@@ -146,6 +204,9 @@ fn what_cannot_be_predicted_is_refused_with_the_cure() {
     refused(&["f/fit.json", "--method", "magic"], &["--method magic", "output-error"]);
     refused(&["f/fit.json", "--manoeuvre", "circle:35"], &["circle:35", "turning-circle:RUDDER"]);
     refused(&["f/fit.json", "--draws", "3"], &["--draws"]);
+    // What knows of no draught, and fits no part of a record, does not ask for one.
+    refused(&["f/fit.json", "--draught-m", "8"], &["--draught-m"]);
+    refused(&["f/fit.json", "--replay", "x.csv", "--from", "10"], &["--from"]);
     desk.file("text.json", "not json");
     refused(&["text.json"], &["text.json", "no JSON"]);
     desk.file("other.json", r#"{"schema": "rows/1"}"#);
@@ -163,14 +224,12 @@ fn what_cannot_be_predicted_is_refused_with_the_cure() {
 
 /// The ship of a fit at another load: a share of her damping in yaw and of her gain; no chance in yaw.
 fn at_another_load(desk: &Desk, name: &str, [damping, gain]: [f64; 2]) {
-    let mut json = desk.json("f/fit.json");
-    for ship in json["ships"].as_object_mut().expect("ships").values_mut() {
+    changed(desk, name, |ship| {
         let parameters = &mut ship["members"][0]["parameters"];
         for (place, share) in [(0, damping), (1, gain)] {
             parameters[place] = (share * parameters[place].as_f64().expect("a number")).into();
         }
-    }
-    desk.file(name, json.to_string());
+    });
 }
 
 fn entry<'a>(json: &'a Value, field: &str, side: &str) -> &'a Value {
@@ -188,8 +247,6 @@ const DECLARED: &str = "[ship]\nlength-m = 75.0\nspeed-m-s = 6.2\n[form]\nship-t
 #[test]
 fn the_form_of_the_circular_names_the_source_of_every_entry() {
     let desk = with_fit();
-    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
-    desk.file("run.trial.toml", DECLARED);
     let run = ["predict", "f/fit.json", "--form", "--replay", "run.csv", "--draws", "100", "--out", "p"];
     let run = desk.run(&run);
     assert!(run.is_done().out.contains("trial-form.md"), "{}", run.out);
@@ -236,28 +293,11 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     assert!(desk.json("r/predict.json").get("form").is_none() && !desk.path("r/trial-form.md").exists());
 }
 
-#[test]
-fn what_no_ship_has_is_refused_with_its_line() {
-    let desk = with_fit();
-    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
-    for (line, parts) in [
-        ("beam = 17.5", ["run.trial.toml: line 2:", "unknown field `beam`"]),
-        ("beam-m = \"wide\"", ["run.trial.toml: line 2: `beam-m` is \"wide\"", "metres above 0"]),
-        ("wind-beaufort = 13", ["line 2: `wind-beaufort` is 13", "from 0 to 12"]),
-        ("loading = \"ballast\"", ["line 2: `loading` is \"ballast\"", "\"full\" or \"partial\""]),
-        ("block-coefficient = 81", ["line 2: `block-coefficient` is 81", "at most 1"]),
-    ] {
-        desk.file("run.trial.toml", format!("[form]\n{line}\n"));
-        desk.run(&["predict", "f/fit.json", "--form", "--replay", "run.csv"]).is_refused(2, &parts);
-    }
-}
-
 /// The record is that of the ship in ballast; at full load she has less damping, and her overshoots are larger.
 #[test]
 fn a_trial_in_ballast_is_corrected_to_full_load() {
     let desk = with_fit();
     at_another_load(&desk, "full.json", [0.6, 0.9]);
-    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
     desk.file("run.trial.toml", format!("{DECLARED}loading = \"partial\"\n"));
     let ship = ["--draws", "200"];
     let run = ["predict", "full.json", "--ballast", "f/fit.json", "--replay", "run.csv", "--form", "--out", "p"];
@@ -311,8 +351,6 @@ fn a_correction_without_its_trial_is_refused_and_unlike_models_are_told() {
 #[test]
 fn a_model_is_replayed_as_a_model_and_told_as_a_ship() {
     let desk = with_fit();
-    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
-    desk.file("run.trial.toml", DECLARED);
     let run = ["predict", "f/fit.json", "--form", "--replay", "run.csv", "--draws", "50"];
     let ship = ["--length-m", "300", "--speed-m-s", "7.5", "--out", "p"];
     let run = desk.run(&[&run[..], &ship].concat());
