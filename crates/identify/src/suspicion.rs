@@ -48,23 +48,36 @@ pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Tria
     })
 }
 
-/// Why length and speed of a record are not of one scale, with the cure.
-fn other_scale(record: &Trial) -> Option<String> {
-    let Particulars { length, speed } = record.particulars()?;
-    let cure = "length and speed have to be of one scale and that of the record, both of the ship or both of the model";
+/// What mends them.
+const ONE_SCALE: &str =
+    "length and speed have to be of one scale and that of the record, both of the ship or both of the model";
+
+/// Why length and speed are not of one scale, with the cure: no ship has their Froude number.
+pub fn unusual_froude_number(Particulars { length, speed }: Particulars) -> Option<String> {
     let froude = HullParticulars { length, speed, ..HullParticulars::default() }.froude_number();
     let [low, high] = USUAL_FROUDE_NUMBER;
-    if !(low..=high).contains(&froude) {
-        return Some(format!(
-            "{length} m at {speed:.3} m/s is a Froude number of {froude:.3} (ships have {low} to {high}): {cure}"
-        ));
+    (!(low..=high).contains(&froude)).then(|| {
+        format!(
+            "{length} m at {speed:.3} m/s is a Froude number of {froude:.3} (ships have {low} to {high}): {ONE_SCALE}"
+        )
+    })
+}
+
+/// The same of a record, which may also sail at another speed than is given.
+fn other_scale(record: &Trial) -> Option<String> {
+    let own = record.particulars()?;
+    if let Some(unusual) = unusual_froude_number(own) {
+        return Some(unusual);
     }
+    let speed = own.speed;
     let speeds = record.channel(Channel::Speed)?.iter().copied().filter(|own| own.is_finite());
     let largest = speeds.fold(0.0, f64::max);
     let is_other = largest > 0.0 && !(1.0 / OTHER_SPEED..=OTHER_SPEED).contains(&(largest / speed));
     is_other.then(|| {
         let name = record.name();
-        format!("{name} sails at {largest:.3} m/s at most, and {speed:.3} m/s is given as its approach speed: {cure}")
+        format!(
+            "{name} sails at {largest:.3} m/s at most, and {speed:.3} m/s is given as its approach speed: {ONE_SCALE}"
+        )
     })
 }
 

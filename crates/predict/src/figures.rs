@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use indexmap::IndexMap;
 use ship::Particulars;
 use ship::angle::to_deg;
-use simulate::Manoeuvre;
+use simulate::{HelmOrder, Manoeuvre};
 use trial::manoeuvre::INITIAL_TURN;
 
 use crate::interval::PredictionInterval;
@@ -101,8 +101,7 @@ pub(crate) fn is_sound(name: &str, interval: &PredictionInterval) -> bool {
 
 /// Overshoots, executes and period of a zig-zag.
 ///
-/// An overshoot is counted from the heading at its execute. The period is the mean time between executes to the same
-/// side from the third on, when the transient of the start is over.
+/// An overshoot is counted from the heading at its execute.
 fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Figures) {
     let executes = &passage.executes;
     for (number, name) in OVERSHOOTS.into_iter().enumerate() {
@@ -116,10 +115,16 @@ fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Figures) {
     for (number, name) in EXECUTE_TIMES.into_iter().enumerate() {
         figures.insert(name, executes.get(number + 1).map(|execute| execute.time));
     }
-    let cycles: Vec<f64> =
-        executes.iter().skip(2).zip(executes.iter().skip(4)).map(|(one, next)| next.time - one.time).collect();
-    let period = (!cycles.is_empty()).then(|| cycles.iter().sum::<f64>() / cycles.len() as f64);
-    figures.insert("period_s", period);
+    figures.insert("period_s", period(executes));
+}
+
+/// Mean time between executes to the same side, s. The cycle from the second one on holds the transient of the start
+/// and counts only where there is no other, as in a record ([`trial::ZigZag::period`]).
+pub(crate) fn period(executes: &[HelmOrder]) -> Option<f64> {
+    let first = if executes.len() > 4 { 2 } else { 1 };
+    let ends = executes.iter().skip(first + 2);
+    let cycles: Vec<f64> = executes.iter().skip(first).zip(ends).map(|(one, next)| next.time - one.time).collect();
+    (!cycles.is_empty()).then(|| cycles.iter().sum::<f64>() / cycles.len() as f64)
 }
 
 /// Times and steady rate, over the last half turn, of a turn to one side (±1).

@@ -10,7 +10,7 @@ use crate::figures::{self, EXECUTE_TIMES, Figures, OVERSHOOTS};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::prediction::drawn;
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
-use crate::standard;
+use crate::standard::{self, EXECUTES};
 
 /// Share by which a mean angle of a zig-zag may be off the nominal one that was ordered.
 const NOMINAL: f64 = 0.05;
@@ -28,6 +28,8 @@ pub(crate) struct SteeredZigZag {
     pub kind: Manoeuvre,
     /// Change of heading that ends the initial turning, rad: the nominal one, where a helm is later than ordered.
     turned: f64,
+    /// Executes that the record shows, of which its period is.
+    executes: usize,
     /// Yaw rate at the first execute, rad/s.
     yaw_rate: f64,
     /// Rate of the rudder where the record shows it, rad/s.
@@ -63,7 +65,7 @@ impl SteeredZigZag {
         };
         let kind = Manoeuvre::zig_zag(rudder, heading).to(side);
         let turned = measured.pair.map_or(heading, |pair| pair.heading);
-        Some(Self { kind, turned, yaw_rate, rudder_rate: measured.rudder_rate })
+        Some(Self { kind, turned, executes: executes.len(), yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
     /// What drawn ships do, in the order of their numbers; `None` for one that does not come to the end.
@@ -76,6 +78,8 @@ impl SteeredZigZag {
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
             let mut figures = figures::of(&self.kind, &passage, mixture.particulars());
             let turned = passage.reached(self.turned, self.kind.side().sign());
+            let shown = passage.executes.get(..self.executes).unwrap_or(&passage.executes);
+            figures.insert("period_s", figures::period(shown));
             figures.extend(figures::initial_turning(&passage, turned, mixture.particulars()));
             Some(DrawResult { figures, largest_rate: passage.largest_rate() })
         })
@@ -110,7 +114,7 @@ pub(crate) fn shown(
             let way = measured.initial_turning_distance.or_else(|| Some(speed? * time.value))?;
             Some(Quantity::new(way / length, time.sd.map(|sd| sd * way / (time.value * length))))
         }
-        (.., "period_s") => measured.period,
+        (.., "period_s") => measured.period_of(EXECUTES),
         _ => None,
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter, SteeringLag};
-use ship::{Regressor, ResponseModel};
+use ship::{Particulars, Regressor, ResponseModel};
 pub use trial::noise_model::Moment;
 
 use crate::error::PredictError;
@@ -154,18 +154,21 @@ pub fn is_same_length(one: f64, other: f64) -> bool {
 }
 
 impl IdentifiedShip {
+    /// Length and speed, where both are known.
+    pub fn particulars(&self) -> Option<Particulars> {
+        Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
+    }
+
     /// The same ship at another length and approach speed: every time grows by (L₂/U₂)/(L₁/U₁), every length by L₂/L₁,
     /// and what has no dimension stays (K′, T′ and all others). With U ~ √L this is the scaling of Froude (1868).
     ///
     /// Noise scales as the ship does: the weather of a model basin is that of a sea as many times larger. Fails where
     /// length or speed of the known ship are not known.
     pub fn scaled_to(&self, length: f64, speed: Option<f64>) -> Result<Self, PredictError> {
-        let (Some(own_length), Some(own_speed)) = (self.length_m, self.speed_m_s) else {
-            return Err(PredictError::NoParticulars);
-        };
-        let metre = length / own_length;
-        let speed = speed.unwrap_or(own_speed * metre.sqrt());
-        let second = metre * own_speed / speed;
+        let own = self.particulars().ok_or(PredictError::NoParticulars)?;
+        let metre = length / own.length;
+        let speed = speed.unwrap_or(own.speed * metre.sqrt());
+        let second = metre * own.speed / speed;
         let factor = |[seconds, metres]: [i32; 2]| second.powi(seconds) * metre.powi(metres);
         let mut scaled = self.clone();
         for member in &mut scaled.members {
@@ -255,8 +258,8 @@ impl IdentifiedShip {
     /// A time of the ship, s: L/U where they are known, else (K/T)^(−1/2) of the most probable structure, which is
     /// about that.
     pub fn timescale(&self) -> Option<f64> {
-        if let (Some(length), Some(speed)) = (self.length_m, self.speed_m_s) {
-            return Some(length / speed);
+        if let Some(own) = self.particulars() {
+            return Some(own.time());
         }
         let gain = *self.members.first()?.parameters.get(1)?;
         (gain > 0.0).then(|| gain.sqrt().recip())

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
-use ship::angle::to_deg;
+use ship::angle::{DEGREE, to_deg};
 use simulate::Manoeuvre;
 use trial::imo::{self, Unit};
 
@@ -36,6 +36,11 @@ pub(crate) type FormManoeuvre = &'static str;
 pub(crate) const TEN: FormManoeuvre = "zig-zag 10/10";
 pub(crate) const TWENTY: FormManoeuvre = "zig-zag 20/20";
 pub(crate) const CIRCLE: FormManoeuvre = "turning-circle 35";
+
+/// Rudder of that circle, and by how much another may be off it, rad. A largest rudder that is another would do as
+/// well, but no model knows it.
+pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
+pub(crate) const ABOUT: f64 = 0.05 * CIRCLE_RUDDER;
 
 /// A limit of the resolution.
 pub(crate) struct Limit {
@@ -108,13 +113,15 @@ pub(crate) const LIMITS: [Limit; 6] = [
 ];
 
 impl Limit {
-    /// Whether a manoeuvre answers it, to either side: circles with any rudder, and a turn with 10° as well as a 10/10.
+    /// Whether a manoeuvre answers it, to either side: a turn with 10° as well as a 10/10.
     fn is_answered_by(&self, kind: &Manoeuvre) -> bool {
         let is = |angle: f64, deg: f64| (to_deg(angle) - deg).abs() < 1e-6;
         let is_pair =
             |deg| matches!(*kind, Manoeuvre::ZigZag { rudder, heading, .. } if is(heading, deg) && is(rudder, deg));
         match self.manoeuvre {
-            CIRCLE => matches!(kind, Manoeuvre::TurningCircle { .. }),
+            CIRCLE => {
+                matches!(*kind, Manoeuvre::TurningCircle { rudder, .. } if (rudder - CIRCLE_RUDDER).abs() <= ABOUT)
+            }
             TWENTY => is_pair(20.0),
             _ => is_pair(10.0) || matches!(*kind, Manoeuvre::InitialTurning { rudder, .. } if is(rudder, 10.0)),
         }

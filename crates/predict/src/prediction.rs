@@ -126,8 +126,7 @@ pub(crate) fn enough(what: impl ToString, made: usize, draws: usize) -> Result<(
 impl ShipMixture {
     /// Length and speed, where the first file has them.
     pub fn particulars(&self) -> Option<Particulars> {
-        let first = self.first();
-        Some(Particulars { length: first.length_m?, speed: first.speed_m_s? })
+        self.first().particulars()
     }
 
     /// Predicts a manoeuvre from so many draws; `shares` asks for the share of every source of doubt.

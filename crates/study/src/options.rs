@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::completed::{self, completed};
 use crate::formula_options::{Formulas, formula, formulas};
 use crate::outside::NamedCommand;
-pub use crate::ship_options::ShipOptions;
+pub use crate::ship_options::{ScaleOptions, ShipOptions};
 pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, PageFigures, StudyFigureOptions};
 use ::trace::{EffectId, Rule, Selection};
 use campaign::task::Shard;
@@ -97,7 +97,7 @@ impl Format {
 }
 
 /// How records are read, which part of them is used, and what is known of the ship.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub struct ReadingOptions {
     /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
     #[arg(long, value_name = "FILE.toml|DIR")]
@@ -166,11 +166,8 @@ pub struct FitRequest {
     #[arg(long, value_name = "TRIAL")]
     pub validate: Vec<PathBuf>,
     /// Method to use, or `all`; can be given several times [default: all but fourier-published and srivc]
-    #[arg(
-        long = "method", value_name = "ID|all",
-        value_parser = completed(StringValueParser::new(), completed::methods_or_all),
-        hide_possible_values = true
-    )]
+    #[arg(long = "method", value_name = "ID|all", hide_possible_values = true,
+        value_parser = completed(StringValueParser::new(), completed::methods_or_all))]
     pub methods: Vec<String>,
     /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json: where the fit of her
     /// hull begins, widened; can be given several times
@@ -238,26 +235,16 @@ pub struct TraceRequest {
     pub without: Vec<Withheld>,
     /// Effects that are in the model whatever the evidence says, by their ids in `study list effects` or their names
     /// in `--effect`
-    #[arg(
-        long, value_name = "ID,…", value_delimiter = ',',
-        value_parser = completed(StringValueParser::new(), completed::effects),
-        hide_possible_values = true
-    )]
+    #[arg(long, value_name = "ID,…", value_delimiter = ',', hide_possible_values = true,
+        value_parser = completed(StringValueParser::new(), completed::effects))]
     pub with: Vec<String>,
     /// Exactly these effects and no search
-    #[arg(
-        long, value_name = "ID,…", value_delimiter = ',',
-        value_parser = completed(StringValueParser::new(), completed::effects),
-        hide_possible_values = true,
-        conflicts_with_all = ["with", "without_effect"]
-    )]
+    #[arg(long, value_name = "ID,…", value_delimiter = ',', conflicts_with_all = ["with", "without_effect"],
+        hide_possible_values = true, value_parser = completed(StringValueParser::new(), completed::effects))]
     pub only: Vec<String>,
     /// Effects that are no candidates
-    #[arg(
-        long, value_name = "ID,…", value_delimiter = ',',
-        value_parser = completed(StringValueParser::new(), completed::effects),
-        hide_possible_values = true
-    )]
+    #[arg(long, value_name = "ID,…", value_delimiter = ',', hide_possible_values = true,
+        value_parser = completed(StringValueParser::new(), completed::effects))]
     pub without_effect: Vec<String>,
     /// An effect of one's own, a candidate like those of the list: a moment as an angle of the rudder, `bank = c *
     /// tanh(k * psi)`; can be given several times
@@ -275,11 +262,8 @@ pub struct TraceRequest {
     #[arg(long = "prior", value_name = "MODEL.json", conflicts_with = "without_hull")]
     pub priors: Vec<PathBuf>,
     /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
-    #[arg(
-        long, value_name = "NAME", default_value = Rule::default().as_str(),
-        value_parser = completed(rule, completed::rules),
-        hide_possible_values = true
-    )]
+    #[arg(long, value_name = "NAME", default_value = Rule::default().as_str(), hide_possible_values = true,
+        value_parser = completed(rule, completed::rules))]
     pub rule: Rule,
     /// How figures are drawn, and whether
     #[command(flatten)]
@@ -368,11 +352,8 @@ pub struct PredictRequest {
     #[arg(long)]
     pub form: bool,
     /// Method whose answer in fit.json is used [default: the one to take, or the next that has a covariance]
-    #[arg(
-        long, value_name = "ID",
-        value_parser = completed(StringValueParser::new(), completed::methods),
-        hide_possible_values = true
-    )]
+    #[arg(long, value_name = "ID", hide_possible_values = true,
+        value_parser = completed(StringValueParser::new(), completed::methods))]
     pub method: Option<String>,
     /// Without the random moment and the steady wind of the records
     #[arg(long)]
@@ -380,12 +361,24 @@ pub struct PredictRequest {
     /// Ships that are drawn
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(DRAWS))]
     pub draws: u32,
-    /// How the records are read, and the scale that is predicted for: another length scales the ship by Froude
+    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each; its ship is
+    /// the scale that is predicted for, unless --length-m says otherwise
+    #[arg(long, value_name = "FILE.toml|DIR")]
+    pub columns: Option<PathBuf>,
+    /// The scale that is predicted for: another length scales the ship by Froude
     #[command(flatten)]
-    pub reading: ReadingOptions,
+    pub scale: ScaleOptions,
     /// How figures are drawn, and whether
     #[command(flatten)]
     pub style: PageFigureOptions,
+}
+
+impl PredictRequest {
+    /// How records are read.
+    pub fn reading(&self) -> ReadingOptions {
+        let ship = ShipOptions { scale: self.scale.clone(), ..ShipOptions::default() };
+        ReadingOptions { columns: self.columns.clone(), ship, ..ReadingOptions::default() }
+    }
 }
 
 /// Files that have a schema.

@@ -133,7 +133,8 @@ pub fn read_others(
     options: &ReadingOptions,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Trial>, Failure> {
-    let plain = ReadingOptions { with_columns: Vec::new(), trial: None, from: None, until: None, ..options.clone() };
+    let (columns, ship) = (options.columns.clone(), options.ship.clone());
+    let plain = ReadingOptions { columns, ship, ..ReadingOptions::default() };
     expand(paths)?.iter().map(|path| read(path, &plain, warnings)).collect()
 }
 
@@ -272,8 +273,8 @@ fn ship(
     options: &ReadingOptions,
     warnings: &mut Vec<String>,
 ) -> Result<Option<Particulars>, Failure> {
-    let Some(length) = options.ship.length_m else { return Ok(None) };
-    if let Some(speed) = options.ship.speed() {
+    let Some(length) = options.ship.scale.length_m else { return Ok(None) };
+    if let Some(speed) = options.ship.scale.speed() {
         return Ok(Some(Particulars { length, speed }));
     }
     let file = path.display();

@@ -7,9 +7,9 @@ use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
 
 use crate::style_options::within;
 
-/// What is known of a ship.
+/// Length and approach speed of a ship.
 #[derive(Debug, Clone, Default, Args)]
-pub struct ShipOptions {
+pub struct ScaleOptions {
     /// Length of the ship between perpendiculars, m
     #[arg(long, value_name = "L", value_parser = within([0.1, 1000.0]))]
     pub length_m: Option<f64>,
@@ -19,20 +19,30 @@ pub struct ShipOptions {
     /// Approach speed, kn
     #[arg(long, value_name = "V", value_parser = within([0.01, 200.0]), requires = "length_m")]
     pub speed_kn: Option<f64>,
+}
+
+impl ScaleOptions {
+    /// The approach speed that is given, m/s.
+    pub fn speed(&self) -> Option<f64> {
+        self.speed_m_s.or(self.speed_kn.map(|speed| speed * KNOT))
+    }
+}
+
+/// What is known of a ship.
+#[derive(Debug, Clone, Default, Args)]
+pub struct ShipOptions {
+    /// Her length and approach speed
+    #[command(flatten)]
+    pub scale: ScaleOptions,
     /// Her hull, rudder and propeller
     #[command(flatten)]
     pub form: FormOptions,
 }
 
 impl ShipOptions {
-    /// The approach speed that is given, m/s.
-    pub fn speed(&self) -> Option<f64> {
-        self.speed_m_s.or(self.speed_kn.map(|speed| speed * KNOT))
-    }
-
     /// Whether nothing is given.
     pub fn is_empty(&self) -> bool {
-        self.length_m.is_none() && self.form.0.is_empty()
+        self.scale.length_m.is_none() && self.form.0.is_empty()
     }
 }
 

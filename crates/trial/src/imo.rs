@@ -44,6 +44,17 @@ fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, li
     }
 }
 
+/// What limits mean for a ship below the length that they are for; `None` for a longer one.
+pub fn caution(Particulars { length, speed }: Particulars) -> Option<String> {
+    (length < SHORTEST_M).then(|| {
+        format!(
+            "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length), and limits of \
+             the 10/10 zig-zag follow L/V, which grows with the square root of the length, here {length:.2} m at \
+             {speed:.2} m/s; for those of the ship of a model give study predict her --length-m and --speed-kn"
+        )
+    })
+}
+
 /// Unit of a criterion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
@@ -63,17 +74,6 @@ impl Unit {
     }
 }
 
-/// Whether a criterion is met.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
-    /// The measured value does not exceed the limit.
-    Pass,
-    /// The measured value exceeds the limit.
-    Fail,
-    /// The record does not measure this quantity.
-    NotMeasured,
-}
-
 /// One criterion with what was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Criterion {
@@ -85,29 +85,17 @@ pub struct Criterion {
     pub limit: f64,
     /// Unit of value and limit.
     pub unit: Unit,
-    /// Whether the criterion is met.
-    pub verdict: Verdict,
 }
 
 impl Criterion {
-    /// Compares a value with its limit, both in `unit`.
-    pub fn new(name: &'static str, measured: Option<Quantity>, limit: f64, unit: Unit) -> Self {
-        let verdict = match measured {
-            None => Verdict::NotMeasured,
-            Some(quantity) if quantity.value <= limit => Verdict::Pass,
-            Some(_) => Verdict::Fail,
-        };
-        Self { name, measured, limit, unit, verdict }
+    /// Whether it is met, in a word.
+    pub fn verdict(&self) -> &'static str {
+        match self.measured {
+            None => "not measured",
+            Some(own) if own.value <= self.limit => "pass",
+            Some(_) => "fail",
+        }
     }
-}
-
-/// The criteria of a turning circle, from its advance and tactical diameter in metres.
-pub fn turning_circle(advance: Option<f64>, tactical_diameter: Option<f64>, length: f64) -> [Criterion; 2] {
-    let lengths = |metres: Option<f64>| metres.map(|metres| Quantity::bare(metres / length));
-    [
-        Criterion::new("advance", lengths(advance), ADVANCE_LENGTHS, Unit::ShipLengths),
-        Criterion::new("tactical diameter", lengths(tactical_diameter), TACTICAL_DIAMETER_LENGTHS, Unit::ShipLengths),
-    ]
 }
 
 /// The criteria a zig-zag can measure, with the values this one does: overshoots and initial turning of a 10/10, the
@@ -128,13 +116,13 @@ pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
         let way = zigzag.initial_turning_distance.unwrap_or(speed * time.value);
         Quantity::new(way / length, time.sd.map(|sd| sd * speed / length))
     });
-    let in_degrees = |name, measured, limit| Criterion::new(name, measured, limit, Unit::Degrees);
+    let criterion = |name, measured, limit, unit| Criterion { name, measured, limit, unit };
     let [first, second] = [first_overshoot_10_10_limit_deg(particulars), second_overshoot_10_10_limit_deg(particulars)];
     vec![
-        in_degrees("10/10 first overshoot", overshoot(10.0, 1), first),
-        in_degrees("10/10 second overshoot", overshoot(10.0, 2), second),
-        in_degrees("20/20 first overshoot", overshoot(20.0, 1), FIRST_OVERSHOOT_20_20_DEG),
-        Criterion::new("initial turning", initial_turning, INITIAL_TURNING_LENGTHS, Unit::ShipLengths),
+        criterion("10/10 first overshoot", overshoot(10.0, 1), first, Unit::Degrees),
+        criterion("10/10 second overshoot", overshoot(10.0, 2), second, Unit::Degrees),
+        criterion("20/20 first overshoot", overshoot(20.0, 1), FIRST_OVERSHOOT_20_20_DEG, Unit::Degrees),
+        criterion("initial turning", initial_turning, INITIAL_TURNING_LENGTHS, Unit::ShipLengths),
     ]
 }
 
@@ -181,8 +169,9 @@ mod tests {
         assert_relative_eq!(measured[1].expect("10/10"), 8.07, epsilon = 0.02);
         assert_eq!(measured[2], None);
         assert_relative_eq!(measured[3].expect("10/10"), 1.97, epsilon = 0.01);
-        let verdicts: Vec<Verdict> = ten.iter().map(|criterion| criterion.verdict).collect();
-        assert_eq!(verdicts, [Verdict::Pass, Verdict::Pass, Verdict::NotMeasured, Verdict::Pass]);
+        let verdicts: Vec<&str> = ten.iter().map(Criterion::verdict).collect();
+        assert_eq!(verdicts, ["pass", "pass", "not measured", "pass"]);
+        assert_eq!(Criterion { limit: 6.0, ..ten[0].clone() }.verdict(), "fail");
 
         let twenty = values(&table(20.0, 20.0));
         assert_eq!((twenty[0], twenty[1], twenty[3]), (None, None, None));
@@ -203,12 +192,5 @@ mod tests {
         let measured = values(&criteria(&zigzag, YUKUN));
         assert!(measured[1].is_some(), "{measured:?}");
         assert_eq!([measured[0], measured[3]], [None, None]);
-    }
-
-    #[test]
-    fn a_value_above_its_limit_fails() {
-        let verdicts = turning_circle(Some(400.0), Some(600.0), 100.0).map(|criterion| criterion.verdict);
-        assert_eq!(verdicts, [Verdict::Pass, Verdict::Fail]);
-        assert_eq!(turning_circle(None, None, 100.0)[0].verdict, Verdict::NotMeasured);
     }
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use study::options::{ReadingOptions, ShipOptions};
+use study::options::ReadingOptions;
 use study::records::read_others;
 use trial::Trial;
 
@@ -145,6 +145,5 @@ pub type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// How records are read: whole, as their sidecars say.
 pub fn reading(columns: Option<PathBuf>) -> ReadingOptions {
-    let (with_columns, ship) = (Vec::new(), ShipOptions::default());
-    ReadingOptions { columns, with_columns, trial: None, from: None, until: None, ship }
+    ReadingOptions { columns, ..ReadingOptions::default() }
 }

@@ -1,20 +1,17 @@
 //! Records as the form of MSC/Circ.1053 takes them: which of its manoeuvres each is, and what it shows of it.
 
-use ship::angle::{from_deg, to_deg};
+use ship::angle::to_deg;
 use trial::zigzag::BaseCourseSource;
 use trial::{Loading, Quantity, Trial, ZigZag as Measured};
 
 use crate::correction::Correction;
 use crate::helm_replay;
-use crate::imo::{CIRCLE, FormManoeuvre, TEN, TWENTY};
+use crate::imo::{ABOUT, CIRCLE, CIRCLE_RUDDER, FormManoeuvre, TEN, TWENTY};
 use crate::motion::Current;
 use crate::turn::{self, HeldTurn};
 
 /// Yaw rate of a straight approach as a share of the largest of the record.
 const STRAIGHT: f64 = 0.05;
-
-/// Difference from 35° at which a circle is still that of the form, and angle of a rudder that is amidships, rad.
-const RUDDER: f64 = 0.05 * 35.0 * ship::angle::DEGREE;
 
 /// Rows at least from which the yaw rate of an approach to a circle is read.
 const FEWEST: usize = 3;
@@ -137,10 +134,10 @@ fn circle(trial: &Trial) -> Found {
     let shown = turn.figures(&passage);
     shown["time_to_90_s"].ok_or_else(neither)?;
     let rudder = to_deg(turn.rudder);
-    if (turn.rudder - from_deg(35.0)).abs() > RUDDER {
+    if (turn.rudder - CIRCLE_RUDDER).abs() > ABOUT {
         return Err(format!("a turning circle with {rudder:.1}° of rudder; the form asks for 35° or the largest"));
     }
-    if turn.before.abs() > RUDDER {
+    if turn.before.abs() > ABOUT {
         let before = to_deg(turn.before);
         return Err(format!("the turning circle begins with the rudder at {before:.1}°, not from a straight course"));
     }

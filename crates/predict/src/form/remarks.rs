@@ -3,14 +3,11 @@
 
 use indexmap::IndexMap;
 use ship::Particulars;
-use trial::{Conditions, Loading};
+use trial::{Conditions, Loading, imo};
 
 use super::record::TestedManoeuvre;
 use crate::imo::{CIRCLE, TEN, TWENTY};
 use crate::replay::file_of;
-
-/// Length from which the criteria hold, m. Source: MSC.137(76), 2.
-const SHORTEST_SHIP: f64 = 100.0;
 
 /// The remarks, in the order in which a reader asks.
 pub(crate) fn remarks(
@@ -18,14 +15,7 @@ pub(crate) fn remarks(
     declared: Option<(&str, &Conditions)>,
     particulars: Option<Particulars>,
 ) -> Vec<String> {
-    let mut remarks = Vec::new();
-    if let Some(Particulars { length, speed }) = particulars.filter(|own| own.length < SHORTEST_SHIP) {
-        remarks.push(format!(
-            "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length), and limits of \
-             the 10/10 zig-zag follow L/V, here {length:.2} m at {speed:.2} m/s; for a model give --length-m and \
-             --speed-kn of the ship"
-        ));
-    }
+    let mut remarks: Vec<String> = particulars.and_then(imo::caution).into_iter().collect();
     // What holds for several files is said once.
     let mut files: IndexMap<String, Vec<&str>> = IndexMap::new();
     for one in tested {

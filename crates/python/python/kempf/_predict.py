@@ -185,7 +185,8 @@ def predict(
     :param load: path of a file that describes another loading, as a sidecar does: hulls are taken to it by the formulas of
         the particulars
     :param draws: ships that are drawn
-    :param length_m: length that is predicted for, m: another one than that of the records scales the ship by Froude
+    :param length_m: length that is predicted for, m; the ship is scaled to it by Froude. That of the replayed records, or
+        else of the model, where it is left out
     :param speed_m_s: its approach speed, m/s
     :param speed_kn: the same in knots
 

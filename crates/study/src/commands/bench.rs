@@ -53,21 +53,15 @@ pub struct BenchRequest {
     #[arg(long, value_name = "DIR")]
     pub data: Vec<PathBuf>,
     /// Methods that take part [default: all]
-    #[arg(
-        long = "method", value_name = "ID",
-        value_parser = completed(StringValueParser::new(), completed::competitors),
-        hide_possible_values = true
-    )]
+    #[arg(long = "method", value_name = "ID", hide_possible_values = true,
+        value_parser = completed(StringValueParser::new(), completed::competitors))]
     pub methods: Vec<String>,
     /// An outside estimator that takes part as well: what it is called, and the command that starts it
     #[arg(long, value_name = "LABEL=COMMAND")]
     pub external: Vec<NamedCommand>,
     /// Tasks that are set [default: all]
-    #[arg(
-        long = "task", value_name = "ID",
-        value_parser = completed(task, completed::tasks),
-        hide_possible_values = true
-    )]
+    #[arg(long = "task", value_name = "ID", hide_possible_values = true,
+        value_parser = completed(task, completed::tasks))]
     pub tasks: Vec<BenchTask>,
     /// Sets of records that are used [default: all]
     #[arg(long = "set", value_name = "NAME")]

@@ -174,8 +174,8 @@ fn sidecar() -> Table {
 fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Failure> {
     let declared = columns.as_deref().map(Sidecar::load).transpose().map_err(Failure::input)?;
     let mut hull = declared.map(|sidecar| sidecar.hull()).unwrap_or_default();
-    hull.length = ship.length_m.unwrap_or(hull.length);
-    hull.speed = ship.speed().unwrap_or(hull.speed);
+    hull.length = ship.scale.length_m.unwrap_or(hull.length);
+    hull.speed = ship.scale.speed().unwrap_or(hull.speed);
     ship.form.apply(&mut hull);
     if hull.length == 0.0 || hull.speed == 0.0 {
         return Err(Failure::input(

@@ -39,16 +39,11 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         paths.iter().map(|path| StoredModel::of_file(path, request, &mut warnings)).collect()
     };
     let (models, ballast) = (read(&request.models)?, read(&request.ballast)?);
-    let current = match &request.current_from {
-        Some(path) => Some(current_from(path, request, &mut warnings)?),
-        None => None,
-    };
-    let records: Vec<Trial> = read_others(&request.replays, &request.reading, &mut warnings)?;
-    let columns = request.reading.columns.as_deref();
-    let declared = match (columns, request.form && records.is_empty()) {
-        (Some(path), true) if path.is_file() => Some(Sidecar::load(path).map_err(Failure::input)?),
-        _ => None,
-    };
+    let current = request.current_from.as_ref();
+    let current = current.map(|path| current_from(path, request, &mut warnings)).transpose()?;
+    let records: Vec<Trial> = read_others(&request.replays, &request.reading(), &mut warnings)?;
+    let columns = request.columns.as_deref().filter(|path| records.is_empty() && path.is_file());
+    let declared = columns.map(Sidecar::load).transpose().map_err(Failure::input)?;
     let file = columns.map(|path| path.display().to_string());
     let declared = file.as_deref().zip(declared.as_ref().map(|sidecar| &sidecar.conditions));
     let input = PredictInput { models: &models, ballast: &ballast, records, current, declared };
@@ -101,7 +96,7 @@ fn default_folder(model: &Path) -> PathBuf {
 
 /// The current that a record shows.
 fn current_from(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Current, Failure> {
-    let records = read_others(std::slice::from_ref(&path.to_owned()), &request.reading, warnings)?;
+    let records = read_others(std::slice::from_ref(&path.to_owned()), &request.reading(), warnings)?;
     records.first().and_then(turn::current_of).ok_or_else(|| {
         Failure::input(format!(
             "--current-from {}: this record shows no current; give positions north_m and east_m of a circle in which the \

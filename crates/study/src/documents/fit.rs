@@ -68,6 +68,9 @@ pub struct ZigZagEntry {
     pub period_s: Option<f64>,
     /// IMO MSC.137(76), where length and speed are declared.
     pub imo: Vec<CriterionEntry>,
+    /// What they mean for a ship of less than 100 m, such as a model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub imo_caution: Option<String>,
 }
 
 /// `fit.json`.
@@ -243,17 +246,12 @@ pub fn trial_entry(trial: &Trial, zigzag: &Result<ZigZag, ZigZagError>) -> Trial
 /// The entry of a zig-zag; criteria where length and speed are declared.
 fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
-    let verdict = |own: &imo::Criterion| match own.verdict {
-        imo::Verdict::Pass => "pass",
-        imo::Verdict::Fail => "fail",
-        imo::Verdict::NotMeasured => "not measured",
-    };
     let criterion = |own: &imo::Criterion| CriterionEntry {
         criterion: own.name.into(),
         measured: own.measured.map(|measured| measured.value),
         limit: own.limit,
         unit: own.unit.symbol().into(),
-        verdict: verdict(own).into(),
+        verdict: own.verdict().into(),
     };
     ZigZagEntry {
         initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),
@@ -261,5 +259,6 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
         overshoots_sd_deg: zigzag.swings().map(|swing| swing?.angle.sd.map(to_deg)).collect(),
         period_s: zigzag.period.map(|period| period.value),
         imo: criteria.iter().map(criterion).collect(),
+        imo_caution: trial.particulars().and_then(imo::caution),
     }
 }

@@ -230,7 +230,11 @@ fn characteristics(entry: &ZigZagEntry) -> String {
     if !entry.imo.is_empty() && entry.imo.iter().all(|criterion| criterion.measured.is_none()) {
         text += "  IMO: this record measures none of the criteria, which are for zig-zags 10/10 and 20/20 from a straight course\n";
     }
-    for criterion in entry.imo.iter().filter(|criterion| criterion.measured.is_some()) {
+    let measured: Vec<_> = entry.imo.iter().filter(|criterion| criterion.measured.is_some()).collect();
+    if let Some(caution) = entry.imo_caution.as_ref().filter(|_| !measured.is_empty()) {
+        text += &format!("  IMO: {caution}\n");
+    }
+    for criterion in measured {
         text += &format!(
             "  IMO {}: {} {}, limit {}: {}\n",
             criterion.criterion,
@@ -259,6 +263,7 @@ mod tests {
             overshoots_sd_deg: vec![None; count],
             period_s: None,
             imo: Vec::new(),
+            imo_caution: None,
         };
         assert!(characteristics(&entry(0)).contains("overshoots none"));
         assert_eq!(characteristics(&entry(12)).matches("8.2").count(), 12);

@@ -6,9 +6,9 @@ use predict::{PredictDocument, Prediction};
 use report::Page;
 use report::markdown::text;
 use report::number::{fixed, with_uncertainty};
-use ship::ShortNumber;
 use ship::angle::to_deg;
-use trial::Manoeuvre;
+use ship::{Particulars, ShortNumber};
+use trial::{Manoeuvre, imo};
 
 use super::{predict_figures, predict_tables};
 
@@ -70,11 +70,17 @@ pub fn rest(document: &PredictDocument) -> String {
         doubts(document).for_each(|doubt| rest += &format!("{doubt}\n"));
     }
     if !document.imo.is_empty() {
-        rest += &format!("\nIMO MSC.137(76)\n{}", predict_tables::criteria(document).to_text());
+        let caution = caution(document).map_or_else(String::new, |caution| format!("{caution}\n"));
+        rest += &format!("\nIMO MSC.137(76)\n{caution}{}", predict_tables::criteria(document).to_text());
     } else if (document.length_m.is_none() || document.speed_m_s.is_none()) && !document.manoeuvres.is_empty() {
         rest += "\nIMO: not compared, length and speed of the ship are not known; give --length-m and --speed-kn\n";
     }
     rest
+}
+
+/// What the limits mean for a short ship.
+fn caution(document: &PredictDocument) -> Option<String> {
+    document.length_m.zip(document.speed_m_s).and_then(|(length, speed)| imo::caution(Particulars { length, speed }))
 }
 
 /// How near a record is to its replay.
@@ -119,6 +125,7 @@ pub fn page(document: &PredictDocument) -> Page {
             "The share of the drawn ships that keep within the limit. The criteria are for full load, even keel, deep water \
              and calm.",
         );
+        caution(document).into_iter().for_each(|caution| page.say(text(&caution)));
         page.table(predict_tables::criteria(document));
     }
     if !document.replays.is_empty() {

@@ -11,4 +11,5 @@ pub mod publication_changes;
 pub mod simulate;
 pub mod single_records;
 pub mod steady;
+mod target_scale;
 pub mod trace;

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use identify::hull::Likeness;
+use identify::suspicion::unusual_froude_number;
 use predict::correction::{self, Correction};
 use predict::document::{ModelWeight, OtherLoading};
 use predict::form::{self, FormRecord};
-use predict::identified_ship::is_same_length;
 use predict::replay::RecordReplay;
 use predict::turn::{self, Current};
 use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
@@ -16,9 +16,10 @@ use scenario::failure::Failure;
 use scenario::name;
 use serde_json::Value;
 use ship::Particulars;
-use trial::{Conditions, Manoeuvre, Trial, file};
+use trial::{Manoeuvre, Trial, file};
 
 use super::loading::{DescribedLoading, only_hull};
+use super::target_scale::{self, Declared, TargetScale, at_scale, is_alike, of_two_scales};
 use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
 use crate::records::{file_of, rudder_logged_late};
@@ -40,12 +41,23 @@ pub struct StoredModel {
     method: String,
 }
 
-/// The ships of several models at a scale.
-fn mixture_of(models: &[StoredModel], particulars: Option<Particulars>) -> Result<ShipMixture, PredictError> {
-    let of = |model: &StoredModel| -> Result<(IdentifiedShip, f64), PredictError> {
-        Ok((at_scale(&model.known, particulars)?, 1.0))
-    };
-    ShipMixture::new(models.iter().map(of).collect::<Result<_, _>>()?)
+/// The files of some models.
+fn files(models: &[StoredModel]) -> Vec<String> {
+    models.iter().map(|model| model.file.clone()).collect()
+}
+
+/// The ships of several models at a scale, which have to be alike.
+fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<ShipMixture, Failure> {
+    let mut ships: Vec<(IdentifiedShip, f64)> = Vec::with_capacity(models.len());
+    for model in models {
+        let ship = at_scale(&model.known, scale).map_err(|error| Failure::about(&model.file, error))?;
+        let [first, own] = [ships.first().map_or(&ship, |(first, _)| first), &ship].map(IdentifiedShip::particulars);
+        if !first.zip(own).map_or(first == own, |(first, own)| is_alike(first, own)) {
+            return Err(of_two_scales([(&models[0].file, first), (&model.file, own)]));
+        }
+        ships.push((ship, 1.0));
+    }
+    ShipMixture::new(ships).map_err(|error| Failure::about(&files(models).join(", "), error))
 }
 
 /// The ships in the text of a document.
@@ -150,8 +162,8 @@ pub struct PredictInput<'a> {
     pub records: Vec<Trial>,
     /// What is taken out of the tracks of their turns; `None` for what each shows itself.
     pub current: Option<Current>,
-    /// What a sidecar says of the conditions, and its name.
-    pub declared: Option<(&'a str, &'a Conditions)>,
+    /// What a sidecar says where there are no records.
+    pub declared: Declared<'a>,
 }
 
 /// The manoeuvres that were asked for; those of the IMO criteria where nothing is; those of the form beside them.
@@ -160,12 +172,9 @@ fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
         ([], true) => standard::of_imo(),
         (asked, _) => asked.to_vec(),
     };
-    let of_form = form::manoeuvres().into_iter().filter(|_| request.form);
-    for kind in of_form {
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
+    let mut of_form = form::manoeuvres();
+    of_form.retain(|kind| request.form && !kinds.contains(kind));
+    kinds.extend(of_form);
     kinds
 }
 
@@ -217,19 +226,19 @@ pub fn predict(
     let PredictInput { models, ballast, records, current, declared } = input;
     let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
-    // A speed that is not given is NaN.
-    let (draws, ship) = (request.draws as usize, &request.reading.ship);
-    let scale = ship.length_m.map(|length| Particulars { length, speed: ship.speed().unwrap_or(f64::NAN) });
-    let mut in_still_water = |record| turn::without_current(at_own_scale(record, warnings), current);
+    let draws = request.draws as usize;
+    let scale = TargetScale::of(&request.scale, &records, declared)?;
+    let mut in_still_water = |record| turn::without_current(target_scale::at_own_scale(record, warnings), current);
     let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
-    let first = models[0].file.clone();
-    let refused = |error: PredictError| Failure::about(&first, error);
-    let mixture = mixture_of(models, scale).map_err(refused)?;
+    let mixture = mixture_of(models, scale)?;
+    let particulars = mixture.particulars();
+    warnings.extend(particulars.and_then(unusual_froude_number));
+    let file = files(models).join(", ");
     let kinds = manoeuvres(request);
     let steps = ProgressSteps::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
-    let (predictions, lost) = predictions((&kinds, draws), &mixture, &first, &steps, warnings)?;
+    let (predictions, lost) = predictions((&kinds, draws), &mixture, &file, &steps, warnings)?;
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
-        return Err(refused(error));
+        return Err(Failure::about(&file, error));
     }
     let loading = OtherLoading::name(taken.as_ref().map(|(.., load)| load));
     let (mut replays, mut corrections) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
@@ -241,8 +250,6 @@ pub fn predict(
         steps.advance();
     }
     steps.finish();
-    let particulars = mixture.particulars();
-    let files = |models: &[StoredModel]| -> Vec<String> { models.iter().map(|model| model.file.clone()).collect() };
     let weight = 1.0 / models.len() as f64;
     let mut document = PredictDocument {
         schema: String::from("predict/1"),
@@ -273,7 +280,7 @@ fn fill_form(
     particulars: Option<Particulars>,
     records: &[(Trial, Option<Current>)],
     corrections: &[Option<Correction>],
-    declared: Option<(&str, &Conditions)>,
+    declared: Declared,
 ) {
     let held = records.iter().zip(corrections).map(|((trial, current), correction)| FormRecord {
         trial,
@@ -305,41 +312,21 @@ fn at_loading(
     Ok((models, ballast, OtherLoading { file: loading.file, draughts_at_trials_m: draughts, draught_m, factor }))
 }
 
-/// Whether a record is of a ship of this length, m, as far as is known.
-fn is_of(record: &Trial, length: f64) -> bool {
-    record.particulars().is_none_or(|own| is_same_length(own.length, length))
-}
-
-/// A record at the scale that its sidecar declares, where another one is asked for: a model is replayed as a model.
-fn at_own_scale(record: Trial, warnings: &mut Vec<String>) -> Trial {
-    let Some(own) = record.conditions().particulars.filter(|own| !is_of(&record, own.length)) else { return record };
-    warnings.push(format!(
-        "{}: its sidecar says {} m at {} m/s; it is replayed at that scale, and manoeuvres are predicted at the other",
-        file_of(&record).0,
-        fixed(own.length, 2),
-        fixed(own.speed, 2)
-    ));
-    record.with_particulars(own)
-}
-
 /// A record beside its replay, and corrected to `loading` where there is a model of its condition; models are those at
 /// that loading and those in the condition of the record.
 fn held_against(
     (record, current): (&Trial, Option<Current>),
     ([full, ballast], loading): ([&[StoredModel]; 2], &str),
-    (asked, draws): (Option<Particulars>, usize),
+    (scale, draws): (Option<TargetScale>, usize),
     warnings: &mut Vec<String>,
 ) -> Result<(RecordReplay, Option<Correction>), Failure> {
-    // A speed that is not given is that of Froude, not that of a record which loses speed from its first rows on.
-    let scale = asked.filter(|asked| is_of(record, asked.length)).or_else(|| record.particulars());
-    let scaled =
-        |models: &[StoredModel]| mixture_of(models, scale).map_err(|error| Failure::about(&models[0].file, error));
+    let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::of_record(scale, record));
     let file = file_of(record).0;
     let own = scaled(if ballast.is_empty() { full } else { ballast })?;
     let replayed = own.replay(record, draws, current).map_err(|error| Failure::about(file, error))?;
     let Some(replayed) = replayed else {
         let what = "too few headings at its beginning to say how the ship began";
-        return Err(Failure::about(file, format!("{what}; choose a part with --from in `study find`")));
+        return Err(Failure::about(file, format!("{what}; choose a part under [part] of a sidecar")));
     };
     if ballast.is_empty() {
         return Ok((replayed, None));
@@ -364,21 +351,8 @@ fn held_against(
         of_models.push(correction::different("methods", &full[0].method, &ballast[0].method, loading));
     }
     correction.warnings.splice(0..0, of_models);
-    [correction.full, correction.ballast] =
-        [full, ballast].map(|models| models.iter().map(|model| model.file.clone()).collect());
+    [correction.full, correction.ballast] = [full, ballast].map(files);
     Ok((replayed, Some(correction)))
-}
-
-/// A ship at the scale that was asked for; one whose scale is not known takes it as its own.
-fn at_scale(known: &IdentifiedShip, asked: Option<Particulars>) -> Result<IdentifiedShip, PredictError> {
-    let Some(Particulars { length, speed }) = asked else { return Ok(known.clone()) };
-    let speed = Some(speed).filter(|speed| speed.is_finite());
-    match (known.length_m, speed) {
-        (None, Some(_)) => Ok(IdentifiedShip { length_m: Some(length), speed_m_s: speed, ..known.clone() }),
-        // The speed of a trial is read off its beginning and never quite that of another.
-        (Some(own), _) if is_same_length(own, length) => Ok(known.clone()),
-        _ => known.scaled_to(length, speed),
-    }
 }
 
 /// The method whose answer is used.

@@ -112,8 +112,9 @@ fn a_ship_tried_in_ballast_is_predicted_at_full_load() {
         }
     }
     assert!(all > 30 && 10 * held >= 9 * all && 10 * nearer >= 9 * all, "{held} and {nearer} of {all}");
-    let correct = "--load full.toml --ballast f/fit.json --replay run.csv --form --draws 300 --out c ";
-    let run = desk.run(&words(&["predict f/fit.json ", correct, TRIAL].concat()));
+    let correct = "predict f/fit.json --load full.toml --ballast f/fit.json --replay run.csv --form --draws 300 --out c \
+                   --length-m 160 --speed-m-s 7.7";
+    let run = desk.run(&words(correct));
     let from = "Corrected to the loading of full.toml, R = T F/B (MSC/Circ.1053, 3.4.1.2)\n\
                 F from f/fit.json at the loading of full.toml, B from f/fit.json";
     assert!(run.is_done().out.contains(from) && run.err.contains("x-g-m = 0 is taken"), "{}\n{}", run.out, run.err);

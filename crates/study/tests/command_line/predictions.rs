@@ -2,19 +2,32 @@
 
 use serde_json::Value;
 
-use crate::desk::{Desk, of_repository};
+use crate::desk::{Desk, Run, of_repository};
 
 fn record(name: &str) -> String {
     of_repository(&format!("scenarios/records/{name}.csv")).to_string_lossy().into_owned()
 }
 
-/// A desk with the answer of every method on the record of a first-order ship.
+/// A desk with the answer of every method on the record of a first-order ship, and that record with a sidecar,
+/// `run.csv`.
 fn with_fit() -> Desk {
     let desk = Desk::new();
-    let first = record("first-order");
-    let ship = ["--length-m", "75", "--speed-m-s", "6.2"];
-    desk.run(&[&["fit", &first, "--out", "f", "--quiet"][..], &ship].concat()).is_done();
+    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
+    desk.file("run.trial.toml", DECLARED);
+    let fit = ["fit", &record("first-order"), "--out", "f", "--quiet", "--length-m", "75", "--speed-m-s", "6.2"];
+    desk.run(&fit).is_done();
     desk
+}
+
+fn predict(desk: &Desk, words: &str) -> Run {
+    desk.run(&["predict"].into_iter().chain(words.split(' ')).collect::<Vec<_>>())
+}
+
+/// Another ship than that of the fit.
+fn changed(desk: &Desk, name: &str, change: impl Fn(&mut Value)) {
+    let mut json = desk.json("f/fit.json");
+    json["ships"].as_object_mut().expect("ships").values_mut().for_each(change);
+    desk.file(name, json.to_string());
 }
 
 fn figure<'a>(json: &'a Value, kind: &str, name: &str) -> &'a Value {
@@ -72,8 +85,7 @@ fn a_fit_tells_the_trials_of_the_imo() {
         assert!(!desk.bytes(&format!("p/{file}")).is_empty(), "{file}");
     }
     // The same again, to the byte; another format is a table alone.
-    let again =
-        desk.run(&["predict", "f/fit.json", "--out", "q", "--draws", "200", "--threads", "1", "--format", "csv"]);
+    let again = predict(&desk, "f/fit.json --out q --draws 200 --threads 1 --format csv");
     assert!(again.is_done().out.starts_with("manoeuvre,figure"), "{}", again.out);
     assert_eq!(desk.bytes("p/predict.json"), desk.bytes("q/predict.json"));
 }
@@ -84,9 +96,8 @@ fn a_trace_predicts_and_its_own_record_is_inside() {
     let damping = record("undeclared-damping");
     desk.run(&["trace", &damping, "--out", "t", "--quiet"]).is_done();
     let kinds = ["spiral:15", "pull-out:20", "williamson", "initial-turning:10", "zig-zag:-20/20"];
-    let asked: Vec<&str> = kinds.iter().flat_map(|kind| ["--manoeuvre", kind]).collect();
-    let rest = ["--replay", &damping, "--draws", "200", "--out", "p"];
-    desk.run(&[&["predict", "t/trace.json"][..], &asked, &rest].concat()).is_done();
+    let asked = kinds.map(|kind| format!("--manoeuvre {kind} ")).concat();
+    predict(&desk, &format!("t/trace.json {asked}--replay {damping} --draws 200 --out p")).is_done();
     let json = desk.json("p/predict.json");
     keeps_the_contract(&json);
     assert_eq!(json["manoeuvres"].as_array().map(Vec::len), Some(5));
@@ -100,12 +111,13 @@ fn a_trace_predicts_and_its_own_record_is_inside() {
     assert!((measured - median).abs() < 0.5, "{overshoot}");
 }
 
-/// Two files are a mixture; a calm has no process noise; another length is scaled by Froude.
+/// Two files are a mixture of one ship; a calm has no process noise; another length is scaled by Froude.
 #[test]
 fn models_are_mixed_calmed_and_scaled() {
     let desk = with_fit();
-    let run = ["predict", "f/fit.json", "f/fit.json", "--calm", "--draws", "100", "--manoeuvre", "zig-zag:10/10"];
-    desk.run(&[&run[..], &["--out", "c"]].concat()).is_done();
+    changed(&desk, "model.json", |ship| (ship["length_m"], ship["speed_m_s"]) = (3.0.into(), 1.24.into()));
+    let run = "f/fit.json f/fit.json --calm --draws 100 --manoeuvre zig-zag:10/10 --out";
+    predict(&desk, &format!("{run} c")).is_done();
     let json = desk.json("c/predict.json");
     assert_eq!((json["models"].as_array().map(Vec::len), &json["calm"]), (Some(2), &Value::Bool(true)));
     let time = |json: &Value| {
@@ -114,63 +126,108 @@ fn models_are_mixed_calmed_and_scaled() {
     };
     let (own, noise) = time(&json);
     assert!(noise.is_none_or(|share| share == 0.0));
-    desk.run(&[&run[..], &["--out", "s", "--length-m", "300"]].concat()).is_done();
+    predict(&desk, &format!("{run} s --length-m 300")).is_done();
     let (larger, _) = time(&desk.json("s/predict.json"));
     assert!((larger / own - 2.0).abs() < 0.01, "four times as long is twice as slow: {own} {larger}");
+    let both = "f/fit.json model.json --draws 50 --manoeuvre zig-zag:10/10 --out m";
+    let sizes = "model.json: its ship is 3.00 m long at 1.24 m/s, that of f/fit.json 75.00 m long at 6.20 m/s";
+    predict(&desk, both).is_refused(2, &[sizes, "give --length-m and --speed-kn", "one at a time"]);
+    let run = predict(&desk, &format!("{both} --length-m 300 --speed-m-s 1.2"));
+    assert!(run.is_done().err.contains("300 m at 1.200 m/s is a Froude number of 0.022"), "{}", run.err);
+    let json = desk.json("m/predict.json");
+    assert_eq!((&json["length_m"], &json["speed_m_s"]), (&300.0.into(), &1.2.into()));
+}
+
+/// A record with four executes has the one cycle of the transient, and so has what is predicted for it.
+#[test]
+fn a_period_is_of_the_cycles_of_the_record() {
+    let desk = with_fit();
+    let text = desk.text("run.csv");
+    desk.file("run.csv", text.lines().take(195).collect::<Vec<_>>().join("\n"));
+    predict(&desk, "f/fit.json --replay run.csv --draws 200 --out p").is_done();
+    let figures = &desk.json("p/predict.json")["replays"][0]["figures"];
+    for key in ["measured", "median"] {
+        let of = |name: &str| figures[name][key].as_f64().unwrap_or_else(|| panic!("{name}: {figures}"));
+        let cycle = of("fourth_execute_s") - of("second_execute_s");
+        assert!(figures["fifth_execute_s"].is_null() && (of("period_s") - cycle).abs() < 0.02, "{key}: {figures}");
+    }
+}
+
+/// The ship of the sidecar, 105 m long, is the scale of all that is predicted. A circle with 10° of rudder answers none
+/// of the criteria, which are of no ship of 75 m.
+#[test]
+fn the_ship_of_the_record_is_the_scale() {
+    let desk = with_fit();
+    let first = record("first-order");
+    let predicted = |rest: &str| {
+        let run = "f/fit.json --manoeuvre zig-zag:10/10 --manoeuvre turning-circle:10 --draws 50 --out p";
+        predict(&desk, &format!("{run}{rest}")).is_done();
+        let (words, json) = (desk.text("p/report.md"), desk.json("p/predict.json"));
+        assert!(json["imo"].as_array().expect("a list").iter().all(|one| one["manoeuvre"] == "zig-zag 10/10"));
+        let time = figure(&json, "zig-zag 10/10", "second_execute_s")["median"].as_f64().expect("a number");
+        (time, words.contains("the criteria are for ships of 100 m and above"))
+    };
+    let (own, is_said) = predicted("");
+    assert!(is_said && desk.text("f/report.md").contains("the criteria are for ships of 100 m and above"));
+    let length_over_speed = |length: f64, speed: f64| (length / speed) / (75.0 / 6.2);
+    for (rest, slower, is_short) in [
+        (format!(" --replay {first}"), length_over_speed(105.0, 8.591_222), false),
+        (format!(" --columns {}", first.replace(".csv", ".trial.toml")), length_over_speed(105.0, 8.591_222), false),
+        (format!(" --replay {first} --length-m 75 --speed-m-s 6"), length_over_speed(75.0, 6.0), true),
+    ] {
+        let (time, is_said) = predicted(&rest);
+        assert!((time / own / slower - 1.0).abs() < 0.01 && is_said == is_short, "{rest:?}: {time} {own}");
+    }
+    let both = format!("f/fit.json --replay {first} --replay run.csv");
+    predict(&desk, &both).is_refused(2, &["run.csv: its ship is 75.00 m long", "105.00 m long", "give --length-m"]);
 }
 
 /// A ship whose rudder is off by 20 deg makes no 10/10, but a circle.
 #[test]
 fn a_manoeuvre_that_the_model_cannot_make_is_left_out() {
     let desk = with_fit();
-    let mut json = desk.json("f/fit.json");
-    for ship in json["ships"].as_object_mut().expect("ships").values_mut() {
-        ship["members"][0]["parameters"][2] = (-0.35).into();
-    }
-    desk.file("off.json", json.to_string());
-    let run = desk.run(&["predict", "off.json", "--draws", "50", "--out", "p"]);
+    changed(&desk, "off.json", |ship| ship["members"][0]["parameters"][2] = (-0.35).into());
+    let run = predict(&desk, "off.json --draws 50 --out p");
     assert!(run.is_done().err.contains("zig-zag 10/10: only 0 of 50"), "{}", run.err);
     let kinds = desk.json("p/predict.json")["manoeuvres"].as_array().map(Vec::len);
     assert!(kinds.is_some_and(|count| (1..3).contains(&count)), "{kinds:?}");
-    let alone = ["predict", "off.json", "--draws", "50", "--manoeuvre", "zig-zag:10/10"];
-    desk.run(&alone).is_refused(2, &["only 0 of 50"]);
+    predict(&desk, "off.json --draws 50 --manoeuvre zig-zag:10/10").is_refused(2, &["only 0 of 50"]);
 }
 
 #[test]
 fn what_cannot_be_predicted_is_refused_with_the_cure() {
     let desk = with_fit();
-    let refused = |arguments: &[&str], parts: &[&str]| {
-        desk.run(&[&["predict"][..], arguments].concat()).is_refused(2, parts);
-    };
-    refused(&["nowhere.json"], &["nowhere.json"]);
-    refused(&["f/fit.json", "--method", "magic"], &["--method magic", "output-error"]);
-    refused(&["f/fit.json", "--manoeuvre", "circle:35"], &["circle:35", "turning-circle:RUDDER"]);
-    refused(&["f/fit.json", "--draws", "3"], &["--draws"]);
+    let refused = |words: &str, parts: &[&str]| predict(&desk, words).is_refused(2, parts);
+    refused("nowhere.json", &["nowhere.json"]);
+    refused("f/fit.json --method magic", &["--method magic", "output-error"]);
+    refused("f/fit.json --manoeuvre circle:35", &["circle:35", "turning-circle:RUDDER"]);
+    refused("f/fit.json --draws 3", &["--draws"]);
+    // What knows of no draught, and fits no part of a record, does not ask for one.
+    refused("f/fit.json --draught-m 8", &["--draught-m"]);
+    refused("f/fit.json --replay x.csv --from 10", &["--from"]);
     desk.file("text.json", "not json");
-    refused(&["text.json"], &["text.json", "no JSON"]);
+    refused("text.json", &["text.json", "no JSON"]);
     desk.file("other.json", r#"{"schema": "rows/1"}"#);
-    refused(&["other.json"], &["rows/1", "fit.json or trace.json"]);
+    refused("other.json", &["rows/1", "fit.json or trace.json"]);
     desk.file("old.json", r#"{"schema": "fit/1", "methods": []}"#);
-    refused(&["old.json"], &["old.json", "older program", "study fit"]);
+    refused("old.json", &["old.json", "older program", "study fit"]);
     let text = desk.text("f/fit.json");
     desk.file("broken.json", text.replace("\"fitted\"", "\"fited\""));
-    refused(&["broken.json"], &["broken.json", "fitted"]);
+    refused("broken.json", &["broken.json", "fitted"]);
     // Without the sidecar beside it nobody knows how long the ship is.
     desk.file("plain.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
     desk.run(&["fit", "plain.csv", "--out", "g", "--quiet"]).is_done();
-    refused(&["g/fit.json", "--length-m", "300"], &["length and speed", "give them to fit or trace"]);
+    refused("g/fit.json --length-m 300", &["length and speed", "give them to fit or trace"]);
 }
 
 /// The ship of a fit at another load: a share of her damping in yaw and of her gain; no chance in yaw.
 fn at_another_load(desk: &Desk, name: &str, [damping, gain]: [f64; 2]) {
-    let mut json = desk.json("f/fit.json");
-    for ship in json["ships"].as_object_mut().expect("ships").values_mut() {
+    changed(desk, name, |ship| {
         let parameters = &mut ship["members"][0]["parameters"];
         for (place, share) in [(0, damping), (1, gain)] {
             parameters[place] = (share * parameters[place].as_f64().expect("a number")).into();
         }
-    }
-    desk.file(name, json.to_string());
+    });
 }
 
 fn entry<'a>(json: &'a Value, field: &str, side: &str) -> &'a Value {
@@ -188,10 +245,7 @@ const DECLARED: &str = "[ship]\nlength-m = 75.0\nspeed-m-s = 6.2\n[form]\nship-t
 #[test]
 fn the_form_of_the_circular_names_the_source_of_every_entry() {
     let desk = with_fit();
-    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
-    desk.file("run.trial.toml", DECLARED);
-    let run = ["predict", "f/fit.json", "--form", "--replay", "run.csv", "--draws", "100", "--out", "p"];
-    let run = desk.run(&run);
+    let run = predict(&desk, "f/fit.json --form --replay run.csv --draws 100 --out p");
     assert!(run.is_done().out.contains("trial-form.md"), "{}", run.out);
     let json = desk.json("p/predict.json");
     keeps_the_contract(&json);
@@ -227,29 +281,12 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     let widths = |line: &str| line.replace("\\|", "").matches('|').count();
     assert!(page.lines().filter(|line| line.starts_with("| zig-zag")).all(|line| widths(line) == 8), "{page}");
     // Without a record, words come with --columns; without these, nobody knows the ship.
-    desk.run(&["predict", "f/fit.json", "--form", "--draws", "50", "--columns", "run.trial.toml", "--out", "q"])
-        .is_done();
+    predict(&desk, "f/fit.json --form --draws 50 --columns run.trial.toml --out q").is_done();
     let json = desk.json("q/predict.json");
     assert_eq!(entry(&json, "ship type", "")["source"], "declared with run.trial.toml");
     assert!(entry(&json, "1st overshoot angle", "starboard")["median"].is_f64());
-    desk.run(&["predict", "f/fit.json", "--draws", "50", "--manoeuvre", "zig-zag:10/10", "--out", "r"]).is_done();
+    predict(&desk, "f/fit.json --draws 50 --manoeuvre zig-zag:10/10 --out r").is_done();
     assert!(desk.json("r/predict.json").get("form").is_none() && !desk.path("r/trial-form.md").exists());
-}
-
-#[test]
-fn what_no_ship_has_is_refused_with_its_line() {
-    let desk = with_fit();
-    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
-    for (line, parts) in [
-        ("beam = 17.5", ["run.trial.toml: line 2:", "unknown field `beam`"]),
-        ("beam-m = \"wide\"", ["run.trial.toml: line 2: `beam-m` is \"wide\"", "metres above 0"]),
-        ("wind-beaufort = 13", ["line 2: `wind-beaufort` is 13", "from 0 to 12"]),
-        ("loading = \"ballast\"", ["line 2: `loading` is \"ballast\"", "\"full\" or \"partial\""]),
-        ("block-coefficient = 81", ["line 2: `block-coefficient` is 81", "at most 1"]),
-    ] {
-        desk.file("run.trial.toml", format!("[form]\n{line}\n"));
-        desk.run(&["predict", "f/fit.json", "--form", "--replay", "run.csv"]).is_refused(2, &parts);
-    }
 }
 
 /// The record is that of the ship in ballast; at full load she has less damping, and her overshoots are larger.
@@ -257,11 +294,8 @@ fn what_no_ship_has_is_refused_with_its_line() {
 fn a_trial_in_ballast_is_corrected_to_full_load() {
     let desk = with_fit();
     at_another_load(&desk, "full.json", [0.6, 0.9]);
-    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
     desk.file("run.trial.toml", format!("{DECLARED}loading = \"partial\"\n"));
-    let ship = ["--draws", "200"];
-    let run = ["predict", "full.json", "--ballast", "f/fit.json", "--replay", "run.csv", "--form", "--out", "p"];
-    let run = desk.run(&[&run[..], &ship].concat());
+    let run = predict(&desk, "full.json --ballast f/fit.json --replay run.csv --form --out p --draws 200");
     assert!(run.is_done().out.contains("Corrected to full load"), "{}", run.out);
     let json = desk.json("p/predict.json");
     let corrected = &json["corrected"][0];
@@ -283,8 +317,7 @@ fn a_trial_in_ballast_is_corrected_to_full_load() {
     let page = desk.text("p/report.md");
     assert!(page.contains("## Corrected to full load") && page.contains("trial-form.md"), "{page}");
     // F = B corrects nothing.
-    let same = ["predict", "f/fit.json", "--ballast", "f/fit.json", "--replay", "run.csv", "--out", "s"];
-    desk.run(&[&same[..], &ship].concat()).is_done();
+    predict(&desk, "f/fit.json --ballast f/fit.json --replay run.csv --out s --draws 200").is_done();
     let same = &desk.json("s/predict.json")["corrected"][0]["figures"]["first_overshoot_deg"];
     assert_eq!((&same["factor"]["median"], &same["factor"]["ci90"]), (&1.0.into(), &serde_json::json!([1.0, 1.0])));
     let [measured, low, high] = [&same["measured"], &same["ci90"][0], &same["ci90"][1]].map(number);
@@ -294,14 +327,12 @@ fn a_trial_in_ballast_is_corrected_to_full_load() {
 #[test]
 fn a_correction_without_its_trial_is_refused_and_unlike_models_are_told() {
     let desk = with_fit();
-    let alone = ["predict", "f/fit.json", "--ballast", "f/fit.json"];
-    desk.run(&alone).is_refused(2, &["--ballast", "--replay"]);
-    desk.run(&["predict", "f/fit.json", "--ballast", "no.json", "--replay", "x.csv"]).is_refused(2, &["no.json"]);
+    predict(&desk, "f/fit.json --ballast f/fit.json").is_refused(2, &["--ballast", "--replay"]);
+    predict(&desk, "f/fit.json --ballast no.json --replay x.csv").is_refused(2, &["no.json"]);
     let damping = record("undeclared-damping");
     desk.run(&["trace", &damping, "--out", "t", "--quiet"]).is_done();
     let first = record("first-order");
-    let run = ["predict", "t/trace.json", "--ballast", "f/fit.json", "--replay", &first, "--draws", "50", "--out", "p"];
-    let run = desk.run(&run);
+    let run = predict(&desk, &format!("t/trace.json --ballast f/fit.json --replay {first} --draws 50 --out p"));
     for part in ["different structure", "different methods: trace at full load", "different scale"] {
         assert!(run.is_done().out.contains(part), "{part}: {}", run.out);
     }
@@ -311,11 +342,8 @@ fn a_correction_without_its_trial_is_refused_and_unlike_models_are_told() {
 #[test]
 fn a_model_is_replayed_as_a_model_and_told_as_a_ship() {
     let desk = with_fit();
-    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
-    desk.file("run.trial.toml", DECLARED);
-    let run = ["predict", "f/fit.json", "--form", "--replay", "run.csv", "--draws", "50"];
-    let ship = ["--length-m", "300", "--speed-m-s", "7.5", "--out", "p"];
-    let run = desk.run(&[&run[..], &ship].concat());
+    let ship = "--length-m 300 --speed-m-s 7.5";
+    let run = predict(&desk, &format!("f/fit.json --form --replay run.csv --draws 50 --out p {ship}"));
     assert!(run.is_done().err.contains("replayed at that scale"), "{}", run.err);
     let json = desk.json("p/predict.json");
     assert!(json["replays"][0]["band_coverage_90"].as_f64().is_some_and(|share| share > 0.6), "{}", json["replays"]);

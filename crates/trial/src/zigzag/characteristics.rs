@@ -4,7 +4,7 @@
 use ship::angle::{from_deg, to_deg};
 
 use super::executes::{Movement, RudderMovements};
-use super::findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
+use super::findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError, period};
 use super::heading::Heading;
 use super::holds::{self, Hold};
 use super::local::Local;
@@ -91,7 +91,7 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
             .and_then(|turned| distance(trial, executes[0].time.value, turned.value)),
         begins_at_reversal: side.is_none() && !shows_execute(&executes[0], &heading),
         overshoots,
-        period: period(&executes[usize::from(from_first)..], from_first),
+        period: period(&executes, from_first),
         reach: from_first.then(|| since_first(back_on_base(1))).flatten(),
         complete_cycle_time: from_first.then(|| since_first(back_on_base(2))).flatten(),
         largest_yaw_rate: heading.largest_rate(executes[0].time.value, end),
@@ -246,19 +246,6 @@ fn crossing(heading: &Heading, level: f64, level_sd: Option<f64>, side: Side, fr
     let time = heading.crossing(level, side.sign(), from, to)?;
     let rate = heading.rate_at(time.value)?;
     Some(time.widened(level_sd.map(|sd| sd / rate.value.abs())))
-}
-
-/// Mean time between executes to the same side.
-fn period(reversals: &[Execute], from_first_execute: bool) -> Option<Quantity> {
-    let cycles = reversals.len().checked_sub(2).filter(|&cycles| cycles > 0)?;
-    let first = usize::from(from_first_execute && cycles > 1);
-    // Sums telescope: only the first and last two executes carry error, each 1/n of its own.
-    let cycles_used = (cycles - first) as f64;
-    let total: f64 = (first..cycles).map(|index| reversals[index + 2].time.value - reversals[index].time.value).sum();
-    let ends = 2.min(cycles - first);
-    let ends = reversals[first..].iter().take(ends).chain(reversals[cycles..].iter().rev().take(ends));
-    let variance: Option<f64> = ends.map(|execute| execute.time.sd.map(|sd| sd * sd)).sum();
-    Some(Quantity::new(total / cycles_used, variance.map(|sum| sum.sqrt() / cycles_used)))
 }
 
 /// Distance travelled between two times, m: trapezoid integral of the speed over the rows that have it.

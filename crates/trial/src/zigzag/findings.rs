@@ -217,6 +217,11 @@ impl ZigZag {
         self.straight_yaw_rate().filter(|_| self.base_course.source == BaseCourseSource::Approach)
     }
 
+    /// The period of the first so many executes.
+    pub fn period_of(&self, executes: usize) -> Option<Quantity> {
+        period(self.executes.get(..executes).unwrap_or(&self.executes), self.side.is_some())
+    }
+
     /// Whether the record begins within the trial, so that its first execute is not known.
     pub fn begins_within_trial(&self) -> bool {
         self.side.is_none()
@@ -235,4 +240,18 @@ impl ZigZag {
         (usize::from(self.side.is_some())..end)
             .map(|execute| self.overshoots.iter().find(|overshoot| overshoot.execute == execute))
     }
+}
+
+/// Mean time between executes to the same side, of those that reverse the rudder.
+pub(super) fn period(executes: &[Execute], from_first_execute: bool) -> Option<Quantity> {
+    let reversals = executes.get(usize::from(from_first_execute)..)?;
+    let cycles = reversals.len().checked_sub(2).filter(|&cycles| cycles > 0)?;
+    let first = usize::from(from_first_execute && cycles > 1);
+    // Sums telescope: only the first and last two executes carry error, each 1/n of its own.
+    let cycles_used = (cycles - first) as f64;
+    let total: f64 = (first..cycles).map(|index| reversals[index + 2].time.value - reversals[index].time.value).sum();
+    let ends = 2.min(cycles - first);
+    let ends = reversals[first..].iter().take(ends).chain(reversals[cycles..].iter().rev().take(ends));
+    let variance: Option<f64> = ends.map(|execute| execute.time.sd.map(|sd| sd * sd)).sum();
+    Some(Quantity::new(total / cycles_used, variance.map(|sum| sum.sqrt() / cycles_used)))
 }
