@@ -86,7 +86,8 @@ fn a_trace_predicts_and_its_own_record_is_inside() {
     let kinds = ["spiral:15", "pull-out:20", "williamson", "initial-turning:10", "zig-zag:-20/20"];
     let asked: Vec<&str> = kinds.iter().flat_map(|kind| ["--manoeuvre", kind]).collect();
     let rest = ["--replay", &damping, "--draws", "200", "--out", "p"];
-    desk.run(&[&["predict", "t/trace.json"][..], &asked, &rest].concat()).is_done();
+    let run = desk.run(&[&["predict", "t/trace.json"][..], &asked, &rest].concat());
+    assert!(run.is_done().err.contains("t/trace.json is fitted to it; the error on it validates nothing"));
     let json = desk.json("p/predict.json");
     keeps_the_contract(&json);
     assert_eq!(json["manoeuvres"].as_array().map(Vec::len), Some(5));
