@@ -33,7 +33,7 @@ const MOST: f64 = 0.7;
 
 /// Fewest reversals of the rudder that tell a delay: the effect of one, or of the execute of a circle, may be that of a
 /// loss of speed as well.
-const FEWEST_REVERSALS: usize = 3;
+const FEWEST_REVERSALS: usize = 2;
 
 /// Longest delay that is told, in T: one term in δ' stands for short delays only, and those of clocks, steering gears
 /// and compasses are short.
@@ -57,7 +57,7 @@ pub struct LackOfFit {
     /// was recorded late.
     pub delay: f64,
     /// Root mean square of the residual with that one term, rad; infinite where the records do not tell a delay: the
-    /// rudder is reversed less than three times in each, or the delay is more than a quarter of T.
+    /// rudder is reversed less than twice in each, or the delay is more than a quarter of T.
     pub with_delay: f64,
 }
 
@@ -248,11 +248,11 @@ mod tests {
         }
     }
 
-    /// Not one of a quarter of T, and not from the first reversal alone.
+    /// Not one of more than a quarter of T.
     #[test]
     fn a_rudder_at_another_time_is_seen() {
-        for (delay, samples) in [(-3.0, 271), (-2.0, 271), (2.0, 271), (3.0, 271), (14.0, 271), (3.0, 70)] {
-            let case = Case { T: 40.0, K: 0.05, noise_deg: 0.1, samples, ..Case::default() };
+        for delay in [-3.0, -2.0, 2.0, 3.0, 14.0] {
+            let case = Case { T: 40.0, K: 0.05, noise_deg: 0.1, ..Case::default() };
             let sound = case.trial();
             let (time, rudder) = (sound.time(), sound.rudder_signal());
             let moved = time.iter().map(|t| rudder.at(t + delay)).collect();
@@ -262,7 +262,7 @@ mod tests {
             let lack = LackOfFit::of(&trials, &answer.response).expect("a zig-zag");
             let found = lack.rudder_delay();
             let is_right = found.is_some_and(|found| (found / delay - 1.0).abs() < 0.2);
-            assert!(is_right || found.is_none() && (delay > 10.0 || samples < 100), "{delay} s: {lack:?}");
+            assert!(is_right || found.is_none() && delay > 10.0, "{delay} s: {lack:?}");
         }
     }
 
