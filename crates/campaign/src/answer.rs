@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use identify::replay::{Replay, replay};
+use identify::replay::pooled;
 use identify::{Estimate, IdentifyError};
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
@@ -133,23 +133,9 @@ pub fn entry(
     trials: &[trial::Trial],
 ) -> (MethodEntry, Option<Estimate>) {
     match answer {
-        Ok(estimate) => (MethodEntry::of(label, &estimate, pooled_rmse_deg(trials, &estimate)), Some(estimate)),
+        Ok(estimate) => {
+            (MethodEntry::of(label, &estimate, pooled(trials, &estimate.response).map(to_deg)), Some(estimate))
+        }
         Err(error) => (MethodEntry::failed(label, &error), None),
     }
-}
-
-/// Root mean square replay error over all rows of all trials, deg.
-pub(crate) fn pooled_rmse_deg(trials: &[trial::Trial], estimate: &Estimate) -> Option<f64> {
-    let replays = trials.iter().map(|trial| replay(trial, &estimate.response));
-    Some(to_deg(pooled_rms(&replays.collect::<Option<Vec<Replay>>>()?)))
-}
-
-/// Root mean square of what several replays leave of the headings, over all rows, rad.
-pub(crate) fn pooled_rms(replays: &[Replay]) -> f64 {
-    let (mut square, mut rows) = (0.0, 0usize);
-    for (_, residual) in replays.iter().flat_map(|replay| replay.observed()) {
-        square += residual * residual;
-        rows += 1;
-    }
-    (square / rows.max(1) as f64).sqrt()
 }

@@ -10,13 +10,13 @@ use ::trace::comparison::ReplayResult;
 use ::trace::document::EffectEntry;
 use ::trace::{Analysis, TraceError};
 use identify::external::shown;
+use identify::replay::pooled;
 use identify::{Estimate, IdentifyError, StopReason};
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use simulate::{PreparedSimulation, SimulateError, Simulated, StreamKey};
 use trial::{Quantity, Trial};
 
-use crate::answer::pooled_rmse_deg;
 use crate::known::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
@@ -228,7 +228,7 @@ impl TrialQuestion<'_> {
     }
 
     fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
-        let error = |trials: &[Trial]| pooled_rmse_deg(trials, estimate);
+        let error = |trials: &[Trial]| pooled(trials, &estimate.response).map(to_deg);
         let validation = self.reference.validation.as_ref();
         StudyRow {
             heading_rmse_deg: error(self.trials),

@@ -2,8 +2,8 @@
 //! traces and hulls leave.
 
 use identify::estimate::{Estimate, Uncertainty};
-use identify::hull::{self, EarlierHull, ExpectationCheck, HullEstimate, HullReference};
-use identify::replay::{Replay, replay};
+use identify::hull::{self, EarlierHull, ExpectationCheck, HullEstimate, HullFitError, HullReference};
+use identify::replay::{Replay, pooled_rms, replay};
 use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
 use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
@@ -17,8 +17,6 @@ use trace::analysis::Plausible;
 use trace::document::RecordNoiseEntry;
 use trial::zigzag::STRAIGHT_APPROACH;
 use trial::{Channel, Trial, ZigZag};
-
-use crate::answer::pooled_rms;
 
 /// What is not predicted where nothing is known of speed and drift.
 const NO_MOTION: &str = "speed loss and drift are not told by these records, and no track can be predicted";
@@ -102,7 +100,9 @@ impl<'a> RecordFacts<'a> {
         let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
         let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
         if self.hulls.is_empty() && self.trials.iter().all(is_told) {
-            match motion::fit(self.trials, length) {
+            let clock = hull::refusal(self.trials).filter(|error| matches!(error, HullFitError::Clock { .. }));
+            let clock = clock.map(|error| error.to_string());
+            match clock.map_or_else(|| motion::fit(self.trials, length).map_err(|error| error.to_string()), Err) {
                 Ok(planar) if loses_speed(&planar) => {
                     self.no_track = (!planar.tells_drift()).then(|| NO_DRIFT.to_owned());
                     self.motion = Some(planar);

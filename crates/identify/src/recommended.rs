@@ -4,7 +4,9 @@
 //! Where the recorded rudder has declared noise, maximum likelihood counts it. Where maximum likelihood finds a random
 //! yaw moment that the terms of a ship cannot explain ([`LackOfFit`]), it is the answer, too: output error takes the
 //! work of gusts for that of the rudder. Where terms of a ship explain the residual, the model lacks one of them. A
-//! random moment then stands for it, and K, T of maximum likelihood are those of small and fast motions.
+//! random moment then stands for it, and K, T of maximum likelihood are those of small and fast motions. An answer of
+//! maximum likelihood without an interval of K is never taken: its random moment explains the manoeuvre itself. A
+//! replay far worse than that of output error is no such sign: under strong random moments the true ship has one, too.
 //!
 //! As a method of its own it makes both fits and returns the one that the rule names, so that a study can hold the
 //! rule.
@@ -66,15 +68,13 @@ impl Recommendation {
     /// From the answers of output error and maximum likelihood on these records.
     pub fn of(trials: &[Trial], output_error: Option<&Estimate>, maximum_likelihood: Option<&Estimate>) -> Self {
         let lack = output_error.and_then(|estimate| LackOfFit::of(trials, &estimate.response));
-        let moment = |estimate: &Estimate| estimate.diagnostics.iter().any(|(name, _)| MOMENTS.contains(name));
         let is_random = lack.and_then(|lack| lack.unexplained()).is_some_and(|share| share >= RANDOM);
-        let reason = match maximum_likelihood {
-            None => Reason::NearestReplay,
-            Some(_) if trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0)) => {
-                Reason::RudderNoise
-            }
-            Some(estimate) if output_error.is_none() || (is_random && moment(estimate)) => Reason::RandomMoment,
-            Some(_) => Reason::NearestReplay,
+        let has_moment = |own: &Estimate| own.diagnostics.iter().any(|(name, _)| MOMENTS.contains(name));
+        let has_noise = trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0));
+        let reason = match maximum_likelihood.filter(|own| own.K().ci95.is_some()) {
+            Some(_) if has_noise => Reason::RudderNoise,
+            Some(own) if output_error.is_none() || (is_random && has_moment(own)) => Reason::RandomMoment,
+            _ => Reason::NearestReplay,
         };
         Self { reason, lack }
     }
@@ -133,5 +133,24 @@ impl Identifier for Recommended {
             Reason::NearestReplay => nearest,
             Reason::RandomMoment | Reason::RudderNoise => likely,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::Uncertainty;
+    use crate::testing::Case;
+    use trial::Noise;
+
+    #[test]
+    fn an_answer_without_intervals_is_not_taken() {
+        let noise = Noise { rudder: Some(0.01), ..Noise::default() };
+        let trials = [Case { noise_deg: 0.1, ..Case::default() }.trial().with_noise(noise)];
+        let own = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
+        let reason = |other: &Estimate| Recommendation::of(&trials, Some(&own), Some(other)).reason;
+        assert_eq!(reason(&own), Reason::RudderNoise);
+        let bare = Uncertainty::None { reason: "none" };
+        assert_eq!(reason(&Estimate { uncertainty: bare, ..own.clone() }), Reason::NearestReplay);
     }
 }

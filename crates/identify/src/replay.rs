@@ -39,12 +39,7 @@ impl Replay {
 
     /// Root mean square of the residual, rad; NaN when no heading was measured.
     pub fn rms(&self) -> f64 {
-        let (mut square, mut rows) = (0.0, 0usize);
-        for (_, residual) in self.observed() {
-            square += residual * residual;
-            rows += 1;
-        }
-        (square / rows as f64).sqrt()
+        pooled_rms(std::slice::from_ref(self))
     }
 }
 
@@ -84,6 +79,22 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     };
     // Finite residuals may have squares that are not.
     replay.rms().is_finite().then_some(replay)
+}
+
+/// Root mean square of what the replays of some records leave of all headings, rad; `None` where one is not finite.
+pub fn pooled(trials: &[Trial], response: &FirstOrder) -> Option<f64> {
+    let replays = trials.iter().map(|trial| replay(trial, response));
+    Some(pooled_rms(&replays.collect::<Option<Vec<Replay>>>()?))
+}
+
+/// Root mean square of what several replays leave of the headings, over all rows, rad; NaN without any.
+pub fn pooled_rms(replays: &[Replay]) -> f64 {
+    let (mut square, mut rows) = (0.0, 0usize);
+    for (_, residual) in replays.iter().flat_map(Replay::observed) {
+        square += residual * residual;
+        rows += 1;
+    }
+    (square / rows as f64).sqrt()
 }
 
 /// Heading and yaw rate at the anchor whose own motion, 1 and φ₁, comes nearest to `rest`.

@@ -16,9 +16,9 @@ const ERRORS: f64 = 2.0;
 /// Share by which the rate of a rudder that is read off a record may be off.
 const READ: f64 = 0.05;
 
-/// Times by which the largest speed of a record and its approach speed may differ: a ship that gathers way or rides a
-/// current stays within, one at the scale of another does not.
-const OTHER_SPEED: f64 = 1.8;
+/// Times by which the largest speed of a record and its approach speed may differ: a current of two knots is a fifth of
+/// ten. A ship that gathers way is steered when she has most of it.
+const OTHER_SPEED: f64 = 1.25;
 
 /// What is unusual of an estimate and of the records it is from, in one sentence; `None` where nothing is.
 ///
@@ -39,10 +39,12 @@ pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Tria
             .then(|| format!("the rudder moves at {rate_deg_s:.1}°/s (usual {low:.0} to {high:.0} at this length)"))
     });
     let found: Vec<String> = indices.into_iter().flatten().chain(rates.take(1)).collect();
+    // Where the records have a speed, it is that which was given.
+    let has_speed = records.iter().all(|record| record.channel(Channel::Speed).is_some());
+    let given = if has_speed { "length" } else { "length and speed" };
     (!found.is_empty()).then(|| {
         format!(
-            "{}: check the scale of the rudder, the clock, and the length and speed given; nothing else in the record \
-             shows them",
+            "{}: check the scale of the rudder, the clock, and the {given} given; nothing else in the record shows them",
             found.join(", ")
         )
     })
@@ -152,6 +154,7 @@ mod tests {
         let other = given(320.0, 7.97).expect("another speed");
         assert!(other.starts_with("model sails at 1.180 m/s at most, and 7.970 m/s is given") && other.contains(cure));
         assert_eq!(given(7.0, 1.18), None);
+        assert!(given(7.0, 2.0).is_some_and(|other| other.contains("1.180 m/s at most, and 2.000 m/s is given")));
     }
 
     #[test]

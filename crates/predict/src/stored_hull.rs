@@ -210,6 +210,17 @@ impl DrawableHull {
     /// Fails for what no file of this program holds.
     pub fn new(known: &StoredHull) -> Result<Self, PredictError> {
         let form = known.form()?;
+        let range = |key| Particular::named(key).expect("it is one").range;
+        let [length, speed] = ["length-m", "speed-m-s"].map(range);
+        for (key, value, [least, most]) in [
+            ("length-m", known.length_m, length),
+            ("speed-m-s", known.speed_m_s, speed),
+            ("weight", known.weight, [0.0, f64::MAX]),
+        ] {
+            if !(least..=most).contains(&value) {
+                return Err(PredictError::Value { key, value });
+            }
+        }
         let coefficients = form.coefficients();
         let found = known.covariance.len();
         if found != coefficients.len() {

@@ -308,21 +308,15 @@ pub fn rudder_logged_late(late: f64) -> String {
 /// The same record counts only once: given twice for identification its errors come out too small, and on a record that
 /// was fitted there is nothing to validate.
 pub fn warn_of_repetition(trials: &[Trial], others: &[Trial], warnings: &mut Vec<String>) {
-    for (number, trial) in trials.iter().enumerate() {
-        if trials[..number].iter().any(|before| file_of(before).1 == file_of(trial).1) {
-            let (file, _) = file_of(trial);
-            warnings.push(format!(
-                "{file}: given twice with the same content; it counts twice, and the intervals are too narrow"
-            ));
-        }
-    }
-    for other in others {
-        if trials.iter().any(|trial| file_of(trial).1 == file_of(other).1) {
-            let (file, _) = file_of(other);
-            warnings
-                .push(format!("{file}: used for identification and for validation; the error on it validates nothing"));
-        }
-    }
+    let is_in = |records: &[Trial], own: &Trial| records.iter().any(|other| file_of(other).1 == file_of(own).1);
+    let twice = trials.iter().enumerate().filter(|(number, own)| is_in(&trials[..*number], own)).map(|(_, own)| {
+        let file = file_of(own).0;
+        format!("{file}: given twice with the same content; it counts twice, and the intervals are too narrow")
+    });
+    warnings.extend(twice.chain(others.iter().filter(|own| is_in(trials, own)).map(|own| {
+        let file = file_of(own).0;
+        format!("{file}: used for identification and for validation; the error on it validates nothing")
+    })));
 }
 
 /// A name for every record: its own, with a number where several have the same.

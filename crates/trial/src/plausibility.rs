@@ -9,11 +9,13 @@ mod alternation;
 mod regression;
 mod rudder;
 
+use estimation::statistics::upper_median;
 use ship::angle::to_deg;
 use thiserror::Error;
 
 use crate::channel::Channel;
-use crate::record::Trial;
+use crate::record::{RejectedReading, Trial};
+use crate::words::counted;
 use alternation::alternation;
 use regression::{PartialSlope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading};
 use rudder::rudder_movements;
@@ -145,6 +147,7 @@ pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
     rudder_movements(trial, &mut warnings);
     rate_of_turn(trial, &mut warnings);
     gaps(trial, &mut warnings);
+    warnings.extend(missing_headings(trial));
     Ok(warnings)
 }
 
@@ -165,8 +168,8 @@ fn range_deg(values: &[f64]) -> f64 {
     to_deg(range(values))
 }
 
-/// How often the rudder goes from one side of its range to the other, by more than half of it.
-pub(crate) fn reversals(rudder: &[f64]) -> usize {
+/// How often a rudder (rad) goes from one side of its range to the other, by more than half of it.
+pub fn reversals(rudder: &[f64]) -> usize {
     let (low, high) = extremes(rudder.iter().copied());
     let (middle, quarter) = (0.5 * (low + high), 0.25 * (high - low));
     let mut side = 0.0;
@@ -341,6 +344,28 @@ pub(crate) fn changes<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<I
         from = to;
         change
     })
+}
+
+/// Time between two headings beyond which some are missing, in their usual intervals.
+const MISSED: f64 = 1.5;
+
+/// Counts the headings that are missing in rows of the record, and names the longest gap; what was left out as a wrong
+/// reading has its own warning.
+fn missing_headings(trial: &Trial) -> Option<String> {
+    let (time, read) = (trial.time(), trial.observed_rows().collect::<Vec<_>>());
+    let usual = upper_median(read.windows(2).map(|rows| time[rows[1]] - time[rows[0]]))?;
+    let (mut count, mut longest) = (0, (0.0, 0.0));
+    for (from, to) in read.windows(2).map(|rows| (rows[0], rows[1])) {
+        let (begin, gap) = (time[from], time[to] - time[from]);
+        let is_told = |own: &RejectedReading| own.channel == Channel::Heading && (begin..time[to]).contains(&own.time);
+        if to > from + 1 && gap > MISSED * usual && !trial.rejected().iter().any(is_told) {
+            count += (gap / usual).round() as usize - 1;
+            longest = if gap > longest.1 { (begin, gap) } else { longest };
+        }
+    }
+    let (begin, gap) = longest;
+    (count > 0)
+        .then(|| format!("{} missing; the longest gap, {gap:.1} s, begins at {begin:.1} s", counted(count, "heading")))
 }
 
 /// Names gaps in time that are long against the sampling.

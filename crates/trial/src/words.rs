@@ -32,6 +32,11 @@ pub(crate) fn instant(time: f64) -> ShortNumber {
     ShortNumber((1e3 * time).round() / 1e3)
 }
 
+/// One end of a part of a record for a message, s: a word and a time; nothing for an end that was not given.
+pub(crate) fn end(word: &str, time: f64) -> String {
+    if time.is_finite() { format!(" {word} {} s", instant(time)) } else { String::new() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::instant;

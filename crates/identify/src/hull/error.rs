@@ -5,6 +5,13 @@ use thiserror::Error;
 /// Fewest headings that a record has to hold.
 pub(super) const FEWEST: usize = 20;
 
+/// Farthest that rows may be apart, L/U₀: in two lengths a ship turns and comes back.
+pub(super) const COARSEST: f64 = 2.0;
+
+/// Longest record, L/U₀: eleven hours of a ship of 320 m at 8 m/s. Trials take less than a tenth of it, and the time of
+/// a fit grows with it.
+pub(super) const LONGEST: f64 = 1000.0;
+
 /// Why no hull is fitted.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum HullFitError {
@@ -16,6 +23,19 @@ pub enum HullFitError {
     Short {
         /// Name of the record.
         trial: String,
+    },
+    /// Rows, or the ends of a record, that are farther apart than in any trial of a ship.
+    #[error(
+        "{trial} has a row every {row:.3} ship lengths over {whole:.0} of them, and trials one every {COARSEST} over \
+         {LONGEST} at most; check the clock, length and speed"
+    )]
+    Clock {
+        /// Name of the record.
+        trial: String,
+        /// Median time between rows, L/U₀.
+        row: f64,
+        /// Its length, L/U₀.
+        whole: f64,
     },
     /// A record begins near rest, which no prior of a hull is about.
     #[error("{trial} begins at {share:.2} of the approach speed")]

@@ -95,8 +95,8 @@ pub struct HullEstimate {
 
 /// Fits a hull about what is expected of its coefficients to records of one ship.
 ///
-/// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings or begins
-/// near rest, and where no values near the expected ones can be replayed.
+/// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings, rows or a
+/// length that no trial of a ship has or begins near rest, and where no values near the expected ones can be replayed.
 pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, HullFitError> {
     let (reference, tracks) = tracks(trials)?;
     let form = &expected.form;

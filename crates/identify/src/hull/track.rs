@@ -3,7 +3,7 @@
 use estimation::statistics::upper_median;
 use trial::{Channel, Trial};
 
-use super::error::{FEWEST, HullFitError};
+use super::error::{COARSEST, FEWEST, HullFitError, LONGEST};
 
 /// Time between two rows that is fine enough, in L/U₀.
 const SPACING: f64 = 0.05;
@@ -70,8 +70,14 @@ pub(super) struct HullTrack {
 }
 
 impl HullTrack {
-    /// Fails for a record with too few headings, and for one that begins near rest.
+    /// Fails for a record with too few headings, for one whose clock is not that of a ship of this length and speed,
+    /// and for one that begins near rest.
     pub fn of(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
+        let second = reference.time();
+        let [row, whole] = [trial.sampling_period(), trial.duration()].map(|time| time / second);
+        if row > COARSEST || whole > LONGEST {
+            return Err(HullFitError::Clock { trial: trial.name().to_owned(), row, whole });
+        }
         let short = || HullFitError::Short { trial: trial.name().to_owned() };
         let track = Self::cut(trial, reference).ok_or_else(short)?;
         match track.start[0] < SLOW {

@@ -41,18 +41,6 @@ pub enum MotionError {
         /// Name of the record.
         record: String,
     },
-    /// Rows so far apart that the ship makes several lengths between them.
-    #[error(
-        "record {record} has a row every {period} s, and at most {longest:.3} s tell how a ship of this size moves"
-    )]
-    TooCoarse {
-        /// Name of the record.
-        record: String,
-        /// Median time between rows, s.
-        period: f64,
-        /// Longest that is taken, s: two lengths at approach speed.
-        longest: f64,
-    },
     /// A length or speed that no ship has.
     #[error("a {quantity} must be a positive number, found {value}")]
     NotPositive {

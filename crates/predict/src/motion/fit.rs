@@ -41,8 +41,7 @@ const LEAST_SHARE: f64 = 1e-6;
 /// one the approach is steady: it has the speed of the first row. The result has the median over records.
 ///
 /// Fails when the length is not positive, no record has a speed or positions, none turns by 5°, an approach speed
-/// cannot be told, rows are further apart than two ship lengths, the search does not converge or leaves a coefficient
-/// open. Records without any output are left out.
+/// cannot be told, the search does not converge or leaves a coefficient open. Records without any output are left out.
 pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     positive("length", length)?;
     let with_output = trials.iter().filter_map(|trial| MotionRecord::of(trial, length).transpose());

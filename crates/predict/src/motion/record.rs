@@ -34,9 +34,6 @@ const WINDOW: f64 = 0.25;
 /// Rows on each side of that window at least.
 const FEWEST_ROWS: usize = 2;
 
-/// Longest time between rows in units of L/U₀: a zig-zag of a quick ship has its execute in less.
-const LONGEST_PERIOD: f64 = 2.0;
-
 /// Rudder angle from its first value at which the approach ends, rad (1°).
 const MOVED: f64 = 0.017;
 
@@ -181,10 +178,6 @@ impl<'a> MotionRecord<'a> {
         let [guess, deviation] = known
             .or(shown.or(first).map(|[speed, _]| [speed, 0.0]))
             .ok_or_else(|| MotionError::NoApproachSpeed { record: trial.name().to_owned() })?;
-        let (period, longest) = (trial.sampling_period(), LONGEST_PERIOD * length / guess);
-        if period > longest {
-            return Err(MotionError::TooCoarse { record: trial.name().to_owned(), period, longest });
-        }
         let deviation = deviation.max(SUREST * guess);
         let approach = ApproachSpeed { speed: guess, deviation, is_start: known.is_none() };
         let yaw_rate = match has(Channel::YawRate) {

@@ -19,6 +19,9 @@ use crate::records::file_of;
 /// Name of the file.
 pub const FIT: &str = "fit.json";
 
+/// What `schema` says.
+pub const FIT_SCHEMA: &str = "fit/1";
+
 /// The method whose fit is drawn on its own where it has one.
 const SHOWN: &str = "output-error";
 
@@ -150,7 +153,7 @@ impl FitDocument {
 
 /// Words of warnings that cost nothing in K and T: a fault was mended, a choice was made, or only a track suffers. What
 /// has none of them is a doubt.
-const MENDED: [&str; 17] = [
+const MENDED: [&str; 18] = [
     "left out",
     "taken as missing",
     "taken as positive",
@@ -160,6 +163,7 @@ const MENDED: [&str; 17] = [
     "is read as",
     "decimal comma",
     "passed over",
+    "missing; the longest gap",
     "runs straight",
     "is the mean of",
     "are over ground",

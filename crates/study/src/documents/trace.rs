@@ -44,6 +44,9 @@ pub struct RecordEntry {
     pub name: String,
     /// Its file.
     pub file: String,
+    /// SHA-256 of its bytes.
+    #[serde(default)]
+    pub sha256: String,
     /// Whether it was held out.
     pub held_out: bool,
     /// The table of the record and its replays.

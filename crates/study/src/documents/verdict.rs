@@ -29,19 +29,26 @@ pub struct VerdictEntry {
     pub rudder_delay_s: Option<f64>,
     /// Methods whose replays are more than ten times worse than the best.
     pub set_apart: Vec<String>,
+    /// Where no replay is nearer to the headings than straight lines are: the root mean square about these, deg. No
+    /// method has an answer then, and `method` is the nearest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub straight_lines_deg: Option<f64>,
     /// Output error or maximum likelihood, where its 95 % interval of K or T lies wholly outside that of the answer to
     /// take, or its replay is set apart.
     pub contradicted_by: Option<String>,
 }
 
 impl VerdictEntry {
-    /// From the answers of the methods; where the recommended one is not among them the nearest replay stands for it.
-    pub fn of(recommendation: &Recommendation, entries: &[MethodEntry]) -> Option<Self> {
+    /// From the answers of the methods; where the recommended one is not among them, or no answer is one, the nearest
+    /// replay stands for it. `straight` is what a ship without an effect of her rudder leaves of the headings, the
+    /// straight line nearest to each record, deg.
+    pub fn of(recommendation: &Recommendation, entries: &[MethodEntry], straight: Option<f64>) -> Option<Self> {
         let answered = || entries.iter().filter(|entry| entry.parameters.is_some());
         let rms = |entry: &&MethodEntry| entry.heading_rmse_deg.unwrap_or(f64::INFINITY);
         let is_own = |entry: &&MethodEntry| entry.id() == recommendation.method();
         let nearest = answered().min_by(|one, other| rms(one).total_cmp(&rms(other)))?;
-        let taken = answered().find(is_own);
+        let straight_lines_deg = straight.filter(|straight| rms(&nearest) >= *straight);
+        let taken = answered().find(is_own).filter(|_| straight_lines_deg.is_none());
         let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);
         let taken = taken.unwrap_or(nearest);
         let is_far = |entry: &&MethodEntry| rms(entry) > FAR_WORSE * rms(&nearest) && entry.method != taken.method;
@@ -58,6 +65,7 @@ impl VerdictEntry {
             noise_deg: degrees(|lack| lack.noise),
             rudder_delay_s: recommendation.lack.and_then(|lack| lack.rudder_delay()),
             set_apart: answered().filter(is_far).map(|entry| entry.method.clone()).collect(),
+            straight_lines_deg,
             contradicted_by: answered().find(contradicts).map(|entry| entry.method.clone()),
         })
     }
@@ -93,13 +101,13 @@ mod tests {
             ..MethodEntry::default()
         };
         let taken = Recommendation { reason: Reason::NearestReplay, lack: None };
-        let contradicted = |rms: f64| {
+        let told = |rms: f64, straight: f64| {
             let far = [entry("output-error", 9.0, 1.9), entry("least-squares", 28.0, rms)];
             let all = [&far[..], &[entry("maximum-likelihood", 41.0, rms)]].concat();
-            let verdict = VerdictEntry::of(&taken, &all).expect("an answer");
-            (verdict.contradicted_by, verdict.set_apart.len())
+            let verdict = VerdictEntry::of(&taken, &all, Some(straight)).expect("an answer");
+            (verdict.contradicted_by, verdict.set_apart.len(), verdict.straight_lines_deg)
         };
-        assert_eq!(contradicted(38.0), (Some("maximum-likelihood".into()), 2));
-        assert_eq!(contradicted(18.0), (None, 0));
+        assert_eq!(told(38.0, 2.0), (Some("maximum-likelihood".into()), 2, None));
+        assert_eq!(told(18.0, 1.9), (None, 0, Some(1.9)));
     }
 }

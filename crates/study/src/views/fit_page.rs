@@ -98,6 +98,14 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
     let own = entry.parameters.as_ref()?;
     let [k, t, bias] =
         [own.k_per_s, own.t_s, own.delta_r_deg].map(|quantity| method_table::estimate(&quantity)[0].clone());
+    if let Some(straight) = verdict.straight_lines_deg {
+        let [left, straight] = [entry.heading_rmse_deg, Some(straight)].map(|deg| optional(deg, 1));
+        return Some(format!(
+            "No method has an answer: the nearest replay, that of {}, leaves {left}° of the headings, and a straight line, \
+             without any rudder, {straight}°.\nCheck rudder, heading and clock, or give a zig-zag.",
+            verdict.method
+        ));
+    }
     let because = match verdict.reason {
         Reason::NearestReplay => "its replay is the nearest to the headings",
         Reason::RandomMoment => "a random moment acts on the ship that no term of a ship explains",
@@ -143,16 +151,13 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let Some(other) = document.methods.iter().find(|entry| Some(&entry.method) == other) else { return String::new() };
     let name = &other.method;
     let has_moment = other.diagnostics.keys().any(|key| MOMENTS.contains(&key.as_str()));
-    match verdict.reason {
-        Reason::NearestReplay if has_moment => format!(
-            "\nRandom moments explain part of the manoeuvre in {name}: its K and T are those of small, fast motions."
-        ),
-        Reason::NearestReplay => format!("\n{name} contradicts this answer: look at both replays."),
-        Reason::RandomMoment => {
-            format!("\n{name} contradicts this answer: it takes the work of the random moment for that of the rudder.")
-        }
-        Reason::RudderNoise => format!("\n{name} contradicts this answer: it counts no noise of the rudder."),
-    }
+    let why = match verdict.reason {
+        Reason::NearestReplay if has_moment => "a random moment explains part of the manoeuvre in it",
+        Reason::NearestReplay => "look at both replays",
+        Reason::RandomMoment => "it takes the work of the random moment for that of the rudder",
+        Reason::RudderNoise => "it counts no noise of the rudder",
+    };
+    format!("\n{name} contradicts this answer: {why}.")
 }
 
 /// What was read.

@@ -1,17 +1,17 @@
 //! Models of earlier trials that `--prior` names: read, and held against the records.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use campaign::earlier::hulls_of;
 use campaign::known::RecordFacts;
 use identify::hull::{self, EarlierHull, Likeness, is_other_froude_number};
-use predict::IdentifiedShip;
 use report::number::fixed;
 use scenario::failure::Failure;
 use ship::vessel::prior::HullParticulars;
 use trial::{Trial, file};
 
-use super::predict::{StoredShips, ships_of, text_of};
+use super::predict::{StoredAnswer, ships_of, text_of};
 use crate::documents::prior::{EarlierTrials, PriorCheckEntry, PriorModelEntry};
 use crate::records::file_of;
 
@@ -19,6 +19,8 @@ use crate::records::file_of;
 #[derive(Debug, Clone)]
 pub struct EarlierModel {
     file: String,
+    /// The records that are in it: their files by their SHA-256.
+    records: BTreeMap<String, String>,
     hulls: Vec<EarlierHull>,
 }
 
@@ -36,18 +38,15 @@ impl EarlierModel {
     ///
     /// Fails when the text is no such document, and when it holds no hull.
     pub fn of_document(shown: &str, text: &str) -> Result<Self, Failure> {
-        let ships = match ships_of(shown, text)? {
-            StoredShips::Fit(ships, _) => ships.into_values().collect(),
-            StoredShips::Trace(ship) => vec![*ship],
-        };
-        let known: Option<IdentifiedShip> = ships.into_iter().find(|ship| !ship.hulls.is_empty());
+        let StoredAnswer { ships, records, .. } = ships_of(shown, text)?;
+        let known = ships.into_values().find(|ship| !ship.hulls.is_empty());
         let known = known.ok_or_else(|| {
             let what = "it holds no hull, which a prior is made from; fit records of a known length and approach speed, with a \
                         speed column, that begin on a steady approach";
             Failure::about(shown, what)
         })?;
         let hulls = hulls_of(&known).map_err(|error| Failure::about(shown, error))?;
-        Ok(Self { file: shown.to_owned(), hulls })
+        Ok(Self { file: shown.to_owned(), records, hulls })
     }
 
     /// Its ship beside that of the records.
@@ -56,6 +55,7 @@ impl EarlierModel {
         let likeness = Likeness::of(&own, ship);
         PriorModelEntry {
             file: self.file.clone(),
+            records: self.records.clone(),
             likeness: likeness.as_str().to_owned(),
             factor: likeness.factor(),
             differing: ship.differing(&own).into_iter().map(str::to_owned).collect(),
@@ -70,9 +70,18 @@ pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
     models.iter().flat_map(|model| model.hulls.iter().cloned()).collect()
 }
 
-/// Fails where models of earlier trials are given and no hull can be fitted to the records; warns where the ships
+/// Fails where a record is in two of the models, or in one and among the records, and where models are given and no
+/// hull can be fitted to the records; warns where the ships
 /// sail at other Froude numbers.
 pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<String>) -> Result<(), Failure> {
+    let mut seen: BTreeMap<&str, &str> = trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect();
+    for EarlierModel { file: model, records, .. } in models {
+        if let Some((file, other)) = records.iter().find_map(|(own, file)| Some((file, seen.get(own.as_str())?))) {
+            let what = format!("{file} is in it and in {other}, and a record counts only once; leave one of them out");
+            return Err(Failure::about(model, what));
+        }
+        seen.extend(records.keys().map(|own| (own.as_str(), model.as_str())));
+    }
     if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
         let what = "--prior cannot be used";
         let cure = "give length and approach speed (--length-m, --speed-m-s, or [ship] in a sidecar) and a record from its \

@@ -3,7 +3,7 @@
 
 use identify::estimate::Uncertainty;
 use identify::recommended::Recommendation;
-use identify::replay::replay;
+use identify::replay::{pooled, replay};
 use identify::suspicion::suspicion;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
@@ -11,14 +11,16 @@ use rayon::prelude::*;
 use report::figures::{Replays, ZigzagTrial};
 use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
+use ship::FirstOrder;
 use ship::angle::to_deg;
 use trial::{Channel, Trial, ZigZag};
 
 use super::earlier::{self, EarlierModel};
 use super::every_scale::{self, PREFERRED_METHODS};
+use super::loading::{AGAINST_FORM, speak_against_form};
 use super::single_records;
 use crate::completed::ALL;
-use crate::documents::fit::{FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
+use crate::documents::fit::{FIT_SCHEMA, FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
 use crate::documents::verdict::VerdictEntry;
 use crate::outside::{self, Named, NamedCommand};
 use crate::records::{file_of, names, warn_of_no_track};
@@ -125,11 +127,15 @@ pub fn fit(
     let records: Vec<TrialEntry> = records.iter().map(|trial| of_record(trial, warnings)).collect();
     let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
     warn_of_no_track(&shown, warnings);
+    let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
+    if has_form && speak_against_form(shown.hulls()) {
+        warnings.push(format!("{AGAINST_FORM}; `study predict --load` cannot take this ship to another loading"));
+    }
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
     };
     let document = FitDocument {
-        schema: "fit/1".into(),
+        schema: FIT_SCHEMA.into(),
         verdict: verdict(trials, &answers, &entries),
         zigzag: records[0].zigzag.clone(),
         trials: records,
@@ -169,7 +175,8 @@ fn verdict(
         let own = answers.iter().find(|(entry, _)| entry.id() == id);
         own.and_then(|(_, estimate)| estimate.as_ref())
     };
-    VerdictEntry::of(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries)
+    let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
+    VerdictEntry::of(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries, straight)
 }
 
 /// The named methods of the project with their default settings, the best first, the usual ones for no name, and

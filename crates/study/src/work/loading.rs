@@ -15,6 +15,15 @@ use trial::{Sidecar, file};
 /// The form that is made from particulars.
 const FORM: &str = "mmg";
 
+/// What is said where no hull of this form is among those of a ship.
+pub const AGAINST_FORM: &str = "the records speak against a hull of the form mmg: it leaves more than three times what \
+                                another leaves of their headings, or cannot be replayed over them";
+
+/// Whether records speak against a hull of this form: where one is fitted, all are.
+pub fn speak_against_form(hulls: &[StoredHull]) -> bool {
+    !hulls.is_empty() && hulls.iter().all(|own| own.form != FORM)
+}
+
 /// What has to be known of the ship at her trials; the displacement stands for the last.
 const NEEDED: [&str; 3] = ["beam-m", "draught-m", "block-coefficient"];
 
@@ -143,6 +152,10 @@ impl DescribedLoading {
 ///
 /// Fails where there is none, and where its draught, beam or block coefficient is not known.
 pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, Failure> {
+    if speak_against_form(&ship.hulls) {
+        let cure = "check particulars, rudder and speed of the trial, or fit more records";
+        return Err(Failure::about(shown, format!("--load needs a hull of the form mmg, and {AGAINST_FORM}; {cure}")));
+    }
     let mut ship = ship.clone();
     ship.hulls.retain(|own| own.form == FORM);
     let knows = |key: &str| ship.hulls.iter().all(|own| own.particulars.contains_key(key));

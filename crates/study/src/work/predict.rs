@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use ::trace::document::SCHEMA as TRACE_SCHEMA;
 use identify::hull::Likeness;
 use identify::suspicion::unusual_froude_number;
 use predict::correction::{self, Correction};
@@ -13,13 +14,14 @@ use predict::turn::{self, Current};
 use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
 use report::number::fixed;
 use scenario::failure::Failure;
-use scenario::name;
+use scenario::{TRACE, name};
 use serde_json::Value;
 use ship::Particulars;
 use trial::{Manoeuvre, Trial, file};
 
 use super::loading::{DescribedLoading, only_hull};
 use super::target_scale::{self, Declared, TargetScale, at_scale, is_alike, of_two_scales};
+use crate::documents::fit::FIT_SCHEMA;
 use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
 use crate::records::{file_of, rudder_logged_late};
@@ -34,11 +36,14 @@ const MODEL: file::Kind = file::Kind { name: "a model", largest: 1 << 26 };
 const EXPECTED: &str = "expected the fit.json or trace.json of this program";
 
 /// What is known of a ship, and from where.
+#[derive(Clone)]
 pub struct StoredModel {
     file: String,
     known: IdentifiedShip,
     /// How it was identified.
     method: String,
+    /// The records that are in it: their files by their SHA-256.
+    records: BTreeMap<String, String>,
 }
 
 /// The files of some models.
@@ -60,12 +65,14 @@ fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<Ship
     ShipMixture::new(ships).map_err(|error| Failure::about(&files(models).join(", "), error))
 }
 
-/// The ships in the text of a document.
-pub(super) enum StoredShips {
-    /// Of every method of a fit with a covariance, and the method to take.
-    Fit(BTreeMap<String, IdentifiedShip>, Option<String>),
-    /// Of a trace.
-    Trace(Box<IdentifiedShip>),
+/// What the text of a document holds.
+pub(super) struct StoredAnswer {
+    /// The ships of every method of a fit with a covariance; that of a trace, alone, as [`TRACE`].
+    pub ships: BTreeMap<String, IdentifiedShip>,
+    /// The method of a fit to take.
+    verdict: Option<String>,
+    /// The records that are in it, also by its own priors: their files by their SHA-256.
+    pub records: BTreeMap<String, String>,
 }
 
 /// The text of a model. Fails when it cannot be read.
@@ -75,28 +82,41 @@ pub(super) fn text_of(path: &Path) -> Result<String, Failure> {
     file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
 }
 
-/// The ships in the text of a `fit.json` or `trace.json`, which messages call `shown`. Fails when it is no such
-/// document.
-pub(super) fn ships_of(shown: &str, text: &str) -> Result<StoredShips, Failure> {
+/// What the text of a `fit.json` or `trace.json` holds, which messages call `shown`. Fails when it is no such document,
+/// and for one of another version.
+pub(super) fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
     let refuse = |problem: String| Failure::about(shown, problem);
     let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
     let value: Value =
         serde_json::from_str(text).map_err(|error| refuse(format!("this is no JSON ({error}); {EXPECTED}")))?;
-    let schema = value["schema"].as_str().and_then(|schema| schema.split_once('/'));
-    let (command, key) = match schema {
-        Some(("fit", _)) => ("fit", "ships"),
-        Some(("trace", _)) => ("trace", "ship"),
-        _ => return Err(refuse(format!("schema = {}; {EXPECTED}", value["schema"]))),
+    let (command, key, records) = match value["schema"].as_str() {
+        Some(FIT_SCHEMA) => ("fit", "ships", "trials"),
+        Some(TRACE_SCHEMA) => (TRACE, "ship", "records"),
+        _ => {
+            let known = format!("expected \"{FIT_SCHEMA}\" or \"{TRACE_SCHEMA}\"");
+            return Err(refuse(format!("schema = {}, {known}; {EXPECTED}, made again with it", value["schema"])));
+        }
     };
     let known = value.get(key).cloned().ok_or_else(|| {
         refuse(format!("it has no `{key}`, as an older program wrote it; make it again with `study {command}`"))
     })?;
-    if command == "trace" {
-        return Ok(StoredShips::Trace(serde_json::from_value(known).map_err(unread)?));
-    }
-    let ships: BTreeMap<String, IdentifiedShip> = serde_json::from_value(known).map_err(unread)?;
+    let ships: BTreeMap<String, IdentifiedShip> = match command {
+        TRACE => [(TRACE.to_owned(), serde_json::from_value(known).map_err(unread)?)].into(),
+        _ => serde_json::from_value(known).map_err(unread)?,
+    };
     let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id)).map(str::to_owned);
-    Ok(StoredShips::Fit(ships, verdict))
+    Ok(StoredAnswer { ships, verdict, records: records_of(&value, records) })
+}
+
+/// The records that are in a document under `key`, and those of its priors: their files by their SHA-256.
+fn records_of(document: &Value, key: &str) -> BTreeMap<String, String> {
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let text = |value: &Value| value.as_str().filter(|text| !text.is_empty()).map(str::to_owned);
+    let fitted = list(&document[key]).into_iter().filter(|record| record["held_out"] != true);
+    let own = fitted.filter_map(|record| Some((text(&record["sha256"])?, text(&record["file"])?)));
+    let of_prior = |model: Value| model["records"].as_object().cloned().unwrap_or_default();
+    let priors = list(&document["earlier_trials"]["models"]).into_iter().flat_map(of_prior);
+    own.chain(priors.filter_map(|(sha256, file)| Some((sha256, text(&file)?)))).collect()
 }
 
 impl StoredModel {
@@ -119,16 +139,14 @@ impl StoredModel {
         calm: bool,
         warnings: &mut Vec<String>,
     ) -> Result<Self, Failure> {
-        let (known, method) = match ships_of(shown, text)? {
-            StoredShips::Trace(known) => (*known, String::from("trace")),
-            StoredShips::Fit(mut ships, verdict) => {
-                let id = method(shown, &ships, asked.or(verdict.as_deref()))?;
-                if asked.is_none() {
-                    warnings.push(format!("{shown}: the answer of {id} is used; --method names another"));
-                }
-                (ships.remove(&id).expect("it was found there"), id)
-            }
-        };
+        let StoredAnswer { mut ships, verdict, records } = ships_of(shown, text)?;
+        // A trace has one answer.
+        let asked = asked.filter(|_| !ships.contains_key(TRACE));
+        let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
+        if asked.is_none() && method != TRACE {
+            warnings.push(format!("{shown}: the answer of {method} is used; --method names another"));
+        }
+        let known = ships.remove(&method).expect("it was found there");
         if known.leans_on_sway() {
             warnings.push(format!(
                 "{shown}: a term of the model takes the measured sway, and here that of an equation fitted to it; intervals \
@@ -139,7 +157,8 @@ impl StoredModel {
             warnings.push(format!("{shown}: {}; she is steered without it", rudder_logged_late(late)));
         }
         let known = if calm { known.in_calm() } else { Ok(known) };
-        Ok(Self { known: known.map_err(|error| Failure::about(shown, error))?, file: shown.to_owned(), method })
+        let known = known.map_err(|error| Failure::about(shown, error))?;
+        Ok(Self { known, file: shown.to_owned(), method, records })
     }
 
     /// The same with what another function makes of the ship, which is given the name of the file.
@@ -147,8 +166,7 @@ impl StoredModel {
         &self,
         make: impl FnOnce(&str, &IdentifiedShip) -> Result<IdentifiedShip, Failure>,
     ) -> Result<Self, Failure> {
-        let known = make(&self.file, &self.known)?;
-        Ok(Self { known, file: self.file.clone(), method: self.method.clone() })
+        Ok(Self { known: make(&self.file, &self.known)?, ..self.clone() })
     }
 }
 
@@ -226,6 +244,7 @@ pub fn predict(
     let PredictInput { models, ballast, records, current, declared } = input;
     let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
+    warnings.extend(records.iter().filter(|_| ballast.is_empty()).filter_map(|own| validates_nothing(models, own)));
     let draws = request.draws as usize;
     let scale = TargetScale::of(&request.scale, &records, declared)?;
     let mut in_still_water = |record| turn::without_current(target_scale::at_own_scale(record, warnings), current);
@@ -272,6 +291,13 @@ pub fn predict(
         fill_form(&mut document, particulars, &records, &corrections, declared);
     }
     Ok(document)
+}
+
+/// The warning that a record is in one of the models.
+fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<String> {
+    let (file, sha256) = file_of(record);
+    let model = models.iter().find(|model| model.records.contains_key(sha256))?;
+    Some(format!("{file}: {} is fitted to it; the error on it validates nothing", model.file))
 }
 
 /// Puts the form of MSC/Circ.1053 into a document that holds all else.

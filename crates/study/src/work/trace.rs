@@ -111,6 +111,7 @@ pub fn trace(
     let entry = |((number, own), name): ((usize, &Trial), &String)| RecordEntry {
         name: name.clone(),
         file: file_of(own).0.to_owned(),
+        sha256: file_of(own).1.to_owned(),
         held_out: number >= trials.len(),
         curves: format!("replay{}.csv", suffix(&names, number)),
         innovations: innovations.get(number).map(|_| format!("innovations{}.csv", suffix(&names, number))),

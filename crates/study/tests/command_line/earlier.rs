@@ -4,7 +4,7 @@ use serde_json::Value;
 use ship::angle::{from_deg, to_deg};
 use simulate::{Manoeuvre, Recording, Simulation, SteeringGear, StreamKey, Vessel};
 
-use crate::desk::{Desk, zig_zag_csv};
+use crate::desk::{Desk, with_column, zig_zag_csv};
 
 const KVLCC2: [&str; 4] = ["--length-m", "320", "--speed-m-s", "7.97"];
 
@@ -69,6 +69,9 @@ fn a_model_of_the_same_ship_is_what_is_expected() {
     let run = desk.run(&[&fit[..6], &model].concat());
     assert!(run.is_done().out.contains("(a ship of another length, deviations × 2)"), "{}", run.out);
     assert!(run.err.contains("Froude number of 0.142, that of the records at 0.109"), "{}", run.err);
+    // The model of the second record holds the first one, too.
+    let both = ["fit", "first.csv", "--prior", "g/fit.json"];
+    desk.run(&[&both[..], &KVLCC2].concat()).is_refused(2, &["g/fit.json: first.csv is in it and in first.csv"]);
 }
 
 /// A trace takes the prior too, and its page and document say so.
@@ -103,13 +106,24 @@ fn a_prior_that_cannot_be_used_is_refused() {
     desk.run(&["fit", "zz.csv", "--method", "output-error", "--out", "z", "--quiet"]).is_done();
     let fit = |prior: &str, more: &[&str]| desk.run(&[&["fit", "next.csv", "--prior", prior], more].concat());
     fit("z/fit.json", &KVLCC2).is_refused(2, &["z/fit.json: it holds no hull", "a speed column"]);
-    fit("none.json", &KVLCC2).is_refused(2, &["none.json"]);
-    fit("next.csv", &KVLCC2).is_refused(2, &["next.csv: this is no JSON", "fit.json or trace.json"]);
     let needed = ["next.csv: --prior cannot be used: length and approach speed", "--length-m", "[ship]"];
     fit("f/fit.json", &[]).is_refused(2, &needed);
-    let text = desk.text("f/fit.json").replace("\"key\": \"Nv\"", "\"key\": \"magic\"");
-    desk.file("odd.json", text);
-    fit("odd.json", &KVLCC2).is_refused(2, &["odd.json: the hull `", "fit or trace the record again"]);
+    let text = desk.text("f/fit.json");
+    for (from, to, part) in [
+        ("\"key\": \"Nv\"", "\"key\": \"magic\"", "odd.json: the hull `"),
+        ("fit/1", "fit/7", "odd.json: schema = \"fit/7\", expected \"fit/1\" or \"trace/3\""),
+        ("\"length_m\": 320.0", "\"length_m\": -7.0", "odd.json: length-m = -7: expected"),
+        ("\"weight\": ", "\"weight\": -", "odd.json: weight = -"),
+    ] {
+        desk.file("odd.json", text.replace(from, to));
+        fit("odd.json", &KVLCC2).is_refused(2, &[part]);
+    }
+    let twice = [&["--prior", "f/fit.json"][..], &KVLCC2].concat();
+    fit("f/fit.json", &twice)
+        .is_refused(2, &["f/fit.json: first.csv is in it and in f/fit.json, and a record counts only once"]);
+    desk.file("ms.csv", with_column(&desk.text("next.csv"), "t_s", |_, t| (1e3 * t).to_string()));
+    let clock = ["ms has a row every 99.625 ship lengths", "trials one every 2 over 1000 at most; check the clock"];
+    desk.run(&[&["fit", "ms.csv", "--prior", "f/fit.json"], &KVLCC2[..]].concat()).is_refused(2, &clock);
     desk.run(&["trace", "next.csv", "--prior", "f/fit.json", "--without-hull"])
         .is_refused(2, &["--prior", "--without-hull"]);
 }

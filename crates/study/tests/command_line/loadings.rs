@@ -167,4 +167,9 @@ fn a_loading_that_cannot_be_taken_is_refused() {
         refused("predict b/fit.json --load full.toml", lacks);
         refused("predict f/fit.json --load full.toml --ballast b/fit.json --replay run.csv", lacks);
     }
+    desk.file("b/fit.json", desk.text("f/fit.json").replace("\"form\": \"mmg\"", "\"form\": \"cubic\""));
+    refused(
+        "predict b/fit.json --load full.toml",
+        "b/fit.json: --load needs a hull of the form mmg, and the records speak",
+    );
 }

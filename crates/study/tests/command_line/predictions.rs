@@ -97,7 +97,8 @@ fn a_trace_predicts_and_its_own_record_is_inside() {
     desk.run(&["trace", &damping, "--out", "t", "--quiet"]).is_done();
     let kinds = ["spiral:15", "pull-out:20", "williamson", "initial-turning:10", "zig-zag:-20/20"];
     let asked = kinds.map(|kind| format!("--manoeuvre {kind} ")).concat();
-    predict(&desk, &format!("t/trace.json {asked}--replay {damping} --draws 200 --out p")).is_done();
+    let run = predict(&desk, &format!("t/trace.json {asked}--replay {damping} --draws 200 --out p"));
+    assert!(run.is_done().err.contains("t/trace.json is fitted to it; the error on it validates nothing"));
     let json = desk.json("p/predict.json");
     keeps_the_contract(&json);
     assert_eq!(json["manoeuvres"].as_array().map(Vec::len), Some(5));

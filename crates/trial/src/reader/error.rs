@@ -9,7 +9,7 @@ use crate::file::FileError;
 use crate::plausibility::Implausible;
 use crate::record::TrialError;
 use crate::sidecar::SidecarError;
-use crate::words::{instant, listed};
+use crate::words::{end, instant, listed};
 
 /// Why a file did not become a record.
 #[derive(Debug, Error)]
@@ -185,8 +185,9 @@ pub enum Problem {
     AllMissing { column: String, quantity: &'static str },
     /// The part of the record asked for holds nothing.
     #[error(
-        "no row lies between {from_s} s and {until_s} s, the rows lie between {} s and {} s; correct `from-s` and \
-         `until-s` under [part] in the sidecar", instant(*first_s), instant(*last_s)
+        "no row lies{}{}, the rows lie between {} s and {} s; give another part (--from and --until, or `from-s` and \
+         `until-s` under [part] in the sidecar)",
+        end("from", *from_s), end("until", *until_s), instant(*first_s), instant(*last_s)
     )]
     EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
     /// Too few usable rows.

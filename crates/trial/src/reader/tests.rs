@@ -139,6 +139,7 @@ fn rows_with_missing_values_are_left_out_or_kept_and_counted() {
     let has = |part: &str| warnings.iter().any(|warning| warning.contains(part));
     assert!(has("1 row without time"), "{warnings:?}");
     assert!(has("2 rows without rudder angle, which runs straight between its readings there"), "{warnings:?}");
+    assert!(has("1 heading missing; the longest gap, 2.0 s, begins at 39.0 s"), "{warnings:?}");
     assert!(has("1 row left out as exact copies"), "{warnings:?}");
     assert!(has("1 row with fewer cells"), "{warnings:?}");
     assert!(has("`remark` holds text in 241 rows"), "{warnings:?}");
