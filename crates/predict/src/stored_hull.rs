@@ -341,7 +341,7 @@ mod tests {
     #[test]
     fn a_hull_at_another_scale_moves_alike() {
         let known = testing::hull("mmg");
-        let ratio: f64 = 25.0;
+        let ratio: f64 = 4.0;
         let (length, speed) = (known.length_m * ratio, known.speed_m_s * ratio.sqrt());
         let large = known.scaled_to(length, speed);
         let of = |known: &StoredHull, state: [f64; 4]| {

@@ -21,14 +21,18 @@ Moment = Union[float, str]
 PathLike = Union[str, "os.PathLike[str]"]
 
 
-class _Needed:
-    """A column that every record has."""
+class _Described:
+    """A column with its documentation."""
 
     def __init__(self, doc: str) -> None:
         self.__doc__ = doc
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
+
+
+class _Needed(_Described):
+    """A column that every record has."""
 
     @overload
     def __get__(self, record: None, owner: type) -> _Needed: ...
@@ -40,14 +44,8 @@ class _Needed:
         return self if record is None else record[self.name]
 
 
-class _Column:
+class _Column(_Described):
     """A column that a record may have."""
-
-    def __init__(self, doc: str) -> None:
-        self.__doc__ = doc
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self.name = name
 
     @overload
     def __get__(self, record: None, owner: type) -> _Column: ...

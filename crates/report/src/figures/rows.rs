@@ -237,11 +237,9 @@ fn axis(column: &RowsColumn) -> PlotAxis {
     let mut data = Extents::default();
     column.rows.iter().flatten().for_each(|item| item.enter(&mut data));
     data.fixed.extend(column.lines.iter().map(|(.., value)| *value));
-    if column.room > 0.0 {
-        // Numbers stand beyond all that is drawn.
-        let soft: Vec<f64> = data.soft.iter().map(|(value, _)| *value).collect();
-        data.fixed.extend(soft);
-    }
+    // Numbers stand beyond all that is drawn.
+    let kept = if column.room > 0.0 { std::mem::take(&mut data.soft) } else { Vec::new() };
+    data.fixed.extend(kept.iter().map(|(value, _)| *value));
     data.fixed.extend(column.reference.iter().flat_map(|own| [own.value, own.band[0], own.band[1]]));
     let (axis, _) = column.x.axis(&data, 0.06);
     if !column.zero {

@@ -13,7 +13,7 @@ use crate::first_order::FirstOrder;
 use crate::particulars::Particulars;
 use crate::response::Response;
 
-pub mod frigate;
+pub mod amerongen;
 pub mod kvlcc2;
 pub mod mariner;
 pub mod s175;
@@ -21,7 +21,6 @@ pub mod seiun_like;
 pub mod tanker;
 pub mod user;
 pub mod yukun;
-pub mod zeefakkel;
 
 /// The equations of a ship.
 #[derive(Clone)]
@@ -74,8 +73,8 @@ pub fn all() -> Vec<Ship> {
     vec![
         yukun::ship(),
         mariner::second_order(),
-        zeefakkel::ship(),
-        frigate::ship(),
+        amerongen::zeefakkel(),
+        amerongen::frigate(),
         mariner::hull(),
         kvlcc2::full_scale(),
         kvlcc2::model_l7(),

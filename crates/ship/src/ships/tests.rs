@@ -216,7 +216,7 @@ fn revolutions_and_speed_of_the_straight_approach_agree() {
 /// n₃ in deg/s: 0.5 · 30 = 3.1 + 0.4 · 3.1³ to two digits.
 #[test]
 fn zeefakkel_turns_at_3_degrees_a_second() {
-    assert_relative_eq!(turning_rate_deg(&zeefakkel::ship(), 30.0), 3.1, epsilon = 0.05);
+    assert_relative_eq!(turning_rate_deg(&amerongen::zeefakkel(), 30.0), 3.1, epsilon = 0.05);
 }
 
 #[test]

@@ -63,11 +63,7 @@ fn of_panels(data: &mut Panels, about: &[String]) {
         if !layers.any(|layer| marks(layer).is_some() && layer.curve.y.contains(&f64::INFINITY)) {
             note = note.replace(CUT_NOTE, "");
         }
-        said.push(if others == 1 {
-            String::from("Left out: one other method.")
-        } else {
-            format!("Left out: {others} other methods.")
-        });
+        said.push(format!("Left out: {others} other method{}.", if others == 1 { "" } else { "s" }));
     }
     said.insert(0, note.trim().to_owned());
     data.note = Some(said.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
@@ -135,7 +131,7 @@ mod tests {
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
         assert_eq!(panels[1].head.as_deref(), Some("column 1"));
         assert_eq!((panels[0].layers.len(), panels[0].layers[0].name.as_deref()), (1, Some("output-error")));
-        assert_eq!(data.note.as_deref(), Some("Left out: one other method."));
+        assert_eq!(data.note.as_deref(), Some("Left out: 1 other method."));
     }
 
     #[test]

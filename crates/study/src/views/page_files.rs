@@ -34,7 +34,8 @@ pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> R
     folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
 }
 
-/// Removes the figures of the page that stood there before, which may be of another ship, but those that are drawn anew.
+/// Removes the figures of the page that stood there before, which may be of another ship. Those that are drawn anew
+/// stay.
 fn remove_former(folder: &ResultFolder, page: &Page) -> Result<(), Failure> {
     let place = folder.path().join(REPORT);
     let former = disk::read(&place, documents::LARGEST).on("read", &place)?.unwrap_or_default();

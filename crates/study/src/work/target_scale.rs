@@ -1,5 +1,5 @@
 //! The scale of a prediction, and what is brought to it. What is said of a ship of one length does not hold for one of
-//! another, so nothing here guesses: scales that differ are refused or told.
+//! another, so scales that differ are refused or told.
 
 use identify::hull::is_other_froude_number;
 use predict::identified_ship::is_same_length;

@@ -30,17 +30,16 @@ pub(super) struct Formula {
     pub source: &'static str,
 }
 
-impl Formula {
-    const fn new(
-        key: &'static str,
-        symbol: &'static str,
-        of: fn(&HullDimensions) -> f64,
-        spread: Spread,
-        text: &'static str,
-        source: &'static str,
-    ) -> Self {
-        Self { key, symbol, of, spread, text, source }
-    }
+/// A row of the table: key, symbol, formula, spread, the formula in words, source.
+const fn row(
+    key: &'static str,
+    symbol: &'static str,
+    of: fn(&HullDimensions) -> f64,
+    spread: Spread,
+    text: &'static str,
+    source: &'static str,
+) -> Formula {
+    Formula { key, symbol, of, spread, text, source }
 }
 
 impl HullDimensions {
@@ -128,9 +127,9 @@ const KVLCC2: &str = "as KVLCC2, Yasukawa and Yoshimura (2015)";
 
 /// Symbols: k = 2 d/L, m' = 2 C_b B/L, Λ = H_R²/A_R, J the advance ratio of the straight approach.
 pub(super) const FORMULAS: &[Formula] = &[
-    Formula::new("mx", "m_x'", HullDimensions::added_surge, Absolute(0.008), "m' f(C_b, L/B, d/B)", ZHOU),
-    Formula::new("my", "m_y'", HullDimensions::added_sway, Share(0.15), "m' f(C_b, L/B, d/B)", ZHOU),
-    Formula::new(
+    row("mx", "m_x'", HullDimensions::added_surge, Absolute(0.008), "m' f(C_b, L/B, d/B)", ZHOU),
+    row("my", "m_y'", HullDimensions::added_sway, Share(0.15), "m' f(C_b, L/B, d/B)", ZHOU),
+    row(
         "Jz",
         "J_z'",
         |f| {
@@ -141,7 +140,7 @@ pub(super) const FORMULAS: &[Formula] = &[
         "m' (.33 − .7685 C_b (1 − .784 C_b) + .0343 L/B (1 − .63 C_b))²",
         ZHOU,
     ),
-    Formula::new(
+    row(
         "R0",
         "R_0'",
         HullDimensions::resistance,
@@ -149,8 +148,8 @@ pub(super) const FORMULAS: &[Formula] = &[
         "2 (1 − t_P) (1 − w_P0)² D_P² .18/(L d J²); without propeller-rps .018",
         PUBLISHED,
     ),
-    Formula::new("Xvv", "X_vv'", |f| 1.15 * f.fullness() - 0.18, Absolute(0.04), "1.15 C_b B/L − .18", YOSHIMURA),
-    Formula::new(
+    row("Xvv", "X_vv'", |f| 1.15 * f.fullness() - 0.18, Absolute(0.04), "1.15 C_b B/L − .18", YOSHIMURA),
+    row(
         "Xvr",
         "X_vr'",
         |f| 0.08 - 1.91 * f.fullness() + f.added_sway(),
@@ -158,20 +157,13 @@ pub(super) const FORMULAS: &[Formula] = &[
         "m_y' − 1.91 C_b B/L + .08",
         YOSHIMURA,
     ),
-    Formula::new("Xrr", "X_rr'", |_| 0.012, Absolute(0.012), ".012", PUBLISHED),
-    Formula::new("Xvvvv", "X_vvvv'", |f| 1.1 - 6.68 * f.fullness(), Absolute(0.5), "1.1 − 6.68 C_b B/L", YOSHIMURA),
-    Formula::new(
-        "Yv",
-        "Y_v'",
-        |f| -(0.5 * PI * f.k() + 1.4 * f.fullness()),
-        Share(0.25),
-        "−(π k/2 + 1.4 C_b B/L)",
-        KIJIMA,
-    ),
-    Formula::new("Yr", "Y_r'", |f| f.added_surge() + 0.5 * f.fullness(), Share(0.2), "m_x' + .5 C_b B/L", YOSHIMURA),
-    Formula::new("Yvvv", "Y_vvv'", |f| -(0.185 * f.L / f.B + 0.48), Share(0.2), "−(.185 L/B + .48)", YOSHIMURA),
-    Formula::new("Yvvr", "Y_vvr'", |_| 0.0, Absolute(0.5), "0; formulas can have the wrong sign", PUBLISHED),
-    Formula::new(
+    row("Xrr", "X_rr'", |_| 0.012, Absolute(0.012), ".012", PUBLISHED),
+    row("Xvvvv", "X_vvvv'", |f| 1.1 - 6.68 * f.fullness(), Absolute(0.5), "1.1 − 6.68 C_b B/L", YOSHIMURA),
+    row("Yv", "Y_v'", |f| -(0.5 * PI * f.k() + 1.4 * f.fullness()), Share(0.25), "−(π k/2 + 1.4 C_b B/L)", KIJIMA),
+    row("Yr", "Y_r'", |f| f.added_surge() + 0.5 * f.fullness(), Share(0.2), "m_x' + .5 C_b B/L", YOSHIMURA),
+    row("Yvvv", "Y_vvv'", |f| -(0.185 * f.L / f.B + 0.48), Share(0.2), "−(.185 L/B + .48)", YOSHIMURA),
+    row("Yvvr", "Y_vvr'", |_| 0.0, Absolute(0.5), "0; formulas can have the wrong sign", PUBLISHED),
+    row(
         "Yvrr",
         "Y_vrr'",
         |f| -(0.26 * (1.0 - f.Cb) * f.L / f.B + 0.11),
@@ -179,9 +171,9 @@ pub(super) const FORMULAS: &[Formula] = &[
         "−(.26 (1 − C_b) L/B + .11)",
         YOSHIMURA,
     ),
-    Formula::new("Yrrr", "Y_rrr'", |_| -0.051, Absolute(0.05), "−.051", YOSHIMURA),
-    Formula::new("Nv", "N_v'", |f| -f.k(), Share(0.15), "−k", KIJIMA),
-    Formula::new(
+    row("Yrrr", "Y_rrr'", |_| -0.051, Absolute(0.05), "−.051", YOSHIMURA),
+    row("Nv", "N_v'", |f| -f.k(), Share(0.15), "−k", KIJIMA),
+    row(
         "Nr",
         "N_r'",
         |f| {
@@ -192,49 +184,28 @@ pub(super) const FORMULAS: &[Formula] = &[
         "L/d (−.003724 + .10446 d/L − 1.393 (d/L)²)",
         LEE,
     ),
-    Formula::new("Nvvv", "N_vvv'", |f| -(0.66 - 0.69 * f.Cb), Share(1.0), "−(.66 − .69 C_b)", YOSHIMURA),
-    Formula::new("Nvvr", "N_vvr'", |f| 1.55 * f.fullness() - 0.76, Share(1.0), "1.55 C_b B/L − .76", YOSHIMURA),
-    Formula::new("Nvrr", "N_vrr'", |_| 0.0, Absolute(0.2), "0; formulas can have the wrong sign", PUBLISHED),
-    Formula::new("Nrrr", "N_rrr'", |f| 0.25 * f.fullness() - 0.056, Absolute(0.02), ".25 C_b B/L − .056", YOSHIMURA),
-    Formula::new("wP0", "w_P0", HullDimensions::wake, Absolute(0.08), ".5 C_b − .05", "Taylor"),
-    Formula::new("C1", "C_1", |_| 2.0, Absolute(0.6), "2", KVLCC2),
-    Formula::new("C2-starboard", "C_2, β_P > 0", |_| 1.6, Absolute(0.25), "1.6", KVLCC2),
-    Formula::new("C2-port", "C_2, β_P < 0", |_| 1.1, Absolute(0.25), "1.1", KVLCC2),
-    Formula::new("tP", "t_P", |_| DEDUCTION, Absolute(0.04), ".22", PUBLISHED),
-    Formula::new("xP", "x_P'", |_| -0.48, Absolute(0.02), "−.48", KVLCC2),
-    Formula::new("k0", "k_0", |f| SERVICE_THRUST - THRUST_SLOPE * f.advance(), Share(0.15), ".18 + .38 J", PUBLISHED),
-    Formula::new("k1", "k_1", |_| THRUST_SLOPE, Share(0.2), "−.38", PUBLISHED),
-    Formula::new("k2", "k_2", |_| 0.0, Absolute(0.1), "0", PUBLISHED),
-    Formula::new(
-        "f_alpha",
-        "f_α",
-        |f| 6.13 * f.aspect() / (2.25 + f.aspect()),
-        Share(0.12),
-        "6.13 Λ/(2.25 + Λ)",
-        FUJII,
-    ),
-    Formula::new("epsilon", "ε", |_| 1.1, Absolute(0.2), "1.1", PUBLISHED),
-    Formula::new("kappa", "κ", |_| 0.5, Absolute(0.15), ".5", PUBLISHED),
-    Formula::new("tR", "t_R", |_| 0.31, Absolute(0.1), ".31", PUBLISHED),
-    Formula::new("aH", "a_H", |f| 0.627 * f.Cb - 0.153, Absolute(0.08), ".627 C_b − .153", "Quadvlieg (2013)"),
-    Formula::new("xH", "x_H'", |_| -0.44, Absolute(0.05), "−.44", PUBLISHED),
-    Formula::new("xR", "x_R'", |_| -0.5, Absolute(0.01), "−.5", PUBLISHED),
-    Formula::new("lR", "ℓ_R'", |_| -0.9, Absolute(0.2), "−.9", YOSHIMURA),
-    Formula::new(
-        "gammaR-starboard",
-        "γ_R, β_R > 0",
-        |f| 2.06 * f.fullness() + 0.14,
-        Share(0.3),
-        "2.06 C_b B/L + .14",
-        MANSIM,
-    ),
-    Formula::new(
-        "gammaR-port",
-        "γ_R, β_R < 0",
-        |f| 2.06 * f.fullness() + 0.14,
-        Share(0.3),
-        "2.06 C_b B/L + .14",
-        MANSIM,
-    ),
-    Formula::new("kzz", "k_zz", |_| 0.25, Absolute(0.015), ".25", KVLCC2),
+    row("Nvvv", "N_vvv'", |f| -(0.66 - 0.69 * f.Cb), Share(1.0), "−(.66 − .69 C_b)", YOSHIMURA),
+    row("Nvvr", "N_vvr'", |f| 1.55 * f.fullness() - 0.76, Share(1.0), "1.55 C_b B/L − .76", YOSHIMURA),
+    row("Nvrr", "N_vrr'", |_| 0.0, Absolute(0.2), "0; formulas can have the wrong sign", PUBLISHED),
+    row("Nrrr", "N_rrr'", |f| 0.25 * f.fullness() - 0.056, Absolute(0.02), ".25 C_b B/L − .056", YOSHIMURA),
+    row("wP0", "w_P0", HullDimensions::wake, Absolute(0.08), ".5 C_b − .05", "Taylor"),
+    row("C1", "C_1", |_| 2.0, Absolute(0.6), "2", KVLCC2),
+    row("C2-starboard", "C_2, β_P > 0", |_| 1.6, Absolute(0.25), "1.6", KVLCC2),
+    row("C2-port", "C_2, β_P < 0", |_| 1.1, Absolute(0.25), "1.1", KVLCC2),
+    row("tP", "t_P", |_| DEDUCTION, Absolute(0.04), ".22", PUBLISHED),
+    row("xP", "x_P'", |_| -0.48, Absolute(0.02), "−.48", KVLCC2),
+    row("k0", "k_0", |f| SERVICE_THRUST - THRUST_SLOPE * f.advance(), Share(0.15), ".18 + .38 J", PUBLISHED),
+    row("k1", "k_1", |_| THRUST_SLOPE, Share(0.2), "−.38", PUBLISHED),
+    row("k2", "k_2", |_| 0.0, Absolute(0.1), "0", PUBLISHED),
+    row("f_alpha", "f_α", |f| 6.13 * f.aspect() / (2.25 + f.aspect()), Share(0.12), "6.13 Λ/(2.25 + Λ)", FUJII),
+    row("epsilon", "ε", |_| 1.1, Absolute(0.2), "1.1", PUBLISHED),
+    row("kappa", "κ", |_| 0.5, Absolute(0.15), ".5", PUBLISHED),
+    row("tR", "t_R", |_| 0.31, Absolute(0.1), ".31", PUBLISHED),
+    row("aH", "a_H", |f| 0.627 * f.Cb - 0.153, Absolute(0.08), ".627 C_b − .153", "Quadvlieg (2013)"),
+    row("xH", "x_H'", |_| -0.44, Absolute(0.05), "−.44", PUBLISHED),
+    row("xR", "x_R'", |_| -0.5, Absolute(0.01), "−.5", PUBLISHED),
+    row("lR", "ℓ_R'", |_| -0.9, Absolute(0.2), "−.9", YOSHIMURA),
+    row("gammaR-starboard", "γ_R, β_R > 0", |f| 2.06 * f.fullness() + 0.14, Share(0.3), "2.06 C_b B/L + .14", MANSIM),
+    row("gammaR-port", "γ_R, β_R < 0", |f| 2.06 * f.fullness() + 0.14, Share(0.3), "2.06 C_b B/L + .14", MANSIM),
+    row("kzz", "k_zz", |_| 0.25, Absolute(0.015), ".25", KVLCC2),
 ];
