@@ -33,7 +33,7 @@ fn a_folder_that_is_no_study_cannot_be_reported() {
     desk.run(&["report", "folder", "--open"]).is_refused(2, &["folder", "finished study"]);
     desk.file("old/fit.json", "{}");
     desk.run(&["report", "old", "--open"]).is_refused(2, &["fit.json", "study fit"]);
-    desk.run(&["report", "missing"]).is_refused(2, &["missing", "finished study"]);
+    desk.run(&["report", "missing"]).is_refused(2, &["missing", "no such folder"]);
 }
 
 #[test]

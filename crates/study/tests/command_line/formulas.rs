@@ -59,7 +59,7 @@ fn a_formula_of_a_scenario_is_marked_in_the_file() {
     for (text, said, column) in [
         ("formula = \"bank = c * foo(r)\"\nc = 1.0", "`foo` is no function", 23),
         ("c = 1.0\nformula = 'bank = c * dleta'", "did you mean `delta`", 23),
-        ("formula = \"bank = c * tanh(k * psi)\"\nc = 1.0", "no key `k`", 0),
+        ("formula = \"bank = c * tanh(k * psi)\"\nc = 1.0", "lacks the key `k`", 0),
         ("formula = \"bank = c * r\"\nc = 1.0\nd = 1.0", "no key `d`", 0),
         ("c = 1.0", "`effect.0.c` is 1.0", 0),
         ("formula = \"cross = c * r * abs(v)\"\nc = 1.0", "needs sway velocity", 0),
