@@ -29,7 +29,7 @@ pub fn frigate() -> Ship {
 }
 
 /// With K, 1/s, T, s, and n₃ of yaw rates in deg/s.
-fn norrbin([id, name]: [&str; 2], particulars: Option<Particulars>, [gain, time, n3]: [f64; 3]) -> Ship {
+fn norrbin([id, name]: [&'static str; 2], particulars: Option<Particulars>, [gain, time, n3]: [f64; 3]) -> Ship {
     let parameters = vec![1.0 / time, gain / time, 0.0, n3 * 1f64.to_degrees().powi(2) / time];
     Ship {
         id: id.into(),
