@@ -23,7 +23,7 @@ pub enum PredictError {
         /// How many there are.
         found: usize,
     },
-    /// A parameter is no number, or a length, speed or weight that of no ship.
+    /// A parameter is no number, or a length, speed or weight is that of no ship.
     #[error("{key} = {value}: expected a finite number, as a weight 0 or more, as a length or speed what ships have")]
     Value {
         /// The parameter.
