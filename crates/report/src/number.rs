@@ -13,6 +13,11 @@ const MAX_DECIMALS: i32 = 15;
 /// Width of a 95 % interval in standard deviations, about.
 const STANDARD_DEVIATIONS: f64 = 4.0;
 
+/// How many there are of something, such as "1 record" and "2 records".
+pub fn counted(count: u64, word: &str) -> String {
+    format!("{count} {word}{}", if count == 1 { "" } else { "s" })
+}
+
 /// `value` with `decimals` decimals, a true minus sign and no negative zero; [`MISSING`] when it is not finite.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {

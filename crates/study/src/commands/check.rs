@@ -9,6 +9,7 @@ use crate::documents::answers::{CheckAnswer, CheckedScenario};
 use crate::options::{Common, Format};
 use crate::screen;
 use campaign::outside;
+use report::number::counted;
 use scenario::Scenario;
 use scenario::failure::Failure;
 use simulate::Assumption;
@@ -80,8 +81,4 @@ fn summary(path: &Path, scenario: &Scenario) -> String {
     let instant = defaults.find(|(assumption, _)| *assumption == Assumption::InstantRudder);
     let notes = outside::told(scenario).into_iter().chain(instant.map(|(_, sentence)| sentence));
     size + &notes.map(|note| format!("\n  note: {note}")).collect::<String>()
-}
-
-fn counted(count: u64, word: &str) -> String {
-    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
 }

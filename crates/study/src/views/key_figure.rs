@@ -2,8 +2,8 @@
 //! methods it is about in colour; the others are left out of curves, and grey in rows.
 
 use report::figures::{Layer, LayerKind, LayeredPanel, NamedRows, Panels, Plot, RowItem, RowKind, RowPlace, Stack};
-use report::palette::{Look, Marker, QUIET};
-use report::{CurveOrigin, palette::SOLID};
+use report::palette::{Look, Marker, QUIET, SOLID};
+use report::{CurveOrigin, number::counted};
 
 use super::charts::{CUT_NOTE, EXACT_NOTE};
 use campaign::statistics::distinct;
@@ -63,7 +63,7 @@ fn of_panels(data: &mut Panels, about: &[String]) {
         if !layers.any(|layer| marks(layer).is_some() && layer.curve.y.contains(&f64::INFINITY)) {
             note = note.replace(CUT_NOTE, "");
         }
-        said.push(format!("Left out: {others} other method{}.", if others == 1 { "" } else { "s" }));
+        said.push(format!("Left out: {}.", counted(others as u64, "other method")));
     }
     said.insert(0, note.trim().to_owned());
     data.note = Some(said.join(" ").trim().to_owned()).filter(|note| !note.is_empty());

@@ -4,7 +4,7 @@
 use ::trace::document::BeforeAfter;
 use campaign::curves::curve;
 use report::figures::{Division, Layer, LayeredPanel, PanelRow, Panels, Ruler, Stack};
-use report::number::significant;
+use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure};
 
 use super::record_figures::heading_and_residual;
@@ -33,11 +33,10 @@ fn title(document: &TraceDocument) -> String {
     let error = &document.trace.error;
     let [fitted, held] = [&error.identification, &error.validation];
     format!(
-        "{with} the heading error is {:.0} % of a first-order response’s, {:.0} % on {} held-out {}",
+        "{with} the heading error is {:.0} % of a first-order response’s, {:.0} % on {}",
         100.0 * ratio(fitted.iter()),
         100.0 * ratio(held.iter()),
-        held.len(),
-        if held.len() == 1 { "record" } else { "records" },
+        counted(held.len() as u64, "held-out record"),
     )
 }
 
