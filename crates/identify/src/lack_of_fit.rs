@@ -56,9 +56,9 @@ pub struct LackOfFit {
     /// Time by which the rudder acts later than it was recorded, s, by the term in δ' alone; negative for a rudder that
     /// was recorded late.
     pub delay: f64,
-    /// Root mean square of the residual with that one term, rad; infinite where the records do not tell a delay: the
+    /// Root mean square of the residual with that one term, rad; `None` where the records do not tell a delay: the
     /// rudder is reversed less than twice in each, or the delay is more than a quarter of T.
-    pub with_delay: f64,
+    pub with_delay: Option<f64>,
 }
 
 impl LackOfFit {
@@ -92,7 +92,7 @@ impl LackOfFit {
         remove(&basis, &mut turning);
         let size = dot(&turning, &residual) / dot(&turning, &turning);
         let delayed: Vec<f64> = residual.iter().zip(&turning).map(|(rest, own)| rest - size * own).collect();
-        let with_delay = rms(&delayed, basis.len() + 1 + initial);
+        let delayed = rms(&delayed, basis.len() + 1 + initial);
         terms.for_each(|column| extend(&mut basis, column));
         remove(&basis, &mut residual);
         let after = rms(&residual, basis.len() + initial);
@@ -103,7 +103,7 @@ impl LackOfFit {
         let (noise, delay) = ((noise / rows).sqrt().min(after), -size / response.K_over_T);
         let is_reversed = trials.iter().any(|trial| reversals(trial.rudder()) >= FEWEST_REVERSALS);
         let is_told = is_reversed && delay.abs() <= LONGEST_DELAY * response.T().abs();
-        let with_delay = if is_told { with_delay } else { f64::INFINITY };
+        let with_delay = is_told.then_some(delayed);
         let found = Self { residual: before, with_ship_terms: after, noise, is_white, delay, with_delay };
         (before.is_finite() && after.is_finite() && noise.is_finite()).then_some(found)
     }
@@ -120,7 +120,8 @@ impl LackOfFit {
     /// white, and where the records do not tell a delay.
     pub fn rudder_delay(&self) -> Option<f64> {
         let taken = |rms: f64| self.residual * self.residual - rms * rms;
-        (!self.is_white && taken(self.with_delay) > MOST * taken(self.with_ship_terms)).then_some(self.delay)
+        let with_delay = self.with_delay.filter(|_| !self.is_white)?;
+        (taken(with_delay) > MOST * taken(self.with_ship_terms)).then_some(self.delay)
     }
 }
 

@@ -45,6 +45,9 @@ pub struct PredictDocument {
     /// Models in the condition of the records, which the replays are of; empty where there are none.
     #[serde(default)]
     pub ballast: Vec<String>,
+    /// What is said of earlier trials that the hulls of every model were weighed together with.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub earlier_trials: Vec<String>,
     /// Whether a hull takes the place of the yaw response.
     #[serde(default)]
     pub hull: bool,

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ship::Polyline;
 use ship::angle::to_deg;
-use simulate::{Manoeuvre, Purpose};
+use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
@@ -32,7 +32,7 @@ const FEWEST: usize = 5;
 pub struct Compared {
     /// What the record shows.
     pub measured: f64,
-    /// What was predicted.
+    /// What was predicted, with the error of what the record shows where that is known.
     #[serde(flatten)]
     pub interval: PredictionInterval,
     /// Whether the 90 % interval holds what was measured.
@@ -171,7 +171,7 @@ impl ShipMixture {
         let drawn = steered.draws(self, draws).into_iter().flatten();
         let drawn: Vec<Figures> = drawn.map(|result| result.figures).collect();
         enough(&steered.kind, drawn.len(), draws)?;
-        Ok(compared(&drawn, |name| Some(self.shown(trial, measured, name)?.value)))
+        Ok(compared(&drawn, |name| self.shown(trial, measured, name)))
     }
 
     /// A figure of a measured zig-zag. V times the time of the initial turning is its way where the ship has no speed
@@ -204,15 +204,17 @@ impl ShipMixture {
 /// Figures by name.
 type ByName = IndexMap<String, Compared>;
 
-/// Figures that were measured, beside their draws.
-fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<f64>) -> ByName {
-    let figure = |&name: &&'static str| {
-        let measured = shown(name)?;
-        let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[name]).collect();
+/// Figures that were measured, beside their draws, each read with the error that the record gives its figure.
+fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<Quantity>) -> ByName {
+    let figure = |(number, &name): (usize, &&'static str)| {
+        let Quantity { value: measured, sd, .. } = shown(name)?;
+        let mut rng = StreamKey::default().indexed(Purpose::Heading, 1 + number as u32);
+        let mut read = |value: f64| value + sd.unwrap_or(0.0) * rng.sample::<f64, _>(StandardNormal);
+        let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[name].map(&mut read)).collect();
         let interval = PredictionInterval::of(&mut values).filter(|own| figures::is_sound(name, own))?;
         Some((name.to_owned(), Compared { measured, interval, inside90: interval.holds90(measured) }))
     };
-    drawn.first().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
+    drawn.first().into_iter().flat_map(|first| first.keys().enumerate()).filter_map(figure).collect()
 }
 
 /// Figures of a record that is a turn.
@@ -228,7 +230,7 @@ fn turns(trial: &Trial, made: &[SimulatedManoeuvre], timescale: f64, current: Op
         Some(current) => turn.figures(&turn::in_doubt(passage, &current, number as u64)),
     };
     let drawn: Vec<Figures> = made.iter().enumerate().map(doubtful).collect();
-    compared(&drawn, |name| measured.get(name).copied().flatten())
+    compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::bare))
 }
 
 #[cfg(test)]

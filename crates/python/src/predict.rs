@@ -9,17 +9,19 @@ use study::options::PredictRequest;
 use study::work::predict::{self as work, PredictInput, StoredModel};
 
 use crate::asked::request;
+use crate::earlier::{ModelText, earlier};
 use crate::record::{PyRecord, trials};
 use crate::wait::patiently;
 
 /// The document of a prediction and the warnings. `models` are names of files, with the text of those that are none;
-/// `words` are options of the command line.
+/// `words` are options of the command line, `priors` models of earlier trials.
 #[pyfunction]
 pub fn predict(
     py: Python<'_>,
     models: Vec<(String, Option<String>)>,
     replay: Vec<Py<PyRecord>>,
     words: Vec<String>,
+    priors: Vec<ModelText>,
 ) -> PyResult<(String, Vec<String>)> {
     let records = trials(&replay);
     patiently(py, move || {
@@ -32,7 +34,9 @@ pub fn predict(
             None => StoredModel::of_file(Path::new(name), &asked, &mut warnings),
         };
         let models: Vec<StoredModel> = models.iter().map(read).collect::<Result<_, _>>()?;
-        let input = PredictInput { models: &models, ballast: &[], records, current: None, declared: None };
+        let earlier = earlier(&priors)?;
+        let input =
+            PredictInput { models: &models, earlier: &earlier, ballast: &[], records, current: None, declared: None };
         let predicted = work::predict(&asked, input, true, &mut warnings)?;
         Ok((document::text(&predicted).map_err(Failure::work)?, warnings))
     })

@@ -25,6 +25,7 @@ from conftest import ZIGZAG
         (lambda path: kempf.fit(path).plot("nothing"), 'expected "record" or "estimates"'),
         (lambda path: kempf.fit(path, prior="no-such.json"), "no-such.json: "),
         (lambda path: kempf.fit(path, prior=kempf.fit(path)), "fit.json: it holds no hull"),
+        (lambda path: kempf.predict(kempf.fit(path), prior=kempf.fit(path)), "fit.json: it holds no hull"),
         (lambda path: kempf.trace(path, prior=[kempf.fit(path)]), "fit.json: it holds no hull"),
         (lambda path: kempf.trace(path, prior=[3]), "int: expected a result of kempf.fit or kempf.trace"),
         (lambda path: kempf.trace(path, with_="magic"), "there is no effect `magic`"),

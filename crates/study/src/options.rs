@@ -339,6 +339,10 @@ pub struct PredictRequest {
     /// own, where it turns that far]
     #[arg(long, value_name = "RECORD", requires = "replays")]
     pub current_from: Option<PathBuf>,
+    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json, which are not in
+    /// MODEL.json: its hulls are weighed together with them, widened; can be given several times
+    #[arg(long = "prior", value_name = "EARLIER.json", conflicts_with = "ballast")]
+    pub priors: Vec<PathBuf>,
     /// What is known of the same ship as she was loaded at the trial of --replay: corrects what it measured to the load
     /// of MODEL.json, R = T F/B (MSC/Circ.1053, 3.4.1.2)
     #[arg(long, value_name = "BALLAST.json")]

@@ -10,7 +10,7 @@ use trial::{Channel, Columns, Trial};
 use super::objective::HullObjective;
 use super::tests::{LENGTH, SPEED, TRUTH, hull, record};
 use super::track::HullTrack;
-use super::{EarlierHull, ExpectedHull, HullEstimate, Likeness, fit};
+use super::{EarlierHull, ExpectedHull, HullEstimate, Likeness, after_earlier, fit};
 
 const SHIP: HullParticulars = HullParticulars {
     length: LENGTH,
@@ -60,6 +60,27 @@ fn what_trials_told_is_widened_and_what_was_expected_counts_once() {
     near(after(&SHIP, "quadratic", &[one.clone(), one.clone()], "Nv"), counted(2.0 * told, 200.0 / 2.25));
     near(after(&SHIP, "quadratic", std::slice::from_ref(&one), "delta_r"), [0.0, 1.0]);
     near(after(&SHIP, "cubic", &[one], "Nv"), [0.0, 1.0]);
+}
+
+/// A hull with records of its own, of precision 100, weighed together with what an earlier trial told: both count, and
+/// two that say the same agree.
+#[test]
+fn a_hull_is_weighed_together_with_earlier_trials() {
+    let own = earlier(SHIP, "quadratic");
+    let (after, check) = after_earlier(&own, std::slice::from_ref(&own)).expect("of its form");
+    let nv = own.form.coefficients().iter().position(|one| one.key == "Nv").expect("known");
+    let before = own.form.coefficients()[nv];
+    let found = [(after.values[nv] - before.mean) / before.sd, after.covariance[(nv, nv)].sqrt() / before.sd];
+    let precision = 100.0 + 99.0 / 2.25;
+    near(found, [(100.0 + 100.0 / 2.25) / precision, precision.powf(-0.5)]);
+    assert!(!check.expect("both tell something").is_conflict());
+    let apart = EarlierHull {
+        values: own.form.coefficients().iter().map(|one| one.mean - one.sd).collect::<Vec<_>>().into(),
+        ..own.clone()
+    };
+    let (_, check) = after_earlier(&own, &[apart]).expect("of its form");
+    assert!(check.expect("both tell something").is_conflict(), "ten deviations to either side");
+    assert!(after_earlier(&own, &[earlier(SHIP, "cubic")]).is_none());
 }
 
 #[test]

@@ -138,7 +138,7 @@ impl ExpectedHull {
     }
 
     /// Adds what earlier trials told. What makes no normal law is left out.
-    fn add(&mut self, ship: &HullParticulars, earlier: &[&EarlierHull]) {
+    pub(super) fn add(&mut self, ship: &HullParticulars, earlier: &[&EarlierHull]) {
         let mut precision = self.precision.clone();
         let mut vector = &precision * self.mean();
         let mut has_trials = false;

@@ -30,6 +30,7 @@ mod objective;
 mod replayed;
 mod track;
 mod turn;
+mod weighed;
 
 use estimation::levenberg_marquardt::{End, Rules, minimise};
 use estimation::number::Real;
@@ -47,6 +48,7 @@ pub use objective::HullDeviations;
 use objective::{HullObjective, variances};
 pub use track::HullReference;
 use track::HullTrack;
+pub use weighed::after_earlier;
 
 /// How a search proceeds.
 const RULES: Rules = Rules {

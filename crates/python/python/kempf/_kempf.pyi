@@ -99,7 +99,10 @@ def trace(
     records: list[Record], validate: list[Record], words: list[str], priors: list[tuple[str, Optional[str]]]
 ) -> Trace: ...
 def predict(
-    models: list[tuple[str, Optional[str]]], replay: list[Record], words: list[str]
+    models: list[tuple[str, Optional[str]]],
+    replay: list[Record],
+    words: list[str],
+    priors: list[tuple[str, Optional[str]]],
 ) -> tuple[str, list[str]]: ...
 def toml_of(json: str) -> str: ...
 def simulate(

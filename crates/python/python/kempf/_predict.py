@@ -164,6 +164,7 @@ def predict(
     manoeuvres: Union[str, Iterable[str], None] = None,
     *,
     replay: Any = (),
+    prior: Union[Model, Iterable[Model]] = (),
     method: Optional[str] = None,
     calm: bool = False,
     load: Union[str, Path, None] = None,
@@ -180,6 +181,8 @@ def predict(
         ``"pull-out:20"``, ``"spiral:15"``, ``"williamson"``; a negative rudder begins to port. Those of the IMO
         criteria where it is left out, unless a record is replayed
     :param replay: records that are held against their prediction
+    :param prior: what earlier trials left that are not in ``model``, as in :func:`kempf.fit`: its hulls are weighed
+        together with them, widened
     :param method: the method whose answer is used; maximum likelihood where it is left out
     :param calm: whether the weather of the records is left out
     :param load: path of a file that describes another loading, as a sidecar does: hulls are taken to it by the formulas of
@@ -203,7 +206,7 @@ def predict(
         speed_m_s=speed_m_s,
         speed_kn=speed_kn,
     )
-    text, warnings = _kempf.predict(models(model), natives(replay), asked)
+    text, warnings = _kempf.predict(models(model), natives(replay), asked, models(prior))
     warn(warnings)
     document = json.loads(text)
 

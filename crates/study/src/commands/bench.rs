@@ -17,6 +17,7 @@ use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
 
 use crate::completed::{self, completed};
+use crate::documents::{BENCH, folder_for};
 use crate::interrupt;
 use crate::options::{Common, FigureOptions};
 use crate::outside::{self, NamedCommand};
@@ -24,9 +25,6 @@ use crate::screen::{self, CommandOutput};
 use crate::terminal::Terminal;
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{bench_page, bench_tables};
-
-/// What other programs read.
-pub const BENCH: &str = "bench.json";
 
 /// One row for every answer.
 const ROWS: &str = "rows.csv";
@@ -114,7 +112,7 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
     let mut held = None;
     let begin = |name: &str, methods: &[BenchMethod]| {
         let default = || PathBuf::from("results").join(if request.definition.is_none() { "bench" } else { name });
-        let folder = held.insert(ResultFolder::hold(&common.out.clone().unwrap_or_else(default))?);
+        let folder = held.insert(ResultFolder::hold(&folder_for(BENCH, &common.out.clone().unwrap_or_else(default))?)?);
         for method in methods {
             method.outside().into_iter().for_each(|outside| keep_log(outside, method.label(), folder));
         }

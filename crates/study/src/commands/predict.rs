@@ -15,6 +15,7 @@ use crate::records::read_others;
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
+use crate::work::earlier::EarlierModel;
 use crate::work::predict::{PredictInput, StoredModel, predict};
 use campaign::folder::ResultFolder;
 use scenario::failure::Failure;
@@ -46,7 +47,8 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let declared = columns.map(Sidecar::load).transpose().map_err(Failure::input)?;
     let file = columns.map(|path| path.display().to_string());
     let declared = file.as_deref().zip(declared.as_ref().map(|sidecar| &sidecar.conditions));
-    let input = PredictInput { models: &models, ballast: &ballast, records, current, declared };
+    let earlier = EarlierModel::of_files(&request.priors)?;
+    let input = PredictInput { models: &models, earlier: &earlier, ballast: &ballast, records, current, declared };
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&place)?;
     documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;

@@ -9,11 +9,10 @@ use campaign::store::{self, StoredStudy};
 use clap::Args;
 use scenario::failure::Failure;
 
-use super::bench::{self, BENCH};
-use super::{fit, predict, trace};
+use super::{bench, fit, predict, trace};
 use crate::documents::fit::FIT;
 use crate::documents::trace::TRACE;
-use crate::documents::{PREDICT, read_json};
+use crate::documents::{BENCH, PREDICT, read_json};
 use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;

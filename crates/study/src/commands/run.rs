@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use campaign::collect::collect;
+use campaign::files::MANIFEST;
 use campaign::folder::ResultFolder;
 use campaign::task::{Shard, default_folder};
 use scenario::Scenario;
@@ -10,6 +11,7 @@ use scenario::failure::Failure;
 
 use super::reply;
 use crate::documents::answers::ShardAnswer;
+use crate::documents::folder_for;
 use crate::options::{Common, RunRequest};
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
@@ -19,7 +21,8 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
     let scenario = Scenario::read(path, common.seed)?;
     let shard = request.shard.unwrap_or(Shard::WHOLE);
     let theme = request.style.style.theme()?;
-    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&scenario.name, shard)))?;
+    let place = common.out.clone().unwrap_or_else(|| default_folder(&scenario.name, shard));
+    let folder = ResultFolder::hold(&folder_for(MANIFEST, &place)?)?;
     let stored = collect(&scenario, shard, &folder, request.restart, &Terminal::new("trials", common.quiet))?;
     if shard == Shard::WHOLE {
         return publish(&stored, &folder, (&theme, request.style.figures), common);

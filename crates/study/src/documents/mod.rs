@@ -30,6 +30,9 @@ use answers::{CommandAnswer, Versioned};
 /// Name of the file with a prediction.
 pub const PREDICT: &str = "predict.json";
 
+/// Name of the file with a benchmark.
+pub const BENCH: &str = "bench.json";
+
 /// Name of the file with the curves of the figures of a fit or a prediction.
 pub const CURVES: &str = "curves.json";
 
@@ -40,7 +43,7 @@ pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
 
 /// A folder for the results of one command. Fails when those of another one are there: their page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
-    let others = [fit::FIT, trace::TRACE, PREDICT, MANIFEST].into_iter().filter(|own| *own != document);
+    let others = [fit::FIT, trace::TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|own| *own != document);
     match others.map(|own| place.join(own)).find(|path| path.is_file()) {
         Some(path) => Err(Failure::input(format!(
             "{} is the result of another command; give another folder with --out",

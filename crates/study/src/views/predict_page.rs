@@ -31,6 +31,7 @@ pub fn words(document: &PredictDocument) -> String {
         words +=
             "the ship is the hulls of three degrees of freedom that were fitted to the records, not the yaw response\n";
     }
+    document.earlier_trials.iter().for_each(|said| words += &format!("{said}\n"));
     if document.manoeuvres.iter().any(Prediction::is_extrapolated) {
         words += &format!(
             "extrapolated: beyond the rudder of {}° and the yaw rate of {}°/s of the records\n",

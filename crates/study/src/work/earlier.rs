@@ -5,13 +5,15 @@ use std::path::PathBuf;
 
 use campaign::earlier::hulls_of;
 use campaign::known::RecordFacts;
-use identify::hull::{self, EarlierHull, Likeness, is_other_froude_number};
+use identify::hull::{self, EarlierHull, ExpectationCheck, Likeness, is_other_froude_number};
+use predict::IdentifiedShip;
+use predict::stored_hull::rows_of;
 use report::number::fixed;
 use scenario::failure::Failure;
 use ship::vessel::prior::HullParticulars;
 use trial::{Trial, file};
 
-use super::predict::{StoredAnswer, ships_of, text_of};
+use super::stored_answer::{StoredAnswer, ships_of, text_of};
 use crate::documents::prior::{EarlierTrials, PriorCheckEntry, PriorModelEntry};
 use crate::records::file_of;
 
@@ -20,7 +22,7 @@ use crate::records::file_of;
 pub struct EarlierModel {
     file: String,
     /// The records that are in it: their files by their SHA-256.
-    records: BTreeMap<String, String>,
+    pub records: BTreeMap<String, String>,
     hulls: Vec<EarlierHull>,
 }
 
@@ -70,11 +72,8 @@ pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
     models.iter().flat_map(|model| model.hulls.iter().cloned()).collect()
 }
 
-/// Fails where a record is in two of the models, or in one and among the records, and where models are given and no
-/// hull can be fitted to the records; warns where the ships
-/// sail at other Froude numbers.
-pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<String>) -> Result<(), Failure> {
-    let mut seen: BTreeMap<&str, &str> = trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect();
+/// Fails where a record is in two of the models, or in one and among those that were `seen`, files by their SHA-256.
+fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a str>) -> Result<(), Failure> {
     for EarlierModel { file: model, records, .. } in models {
         if let Some((file, other)) = records.iter().find_map(|(own, file)| Some((file, seen.get(own.as_str())?))) {
             let what = format!("{file} is in it and in {other}, and a record counts only once; leave one of them out");
@@ -82,17 +81,31 @@ pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<Strin
         }
         seen.extend(records.keys().map(|own| (own.as_str(), model.as_str())));
     }
+    Ok(())
+}
+
+/// Fails as [`counted_once`] does for the records, and where models are given and no hull can be fitted to these; warns
+/// where the ships sail at other Froude numbers.
+pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<String>) -> Result<(), Failure> {
+    counted_once(models, trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect())?;
     if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
         let what = "--prior cannot be used";
         let cure = "give length and approach speed (--length-m, --speed-m-s, or [ship] in a sidecar) and a record from its \
                     steady approach on, or leave --prior out";
         return Err(Failure::about(file_of(&trials[0]).0, format!("{what}: {error}; {cure}")));
     }
-    let Some(ship) = trials.iter().find_map(Trial::hull) else { return Ok(()) };
+    if let Some(ship) = trials.iter().find_map(Trial::hull) {
+        warn_of_other_speed(models, &ship, warnings);
+    }
+    Ok(())
+}
+
+/// Warns where the ship of a model sails at another Froude number.
+fn warn_of_other_speed(models: &[EarlierModel], ship: &HullParticulars, warnings: &mut Vec<String>) {
     for model in models {
         let own = model.hulls[0].particulars;
-        if is_other_froude_number(&own, &ship) {
-            let [one, other] = [own, ship].map(|ship| fixed(ship.froude_number(), 3));
+        if is_other_froude_number(&own, ship) {
+            let [one, other] = [own, *ship].map(|ship| fixed(ship.froude_number(), 3));
             warnings.push(format!(
                 "--prior {}: its ship sailed at a Froude number of {one}, that of the records at {other}; coefficients change with \
                  it, so prefer trials of about the same",
@@ -100,7 +113,52 @@ pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<Strin
             ));
         }
     }
-    Ok(())
+}
+
+/// A ship whose hulls were fitted without the models, with what these tell of her, and what is said of it; `shown` is
+/// what messages call her model, `records` are those in it.
+///
+/// Fails where she has no hull, where a record would count twice, and where the models have no form of hers.
+pub fn with_earlier(
+    models: &[EarlierModel],
+    (shown, ship, records): (&str, &IdentifiedShip, &BTreeMap<String, String>),
+    warnings: &mut Vec<String>,
+) -> Result<(IdentifiedShip, EarlierTrials), Failure> {
+    counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
+    let own = hulls_of(ship).map_err(|error| Failure::about(shown, error))?;
+    let (mut ship, earlier, mut checks) = (ship.clone(), hulls(models), Vec::new());
+    for (stored, own) in ship.hulls.iter_mut().zip(&own) {
+        let Some((after, check)) = hull::after_earlier(own, &earlier) else { continue };
+        let values = stored.coefficients.iter_mut().zip(after.values.iter());
+        values.for_each(|(coefficient, value)| coefficient.value = *value);
+        stored.covariance = rows_of(&after.covariance);
+        stored.check().map_err(|error| Failure::about(shown, error))?;
+        checks.extend(check.map(|check| (own.form.as_str(), check)));
+    }
+    if checks.is_empty() {
+        let what = "it has no hull that --prior could tell of; fit its records again with length and speed of the ship, or leave \
+                    --prior out";
+        return Err(Failure::about(shown, what));
+    }
+    warn_of_other_speed(models, &own[0].particulars, warnings);
+    checks.sort_by(|one, other| other.1.p_value.total_cmp(&one.1.p_value));
+    let said = said(models, &own[0].particulars, &checks, |_| true);
+    warnings.extend(said.warning());
+    Ok((ship, said))
+}
+
+/// What is said of the models beside a ship after their check, the nearest hull first.
+fn said(
+    models: &[EarlierModel],
+    ship: &HullParticulars,
+    checks: &[(&str, ExpectationCheck)],
+    takes_part: impl Fn(&str) -> bool,
+) -> EarlierTrials {
+    EarlierTrials {
+        models: models.iter().map(|model| model.entry(ship)).collect(),
+        hulls: checks.iter().map(|(form, check)| PriorCheckEntry::of(form, check, takes_part(form))).collect(),
+        conflict: checks.first().is_none_or(|(_, check)| check.is_conflict()),
+    }
 }
 
 /// What is said of the models beside the records; `None` without any. The warning of a conflict is among `warnings`.
@@ -111,13 +169,8 @@ pub fn entry(
     warnings: &mut Vec<String>,
 ) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
-    let checks = facts.checks();
     let is_member = |form: &str| facts.hulls().iter().any(|own| own.form == form);
-    let entry = EarlierTrials {
-        models: models.iter().map(|model| model.entry(&ship)).collect(),
-        hulls: checks.iter().map(|(form, check)| PriorCheckEntry::of(form, check, is_member(form))).collect(),
-        conflict: checks.first().is_none_or(|(_, check)| check.is_conflict()),
-    };
+    let entry = said(models, &ship, facts.checks(), is_member);
     warnings.extend(entry.warning());
     Some(entry)
 }

@@ -11,5 +11,6 @@ pub mod publication_changes;
 pub mod simulate;
 pub mod single_records;
 pub mod steady;
+mod stored_answer;
 mod target_scale;
 pub mod trace;

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use ::trace::document::SCHEMA as TRACE_SCHEMA;
 use identify::hull::Likeness;
 use identify::suspicion::unusual_froude_number;
 use predict::correction::{self, Correction};
@@ -13,27 +12,21 @@ use predict::replay::RecordReplay;
 use predict::turn::{self, Current};
 use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
 use report::number::fixed;
+use scenario::TRACE;
 use scenario::failure::Failure;
-use scenario::{TRACE, name};
-use serde_json::Value;
 use ship::Particulars;
 use trial::{Manoeuvre, Trial, file};
 
+use super::earlier::{EarlierModel, with_earlier};
 use super::loading::{DescribedLoading, only_hull};
+use super::stored_answer::{StoredAnswer, ships_of, text_of};
 use super::target_scale::{self, Declared, TargetScale, at_scale, is_alike, of_two_scales};
-use crate::documents::fit::FIT_SCHEMA;
 use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
 use crate::records::{file_of, rudder_logged_late};
 
 /// Methods of fit.json in the order in which they are asked; those that are not named come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
-
-/// What is known of a ship; the covariances of the longest mixtures have a hundredth of this.
-const MODEL: file::Kind = file::Kind { name: "a model", largest: 1 << 26 };
-
-/// What a model is read from.
-const EXPECTED: &str = "expected the fit.json or trace.json of this program";
 
 /// What is known of a ship, and from where.
 #[derive(Clone)]
@@ -63,60 +56,6 @@ fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<Ship
         ships.push((ship, 1.0));
     }
     ShipMixture::new(ships).map_err(|error| Failure::about(&files(models).join(", "), error))
-}
-
-/// What the text of a document holds.
-pub(super) struct StoredAnswer {
-    /// The ships of every method of a fit with a covariance; that of a trace, alone, as [`TRACE`].
-    pub ships: BTreeMap<String, IdentifiedShip>,
-    /// The method of a fit to take.
-    verdict: Option<String>,
-    /// The records that are in it, also by its own priors: their files by their SHA-256.
-    pub records: BTreeMap<String, String>,
-}
-
-/// The text of a model. Fails when it cannot be read.
-pub(super) fn text_of(path: &Path) -> Result<String, Failure> {
-    name::of_file(path)?;
-    let shown = file::called(path).display().to_string();
-    file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
-}
-
-/// What the text of a `fit.json` or `trace.json` holds, which messages call `shown`. Fails when it is no such document,
-/// and for one of another version.
-pub(super) fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
-    let refuse = |problem: String| Failure::about(shown, problem);
-    let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
-    let value: Value =
-        serde_json::from_str(text).map_err(|error| refuse(format!("this is no JSON ({error}); {EXPECTED}")))?;
-    let (command, key, records) = match value["schema"].as_str() {
-        Some(FIT_SCHEMA) => ("fit", "ships", "trials"),
-        Some(TRACE_SCHEMA) => (TRACE, "ship", "records"),
-        _ => {
-            let known = format!("expected \"{FIT_SCHEMA}\" or \"{TRACE_SCHEMA}\"");
-            return Err(refuse(format!("schema = {}, {known}; {EXPECTED}, made again with it", value["schema"])));
-        }
-    };
-    let known = value.get(key).cloned().ok_or_else(|| {
-        refuse(format!("it has no `{key}`, as an older program wrote it; make it again with `study {command}`"))
-    })?;
-    let ships: BTreeMap<String, IdentifiedShip> = match command {
-        TRACE => [(TRACE.to_owned(), serde_json::from_value(known).map_err(unread)?)].into(),
-        _ => serde_json::from_value(known).map_err(unread)?,
-    };
-    let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id)).map(str::to_owned);
-    Ok(StoredAnswer { ships, verdict, records: records_of(&value, records) })
-}
-
-/// The records that are in a document under `key`, and those of its priors: their files by their SHA-256.
-fn records_of(document: &Value, key: &str) -> BTreeMap<String, String> {
-    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
-    let text = |value: &Value| value.as_str().filter(|text| !text.is_empty()).map(str::to_owned);
-    let fitted = list(&document[key]).into_iter().filter(|record| record["held_out"] != true);
-    let own = fitted.filter_map(|record| Some((text(&record["sha256"])?, text(&record["file"])?)));
-    let of_prior = |model: Value| model["records"].as_object().cloned().unwrap_or_default();
-    let priors = list(&document["earlier_trials"]["models"]).into_iter().flat_map(of_prior);
-    own.chain(priors.filter_map(|(sha256, file)| Some((sha256, text(&file)?)))).collect()
 }
 
 impl StoredModel {
@@ -161,6 +100,14 @@ impl StoredModel {
         Ok(Self { known, file: shown.to_owned(), method, records })
     }
 
+    /// The same after earlier trials that it has not seen, and what is said of them.
+    fn after(&self, earlier: &[EarlierModel], warnings: &mut Vec<String>) -> Result<(Self, String), Failure> {
+        let (known, said) = with_earlier(earlier, (&self.file, &self.known, &self.records), warnings)?;
+        let mut records = self.records.clone();
+        records.extend(earlier.iter().flat_map(|own| own.records.clone()));
+        Ok((Self { known, records, ..self.clone() }, format!("{}: {}", self.file, said.sentence())))
+    }
+
     /// The same with what another function makes of the ship, which is given the name of the file.
     fn with(
         &self,
@@ -174,6 +121,8 @@ impl StoredModel {
 pub struct PredictInput<'a> {
     /// The ship; several models are a mixture, all alike.
     pub models: &'a [StoredModel],
+    /// Earlier trials of the ship, which the models have not seen.
+    pub earlier: &'a [EarlierModel],
     /// The same ship as she was loaded in the records; empty where they need no correction.
     pub ballast: &'a [StoredModel],
     /// Records that are held against their prediction.
@@ -241,7 +190,9 @@ pub fn predict(
     quiet: bool,
     warnings: &mut Vec<String>,
 ) -> Result<PredictDocument, Failure> {
-    let PredictInput { models, ballast, records, current, declared } = input;
+    let PredictInput { models, earlier, ballast, records, current, declared } = input;
+    let (told, said) = after_earlier(models, earlier, warnings)?;
+    let models = if earlier.is_empty() { models } else { &told };
     let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
     warnings.extend(records.iter().filter(|_| ballast.is_empty()).filter_map(|own| validates_nothing(models, own)));
@@ -282,6 +233,7 @@ pub fn predict(
         replays,
         corrected: corrections.iter().flatten().cloned().collect(),
         ballast: files(ballast),
+        earlier_trials: said,
         hull: !mixture.first().hulls.is_empty(),
         load: taken.as_ref().map(|(.., load)| load.clone()),
         seen: mixture.first().seen,
@@ -291,6 +243,16 @@ pub fn predict(
         fill_form(&mut document, particulars, &records, &corrections, declared);
     }
     Ok(document)
+}
+
+/// Models with earlier trials that they have not seen, and what is said of each; nothing where there are none of these.
+fn after_earlier(
+    models: &[StoredModel],
+    earlier: &[EarlierModel],
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<StoredModel>, Vec<String>), Failure> {
+    let told = models.iter().filter(|_| !earlier.is_empty()).map(|model| model.after(earlier, warnings));
+    Ok(told.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
 }
 
 /// The warning that a record is in one of the models.

@@ -86,6 +86,42 @@ fn a_trace_takes_a_prior() {
     assert!(desk.text("t/report.md").contains("prior: f/fit.json"));
 }
 
+/// A model weighed together with earlier trials predicts nearly what one that was fitted with them does.
+#[test]
+fn a_prediction_takes_a_prior() {
+    let desk = with_model();
+    let fit = ["fit", "next.csv", "--method", "output-error", "--quiet"];
+    desk.run(&[&fit[..], &KVLCC2, &["--out", "g"]].concat()).is_done();
+    desk.run(&[&fit[..], &KVLCC2, &["--prior", "f/fit.json", "--out", "both"]].concat()).is_done();
+    let advance = |model: &str, more: &[&str]| {
+        let predict = ["predict", model, "--manoeuvre", "turning-circle:35", "--draws", "400", "--out", "p"];
+        let run = desk.run(&[&predict[..], more].concat());
+        let figure = &desk.json("p/predict.json")["manoeuvres"][0]["figures"]["advance_m"];
+        let [low, high] = [0, 1].map(|end| figure["ci90"][end].as_f64().expect("a number"));
+        ([figure["median"].as_f64().expect("a number"), high - low], run.is_done().out.clone())
+    };
+    let ([alone, wide], _) = advance("g/fit.json", &[]);
+    let ([refitted, narrow], _) = advance("both/fit.json", &[]);
+    let ([weighed, found], said) = advance("g/fit.json", &["--prior", "f/fit.json"]);
+    assert!(
+        said.contains("g/fit.json: prior: f/fit.json (the same ship, deviations × 1.5); the records agree"),
+        "{said}"
+    );
+    assert!(desk.text("p/report.md").contains("prior: f/fit.json"));
+    assert!((weighed - refitted).abs() < 0.25 * narrow, "{weighed} {refitted} {alone}");
+    assert!(found < 0.9 * wide && (found / narrow - 1.0).abs() < 0.3, "{found} {narrow} {wide}");
+    let counted = ["first.csv is in it and in both/fit.json, and a record counts only once"];
+    desk.run(&["predict", "both/fit.json", "--prior", "f/fit.json"]).is_refused(2, &counted);
+    let replayed = desk.run(&["predict", "g/fit.json", "--prior", "f/fit.json", "--replay", "first.csv", "--out", "p"]);
+    assert!(replayed.is_done().err.contains("is fitted to it; the error on it validates nothing"), "{}", replayed.err);
+    desk.run(&["predict", "g/fit.json", "--prior", "f/fit.json", "--ballast", "g/fit.json", "--replay", "first.csv"])
+        .is_refused(2, &["--prior", "--ballast"]);
+    desk.file("zz.csv", zig_zag_csv());
+    desk.run(&["fit", "zz.csv", "--method", "output-error", "--out", "z", "--quiet"]).is_done();
+    desk.run(&["predict", "z/fit.json", "--prior", "f/fit.json"])
+        .is_refused(2, &["z/fit.json: it has no hull that --prior"]);
+}
+
 /// The Mariner is no KVLCC2: one warning, with the coefficients that moved.
 #[test]
 fn another_ship_is_a_conflict() {

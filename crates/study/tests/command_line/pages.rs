@@ -39,6 +39,7 @@ fn every_report_has_a_page_for_a_browser() {
     assert_eq!(page(&desk, "f"), fit, "the same bytes");
     assert!(!of_other.iter().any(|path| path.exists()), "what an earlier fit left");
     desk.run(&["trace", "run.csv", "--out", "f"]).is_refused(2, &["f/fit.json", "another command", "--out"]);
+    desk.run(&["small.toml", "--out", "f"]).is_refused(2, &["f/fit.json", "another command", "--out"]);
 }
 
 #[test]

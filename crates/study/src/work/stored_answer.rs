@@ -1,0 +1,73 @@
+//! What a `fit.json` or `trace.json` knows of a ship.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use ::trace::document::SCHEMA as TRACE_SCHEMA;
+use predict::IdentifiedShip;
+use scenario::failure::Failure;
+use scenario::{TRACE, name};
+use serde_json::Value;
+use trial::file;
+
+use crate::documents::fit::FIT_SCHEMA;
+
+/// What is known of a ship; the covariances of the longest mixtures have a hundredth of this.
+const MODEL: file::Kind = file::Kind { name: "a model", largest: 1 << 26 };
+
+/// What a model is read from.
+const EXPECTED: &str = "expected the fit.json or trace.json of this program";
+
+/// What the text of a document holds.
+pub struct StoredAnswer {
+    /// The ships of every method of a fit with a covariance; that of a trace, alone, as [`TRACE`].
+    pub ships: BTreeMap<String, IdentifiedShip>,
+    /// The method of a fit to take.
+    pub verdict: Option<String>,
+    /// The records that are in it, also by its own priors: their files by their SHA-256.
+    pub records: BTreeMap<String, String>,
+}
+
+/// The text of a model. Fails when it cannot be read.
+pub fn text_of(path: &Path) -> Result<String, Failure> {
+    name::of_file(path)?;
+    let shown = file::called(path).display().to_string();
+    file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
+}
+
+/// What the text of a `fit.json` or `trace.json` holds, which messages call `shown`. Fails when it is no such document,
+/// and for one of another version.
+pub fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
+    let refuse = |problem: String| Failure::about(shown, problem);
+    let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
+    let value: Value =
+        serde_json::from_str(text).map_err(|error| refuse(format!("this is no JSON ({error}); {EXPECTED}")))?;
+    let (command, key, records) = match value["schema"].as_str() {
+        Some(FIT_SCHEMA) => ("fit", "ships", "trials"),
+        Some(TRACE_SCHEMA) => (TRACE, "ship", "records"),
+        _ => {
+            let known = format!("expected \"{FIT_SCHEMA}\" or \"{TRACE_SCHEMA}\"");
+            return Err(refuse(format!("schema = {}, {known}; {EXPECTED}, made again with it", value["schema"])));
+        }
+    };
+    let known = value.get(key).cloned().ok_or_else(|| {
+        refuse(format!("it has no `{key}`, as an older program wrote it; make it again with `study {command}`"))
+    })?;
+    let ships: BTreeMap<String, IdentifiedShip> = match command {
+        TRACE => [(TRACE.to_owned(), serde_json::from_value(known).map_err(unread)?)].into(),
+        _ => serde_json::from_value(known).map_err(unread)?,
+    };
+    let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id)).map(str::to_owned);
+    Ok(StoredAnswer { ships, verdict, records: records_of(&value, records) })
+}
+
+/// The records that are in a document under `key`, and those of its priors: their files by their SHA-256.
+fn records_of(document: &Value, key: &str) -> BTreeMap<String, String> {
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let text = |value: &Value| value.as_str().filter(|text| !text.is_empty()).map(str::to_owned);
+    let fitted = list(&document[key]).into_iter().filter(|record| record["held_out"] != true);
+    let own = fitted.filter_map(|record| Some((text(&record["sha256"])?, text(&record["file"])?)));
+    let of_prior = |model: Value| model["records"].as_object().cloned().unwrap_or_default();
+    let priors = list(&document["earlier_trials"]["models"]).into_iter().flat_map(of_prior);
+    own.chain(priors.filter_map(|(sha256, file)| Some((sha256, text(&file)?)))).collect()
+}
