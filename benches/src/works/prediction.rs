@@ -46,7 +46,6 @@ fn known(effect: Option<&dyn Effect>, moment: Moment) -> IdentifiedShip {
         seen: ValidityRange { rudder_rad: from_deg(10.0), yaw_rate_rad_s: from_deg(1.0) },
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
-        motion: None,
         hulls: Vec::new(),
     }
 }

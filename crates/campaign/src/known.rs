@@ -7,7 +7,6 @@ use identify::replay::{Replay, pooled_rms, replay};
 use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
 use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
-use predict::motion::{self, Planar};
 use predict::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull, by_keys, rows_of};
 use ship::Particulars;
 use ship::angle::{from_deg, to_deg};
@@ -21,10 +20,6 @@ use trial::{Channel, Trial, ZigZag};
 /// What is not predicted where nothing is known of speed and drift.
 const NO_MOTION: &str = "speed loss and drift are not told by these records, and no track can be predicted";
 
-/// The same where there is a speed and neither sway nor positions.
-const NO_DRIFT: &str = "a speed alone does not tell drift, so no track is predicted, only the loss of speed; give positions \
-                        (north_m, east_m) or the sway velocity (sway_m_s)";
-
 /// What records show of a ship, whatever model is fitted to them: read once for all of its answers.
 #[derive(Debug, Clone)]
 pub struct RecordFacts<'a> {
@@ -36,7 +31,6 @@ pub struct RecordFacts<'a> {
     zigzags: Vec<Option<ZigZag>>,
     length: Option<f64>,
     speed: Option<f64>,
-    motion: Option<Planar>,
     hulls: Vec<StoredHull>,
     /// Forms of the hulls that earlier trials are in, with the records against these; the nearest first.
     checks: Vec<(&'static str, ExpectationCheck)>,
@@ -56,7 +50,6 @@ impl<'a> RecordFacts<'a> {
             zigzags,
             length: particular(|own| own.length),
             speed: particular(|own| own.speed),
-            motion: None,
             hulls: Vec::new(),
             checks: Vec::new(),
             no_track: None,
@@ -81,13 +74,11 @@ impl<'a> RecordFacts<'a> {
     }
 
     /// The same with speed and drift: the hulls that these records speak for, where length and speed are known, all of
-    /// them begin away from rest, and they have a speed, or an analysis or earlier trials told her hull; else two
-    /// equations beside the yaw response where they have speed or position. As it was where nothing can be fitted.
+    /// them begin away from rest, and they have a speed or positions, or an analysis or earlier trials told her hull.
     pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
-        let Some(length) = self.length else { return self };
-        let has = |trial: &Trial, channel: Channel| trial.channel(channel).is_some();
-        let has_speed =
-            |trial: &Trial| has(trial, Channel::Speed) || has(trial, Channel::Surge) && has(trial, Channel::Sway);
+        let has_all = |trial: &Trial, all: &[Channel]| all.iter().all(|own| trial.channel(*own).is_some());
+        let told = [&[Channel::Speed][..], &[Channel::Surge, Channel::Sway], &[Channel::North, Channel::East]];
+        let has_speed = |trial: &Trial| told.iter().any(|channels| has_all(trial, channels));
         let was_told = !earlier.is_empty() || analysis.is_some_and(|analysis| !analysis.hulls.is_empty());
         let tells_hull = was_told || self.trials.iter().all(has_speed);
         // Structures may replay the records nearer, and know no speed of a manoeuvre that was not made.
@@ -97,19 +88,9 @@ impl<'a> RecordFacts<'a> {
         self.checks = after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect();
         let hulls = hull::members(fitted, f64::INFINITY);
         self.hulls = hulls.iter().map(|hull| stored(hull, hulls.len())).collect();
-        let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
-        let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
-        if self.hulls.is_empty() && self.trials.iter().all(is_told) {
-            let clock = hull::refusal(self.trials).filter(|error| matches!(error, HullFitError::Clock { .. }));
-            let clock = clock.map(|error| error.to_string());
-            match clock.map_or_else(|| motion::fit(self.trials, length).map_err(|error| error.to_string()), Err) {
-                Ok(planar) if loses_speed(&planar) => {
-                    self.no_track = (!planar.tells_drift()).then(|| NO_DRIFT.to_owned());
-                    self.motion = Some(planar);
-                }
-                Ok(_) => self.no_track = Some(format!("{NO_MOTION}: the fitted ship loses no speed in a turn")),
-                Err(error) => self.no_track = Some(format!("{NO_MOTION}: {error}")),
-            }
+        if self.hulls.is_empty() && tells_hull && self.length.is_some() {
+            let reason = hull::refusal(self.trials).unwrap_or(HullFitError::NoReplay);
+            self.no_track = Some(format!("{NO_MOTION}: {reason}"));
         }
         self
     }
@@ -137,7 +118,6 @@ impl<'a> RecordFacts<'a> {
             },
             length_m: self.length,
             speed_m_s: self.speed,
-            motion: self.motion.clone(),
             hulls: self.hulls.clone(),
         }
     }
@@ -279,12 +259,6 @@ fn with_likelihood(mut known: IdentifiedShip, facts: &RecordFacts) -> Identified
     known
 }
 
-/// Whether a ship loses speed as it turns: records of a ship that is still gathering way do not tell it.
-fn loses_speed(planar: &Planar) -> bool {
-    let coefficients = &planar.coefficients;
-    coefficients.X_vr + coefficients.X_dd + coefficients.X_dv > 0.0
-}
-
 /// Root mean square noise of the readings of the heading, rad, whatever a model makes of them; `None` where a
 /// record does not show it.
 fn reading_noise(zigzags: &[Option<ZigZag>]) -> Option<f64> {
@@ -372,7 +346,7 @@ fn inside_movements(trial: &Trial, rate: f64) -> Vec<f64> {
 mod tests {
     use super::*;
     use identify::output_error;
-    use predict::ShipMixture;
+    use predict::{ShipMixture, motion};
     use ship::FirstOrder;
     use ship::vessel::prior::HullParticulars;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
@@ -484,7 +458,7 @@ mod tests {
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
         let facts = RecordFacts::of(&zig_zags).with_motion(None, &[]);
         let known = of_estimate(&estimate, &facts).expect("a covariance");
-        assert!(facts.no_track().is_none() && !known.hulls.is_empty() && known.motion.is_none());
+        assert!(facts.no_track().is_none() && !known.hulls.is_empty());
         let kind: Manoeuvre = "turning-circle:35".parse().expect("known");
         let circle = tanker(&kind);
         let read = |channel| circle.channel(channel).expect("a hull");

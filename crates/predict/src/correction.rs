@@ -97,8 +97,7 @@ pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str)
         let mut ids: Vec<&str> = members.flat_map(|own| &own.effects).map(|effect| effect.id.as_str()).collect();
         ids.sort_unstable();
         let effects = if ids.is_empty() { String::new() } else { format!(" with {}", ids.join(", ")) };
-        let motion = if known.motion.is_some() { ", speed and drift" } else { "" };
-        format!("a response{effects}{motion}")
+        format!("a response{effects}")
     };
     let [of_full, of_trial] = [full, trial].map(structure);
     let mut warnings = Vec::new();

@@ -159,7 +159,6 @@ mod tests {
     fn yukun(kind: &Manoeuvre) -> SimulatedManoeuvre {
         let ship = DrawnShip {
             response: ship::Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0)),
-            planar: None,
             hull: None,
             gear: SteeringGear::with_rate(from_deg(2.5)),
             disturbances: Disturbances::default(),

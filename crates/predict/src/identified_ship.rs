@@ -5,11 +5,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter, SteeringLag};
-use ship::{Particulars, Regressor, ResponseModel};
+use ship::{Particulars, ResponseModel};
 pub use trial::noise_model::Moment;
 
 use crate::error::PredictError;
-use crate::motion::Planar;
 pub use crate::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
 
 /// An effect as it is written down.
@@ -92,9 +91,6 @@ pub struct IdentifiedShip {
     pub length_m: Option<f64>,
     /// Approach speed, m/s.
     pub speed_m_s: Option<f64>,
-    /// Speed and drift; none where the records have neither speed nor position.
-    #[serde(default)]
-    pub motion: Option<Planar>,
     /// Hulls of three degrees of freedom that the records speak for, the nearest first; predictions are then made with
     /// them and not with the structures.
     #[serde(default)]
@@ -201,7 +197,6 @@ impl IdentifiedShip {
         }
         scaled.approach_yaw_rate_rad_s /= second;
         scaled.seen.yaw_rate_rad_s /= second;
-        scaled.motion = self.motion.as_ref().map(|planar| planar.scaled_to(length, speed)).transpose()?;
         scaled.hulls = self.hulls.iter().map(|hull| hull.scaled_to(length, speed)).collect();
         scaled.length_m = Some(length);
         scaled.speed_m_s = Some(speed);
@@ -244,15 +239,6 @@ impl IdentifiedShip {
         let places = likeliest.dead_times(&likeliest.model().ok()?);
         let late = -places.iter().map(|place| likeliest.parameters[*place]).sum::<f64>();
         (late > 0.0).then_some(late)
-    }
-
-    /// Whether the most probable structure has a term in the measured sway and no hull takes its place: a manoeuvre
-    /// that was not made has the sway of an equation fitted beside it.
-    pub fn leans_on_sway(&self) -> bool {
-        let likeliest = self.members.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));
-        let model = likeliest.and_then(|member| member.model().ok());
-        let has_sway = |model: ResponseModel| model.effects().iter().any(|own| own.uses(Regressor::Sway));
-        self.hulls.is_empty() && model.is_some_and(has_sway)
     }
 
     /// A time of the ship, s: L/U where they are known, else (K/T)^(−1/2) of the most probable structure, which is

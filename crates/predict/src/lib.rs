@@ -8,7 +8,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | what is known of a ship, as files hold it | [`identified_ship`] |
-//! | speed and drift fitted to records, tracks, turning circles | [`motion`] |
+//! | speed and drift of a turn, tracks, turning circles | [`motion`] |
 //! | a hull as files hold it | [`stored_hull`] |
 //! | ships drawn from it | [`mixture`] |
 //! | the manoeuvres, and what ends them | [`standard`] |

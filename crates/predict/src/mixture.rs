@@ -11,7 +11,6 @@ use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
 
 use crate::error::PredictError;
 use crate::identified_ship::{IdentifiedShip, KnownNoise, Moment, WeightedStructure};
-use crate::motion::Planar;
 use crate::root::root_of;
 use crate::stored_hull::DrawableHull;
 
@@ -77,8 +76,6 @@ pub struct ShipMixture {
     files: Vec<IdentifiedShip>,
     /// Probability of every file.
     shares: Vec<f64>,
-    /// Square roots of the covariances of speed and drift of every file.
-    motions: Vec<DMatrix<f64>>,
     timescale: f64,
     /// Whether the draws are apart from those of any other mixture that is not.
     apart: bool,
@@ -91,8 +88,6 @@ pub struct ShipMixture {
 pub struct DrawnShip {
     /// How the ship turns.
     pub response: Response,
-    /// How it loses speed and drifts, where that is known and no hull says it.
-    pub planar: Option<Planar>,
     /// The hull, where one was fitted; it takes the place of the response.
     pub hull: Option<ScaledHull>,
     /// Its steering gear.
@@ -128,14 +123,9 @@ impl ShipMixture {
                 parts.push(DrawableStructure { hull: Some(hull), weight, ..beside.clone() });
             }
         }
-        let motion = |(known, _): &(IdentifiedShip, f64)| match &known.motion {
-            Some(planar) => root_of(&planar.covariance.map(|row| row.to_vec())),
-            None => Ok(DMatrix::zeros(0, 0)),
-        };
-        let motions = files.iter().map(motion).collect::<Result<_, _>>()?;
         let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
         let files = files.into_iter().map(|(known, _)| known).collect();
-        Ok(Self { parts, motions, files, shares, timescale, apart: false, follows: false })
+        Ok(Self { parts, files, shares, timescale, apart: false, follows: false })
     }
 
     /// The same ships drawn with other numbers, so that they have no chance in common with those of another mixture,
@@ -188,23 +178,16 @@ impl ShipMixture {
             let doubt = if has(UncertaintySource::SteeringGear) { of_gear * gear.sd_rad_s } else { 0.0 };
             SteeringGear::with_rate((gear.rate_rad_s + doubt).max(0.1 * gear.rate_rad_s))
         });
-        // By the covariance of the coefficients of the hull, or of speed and drift. A hull at another loading has the
-        // draws of the hull of the trials, and some of its own.
+        // A hull at another loading has the draws of the hull of the trials, and some of its own.
         let of_trial = StreamKey { seed: u64::from(self.apart && !self.follows), ..key };
         let mut rng = of_trial.indexed(Purpose::Specification, 2);
         let hull = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
             true => hull.drawn(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
             false => hull.most_probable(),
         });
-        let planar = known.motion.as_ref().filter(|_| hull.is_none()).map(|planar| {
-            let root = &self.motions[part.file];
-            let step = root * DVector::from_fn(root.ncols(), |_, _| rng.sample::<f64, _>(StandardNormal));
-            planar.stepped(if has(UncertaintySource::Parameters) { step.as_slice() } else { &[] })
-        });
         let noise = if has(UncertaintySource::ProcessNoise) { part.noise(known) } else { KnownNoise::default() };
         DrawnShip {
             response: part.model.clone().with(values),
-            planar,
             hull,
             gear,
             disturbances: self.disturbances(&noise),
@@ -268,7 +251,7 @@ impl DrawableStructure {
     fn new(ship: &IdentifiedShip, known: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
         let weight = checked(weight, known.weight)?;
         let model = known.model()?;
-        let has_motion = !ship.hulls.is_empty() || ship.motion.is_some();
+        let has_motion = !ship.hulls.is_empty();
         for (regressor, channel, option) in
             [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
         {

@@ -178,7 +178,7 @@ impl ShipMixture {
     /// of her own, because hers is told so, too.
     pub(crate) fn shown(&self, trial: &Trial, measured: &Measured, name: &str) -> Option<Quantity> {
         let own = self.particulars();
-        let has_way = self.first().motion.is_some() || !self.first().hulls.is_empty();
+        let has_way = !self.first().hulls.is_empty();
         let stand_in = trial.particulars().or(own).filter(|_| !has_way);
         helm_replay::shown(trial, measured, name, own.map(|own| own.length), stand_in)
     }

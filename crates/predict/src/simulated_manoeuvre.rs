@@ -5,14 +5,13 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use ship::vessel::prime::FASTEST;
 use ship::vessel::scaled::ScaledHull;
-use ship::{Regressor, Replayable};
 use simulate::simulation::{Simulated, Truth};
 use simulate::vessel::Solver;
 use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};
 use trial::{Channel, Trial};
 
 use crate::mixture::DrawnShip;
-use crate::motion::{self, Planar, PlanarShip};
+use crate::motion;
 
 /// Rows per time of the ship.
 const ROWS: f64 = 20.0;
@@ -65,14 +64,6 @@ impl PlanarMotion {
         let track = motion::track(trial.time(), heading, &velocity);
         Some(Self { length: hull.length, velocity, track })
     }
-
-    /// The way that equations beside a yaw response give, from her approach speed on; no track where they do not tell
-    /// drift.
-    fn beside(planar: &Planar, time: &[f64], passage: &SimulatedManoeuvre) -> Self {
-        let driven = planar.drive(time, &passage.yaw_rate, &passage.rudder, [planar.approach_speed, 0.0]);
-        let track = if planar.tells_drift() { motion::track(time, &passage.heading, &driven) } else { Vec::new() };
-        Self { length: planar.length, velocity: driven, track }
-    }
 }
 
 /// Time between rows, s.
@@ -85,17 +76,11 @@ pub(crate) fn period(timescale: f64) -> f64 {
 const LONGEST_CELL: f64 = 60.0;
 const SHARE_OF_CORRELATION: f64 = 0.5;
 
-/// What is steered: with speed and drift where effects of the response ask for them.
+/// What is steered.
 fn vessel(ship: &DrawnShip) -> Vessel {
-    if let Some(hull) = &ship.hull {
-        return Vessel::hull(Arc::new(hull.clone()));
-    }
-    let needs = [Regressor::Speed, Regressor::Sway].iter().any(|channel| ship.response.needs(*channel));
-    match &ship.planar {
-        Some(planar) if needs => {
-            Vessel::hull(Arc::new(PlanarShip { response: ship.response.clone(), planar: planar.clone() }))
-        }
-        _ => Vessel::response(ship.response.clone()),
+    match &ship.hull {
+        Some(hull) => Vessel::hull(Arc::new(hull.clone())),
+        None => Vessel::response(ship.response.clone()),
     }
 }
 
@@ -145,11 +130,7 @@ impl SimulatedManoeuvre {
             simulation.solver = Solver::RungeKutta(step.max(SHORTEST_STEP));
         }
         let (mut passage, trial) = Self::recorded(simulation, &ship.key, timescale)?;
-        passage.way = match (&ship.hull, &ship.planar) {
-            (Some(hull), _) => PlanarMotion::of_hull(hull, &trial, &passage.heading),
-            (None, Some(planar)) => Some(PlanarMotion::beside(planar, trial.time(), &passage)),
-            (None, None) => None,
-        };
+        passage.way = ship.hull.as_ref().and_then(|hull| PlanarMotion::of_hull(hull, &trial, &passage.heading));
         match ship.hull.as_ref().and_then(|hull| passage.runs_away(FASTEST * hull.speed)) {
             Some(row) => Err(SimulateError::Diverged {
                 time: passage.time(row),

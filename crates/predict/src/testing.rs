@@ -44,7 +44,6 @@ pub(crate) fn known() -> IdentifiedShip {
         seen: ValidityRange { rudder_rad: from_deg(20.0), yaw_rate_rad_s: from_deg(1.5) },
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
-        motion: None,
         hulls: Vec::new(),
     }
 }

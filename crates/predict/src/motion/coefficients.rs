@@ -14,19 +14,6 @@ pub const SYMBOLS: [&str; COEFFICIENTS] = ["X_0", "X_vr", "X_dd", "X_dv", "Y_v",
 pub(crate) const BOUNDS: [[f64; 2]; COEFFICIENTS] =
     [[1e-3, 2.0], [0.0, 5.0], [0.0, 5.0], [0.0, 5.0], [1e-3, 20.0], [0.0, 100.0], [-3.0, 3.0], [-3.0, 3.0]];
 
-/// A full ship, from which searches begin.
-pub(crate) const TYPICAL: PlanarCoefficients =
-    PlanarCoefficients { X_0: 0.05, X_vr: 1.3, X_dd: 0.1, X_dv: 0.1, Y_v: 0.4, Y_vv: 2.0, Y_r: 0.5, Y_d: 0.1 };
-
-/// Longest step in units of L/U₀; a ship loses its drift in about one.
-pub(crate) const LARGEST_STEP: f64 = 0.05;
-
-/// Most steps between two rows: a record may have a gap of days.
-const MOST_STEPS: f64 = 1e4;
-
-/// Speeds beyond this many approach speeds are no ship's; a bad trial step of a search stays finite.
-pub(crate) const FASTEST: f64 = 10.0;
-
 /// Dimensionless coefficients of the planar equations.
 ///
 /// u' = X_0 (U₀² − u|u|) / L + X_vr v r − max(0, U₀ sin δ (X_dd u sin δ + X_dv v)) / L,
@@ -105,42 +92,6 @@ impl PlanarCoefficients {
             self.X_0 * (1.0 - u * u.abs()) + self.X_vr * v * r - drag,
             -(self.Y_v + self.Y_vv * v.abs()) * v - self.Y_r * u * r - self.Y_d * u * rudder,
         ]
-    }
-    /// Surge and sway, m/s, at all times (s, increasing), of a ship of some length (m) and approach speed (m/s) with
-    /// known yaw rate (rad/s) and rudder (rad), from those at the first.
-    ///
-    /// Midpoint rule with yaw rate and rudder straight between the rows; steps end at the rows and are no longer than
-    /// [`LARGEST_STEP`].
-    pub(crate) fn velocities(
-        &self,
-        [length, speed]: [f64; 2],
-        [time, yaw_rate, rudder]: [&[f64]; 3],
-        start: [f64; 2],
-    ) -> Vec<[f64; 2]> {
-        let second = length / speed;
-        let [mut u, mut v] = start.map(|velocity| velocity / speed);
-        let mut found = vec![start.map(|velocity| velocity / speed * speed)];
-        let bounded = |value: f64| value.clamp(-FASTEST, FASTEST);
-        for row in 1..time.len() {
-            let span = (time[row] - time[row - 1]) / second;
-            let pieces = (span / LARGEST_STEP).ceil().clamp(1.0, MOST_STEPS);
-            let step = span / pieces;
-            let (r, delta) = (yaw_rate[row - 1] * second, rudder[row - 1]);
-            let rises = [yaw_rate[row] * second - r, rudder[row] - delta].map(|rise| rise / pieces);
-            for piece in 0..pieces as usize {
-                let at = |share: f64| {
-                    let place = piece as f64 + share;
-                    (r + place * rises[0], delta + place * rises[1])
-                };
-                let ((r0, d0), (r1, d1)) = (at(0.0), at(0.5));
-                let [a, b] = self.rates(u, v, r0, d0);
-                let [a, b] = self.rates(u + 0.5 * step * a, v + 0.5 * step * b, r1, d1);
-                (u, v) = (bounded(u + step * a), bounded(v + step * b));
-            }
-            found.push([u * speed, v * speed]);
-        }
-        found.truncate(time.len());
-        found
     }
 }
 

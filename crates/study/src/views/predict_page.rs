@@ -41,7 +41,7 @@ pub fn words(document: &PredictDocument) -> String {
     }
     let turns = document.manoeuvres.iter().filter(|one| matches!(one.kind, Manoeuvre::TurningCircle { .. }));
     if turns.filter_map(|one| one.curves.most_probable.as_ref()).any(|passage| passage.track().is_none()) {
-        words += "no track: the length of the ship is not known, or its records do not tell drift\n";
+        words += "no track: no hull is known of the ship; it takes her length, and records with a speed or positions\n";
     }
     if !document.ballast.is_empty() {
         words += &format!(

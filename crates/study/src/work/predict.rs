@@ -86,12 +86,6 @@ impl StoredModel {
             warnings.push(format!("{shown}: the answer of {method} is used; --method names another"));
         }
         let known = ships.remove(&method).expect("it was found there");
-        if known.leans_on_sway() {
-            warnings.push(format!(
-                "{shown}: a term of the model takes the measured sway, and here that of an equation fitted to it; intervals \
-                 of such models held less often than others, so trace again with --without-effect sway_coupling_measured"
-            ));
-        }
         if let Some(late) = known.rudder_logged_late() {
             warnings.push(format!("{shown}: {}; she is steered without it", rudder_logged_late(late)));
         }

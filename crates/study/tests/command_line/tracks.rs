@@ -48,8 +48,8 @@ fn circle(current: [f64; 2], turn_deg: f64) -> String {
     record(turn, if turn_deg > 700.0 { 1700.0 } else { 700.0 }, current)
 }
 
-/// Positions and headings tell speed and drift: the model predicts an advance and a tactical diameter from them, with
-/// the drift angle and the pivot point.
+/// Positions tell the speed, and the hull that is fitted to it the drift: advance and tactical diameter are predicted,
+/// with the drift angle and the pivot point.
 #[test]
 fn a_record_of_positions_tells_a_track() {
     let desk = Desk::new();
@@ -62,7 +62,7 @@ fn a_record_of_positions_tells_a_track() {
     let figures = &json["manoeuvres"][0]["figures"];
     let median = |name: &str| figures[name]["median"].as_f64().unwrap_or_else(|| panic!("{name}: {figures}"));
     assert!((2.0..5.0).contains(&median("advance_lengths")), "{figures}");
-    assert!((0.2..0.6).contains(&median("pivot_ahead_lengths")), "{figures}");
+    assert!((0.2..1.0).contains(&median("pivot_ahead_lengths")), "{figures}");
     assert!(median("drift_angle_deg") > 2.0 && median("speed_loss_share") > 0.05, "{figures}");
     // A heading alone leaves nothing to draw a track from.
     let bare: String =
