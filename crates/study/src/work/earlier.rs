@@ -84,7 +84,7 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
     Ok(())
 }
 
-/// Fails as [`counted_once`] does for the records, and where models are given and no hull can be fitted to these; warns
+/// Fails where a record counts twice, and where models are given and no hull can be fitted to the records; warns
 /// where the ships sail at other Froude numbers.
 pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<String>) -> Result<(), Failure> {
     counted_once(models, trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect())?;
