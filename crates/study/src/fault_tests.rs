@@ -156,7 +156,7 @@ fn no_fault_of_the_disk_loses_anything_of_a_merge() {
         run(&study, Shard { number, of: 2 }, folder).unwrap_or_else(|failure| panic!("{failure}"));
     }
     // All figures fail above.
-    let style = StudyFigureOptions { figures: FigureChoice::Hero, ..STYLE };
+    let style = StudyFigureOptions { figures: FigureChoice::None, ..STYLE };
     let request = MergeRequest { folders: shards, style };
     assert!(fail_each(None, |folder| merge::run(&request, &quiet(Some(folder)))) > 50);
 }

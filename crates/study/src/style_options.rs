@@ -71,6 +71,8 @@ pub enum FigureChoice {
     All,
     /// The one that stands for the study, `output.figure`
     Hero,
+    /// None
+    None,
 }
 
 /// Reads a number from `least` to `most`.

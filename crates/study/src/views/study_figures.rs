@@ -40,6 +40,9 @@ pub type StudyFigure = (FigurePlace, PageFigure);
 /// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
 /// A name of a figure that there is not is warned of.
 pub fn of(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
+    if choice == FigureChoice::None {
+        return Vec::new();
+    }
     let words = &stored.design.words.output;
     let mut figures = all(stored, summary);
     // Two titles may make one slug.
@@ -70,7 +73,7 @@ pub fn of(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<
     }
     figures.retain(|(_, figure)| match choice {
         FigureChoice::All => true,
-        FigureChoice::Hero => false,
+        FigureChoice::Hero | FigureChoice::None => false,
         FigureChoice::Named => named.is_none_or(|named| named.contains(&figure.stem)),
     });
     key.into_iter().chain(figures).collect()

@@ -222,6 +222,8 @@ fn figures_are_chosen() {
     assert!(hero.contains("It does") && hero.contains("rms error of T"), "{hero}");
     desk.run(&["report", "named", "--figures", "hero", "--out", "one", "--quiet"]).is_done();
     assert_eq!(figures("one"), ["hero.png"]);
+    desk.run(&["report", "named", "--figures", "none", "--out", "bare", "--quiet"]).is_done();
+    assert!(figures("bare").is_empty() && desk.path("bare/report.md").exists());
     desk.run(&["report", "named", "--figures", "all", "--out", "all", "--quiet"]).is_done();
     assert_eq!(figures("all"), ["coverage.png", "errors.png", "hero.png"]);
 }
