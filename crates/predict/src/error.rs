@@ -66,9 +66,6 @@ pub enum PredictError {
         /// The channel as it is withheld from a trace.
         option: &'static str,
     },
-    /// Speed and drift of the ship make no sense.
-    #[error("speed and drift: {0}")]
-    Motion(#[from] crate::motion::MotionError),
     /// Hardly any drawn ship comes to the end of a manoeuvre.
     #[error("{kind}: only {made} of {draws} drawn ships come to the end of it; the model does not hold there")]
     Lost {

@@ -70,17 +70,13 @@ pub(crate) fn initial_turning(
     [("initial_turning_time_s", turning)].into_iter().chain(lengths).collect()
 }
 
-/// Figures of the track of a turn that was begun at `execute` s, where there is one; the loss of speed alone where
-/// nothing is known of drift.
+/// Figures of the track of a turn that was begun at `execute` s, where there is one.
 pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Figures {
     let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Figures::default() };
     let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
     let found = turning_circle([&time, &passage.heading, &passage.yaw_rate], [track, velocity], execute);
     let lengths = |metres: Option<f64>| metres.map(|metres| metres / length);
     let speed_loss = ("speed_loss_share", found.speed_ratio.map(|ratio| 1.0 - ratio));
-    if track.is_empty() {
-        return Figures::from([speed_loss]);
-    }
     Figures::from([
         ("advance_m", found.advance),
         ("advance_lengths", lengths(found.advance)),
