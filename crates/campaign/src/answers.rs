@@ -91,7 +91,7 @@ pub fn read(path: &Path, scenario: &Scenario, observer: &dyn Observer) -> Result
         ReaderBuilder::new().delimiter(separator).trim(Trim::All).flexible(true).from_reader(text.as_bytes());
     let columns = AnswerColumns::of(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
     if !columns.ignored.is_empty() {
-        observer.warn(&format!("{}: not read: {}", path.display(), columns.ignored.join(", ")));
+        observer.warn(&format!("{}: columns that are not used: {}", path.display(), columns.ignored.join(", ")));
     }
     let records = Records::of(scenario);
     let mut lines: HashMap<TrialNumber, u64> = HashMap::new();

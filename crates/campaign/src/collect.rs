@@ -53,7 +53,7 @@ pub fn collect(
     }
     let keep = || sources::keep(scenario, folder);
     if let Some(stored) = store::manifest_of_rows(folder.path())? {
-        is_same(&stored, &manifest, folder.path())?;
+        is_same(&stored, &manifest, folder.path(), ANOTHER_FOLDER)?;
         keep()?;
         let outside = RunningEstimators::begin(scenario, folder, observer)?;
         let stored = look_again(scenario, manifest, folder, observer);
@@ -64,7 +64,7 @@ pub fn collect(
     let layout = RowLayout::of(&design);
     let rows = folder.path().join(files::ROWS);
     if let Some(stored) = unfinished::manifest_in(folder.path())? {
-        is_same(&stored, &manifest, folder.path())?;
+        is_same(&stored, &manifest, folder.path(), ANOTHER_FOLDER)?;
     } else if disk::is_there(&rows).on("look for", &rows)? {
         return Err(Failure::input(format!(
             "{} holds rows of an unknown study, without {}; give another folder with --out, or --restart to discard them",
@@ -121,15 +121,17 @@ fn discard(folder: &ResultFolder, observer: &dyn Observer) -> Result<(), Failure
     disk::remove_if_there(&rows).on("remove", &rows)
 }
 
-/// Refuses a folder whose rows belong to another study, and says what differs.
-pub fn is_same(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), Failure> {
+/// What helps where a study is to be run in a folder with rows of another one.
+const ANOTHER_FOLDER: &str = "give another folder with --out, or --restart to discard what is there";
+
+/// Refuses a folder whose rows belong to another study, and says what differs and what helps.
+pub fn is_same(stored: &Manifest, own: &Manifest, folder: &Path, cure: &str) -> Result<(), Failure> {
     let differences = stored.differences(own);
     if differences.is_empty() {
         return Ok(());
     }
     Err(Failure::input(format!(
-        "{} holds rows of another study (there: what is stored, here: what is asked for):\n  {}\ngive another folder with \
-         --out, or --restart to discard what is there",
+        "{} holds rows of another study (there: what is stored, here: what is asked for):\n  {}\n{cure}",
         folder.display(),
         differences.join("\n  ")
     )))
@@ -173,7 +175,7 @@ fn run_all(
         observer.end();
         let stopped = |why: &str| {
             Failure::work(format!(
-                "{why}stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there",
+                "{why}stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there, without --restart",
                 plan.most() - plan.left(),
                 plan.most(),
                 folder.join(unfinished::NAME).display()
@@ -183,7 +185,7 @@ fn run_all(
             RunEnd::Done => written,
             RunEnd::Interrupted => written.and_then(|()| Err(stopped(""))),
             RunEnd::Trouble(why) => {
-                let advice = "see to its rights, and to open files and processes (`ulimit -a`)";
+                let advice = "check that it may be executed, and the limits on open files and processes (`ulimit -a`)";
                 written.and_then(|()| Err(stopped(&format!("{why}; {advice}; "))))
             }
             RunEnd::Stuck => {

@@ -27,7 +27,7 @@ const SHOWN: usize = 10;
 pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<StoredStudy, Failure> {
     let (folders, manifest) = shards(folders)?;
     if let Some(stored) = store::manifest_of_rows(out.path())? {
-        is_same(&stored, &manifest, out.path())?;
+        is_same(&stored, &manifest, out.path(), "give another folder with --out")?;
     }
     if unfinished::is_in(out.path())? {
         return Err(Failure::about(out.path(), "a study in it is not finished; give another folder with --out"));
@@ -57,8 +57,8 @@ pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<StoredStudy, Fail
         return Err(Failure::about(
             out.path(),
             format!(
-                "of cell {cell} the shards hold trials {} to {}, expected 0 to {replicates}; run the shards again",
-                found.start, found.end
+                "of cell {cell} the shards hold {} of {replicates} trials; run the shards again",
+                found.end - found.start
             ),
         ));
     }
@@ -83,7 +83,7 @@ fn append(design: &mut Design, next: &Design) -> Result<(), String> {
         }
         if theirs.trials.start != cell.trials.end {
             return Err(format!(
-                "its trials of cell {index} begin with {}, and those of the shards before it end with {}",
+                "its first trial of cell {index} is number {}, and the next one after the shards before it is number {}",
                 theirs.trials.start, cell.trials.end
             ));
         }

@@ -18,8 +18,8 @@ pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usi
     }
     if lag1 > 0.0 {
         let warning = format!(
-            "the residual is coloured (lag-1 autocorrelation {lag1:.2}): intervals are from the Newey-West covariance, and \
-             the model lacks an effect"
+            "the residual is coloured (lag-1 autocorrelation {lag1:.2}): intervals are from the Newey-West covariance; \
+             the model lacks an effect, or the noise of the compass is correlated"
         );
         return (Uncertainty::Covariance(robust.clone()), Some(warning));
     }

@@ -44,7 +44,7 @@ pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Tria
     let given = if has_speed { "length" } else { "length and speed" };
     (!found.is_empty()).then(|| {
         format!(
-            "{}: check the scale of the rudder, the clock, and the {given} given; nothing else in the record shows them",
+            "{}: check the scale of the rudder, the clock, and the {given} given; the record alone cannot show such an error",
             found.join(", ")
         )
     })

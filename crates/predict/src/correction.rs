@@ -159,7 +159,7 @@ pub fn correct(
         && (own / other - 1.0).abs() > SAME_SPEED
     {
         let [own, other] = [own, other].map(|speed| format!("{speed:.2} m/s"));
-        warnings.push(different("approach speeds", &own, &other, loading) + "; F/B holds that, too");
+        warnings.push(different("approach speeds", &own, &other, loading) + "; F/B has this difference in it");
     }
     let zigzag = Measured::of(record).ok().filter(|zigzag| zigzag.executes.len() > 1);
     let made = match &zigzag {
@@ -261,7 +261,7 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
     let [low, high] = ballast.ci90.map(short);
     let mut warnings = Vec::new();
     if ballast.ci90.iter().any(|end| end * ballast.median.signum() < NEAR_ZERO * ballast.median.abs()) {
-        warnings.push(format!("B is near zero (90 % [{low}, {high}]), so its ratio says little"));
+        warnings.push(format!("B is near zero (90 % [{low}, {high}]), so F/B says little"));
     }
     let half = 0.5 * (factor.ci90[1] - factor.ci90[0]) / factor.median.abs();
     if half > WIDE {
@@ -271,7 +271,7 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
     if measured.value + reach < ballast.ci90[0] || measured.value - reach > ballast.ci90[1] {
         let measured = short(measured.value);
         warnings
-            .push(format!("the model of the trial does not do what was measured: {measured}, not in [{low}, {high}]"));
+            .push(format!("the model of the trial does not do what was measured: {measured}, outside its 90 % interval [{low}, {high}]"));
     }
     if share < 1.0 {
         warnings.push(format!("{:.0} % of the pairs of drawn ships come that far", 100.0 * share));

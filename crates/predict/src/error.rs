@@ -44,7 +44,8 @@ pub enum PredictError {
     #[error("there is no model to predict from")]
     Empty,
     /// A ship of unknown length or speed cannot be scaled.
-    #[error("length and speed of the identified ship are not known, so it cannot be scaled; give them to fit or trace")]
+    #[error("length and speed of the ship are not known, so she cannot be scaled; give them to fit or trace, or here --speed-kn beside \
+         --length-m where the model is of that scale")]
     NoParticulars,
     /// A constant of a formula has no unit that could be scaled.
     #[error(
@@ -57,8 +58,8 @@ pub enum PredictError {
     },
     /// The model asks for a channel that nobody predicts.
     #[error(
-        "the model uses the measured {channel}, which a trial that was not made does not have; give --length-m to fit or \
-         trace so that speed and drift are fitted, or trace with --without {option}"
+        "the model uses the measured {channel}, which a trial that was not made does not have; give --length-m, and \
+         --speed-kn where the record has no speed, to fit or trace so that a hull is fitted, or trace with --without {option}"
     )]
     Needs {
         /// The channel, in words.
@@ -67,7 +68,7 @@ pub enum PredictError {
         option: &'static str,
     },
     /// Hardly any drawn ship comes to the end of a manoeuvre.
-    #[error("{kind}: only {made} of {draws} drawn ships come to the end of it; the model does not hold there")]
+    #[error("{kind}: only {made} of {draws} drawn ships complete it; the model does not hold there")]
     Lost {
         /// The manoeuvre.
         kind: String,

@@ -40,13 +40,13 @@ pub const MOST_THREADS: i64 = 1024;
 /// Options every command understands.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
-    /// Folder for results [default: `results/SCENARIO`, or `./TRIAL-fit`, `./TRIAL-trace`]
+    /// Folder for results [default: `results/SCENARIO`, `./TRIAL-fit`, `./TRIAL-trace`, `./MODEL-predict`]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Number of threads [default: all cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     pub threads: Option<u16>,
-    /// Seed in place of the scenario's
+    /// Seed of what is simulated, in place of the scenario's
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
     /// No progress bar, table, note or warning; errors remain, and what --format asks for
@@ -169,8 +169,8 @@ pub struct FitRequest {
     #[arg(long = "method", value_name = "ID|all", hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::methods_or_all))]
     pub methods: Vec<String>,
-    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json: where the fit of her
-    /// hull begins, widened; can be given several times
+    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister: its hull, with wider errors,
+    /// is the prior of this one; can be given several times
     #[arg(long = "prior", value_name = "MODEL.json")]
     pub priors: Vec<PathBuf>,
     /// Also ask another program: it is started, and reads and writes lines of JSON
@@ -242,7 +242,7 @@ pub struct TraceRequest {
     #[arg(long, value_name = "ID,…", value_delimiter = ',', conflicts_with_all = ["with", "without_effect"],
         hide_possible_values = true, value_parser = completed(StringValueParser::new(), completed::effects))]
     pub only: Vec<String>,
-    /// Effects that are no candidates
+    /// Effects that are left out of the search
     #[arg(long, value_name = "ID,…", value_delimiter = ',', hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::effects))]
     pub without_effect: Vec<String>,
@@ -253,12 +253,12 @@ pub struct TraceRequest {
     /// The same from a file, `effects = ["…"]`
     #[arg(long, value_name = "FILE.toml", value_parser = formulas)]
     pub effects: Option<Formulas>,
-    /// Without hulls of three degrees of freedom beside the structures, which are fitted where length and speed of the
+    /// Fit no hulls of three degrees of freedom; they are fitted beside the structures where length and speed of the
     /// ship are known and the structures leave more than noise
     #[arg(long)]
     pub without_hull: bool,
-    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json: where the fit of her
-    /// hull begins, widened; can be given several times
+    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister: its hull, with wider errors,
+    /// is the prior of this one; can be given several times
     #[arg(long = "prior", value_name = "MODEL.json", conflicts_with = "without_hull")]
     pub priors: Vec<PathBuf>,
     /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
@@ -325,7 +325,7 @@ const DRAWS: std::ops::RangeInclusive<i64> = 50..=100_000;
 /// What `study predict` is asked to do.
 #[derive(Debug, Clone, Args)]
 pub struct PredictRequest {
-    /// What is known of one ship: fit.json or trace.json; several are a mixture, all alike
+    /// fit.json or trace.json of one ship; several are mixed with equal weights
     #[arg(required = true, value_name = "MODEL.json")]
     pub models: Vec<PathBuf>,
     /// Manoeuvre to predict: zig-zag:10/10, initial-turning:10, turning-circle:35, pull-out:20, spiral:15, williamson;
@@ -339,8 +339,8 @@ pub struct PredictRequest {
     /// own, where it turns that far]
     #[arg(long, value_name = "RECORD", requires = "replays")]
     pub current_from: Option<PathBuf>,
-    /// What earlier trials of the same ship, her model or a sister left, fit.json or trace.json, which are not in
-    /// MODEL.json: its hulls are weighed together with them, widened; can be given several times
+    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister, which are not in
+    /// MODEL.json: its hulls are weighed together with theirs, with wider errors; can be given several times
     #[arg(long = "prior", value_name = "EARLIER.json", conflicts_with = "ballast")]
     pub priors: Vec<PathBuf>,
     /// What is known of the same ship as she was loaded at the trial of --replay: corrects what it measured to the load

@@ -226,7 +226,7 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
                     if found.iter().any(|one| one.manoeuvre.is_none()) {
                         warnings.push(format!(
                             "{file}: no zig-zag is recognised, the whole record is used; `study find {file}` lists what \
-                             is, --from and --until choose a part"
+                             is; for a part, write `from-s` and `until-s` under [part] of its sidecar"
                         ));
                     }
                     return Ok(log);
@@ -243,7 +243,8 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
         return Ok(log);
     }
     warnings.push(format!(
-        "{file}: the {} from {} to {} is used, the rest is left out; --from and --until choose another part",
+        "{file}: the {} from {} to {} is used, the rest is left out; for another part, write `from-s` and `until-s` under \
+         [part] of its sidecar",
         manoeuvre.name(),
         at(&log, from),
         at(&log, until)
@@ -281,7 +282,7 @@ fn ship(
     let first = log.channel(Channel::Speed).map(|speed| &speed[..speed.len().div_ceil(10)]);
     let speeds = first.into_iter().flatten().copied().filter(|speed| *speed > 0.0);
     let Some(speed) = upper_median(speeds) else {
-        let advice = "give the approach speed beside --length-m, --speed-kn or --speed-m-s";
+        let advice = "add --speed-kn or --speed-m-s to --length-m";
         return Err(Failure::about(path, format!("the record has no speed; {advice}")));
     };
     warnings.push(format!(

@@ -17,7 +17,7 @@ pub struct FigureOptions {
     /// Resolution of figures for print
     #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper", value_parser = within(DPI), allow_hyphen_values = true)]
     pub dpi: f64,
-    /// Sizes, colours and limits of axes of the figures; docs/src/reference/style.toml has all keys
+    /// Sizes, colours and limits of axes of the figures; `study schema style` has all keys
     #[arg(long, value_name = "FILE.toml")]
     pub style: Option<PathBuf>,
 }

@@ -100,7 +100,7 @@ impl Selection {
         }
         match self.with.iter().find(|id| self.without.contains(id)) {
             Some(both) => {
-                let expected = "an effect that is not asked for at the same time";
+                let expected = "an effect that `with` does not name";
                 Err(SettingsError::new("without-effect", both.as_str(), expected))
             }
             None => Ok(()),

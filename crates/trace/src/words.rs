@@ -87,12 +87,12 @@ pub fn headline(verdict: Verdict, effects: &[EffectEntry], error: &ErrorEntry) -
         None => String::new(),
     };
     let errors = format!("heading error {from}° → {to}°{ratio}{judged}{in_windows}");
-    let left = if verdict == Verdict::Unexplained { "; structure is left" } else { "" };
+    let left = if verdict == Verdict::Unexplained { "; what is left is not noise" } else { "" };
     match (verdict, effects.is_empty()) {
         (Verdict::Clean, _) => {
-            format!("Nothing is missing: the heading error of the first-order response is {from}°{judged}.")
+            format!("Nothing is seen to be missing: the heading error of the first-order response is {from}°{judged}.")
         }
-        (_, true) => format!("What is missing has no name: {errors}{left}."),
+        (_, true) => format!("No effect of the list explains what is missing: {errors}{left}."),
         _ => {
             let more = if left.is_empty() { "" } else { " and more" };
             let seen = match fitted[1] > STAYS * fitted[0] {
@@ -116,12 +116,13 @@ pub fn evidence(named: &EffectNaming, gain: f64, asked: bool, trials: &[Trial]) 
     let place = only.map_or(String::new(), |number| format!(" in {}", trials[number].name()));
     let odds = match gain / std::f64::consts::LN_10 {
         power if power >= 3.0 => format!("10^{power:.0} times more probable"),
+        power if power < 0.0 => format!("{} times less probable", short(10f64.powf(-power))),
         power => format!("{} times more probable", short(10f64.powf(power))),
     };
     let forms = match named.forms.is_empty() {
         true => String::new(),
         false => format!(
-            " The records do not tell its form: {} fits as well.",
+            " The records do not tell its form; as near is {}.",
             listed(&named.forms.iter().map(|(_, form, _)| String::from(*form)).collect::<Vec<_>>())
         ),
     };
@@ -153,8 +154,8 @@ pub fn signature(own: &Signature, name: &str) -> String {
         format!("; {:.0} % of it has a period of {:.0} s", 100.0 * line.share, line.frequency.recip())
     });
     format!(
-        "{name}: {}° rms is left; {:.0} % of it between {from:.0} and {to:.0} s; largest ({}°) at headings from {:.0}° to {:.0}°; \
-         rudder to port {}°, to starboard {}°{line}",
+        "{name}: residual {}° rms; {:.0} % of it between {from:.0} and {to:.0} s; largest ({}°) at headings from {:.0}° to {:.0}°; \
+         {}° with the rudder to port, {}° with it to starboard{line}",
         short(to_deg(own.all)),
         100.0 * share,
         short(to_deg(largest)),

@@ -169,7 +169,8 @@ impl Channel {
     pub(crate) fn spoken(self) -> &'static str {
         match self {
             Channel::YawRate => "yaw rate",
-            Channel::Rudder | Channel::RudderOrder => "rudder angle",
+            Channel::Rudder => "rudder angle",
+            Channel::RudderOrder => "rudder order",
             other => other.quantity(),
         }
     }

@@ -50,7 +50,7 @@ pub fn caution(Particulars { length, speed }: Particulars) -> Option<String> {
         format!(
             "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length), and limits of \
              the 10/10 zig-zag follow L/V, which grows with the square root of the length, here {length:.2} m at \
-             {speed:.2} m/s; for those of the ship of a model give study predict her --length-m and --speed-kn"
+             {speed:.2} m/s; for the full-scale ship of a model run `study predict` with her --length-m and --speed-kn"
         )
     })
 }

@@ -384,8 +384,8 @@ fn gaps(trial: &Trial, warnings: &mut Vec<String>) {
     if count > 0 {
         let (begin, step) = longest;
         let under_way = match moved {
-            0 => "",
-            _ => "; the rudder moved in one, nobody knows when, and K and T suffer",
+            0 => String::new(),
+            _ => format!("; in {moved} of them the rudder moved at an unknown time, which makes K and T wrong"),
         };
         warnings.push(format!(
             "{count} {} longer than ten sampling periods ({period:.3} s); the longest, {step:.1} s, begins at {begin:.1} s{under_way}",

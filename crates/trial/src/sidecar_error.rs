@@ -37,7 +37,7 @@ pub enum SidecarProblem {
     )]
     UnknownQuantity { found: String },
     /// A column that is not pointed at, or twice.
-    #[error("a [[column]] needs either `index` (from 1) or `name`, this one has {found}; keep one")]
+    #[error("a [[column]] needs either `index` (from 1) or `name`, and this one has {found}")]
     Which { found: &'static str },
     /// A column that says nothing.
     #[error("this [[column]] says nothing; add `is`, `flip = true` or `ignore = true`")]

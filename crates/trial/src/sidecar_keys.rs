@@ -93,8 +93,7 @@ pub(crate) struct ColumnKeys {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct RudderKeys {
-    /// How much later than it was there the rudder is read on the clock of the record; below zero where it is read
-    /// early. (s)
+    /// How late the rudder was logged, on the clock of the record; below zero: early. (s)
     pub late_s: Option<f64>,
     /// The column is the order, and the rudder follows it at this rate; 2 to 7 are usual. (deg/s)
     pub order_rate_deg_s: Option<f64>,

@@ -192,8 +192,8 @@ cargo run --release -p kempf-tests --bin measured -- results/published/measured
 
 A line is one analysis: `study trace` of one record, or of some together, with all others of its set held out; where all are fitted
 together, each is left out in turn, and where there is one zig-zag, a turning circle is held out. *heading*: error of the recorded
-rudder replayed over the whole record, before (the best first-order base) and after (the average of the structures). *windows*: the
-same restarted every 20 and 60 s. On held-out records only initial states are fitted; errors of several records are root mean squares
+rudder replayed over the whole record, before (the best first-order base) and after (the average of structures and hulls). *windows*: the same
+restarted every 20 and 60 s. On held-out records only initial states are fitted, and measured speed and sway are known; errors of several records are root mean squares
 over them, as the ratio after over before. *prior*: the hull is fitted about what `study trace` of the records named left, with
 `--prior`. *band*: share of the measured headings of the held-out records inside the 95 % band, and
 mean width of the band. Effects are named with their probability, the most probable first; *or* stands before those that the records

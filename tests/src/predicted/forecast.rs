@@ -243,7 +243,7 @@ impl Forecasts {
         self.add(ForecastGroup::MarinOfAll, &all, &full_scale)?;
         let pair = TracedShip::of(&read(marin, marin.pools[0], scratch)?)?;
         self.add(ForecastGroup::Marin, &pair, &full_scale)?;
-        let title = || String::from("KVLCC2 at full scale, from HSVA's zig-zags");
+        let title = || String::from("KVLCC2 in full-scale values, from HSVA's zig-zags");
         self.tracks.extend(track(title(), &[&all], &circles[0].1)?);
         self.steady.push(steady(title(), &[&all], &circles, &self.figures)?);
         Ok(())
@@ -260,7 +260,7 @@ impl Forecasts {
             self.add(ForecastGroup::EssoOsaka, ship, &trials)?;
         }
         let alike: Vec<&TracedShip> = ships.iter().collect();
-        let title = || String::from("Esso Osaka, 3 m, from each of five zig-zags");
+        let title = || String::from("Esso Osaka, 3 m, each curve from one zig-zag");
         self.tracks.extend(track(title(), &alike, &circles[2].1)?);
         self.steady.push(steady(title(), &alike, &circles, &self.figures)?);
         Ok(())

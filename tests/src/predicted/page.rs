@@ -111,7 +111,7 @@ fn reached(figures: &[ForecastFigure]) -> Table {
     let within: Vec<&&ForecastFigure> = rates.iter().filter(|own| own.error().abs() <= 10.0).collect();
     let circles: BTreeSet<&str> = rates.iter().map(|own| own.trial).collect();
     let models: BTreeSet<&str> = rates.iter().map(|own| own.fitted.as_str()).collect();
-    let counts = format!("{} circles, {} of five models", circles.len(), models.len());
+    let counts = format!("{} circles, models of {} zig-zags", circles.len(), models.len());
     let is = format!("{} of {} ({counts})", within.len(), rates.len());
     row("steady rates of Esso Osaka's circles within 10 %", is, within.len() == rates.len());
     table
@@ -124,7 +124,7 @@ fn signed(value: f64) -> String {
 fn in_per_cent(share: Option<Statistic>) -> String {
     share.map_or_else(
         || MISSING.to_owned(),
-        |own| format!("{} % {}", fixed(own.value, 0), interval(own.ci95.map(|ends| ends.map(f64::round)))),
+        |own| format!("{} % {}", fixed(own.value, 1), interval(own.ci95.map(|ends| ends.map(f64::round)))),
     )
 }
 

@@ -53,7 +53,8 @@ pub fn find(words: &[String], folder: &Path) -> Result<(), String> {
         }
     } else if !on_path(program) {
         return Err(format!(
-            "there is no program `{program}` on the PATH; install it, or write ./{program} for one beside the scenario"
+            "there is no program `{program}` on the PATH; install it, or write ./{program} for one in {}",
+            place.display()
         ));
     }
     let before = std::iter::once(program).chain(arguments);

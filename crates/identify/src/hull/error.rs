@@ -26,8 +26,8 @@ pub enum HullFitError {
     },
     /// Rows, or the ends of a record, that are farther apart than in any trial of a ship.
     #[error(
-        "{trial} has a row every {row:.3} ship lengths over {whole:.0} of them, and trials one every {COARSEST} over \
-         {LONGEST} at most; check the clock, length and speed"
+        "{trial} has a row every {row:.3} L/U over {whole:.0} L/U; expected at most {COARSEST} L/U and {LONGEST} L/U; check the \
+         clock, length and speed"
     )]
     Clock {
         /// Name of the record.
@@ -38,7 +38,7 @@ pub enum HullFitError {
         whole: f64,
     },
     /// A record begins near rest, which no prior of a hull is about.
-    #[error("{trial} begins at {share:.2} of the approach speed")]
+    #[error("{trial} begins at {share:.2} of the approach speed; begin it in steady approach")]
     GathersWay {
         /// Name of the record.
         trial: String,

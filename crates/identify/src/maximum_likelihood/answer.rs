@@ -184,7 +184,7 @@ fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
         };
         if !found.spikes.is_empty() {
             let (count, times) = (found.spikes.len(), times(&found.spikes));
-            warnings.push(format!("{name}: {count} headings stand alone and are left out, at t = {times} s"));
+            warnings.push(format!("{name}: headings far from those around are left out ({count}), at t = {times} s"));
         }
         if !found.jumps.is_empty() {
             let times = times(&found.jumps);
@@ -192,7 +192,7 @@ fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
         }
     }
     if chosen.too_many {
-        warnings.push("more than a tenth of the headings stand alone: none is left out, look at the compass".into());
+        warnings.push("more than a tenth of the headings are far from those around: none is left out; check the compass".into());
     }
     warnings
 }
@@ -250,7 +250,7 @@ fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<String> {
         let sd = to_deg(noise.heading_sd);
         parts.push(format!("a compass error of {sd:.3} deg with a correlation time of {time:.1} s"));
     }
-    (!parts.is_empty()).then(|| format!("{}: random is also {}", trial.name(), parts.join(" and ")))
+    (!parts.is_empty()).then(|| format!("{}: beside the white noise of the compass there is {}", trial.name(), parts.join(" and ")))
 }
 
 /// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial of known truth and known noise: the smallest covariance an

@@ -183,7 +183,7 @@ def predict(
     :param replay: records that are held against their prediction
     :param prior: what earlier trials left that are not in ``model``, as in :func:`kempf.fit`: its hulls are weighed
         together with them, widened
-    :param method: the method whose answer is used; maximum likelihood where it is left out
+    :param method: the method whose answer is used; that of the verdict of the fit where it is left out
     :param calm: whether the weather of the records is left out
     :param load: path of a file that describes another loading, as a sidecar does: hulls are taken to it by the formulas of
         the particulars

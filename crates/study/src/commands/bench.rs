@@ -13,6 +13,7 @@ use campaign::outside::keep_log;
 use clap::Args;
 use clap::builder::StringValueParser;
 use report::Theme;
+use report::number::counted;
 use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
 
@@ -99,7 +100,7 @@ pub fn measure(
     let results = campaign::benchmark::run(&definition, &store, &methods, observer, begin)?;
     if results.cases.is_empty() {
         let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
-        return Err(Failure::input(format!("there is nothing to ask:\n  {}", reasons.join("\n  "))));
+        return Err(Failure::input(format!("there is no question to ask:\n  {}\n--data names the folder with the measured records", reasons.join("\n  "))));
     }
     Ok(results)
 }
@@ -142,7 +143,7 @@ pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, commo
         true => String::new(),
         false => format!("\n{}", bench_tables::naming_totals(results).to_text()),
     };
-    let head = format!("{}: {} questions\n", results.definition.name, results.cases.len());
+    let head = format!("{}: {}\n", results.definition.name, counted(results.cases.len() as u64, "question"));
     let output = CommandOutput {
         words: [&head, &naming],
         table: &bench_tables::leaderboard(results),

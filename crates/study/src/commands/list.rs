@@ -158,7 +158,7 @@ fn columns() -> Table {
         "",
         &usual(&|said| matches!(said, ColumnMeaning::Latitude | ColumnMeaning::Longitude)),
     ]);
-    table.push(["no heading", "", &usual(&|said| said == ColumnMeaning::Course)]);
+    table.push(["course over ground, not used", "", &usual(&|said| said == ColumnMeaning::Course)]);
     table
 }
 

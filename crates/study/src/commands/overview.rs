@@ -44,7 +44,8 @@ pub fn run(OverviewRequest { folder }: &OverviewRequest, common: &Common) -> Res
     let target = ResultFolder::hold(common.out.as_deref().unwrap_or(folder))?;
     let path = write(&studies, &target)?;
     let answer = OverviewAnswer { page: path.display().to_string(), studies: &studies };
-    reply(common, &answer, &format!("{} studies: {}", studies.len(), path.display()))
+    let noun = if studies.len() == 1 { "study" } else { "studies" };
+    reply(common, &answer, &format!("{} {noun}: {}", studies.len(), path.display()))
 }
 
 /// Writes the page into a folder; returns its path.

@@ -17,6 +17,7 @@ use campaign::task::Shard;
 use campaign::{store, unfinished};
 use clap::Args;
 use report::Theme;
+use report::number::counted;
 use scenario::Scenario;
 use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
@@ -338,7 +339,7 @@ fn words(entry: &PublicationEntry) -> String {
     let mut add = |part: String| text.write_str(&part).expect("writing to a string does not fail");
     reason.iter().for_each(|why| add(format!(": {why}")));
     if !changed_files.is_empty() {
-        add(format!("; {} files changed", changed_files.len()));
+        add(format!("; {} changed", counted(changed_files.len() as u64, "file")));
     }
     if *figures > 0 {
         add(format!("; {} of {figures} figures moved beyond noise", moved.len()));

@@ -95,7 +95,7 @@ impl EarlierTrials {
             let ship = match own.likeness.as_str() {
                 "same-ship" => String::from("the same ship"),
                 "other-scale" => String::from("a ship of another length"),
-                _ => format!("a ship of another {}", own.differing.join(", ")),
+                _ => format!("a ship of other {}", own.differing.join(", ")),
             };
             format!("{} ({ship}, deviations × {})", own.file, own.factor)
         };
@@ -106,7 +106,7 @@ impl EarlierTrials {
             Some(nearest) => format!("the records agree with it ({})", nearest.numbers()),
         };
         let has_part = self.hulls.iter().any(|own| own.takes_part);
-        let no_part = if has_part { "" } else { "; it has no part in the answer, other hulls are nearer" };
+        let no_part = if has_part { "" } else { "; it is not used, other hulls fit better" };
         format!("prior: {models}; {found}{no_part}")
     }
 
@@ -114,7 +114,7 @@ impl EarlierTrials {
     pub fn warning(&self) -> Option<String> {
         self.conflict.then_some(())?;
         let files = self.models.iter().map(|own| own.file.as_str()).collect::<Vec<_>>().join(", ");
-        let cure = "make sure that it is the same ship in the same condition, or leave it out";
+        let cure = "make sure that it is the same ship in the same condition, or leave --prior out";
         let Some(nearest) = self.hulls.first() else { return Some(format!("--prior {files}: {NOT_NEAR}; {cure}")) };
         let moved = nearest.moved.iter().filter(|(_, shift)| shift.abs() >= MOVED).take(NAMED);
         let moved = moved.map(|(key, shift)| {

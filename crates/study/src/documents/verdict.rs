@@ -20,7 +20,7 @@ pub struct VerdictEntry {
     pub residual: Option<ResidualKind>,
     /// Root mean square of that residual, deg.
     pub residual_deg: Option<f64>,
-    /// The same with nine terms of a larger ship fitted to it, deg.
+    /// The same with nine more terms of a hull fitted to it, deg.
     pub with_ship_terms_deg: Option<f64>,
     /// Standard deviation of the noise of the heading, deg.
     pub noise_deg: Option<f64>,

@@ -98,7 +98,7 @@ fn boards(page: &mut Page, results: &BenchDocument) {
 fn counted(cases: usize, clusters: usize) -> String {
     let few = if clusters < FEWEST { ", too few for an interval" } else { "" };
     match cases == clusters {
-        true => format!("{cases} records{few}"),
+        true => format!("{}{few}", report::number::counted(cases as u64, "record")),
         false => format!("{cases} cases on {clusters} records{few}"),
     }
 }

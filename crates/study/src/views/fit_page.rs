@@ -117,23 +117,23 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
         None => String::new(),
         Some(ResidualKind::Noise) => String::from("\nThe residual of output error is noise of the heading."),
         Some(ResidualKind::LacksEffect) => format!(
-            "\nThe residual of output error, {residual}°, falls to {rest}° with the terms of a larger ship: the model lacks an \
-             effect, which `study trace` looks for."
+            "\nThe residual of output error, {residual}°, falls to {rest}° with more terms of a hull: the model lacks an effect, \
+             which `study trace` looks for."
         ),
         Some(ResidualKind::Random) => {
             format!(
-                "\nThe residual of output error, {residual}°, is random: terms of a larger ship leave {rest}° of it."
+                "\nThe residual of output error, {residual}°, is random: more terms of a hull leave {rest}° of it."
             )
         }
     };
     if let Some(delay) = verdict.rudder_delay_s {
         words += &match fixed(delay.abs(), 1) {
             late if delay < 0.0 => format!(
-                "\nMost of it goes with a rudder that was recorded about {late} s late: check the clocks, or write `late-s = {late}` \
+                "\nMost of the residual goes with a rudder that was recorded about {late} s late: check the clocks, or write `late-s = {late}` \
                  under [rudder] in the sidecar."
             ),
             later => format!(
-                "\nMost of it goes with a rudder that acts about {later} s later than it was recorded: a dead time or the second \
+                "\nMost of the residual goes with a rudder that acts about {later} s later than it was recorded: a dead time or the second \
                  order of the ship, a slow compass, or the order in place of the angle."
             ),
         };
@@ -154,8 +154,8 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let why = match verdict.reason {
         Reason::NearestReplay if has_moment => "a random moment explains part of the manoeuvre in it",
         Reason::NearestReplay => "look at both replays",
-        Reason::RandomMoment => "it takes the work of the random moment for that of the rudder",
-        Reason::RudderNoise => "it counts no noise of the rudder",
+        Reason::RandomMoment => "it takes what the random moment does for the work of the rudder",
+        Reason::RudderNoise => "it knows no noise of the rudder",
     };
     format!("\n{name} contradicts this answer: {why}.")
 }

@@ -61,7 +61,7 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
     let p_value = whiteness(std::slice::from_ref(&series)).p_value;
     let judged = match p_value < IMPROBABLE {
         true => format!("innovations are not white, p < {IMPROBABLE}"),
-        false => format!("innovations white with p = {}", significant(p_value, 2)),
+        false => format!("innovations, p = {} if they are white", significant(p_value, 2)),
     };
     let title = format!("{name}: {judged} (Ljung–Box, {} lags)", whiteness_lags(sorted.len()));
     let caption = format!(

@@ -49,9 +49,11 @@ fn of_panels(data: &mut Panels, about: &[String]) {
         }
         let own = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
         let all = distinct(stack.panels.iter().flat_map(own));
+        let is_of_intervals = stack.rows.iter().any(|row| row.y.title.contains("interval"));
+        let what = if is_of_intervals { "intervals" } else { "answers" };
         for panel in &stack.panels {
             let missing = all.iter().filter(|name| !own(panel).contains(name));
-            said.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few answers.")));
+            said.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {what}.")));
         }
     }
     let mut note = data.note.take().unwrap_or_default();

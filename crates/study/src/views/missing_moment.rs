@@ -98,7 +98,7 @@ pub fn sentence(entry: &MissingMomentEntry) -> String {
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");
     let telling = || entry.over.iter().filter(|panel| panel.shows && panel.variance_share.is_some());
     let Some(best) = telling().next() else {
-        return format!("{begin}; over no channel does its curve leave the band about zero.");
+        return format!("{begin}; it depends on no recorded channel.");
     };
     let list = |ids: &[String]| if ids.is_empty() { "no effect on the list".to_owned() } else { ids.join(", ") };
     let (over, share) = (&best.channel, percent(best.variance_share));
@@ -108,5 +108,5 @@ pub fn sentence(entry: &MissingMomentEntry) -> String {
         let _ =
             write!(text, "; inside the bands of all {count} channels that show something: {}", list(&entry.inside_all));
     }
-    text + if entry.unlisted { ". Unlisted, looks like this." } else { "." }
+    text + if entry.unlisted { ". No effect of the list has this shape." } else { "." }
 }

@@ -5,7 +5,7 @@ use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
 use report::Page;
 use report::markdown::text;
-use report::number::{fixed, with_uncertainty};
+use report::number::{counted, fixed, with_uncertainty};
 use ship::angle::to_deg;
 use ship::{Particulars, ShortNumber};
 use trial::{Manoeuvre, imo};
@@ -29,19 +29,19 @@ pub fn words(document: &PredictDocument) -> String {
         );
     } else if document.hull {
         words +=
-            "the ship is the hulls of three degrees of freedom that were fitted to the records, not the yaw response\n";
+            "predicted with the hulls of three degrees of freedom that were fitted to the records, not with the yaw response\n";
     }
     document.earlier_trials.iter().for_each(|said| words += &format!("{said}\n"));
     if document.manoeuvres.iter().any(Prediction::is_extrapolated) {
         words += &format!(
-            "extrapolated: beyond the rudder of {}° and the yaw rate of {}°/s of the records\n",
+            "extrapolated: beyond the rudder of {}° or the yaw rate of {}°/s of the records\n",
             fixed(to_deg(document.seen.rudder_rad), 1),
             fixed(to_deg(document.seen.yaw_rate_rad_s), 2)
         );
     }
     let turns = document.manoeuvres.iter().filter(|one| matches!(one.kind, Manoeuvre::TurningCircle { .. }));
     if turns.filter_map(|one| one.curves.most_probable.as_ref()).any(|passage| passage.track().is_none()) {
-        words += "no track: no hull is known of the ship; it takes her length, and records with a speed or positions\n";
+        words += "no track: the model has no hull; fit records with a speed or positions again, with the length of the ship\n";
     }
     if !document.ballast.is_empty() {
         words += &format!(
@@ -50,7 +50,8 @@ pub fn words(document: &PredictDocument) -> String {
         );
     }
     for prediction in document.manoeuvres.iter().filter(|prediction| prediction.lost > 0) {
-        words += &format!("{}: {} drawn ships do not come to its end\n", prediction.kind, prediction.lost);
+        let lost = counted(prediction.lost as u64, "drawn ship");
+        words += &format!("{}: not completed by {lost}\n", prediction.kind);
     }
     words
 }

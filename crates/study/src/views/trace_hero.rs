@@ -84,8 +84,8 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         column(fitted, error.identification.first()?, ['a', 'b'], "fitted"),
         column(held, &error.validation[number], ['c', 'd'], &of),
     ];
-    let caption = "Left: a record that was fitted. Right: one of which nothing but the initial state was fitted, with the \
-                   ratio nearest to that of all that were held out. Above the heading, below what the models leave of it: the best \
-                   first-order response, and the same with the effects that were found and its 95 % band.";
+    let caption = "(a), (b): a record that was fitted. (c), (d): one of which nothing but the initial state was fitted, with the \
+                   ratio nearest to that of all that were held out. (a), (c): the heading with the best first-order response, and \
+                   with the effects that were found and the 95 % band. (b), (d): the residuals of both.";
     Some(PageFigure::new("hero", caption, Panels { title: Some(title(document)), stacks, ..Panels::default() }))
 }

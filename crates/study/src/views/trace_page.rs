@@ -71,11 +71,11 @@ fn odd(document: &TraceDocument) -> String {
         hull.coefficients.iter().max_by(|one, other| one.departure().abs().total_cmp(&other.departure().abs()));
     let told = farthest.filter(|own| own.departure().abs() >= ODD).map(|own| {
         let means = meaning(&own.key).map_or_else(String::new, |means| format!(" ({means})"));
-        format!("{} is {} sd from what was expected{means}", own.symbol, fixed(own.departure(), 1))
+        format!("{} is {} sd from its prior{means}", own.symbol, fixed(own.departure(), 1))
     });
-    let what = told.unwrap_or_else(|| format!("no coefficient is more than {ODD} sd from what was expected"));
+    let what = told.unwrap_or_else(|| format!("no coefficient is more than {ODD} sd from its prior"));
     let forms: Vec<&str> = hulls.iter().map(|hull| hull.form.as_str()).collect();
-    format!("\nhull ({}): of {}, {what}", forms.join(", "), hull.form)
+    format!("\nhulls fitted: {}; of {}, {what}", forms.join(", "), hull.form)
 }
 
 /// The noise in one sentence.
@@ -100,7 +100,8 @@ fn outliers(document: &TraceDocument) -> Vec<String> {
     let of = |(file, times): (&String, &Vec<f64>)| {
         let mut shown: Vec<String> = times.iter().take(LISTED).map(|t| ShortNumber(*t).to_string()).collect();
         shown.extend((times.len() > LISTED).then(|| String::from("…")));
-        format!("{file}: {} headings stand alone and are left out, at t = {} s", times.len(), shown.join(", "))
+        let (count, shown) = (times.len(), shown.join(", "));
+        format!("{file}: headings far from those around are left out ({count}), at t = {shown} s")
     };
     spoilt.map(|own| of((&own.file, &own.outliers_s))).collect()
 }

@@ -217,12 +217,12 @@ pub fn coloured(own: &RecordNoiseEntry) -> Vec<String> {
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
     let size = two(own.moment_sd_rudder_deg);
     let moment = match own.moment.as_str() {
-        "white" => Some(format!("a white yaw moment of {size}° of rudder in the mean of a second")),
+        "white" => Some(format!("a white yaw moment of {size}° of rudder averaged over 1 s")),
         "ornstein-uhlenbeck" => {
             let time = two(own.moment_correlation_s);
             Some(format!("gusts of {size}° of rudder that last about {time} s"))
         }
-        "walk" => Some(format!("a yaw moment that wanders by {size}° of rudder in a second")),
+        "walk" => Some(format!("a yaw moment that walks by {size}°/√s of rudder")),
         _ => None,
     };
     let heading = own.heading_wander_sd_deg.map(|sd| {

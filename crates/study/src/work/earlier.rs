@@ -76,7 +76,7 @@ pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
 fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a str>) -> Result<(), Failure> {
     for EarlierModel { file: model, records, .. } in models {
         if let Some((file, other)) = records.iter().find_map(|(own, file)| Some((file, seen.get(own.as_str())?))) {
-            let what = format!("{file} is in it and in {other}, and a record counts only once; leave one of them out");
+            let what = format!("{file} is in this model and in {other}, and a record counts only once; leave one of them out");
             return Err(Failure::about(model, what));
         }
         seen.extend(records.keys().map(|own| (own.as_str(), model.as_str())));
@@ -108,7 +108,7 @@ fn warn_of_other_speed(models: &[EarlierModel], ship: &HullParticulars, warnings
             let [one, other] = [own, *ship].map(|ship| fixed(ship.froude_number(), 3));
             warnings.push(format!(
                 "--prior {}: its ship sailed at a Froude number of {one}, that of the records at {other}; coefficients change with \
-                 it, so prefer trials of about the same",
+                 the Froude number, so prefer trials near it",
                 model.file
             ));
         }
@@ -136,7 +136,7 @@ pub fn with_earlier(
         checks.extend(check.map(|check| (own.form.as_str(), check)));
     }
     if checks.is_empty() {
-        let what = "it has no hull that --prior could tell of; fit its records again with length and speed of the ship, or leave \
+        let what = "it has no hull that --prior could change; fit its records again with length and speed of the ship, or leave \
                     --prior out";
         return Err(Failure::about(shown, what));
     }

@@ -157,8 +157,8 @@ fn of_record(trial: &Trial, warnings: &mut Vec<String>) -> TrialEntry {
     let zigzag = ZigZag::of(trial);
     if zigzag.as_ref().is_ok_and(|zigzag| zigzag.begins_at_reversal) {
         warnings.push(format!(
-            "{}: the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier, with \
-             --from",
+            "{}: the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier if \
+             the log does",
             file_of(trial).0
         ));
     }

@@ -16,8 +16,8 @@ use trial::{Sidecar, file};
 const FORM: &str = "mmg";
 
 /// What is said where no hull of this form is among those of a ship.
-pub const AGAINST_FORM: &str = "the records speak against a hull of the form mmg: it leaves more than three times what \
-                                another leaves of their headings, or cannot be replayed over them";
+pub const AGAINST_FORM: &str = "a hull of the form mmg does not fit the records: its heading error is more than three \
+                                times that of another hull, or it cannot be replayed over them";
 
 /// Whether records speak against a hull of this form: where one is fitted, all are.
 pub fn speak_against_form(hulls: &[StoredHull]) -> bool {
@@ -123,8 +123,8 @@ impl DescribedLoading {
         }
         let differing = to.differing(own);
         let cure = match () {
-            () if !to.has_length_of(own) => "length-m is another; give it at the scale of that model",
-            () if differing.contains(&"beam-m") => "beam-m is another; give a loading of the same ship",
+            () if !to.has_length_of(own) => "length-m differs; give it at the scale of that model",
+            () if differing.contains(&"beam-m") => "beam-m differs; give a loading of the same ship",
             () if differing.is_empty() => "all is within 2 % of it; leave --load out, or give another draught-m",
             () => return completed(&to).map_err(|error| self.out_of_the_water(&to, error)),
         };

@@ -82,7 +82,7 @@ impl StoredModel {
         // A trace has one answer.
         let asked = asked.filter(|_| !ships.contains_key(TRACE));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
-        if asked.is_none() && method != TRACE {
+        if asked.is_none() && ships.len() > 1 {
             warnings.push(format!("{shown}: the answer of {method} is used; --method names another"));
         }
         let known = ships.remove(&method).expect("it was found there");
@@ -342,7 +342,7 @@ fn method(file: &str, ships: &BTreeMap<String, IdentifiedShip>, asked: Option<&s
     let known: Vec<&str> = ships.keys().map(String::as_str).collect();
     if known.is_empty() {
         let what = "no method has a covariance for this record, so there are no intervals to predict";
-        return Err(Failure::about(file, format!("{what}; use a longer record or several")));
+        return Err(Failure::about(file, format!("{what}; fit again with --method output-error, or with a longer record or several")));
     }
     match asked {
         Some(asked) if known.contains(&asked) => Ok(asked.to_owned()),

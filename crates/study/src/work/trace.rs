@@ -65,7 +65,7 @@ impl Watcher for TraceWatch {
     fn begin_folds(&self, count: usize) {
         self.busy.finish_and_clear();
         let threads = rayon::current_num_threads();
-        self.steps.get_or_init(|| ProgressSteps::new("records as if held out", count as u64, 0, threads, self.quiet));
+        self.steps.get_or_init(|| ProgressSteps::new("records left out in turn", count as u64, 0, threads, self.quiet));
         interrupt::listen(true);
     }
 
@@ -79,7 +79,7 @@ impl Watcher for TraceWatch {
 }
 
 /// What is said where a person did not wait for the checks.
-pub const STOPPED: &str = "stopped before every record was looked at as if it had been held out; all else is there";
+pub const STOPPED: &str = "stopped before every record had been left out in turn; all other results are there";
 
 /// Analyses the records together; `others` are held out. The hull is fitted about what `priors` left.
 ///
@@ -166,8 +166,8 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
         TraceError::Base(_) | TraceError::Replay { .. } => {
             "; the record cannot be traced because no base model fits it"
         }
-        TraceError::Asked { .. } => "; leave it out of the request",
-        TraceError::Settings(_) => "",
+        TraceError::Asked { .. } => "; leave it out of --with and --only",
+        TraceError::Settings(error) => return Failure::input(error),
     };
     Failure::about(file_of(first).0, format!("{error}{why}"))
 }

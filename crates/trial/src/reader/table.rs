@@ -105,7 +105,7 @@ impl Rows<'_> {
         let mut log = Log { columns, clock, rows: self.counts.rows, ..Log::default() };
         let decided = units::settle(&mut log, open, open_time, line)?;
         if passed > 0 {
-            log.warnings.push(format!("{passed} lines before the header passed over"));
+            log.warnings.push(format!("{} before the header passed over", counted(passed, "line")));
         }
         if !understood.is_empty() {
             log.warnings.push(format!("columns understood by their names: {}", listed(&understood)));
@@ -171,11 +171,11 @@ impl Rows<'_> {
         let astray = format!("left out because the time does not fit the rows around, the first has {first} s");
         count(counts.astray.len(), &astray);
         if counts.decimal_commas > 0 {
-            warnings.push(format!("{} numbers were read with a decimal comma", counts.decimal_commas));
+            warnings.push(format!("{} read with a decimal comma", counted(counts.decimal_commas, "number")));
         }
         let columns = || self.layout.columns.iter().map(|column| (shortened(&column.name), column));
         for (name, RawColumn { text, .. }) in columns().filter(|(_, column)| column.text > 0) {
-            warnings.push(format!("the column `{name}` holds text in {text} rows, taken as missing"));
+            warnings.push(format!("the column `{name}` holds text in {}, taken as missing", counted(*text, "row")));
         }
         for (name, RawColumn { sentinels: (count, value), .. }) in
             columns().filter(|(_, column)| column.sentinels.0 > 0)
