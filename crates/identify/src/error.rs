@@ -93,8 +93,10 @@ pub enum IdentifyError {
         sd: f64,
     },
     /// The answer is not a ship: K/T ≤ 0 or not finite.
-    #[error("the answer is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²; expected K/T above 0; check the signs and \
-         units of rudder and heading")]
+    #[error(
+        "the answer is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²; expected K/T above 0; check the signs and \
+         units of rudder and heading"
+    )]
     NotAShip {
         /// 1/T, 1/s.
         inverse_time: f64,

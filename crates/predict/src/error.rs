@@ -44,8 +44,10 @@ pub enum PredictError {
     #[error("there is no model to predict from")]
     Empty,
     /// A ship of unknown length or speed cannot be scaled.
-    #[error("length and speed of the ship are not known, so she cannot be scaled; give them to fit or trace, or here --speed-kn beside \
-         --length-m where the model is of that scale")]
+    #[error(
+        "length and speed of the ship are not known, so she cannot be scaled; give them to fit or trace, or here --speed-kn beside \
+         --length-m where the model is of that scale"
+    )]
     NoParticulars,
     /// A constant of a formula has no unit that could be scaled.
     #[error(

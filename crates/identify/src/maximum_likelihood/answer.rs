@@ -192,7 +192,9 @@ fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
         }
     }
     if chosen.too_many {
-        warnings.push("more than a tenth of the headings are far from those around: none is left out; check the compass".into());
+        warnings.push(
+            "more than a tenth of the headings are far from those around: none is left out; check the compass".into(),
+        );
     }
     warnings
 }
@@ -250,7 +252,8 @@ fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<String> {
         let sd = to_deg(noise.heading_sd);
         parts.push(format!("a compass error of {sd:.3} deg with a correlation time of {time:.1} s"));
     }
-    (!parts.is_empty()).then(|| format!("{}: beside the white noise of the compass there is {}", trial.name(), parts.join(" and ")))
+    (!parts.is_empty())
+        .then(|| format!("{}: beside the white noise of the compass there is {}", trial.name(), parts.join(" and ")))
 }
 
 /// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial of known truth and known noise: the smallest covariance an

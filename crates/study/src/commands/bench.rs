@@ -100,7 +100,10 @@ pub fn measure(
     let results = campaign::benchmark::run(&definition, &store, &methods, observer, begin)?;
     if results.cases.is_empty() {
         let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
-        return Err(Failure::input(format!("there is no question to ask:\n  {}\n--data names the folder with the measured records", reasons.join("\n  "))));
+        return Err(Failure::input(format!(
+            "there is no question to ask:\n  {}\n--data names the folder with the measured records",
+            reasons.join("\n  ")
+        )));
     }
     Ok(results)
 }

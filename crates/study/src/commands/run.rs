@@ -28,6 +28,9 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
         return publish(&stored, &folder, (&theme, request.style.figures), common);
     }
     let place = folder.path().display().to_string();
-    let line = format!("shard {shard} of {} is in {place}; `study merge DIR… --out DIR` joins all {}", scenario.name, shard.of);
+    let line = format!(
+        "shard {shard} of {} is in {place}; `study merge DIR… --out DIR` joins all {}",
+        scenario.name, shard.of
+    );
     reply(common, &ShardAnswer { folder: place, manifest: &stored.manifest }, &line)
 }

@@ -121,9 +121,7 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
              which `study trace` looks for."
         ),
         Some(ResidualKind::Random) => {
-            format!(
-                "\nThe residual of output error, {residual}°, is random: more terms of a hull leave {rest}° of it."
-            )
+            format!("\nThe residual of output error, {residual}°, is random: more terms of a hull leave {rest}° of it.")
         }
     };
     if let Some(delay) = verdict.rudder_delay_s {

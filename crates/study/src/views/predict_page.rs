@@ -28,8 +28,7 @@ pub fn words(document: &PredictDocument) -> String {
             ShortNumber(*draught_m)
         );
     } else if document.hull {
-        words +=
-            "predicted with the hulls of three degrees of freedom that were fitted to the records, not with the yaw response\n";
+        words += "predicted with the fitted hulls of three degrees of freedom, not with the yaw response\n";
     }
     document.earlier_trials.iter().for_each(|said| words += &format!("{said}\n"));
     if document.manoeuvres.iter().any(Prediction::is_extrapolated) {

@@ -76,7 +76,8 @@ pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
 fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a str>) -> Result<(), Failure> {
     for EarlierModel { file: model, records, .. } in models {
         if let Some((file, other)) = records.iter().find_map(|(own, file)| Some((file, seen.get(own.as_str())?))) {
-            let what = format!("{file} is in this model and in {other}, and a record counts only once; leave one of them out");
+            let what =
+                format!("{file} is in this model and in {other}, and a record counts only once; leave one of them out");
             return Err(Failure::about(model, what));
         }
         seen.extend(records.keys().map(|own| (own.as_str(), model.as_str())));

@@ -342,7 +342,10 @@ fn method(file: &str, ships: &BTreeMap<String, IdentifiedShip>, asked: Option<&s
     let known: Vec<&str> = ships.keys().map(String::as_str).collect();
     if known.is_empty() {
         let what = "no method has a covariance for this record, so there are no intervals to predict";
-        return Err(Failure::about(file, format!("{what}; fit again with --method output-error, or with a longer record or several")));
+        return Err(Failure::about(
+            file,
+            format!("{what}; fit again with --method output-error, or with a longer record or several"),
+        ));
     }
     match asked {
         Some(asked) if known.contains(&asked) => Ok(asked.to_owned()),
