@@ -2,12 +2,12 @@
 //! brackets, say what the value may be. The JSON schema and the list of keys are made of them.
 
 use std::borrow::Cow;
-use std::fmt;
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error as _, MapAccess, Visitor};
+use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value, json};
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
@@ -112,6 +112,7 @@ static SHIP_KEYS: LazyLock<Vec<&str>> =
     LazyLock::new(|| PARTICULARS.iter().map(|particular| particular.key).chain([SPEED_KN]).collect());
 
 /// A key that is one of them, refused where it stands otherwise.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct ShipKey(String);
 
 impl<'de> Deserialize<'de> for ShipKey {
@@ -126,26 +127,14 @@ impl<'de> Deserialize<'de> for ShipKey {
 
 impl<'de> Deserialize<'de> for ShipKeys {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ShipTable;
-        impl<'de> Visitor<'de> for ShipTable {
-            type Value = ShipKeys;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a table with particulars of the ship")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<ShipKeys, A::Error> {
-                let mut keys = ShipKeys::default();
-                while let Some((ShipKey(key), value)) = map.next_entry::<ShipKey, f64>()? {
-                    match Particular::named(&key) {
-                        Some(particular) => particular.set(&mut keys.hull, value),
-                        None => keys.speed_kn = Some(value),
-                    }
-                }
-                Ok(keys)
+        let mut keys = Self::default();
+        for (ShipKey(key), value) in BTreeMap::<ShipKey, f64>::deserialize(deserializer)? {
+            match Particular::named(&key) {
+                Some(particular) => particular.set(&mut keys.hull, value),
+                None => keys.speed_kn = Some(value),
             }
         }
-        deserializer.deserialize_map(ShipTable)
+        Ok(keys)
     }
 }
 

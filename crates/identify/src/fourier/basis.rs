@@ -178,11 +178,6 @@ impl Basis {
         Ok(Nested::new(time, fundamental, harmonics)?.basis(harmonics))
     }
 
-    /// Fundamental w, rad/s.
-    pub fn fundamental(&self) -> f64 {
-        self.series.fundamental
-    }
-
     /// Number of harmonics N.
     pub fn harmonics(&self) -> usize {
         self.harmonics

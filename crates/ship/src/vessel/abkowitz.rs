@@ -92,11 +92,6 @@ impl Abkowitz {
         Self { particulars, derivatives }
     }
 
-    /// The derivatives as printed by the source.
-    pub fn derivatives(&self) -> &Derivatives {
-        &self.derivatives
-    }
-
     /// The linear part of sway and yaw, rudder positive to starboard.
     pub fn linearised(&self) -> PrimeSwayYaw {
         let p = &self.derivatives;

@@ -1,16 +1,13 @@
 //! `study find`: the manoeuvres inside long logs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use report::Table;
 use report::number::{MISSING, fixed, optional};
-use ship::angle::to_deg;
-use trial::Log;
 use trial::file::called;
-use trial::find::FoundManoeuvre;
 
 use crate::documents;
-use crate::documents::find::{FindAnswer, LogEntry};
+use crate::documents::find::{FindAnswer, LogEntry, ManoeuvreEntry};
 use crate::options::{Common, FindRequest, Format};
 use crate::records::{expand, manoeuvres, open};
 use crate::screen;
@@ -31,11 +28,13 @@ fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
 ///
 /// Fails when a log cannot be read.
 pub fn found(request: &FindRequest, warnings: &mut Vec<String>) -> Result<FindAnswer, Failure> {
-    let one = |file: PathBuf| {
-        let log = open(&file, request.columns.as_deref(), &request.with_columns, warnings)?;
-        Ok(LogEntry::of(called(&file), &log, &manoeuvres(&log)))
-    };
-    Ok(FindAnswer { logs: files(request)?.into_iter().map(one).collect::<Result<_, Failure>>()? })
+    let one = |file: &PathBuf| entry(file, request, warnings);
+    Ok(FindAnswer { logs: files(request)?.iter().map(one).collect::<Result<_, Failure>>()? })
+}
+
+fn entry(file: &Path, request: &FindRequest, warnings: &mut Vec<String>) -> Result<LogEntry, Failure> {
+    let log = open(file, request.columns.as_deref(), &request.with_columns, warnings)?;
+    Ok(LogEntry::of(called(file), &log, &manoeuvres(&log)))
 }
 
 /// Prints the manoeuvres of every log.
@@ -48,54 +47,45 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         screen::warn_of(common, &warnings);
         return Ok(());
     }
-    let files = files(request)?;
-    for file in &files {
-        let log = open(file, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
-        let file = called(file);
-        let found = manoeuvres(&log);
+    for file in &files(request)? {
+        let LogEntry { file, rows, duration_s, date, manoeuvres } = entry(file, request, &mut warnings)?;
         if common.is_silent() {
             continue;
         }
-        let table = common.format.render(&table(&log, &found));
+        let table = common.format.render(&table(&manoeuvres));
         if common.format != Format::Text {
             screen::say(table.trim_end())?;
             continue;
         }
-        let time = log.time();
-        let duration = time.last().zip(time.first()).map_or(0.0, |(last, first)| last - first);
-        let day = log.clock().and_then(|clock| clock.date_at(time[0])).map(|day| format!(", {day}"));
-        let head =
-            format!("{}: {} rows, {} s{}", file.display(), time.len(), fixed(duration, 1), day.unwrap_or_default());
-        if found.is_empty() {
+        let day = date.map_or_else(String::new, |day| format!(", {day}"));
+        let head = format!("{file}: {rows} rows, {} s{day}", fixed(duration_s, 1));
+        if manoeuvres.is_empty() {
             screen::say(&format!("{head}\nno manoeuvre found\n"))?;
             continue;
         }
-        let remarked = (1..).zip(&found).filter(|(_, one)| !one.quality.remarks().is_empty());
-        let remarks = remarked.map(|(number, one)| format!("{number}: {}\n", one.quality.remarks().join(" ")));
-        let remarks: String = remarks.collect();
+        let remarked = manoeuvres.iter().filter(|one| !one.remarks.is_empty());
+        let remarks: String = remarked.map(|one| format!("{}: {}\n", one.trial, one.remarks.join(" "))).collect();
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
     screen::warn_of(common, &warnings);
     Ok(())
 }
 
-fn table(log: &Log, found: &[FoundManoeuvre]) -> Table {
+fn table(found: &[ManoeuvreEntry]) -> Table {
     let mut table = Table::headed(
         ".--trial | manoeuvre | .from [s] | .until [s] | clock | .executes | .rudder [deg] | .heading [deg]",
     );
-    for (number, one) in (1..).zip(found) {
-        let clock = log.clock().map(|clock| format!("{} to {}", clock.at(one.from), clock.at(one.until)));
-        let missing = || MISSING.to_owned();
-        let [rudder, heading] = one.angles().map(|angle| optional(angle.map(to_deg), 1));
+    for one in found {
+        let clock = one.clock.as_ref().map(|[from, until]| format!("{from} to {until}"));
         table.push([
-            number.to_string(),
-            one.name(),
-            fixed(one.from, 1),
-            fixed(one.until, 1),
-            clock.unwrap_or_else(missing),
+            one.trial.to_string(),
+            one.kind.clone(),
+            fixed(one.from_s, 1),
+            fixed(one.until_s, 1),
+            clock.unwrap_or_else(|| MISSING.to_owned()),
             one.executes.to_string(),
-            rudder,
-            heading,
+            optional(one.rudder_deg, 1),
+            optional(one.heading_deg, 1),
         ]);
     }
     table

@@ -8,8 +8,7 @@ use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
 use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, SOLID};
 use report::{PageFigure, PlotCurve};
-use statrs::distribution::{ContinuousCDF, Normal};
-use statrs::function::beta::beta_reg;
+use statrs::distribution::{Beta, ContinuousCDF, Normal};
 
 /// Fewest innovations that are judged.
 const FEWEST: usize = 8;
@@ -18,23 +17,14 @@ const FEWEST: usize = 8;
 const PLACES: usize = 150;
 const ENDS: usize = 20;
 
-/// Probability that the i-th smallest of n uniform numbers is below x: that of a beta distribution of i and n + 1 − i
-/// (David and Nagaraja 2003, 2.1).
-fn below(rank: usize, count: usize, x: f64) -> f64 {
-    if x <= 0.0 || x >= 1.0 { x.clamp(0.0, 1.0) } else { beta_reg(rank as f64, (count + 1 - rank) as f64, x) }
+/// Distribution of the i-th smallest of n uniform numbers (David and Nagaraja 2003, 2.1).
+fn ordered(rank: usize, count: usize) -> Beta {
+    Beta::new(rank as f64, (count + 1 - rank) as f64).expect("a rank is from 1 to the count")
 }
 
 /// Quantile of the i-th smallest of n standard normal numbers.
 fn order_quantile(rank: usize, count: usize, probability: f64) -> f64 {
-    let (mut low, mut high) = (-9.0, 9.0);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        match below(rank, count, Normal::standard().cdf(middle)) < probability {
-            true => low = middle,
-            false => high = middle,
-        }
-    }
-    0.5 * (low + high)
+    Normal::standard().inverse_cdf(ordered(rank, count).inverse_cdf(probability))
 }
 
 /// Where the i-th smallest of n normal numbers is expected (Blom 1958).
@@ -77,7 +67,7 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
 fn quantiles(sorted: &[f64]) -> Stack {
     let count = sorted.len();
     let outside = (1..=count)
-        .filter(|&rank| !(0.025..=0.975).contains(&below(rank, count, Normal::standard().cdf(sorted[rank - 1]))))
+        .filter(|&rank| !(0.025..=0.975).contains(&ordered(rank, count).cdf(Normal::standard().cdf(sorted[rank - 1]))))
         .count();
     let ranks = ranks(count);
     let across: Vec<f64> = ranks.iter().map(|&rank| expected(rank, count)).collect();

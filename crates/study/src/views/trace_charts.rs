@@ -114,10 +114,25 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
         return None;
     }
     let look = CurveOrigin::Method(TRACE.to_owned()).look();
-    let row = |(_, own): &(usize, Vec<&TraceSummary>)| {
-        let [wrong, trials] = [|line: &&TraceSummary| line.wrong, |line: &&TraceSummary| line.trials]
-            .map(|count| own.iter().map(count).sum::<u64>());
-        let share = share(wrong, trials)?.times(100.0);
+    let counted = |(method, own): &(usize, Vec<&TraceSummary>)| {
+        let counts = [|line: &&TraceSummary| line.wrong, |line: &&TraceSummary| line.trials];
+        (design.methods[*method].label.as_str(), counts.map(|count| own.iter().map(count).sum::<u64>()))
+    };
+    let mut rules: Vec<(&str, [u64; 2])> = rules.iter().map(counted).collect();
+    // Rules that differ nowhere share the rows of what stands behind the comma of their labels.
+    let parts = rules.iter().filter_map(|(label, counts)| Some((label.split_once(", ")?, *counts)));
+    let variants = grouped(parts, |((_, variant), _)| *variant);
+    let kinds = distinct(variants.iter().flat_map(|(_, own)| own.iter().map(|((kind, _), _)| *kind)));
+    let is_same = |(_, own): &(&str, Vec<((&str, &str), [u64; 2])>)| {
+        own.len() == kinds.len() && own.iter().all(|(_, counts)| *counts == own[0].1)
+    };
+    let mut note = String::from("Nothing is missing in any trial. Bars: 95 % intervals.");
+    if kinds.len() > 1 && variants.iter().all(is_same) {
+        rules = variants.iter().map(|(variant, own)| (*variant, own[0].1)).collect();
+        note += &format!(" The same for the rules {}.", kinds.join(", "));
+    }
+    let row = |(_, [wrong, trials]): &(&str, [u64; 2])| {
+        let share = share(*wrong, *trials)?.times(100.0);
         let text = share.ci95.map(|[_, upper]| format!("{wrong} of {trials}: up to {upper:.0} %"));
         Some(vec![RowItem { text, ..RowItem::new("", RowKind::Mark(look, share.value, share.ci95)) }])
     };
@@ -129,9 +144,9 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
         ..RowsColumn::default()
     };
     Some(NamedRows {
-        names: rules.iter().map(|(method, _)| design.methods[*method].label.clone()).collect(),
+        names: rules.iter().map(|(label, _)| (*label).to_owned()).collect(),
         columns: vec![column],
-        note: Some(String::from("Nothing is missing in any trial. Bars: 95 % intervals.")),
+        note: Some(note),
         ..NamedRows::default()
     })
 }
@@ -328,6 +343,12 @@ mod tests {
         let clean = false_names(&design, &[line(0, &[], 2, 0), line(1, &[], 1, 1)]).expect("two rules");
         let text = |row: usize| clean.columns[0].rows[row][0].text.as_deref();
         assert_eq!((text(0), text(1)), (Some("0 of 2: up to 66 %"), Some("1 of 2: up to 91 %")));
+        // Rules that differ nowhere have one row for each variant.
+        let labels = ["bic, long", "posterior, long", "bic, short", "posterior, short"];
+        let design = Design { methods: labels.map(name).into(), ..Design::default() };
+        let lines: Vec<TraceSummary> = (0..4).map(|method| line(method, &[], 1, u64::from(method < 2))).collect();
+        let clean = false_names(&design, &lines).expect("four rules");
+        assert_eq!((&clean.names[..], clean.columns[0].rows.len()), (&[String::from("long"), "short".into()][..], 2));
     }
 
     /// Few kinds of trial by their names, many by ranges; nothing where every effect is always named, or none is there.
