@@ -49,7 +49,6 @@ fn refused(text: &str, line: usize, parts: &[&str]) {
 #[test]
 fn a_misspelt_key_is_shown_with_the_one_that_was_meant() {
     for (from, to, line, meant) in [
-        ("replicates", "replicate", 3, "`replicates`"),
         ("rudder-deg", "ruder-deg", 8, "`rudder-deg`"),
         ("rate-deg-s", "rate-deg", 12, "`rate-deg-s`"),
         ("sampling-s", "sampling", 15, "`sampling-s`"),
@@ -66,6 +65,7 @@ fn a_misspelt_key_is_shown_with_the_one_that_was_meant() {
     ] {
         refused(&changed(from, to), line, &["no such key here", "did you mean", meant]);
     }
+    refused(&changed("replicates", "replicate"), 3, &["a scenario has no key `replicate`", "`replicates`"]);
     let sweep = |text: &str| format!("{GOOD}[[sweep]]\n{text}\n");
     refused(&sweep("ky = \"sensor.heading-noise-deg\""), 28, &["`key`"]);
     refused(&sweep("points = [{ lable = \"a\", set = {} }]"), 28, &["`lable`", "`label`"]);
@@ -80,6 +80,8 @@ fn an_unknown_name_is_shown_with_the_known_ones() {
     refused(&effect, 20, &["no effect is called `rudder_dedband`", "`rudder_deadband`"]);
     let side = changed("heading-deg = 20.0", "heading-deg = 20.0\nfirst = \"left\"");
     refused(&side, 10, &["is the text \"left\"", "`starboard`"]);
+    let order = changed("output-error = {}", "fourier-projected.harmonics.fixd = 6");
+    refused(&order, 23, &["no setting is called `fixd`", "`fixed`"]);
 }
 
 #[test]
@@ -91,6 +93,8 @@ fn a_value_of_the_wrong_kind_is_shown_with_what_was_expected() {
         ("seed = 1", "seed = 2020-01-01", 2, "the date 2020-01-01", "expected a whole number"),
         ("\"Does it run?\"", "3", 1, "`question` is 3", "expected a text in quotes"),
         ("[ship.yukun]", "[ship]\nyukun = 3", 6, "`ship.yukun` is 3", "expected a table"),
+        ("rate-deg-s = 2.5", "rate-deg-s = true", 12, "rate-deg-s` is true", "expected a number"),
+        ("seed = 1", "seed = 1\neffect = 3", 3, "`effect` is 3", "expected a list"),
         ("method.output-error = {}", "method = \"output-error\"", 23, "\"output-error\"", "`method.output-error = {}`"),
     ] {
         refused(&changed(from, to), line, &[found, expected]);
@@ -103,7 +107,7 @@ fn a_value_of_the_wrong_kind_is_shown_with_what_was_expected() {
 #[test]
 fn a_missing_key_is_named_where_it_belongs() {
     for (line_of_text, line, key) in [
-        ("question = \"Does it run?\"\n", 1, "`question`"),
+        ("question = \"Does it run?\"\n", 1, "a scenario lacks the key `question`"),
         ("sampling-s = 1.0\n", 14, "`sampling-s`"),
         ("heading-deg = 20.0\n", 7, "`heading-deg`"),
     ] {
