@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use identify::replay::pooled;
 use identify::{Estimate, IdentifyError};
 use serde::{Deserialize, Serialize};
-use ship::Particulars;
 use ship::angle::to_deg;
+use trace::document::PrimeIndices;
 use trial::Quantity;
 
 /// K, T and δ_r of one method.
@@ -20,24 +20,6 @@ pub struct IndexEstimates {
     pub t_s: Quantity,
     /// δ_r, deg.
     pub delta_r_deg: Quantity,
-}
-
-/// K and T without dimension: K' = K L/V, T' = T V/L.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PrimeEstimates {
-    /// K'.
-    #[serde(rename = "K")]
-    pub k: Quantity,
-    /// T'.
-    #[serde(rename = "T")]
-    pub t: Quantity,
-}
-
-impl IndexEstimates {
-    /// The indices without dimension of a ship of these particulars.
-    pub fn prime(&self, ship: Particulars) -> PrimeEstimates {
-        PrimeEstimates { k: self.k_per_s.scaled(ship.prime([-1, 0])), t: self.t_s.scaled(ship.prime([1, 0])) }
-    }
 }
 
 /// Heading error on a record that was not used for identification.
@@ -78,7 +60,7 @@ pub struct MethodEntry {
     pub parameters: Option<IndexEstimates>,
     /// K' and T', where length and speed of the ship are known; left out elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prime: Option<PrimeEstimates>,
+    pub prime: Option<PrimeIndices>,
     /// 1/T < 0, in words "course-unstable".
     pub course_unstable: bool,
     /// Root mean square heading error of the replay on the records themselves, deg.

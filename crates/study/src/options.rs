@@ -169,8 +169,8 @@ pub struct FitRequest {
     #[arg(long = "method", value_name = "ID|all", hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::methods_or_all))]
     pub methods: Vec<String>,
-    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister: its hull, with wider errors,
-    /// is the prior of this one; can be given several times
+    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister: its hull, with wider
+    /// errors, is the prior of this one; can be given several times
     #[arg(long = "prior", value_name = "MODEL.json")]
     pub priors: Vec<PathBuf>,
     /// Also ask another program: it is started, and reads and writes lines of JSON
@@ -257,8 +257,8 @@ pub struct TraceRequest {
     /// ship are known and the structures leave more than noise
     #[arg(long)]
     pub without_hull: bool,
-    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister: its hull, with wider errors,
-    /// is the prior of this one; can be given several times
+    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister: its hull, with wider
+    /// errors, is the prior of this one; can be given several times
     #[arg(long = "prior", value_name = "MODEL.json", conflicts_with = "without_hull")]
     pub priors: Vec<PathBuf>,
     /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`

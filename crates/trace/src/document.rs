@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use estimation::residuals::Whiteness;
 use serde::{Deserialize, Serialize};
+use ship::Particulars;
 use ship::angle::to_deg;
 use trial::Quantity;
 
@@ -84,13 +85,20 @@ pub struct Indices {
 }
 
 /// K' = K L/U and T' = T U/L.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[expect(non_snake_case, reason = "K and T are the symbols of the field")]
 pub struct PrimeIndices {
     /// K'.
     pub K: Quantity,
     /// T'.
     pub T: Quantity,
+}
+
+impl PrimeIndices {
+    /// Those of K and T of a ship of these particulars.
+    pub fn of([k, t]: [Quantity; 2], ship: Particulars) -> Self {
+        Self { K: k.scaled(ship.prime([-1, 0])), T: t.scaled(ship.prime([1, 0])) }
+    }
 }
 
 /// A parameter, averaged over the structures that have it.

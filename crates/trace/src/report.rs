@@ -139,8 +139,7 @@ impl TraceParts<'_> {
     }
 
     fn with_prime(&self, [k, t, bias]: [Quantity; 3]) -> Indices {
-        let prime =
-            self.ship().map(|ship| PrimeIndices { K: k.scaled(ship.prime([-1, 0])), T: t.scaled(ship.prime([1, 0])) });
+        let prime = self.ship().map(|ship| PrimeIndices::of([k, t], ship));
         Indices { K_per_s: k, T_s: t, delta_r_deg: bias.scaled(to_deg(1.0)), prime }
     }
 

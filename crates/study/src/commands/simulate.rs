@@ -37,12 +37,9 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
             (ResultFolder::shared(parent)?, vec![scenario::name::of_file(out)?])
         }
         (true, several) => {
-            let cure = match tasks.len() {
-                1 => "name a folder",
-                _ => "name a folder, or one trial with --cell and --replicate",
-            };
+            let cure = if tasks.len() == 1 { "" } else { ", or one trial with --cell and --replicate" };
             let what = format!("--out {} is one file, and {several} records are asked for", out.display());
-            return Err(Failure::input(format!("{what}; {cure}")));
+            return Err(Failure::input(format!("{what}; name a folder{cure}")));
         }
         (false, _) => (ResultFolder::hold(out)?, tasks.iter().map(|task| record_name(&scenario, *task)).collect()),
     };

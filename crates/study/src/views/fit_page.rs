@@ -192,7 +192,7 @@ fn notes(document: &FitDocument, curves: &FitCurves) -> String {
 /// K' and T' of every method, and which terms scale: words, and the table under them.
 fn scales(document: &FitDocument) -> Vec<(String, Option<Table>)> {
     let mut parts = Vec::new();
-    let prime = |entry: &MethodEntry| entry.prime.map(|prime| (entry.method.clone(), prime.k, prime.t));
+    let prime = |entry: &MethodEntry| entry.prime.map(|prime| (entry.method.clone(), prime.K, prime.T));
     let rows: Vec<(String, Quantity, Quantity)> = document.methods.iter().filter_map(prime).collect();
     if let Some(ship) = document.particulars().filter(|_| !rows.is_empty()) {
         let words = format!("prime indices K′ = K L/V, T′ = T V/L with {}", scale_name(ship));

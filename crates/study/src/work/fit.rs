@@ -13,6 +13,7 @@ use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
 use ship::FirstOrder;
 use ship::angle::to_deg;
+use trace::document::PrimeIndices;
 use trial::{Channel, Trial, ZigZag};
 
 use super::earlier::{self, EarlierModel};
@@ -113,7 +114,7 @@ pub fn fit(
         .map(|(label, method)| {
             let (mut entry, estimate) = entry(label, method.identify(trials), trials);
             entry.id = (method.id() != label).then(|| method.id().to_owned());
-            entry.prime = entry.parameters.zip(ship).map(|(own, ship)| own.prime(ship));
+            entry.prime = entry.parameters.zip(ship).map(|(own, ship)| PrimeIndices::of([own.k_per_s, own.t_s], ship));
             entry.validation = others.iter().map(|other| validate(other, estimate.as_ref())).collect();
             (entry, estimate)
         })

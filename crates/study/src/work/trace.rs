@@ -1,9 +1,8 @@
 //! A trace: the analysis of the crate [`trace`](mod@::trace), what is known of the ship beside it, and the files that
 //! everything shown is made from.
 
-use std::sync::OnceLock;
-
 use ::trace::{Analysis, Settings, TraceError, Watcher};
+use campaign::Observer;
 use campaign::folder::ResultFolder;
 use campaign::known::{self, RecordFacts};
 use identify::suspicion::suspicion;
@@ -17,11 +16,11 @@ use crate::documents::curves::{self, TraceCurves};
 use crate::documents::missing_moment::MissingMomentEntry;
 use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
 use crate::documents::{self, missing_moment};
-use crate::interrupt;
 use crate::options::{TraceRequest, Withheld};
-use crate::progress::{self, ProgressSteps};
+use crate::progress;
 use crate::records::{file_of, names, rudder_logged_late, warn_of_no_track};
 use crate::scales::{self, RescaledRecords};
+use crate::terminal::Terminal;
 
 /// A trace before it is written: its document, and the tables of its curves under the names of their files.
 pub struct TraceResult {
@@ -48,33 +47,29 @@ impl TraceResult {
 
 /// The person who waits for a trace. The search has no known length; the checks after it have, and can be done without.
 struct TraceWatch {
-    quiet: bool,
     busy: ProgressBar,
-    steps: OnceLock<ProgressSteps>,
+    terminal: Terminal,
 }
 
 impl TraceWatch {
     fn end(&self) {
         self.busy.finish_and_clear();
-        self.steps.get().iter().for_each(|steps| steps.finish());
-        interrupt::listen(false);
+        self.terminal.end();
     }
 }
 
 impl Watcher for TraceWatch {
     fn begin_folds(&self, count: usize) {
         self.busy.finish_and_clear();
-        let threads = rayon::current_num_threads();
-        self.steps.get_or_init(|| ProgressSteps::new("records left out in turn", count as u64, 0, threads, self.quiet));
-        interrupt::listen(true);
+        self.terminal.begin(count as u64, 0);
     }
 
     fn end_fold(&self) {
-        self.steps.get().iter().for_each(|steps| steps.advance());
+        self.terminal.advance();
     }
 
     fn is_asked_to_stop(&self) -> bool {
-        interrupt::is_asked()
+        self.terminal.is_asked_to_stop()
     }
 }
 
@@ -95,8 +90,10 @@ pub fn trace(
     let together = scales::together(records, others)?;
     earlier::check(priors, &together.trials, warnings)?;
     let settings = &Settings { earlier: earlier::hulls(priors), ..settings.clone() };
-    let watch =
-        TraceWatch { quiet, busy: progress::busy("searching for what the model lacks", quiet), steps: OnceLock::new() };
+    let watch = TraceWatch {
+        busy: progress::busy("searching for what the model lacks", quiet),
+        terminal: Terminal::new("records left out in turn", quiet),
+    };
     let analysis = ::trace::watched(&together.trials, &together.others, settings, &watch);
     watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;

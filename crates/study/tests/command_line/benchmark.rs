@@ -118,7 +118,7 @@ fn what_cannot_be_run_is_refused_in_one_message() {
     desk.run(&["bench", "wrong.toml"]).is_refused(2, &["wrong.toml:8:1", "unknown field `license`", "`licence`"]);
     // Without any folder the measured set of the benchmark is not there, and nothing else was asked for.
     let lone = desk.run(&["bench", "own.toml", "--set", "ship"]);
-    lone.is_refused(2, &["nothing to ask", "ship, here: no file away.csv"]);
+    lone.is_refused(2, &["no question to ask", "ship, here: no file away.csv", "--data names the folder"]);
     assert!(!desk.path("results").exists(), "nothing is written before there is something to write");
 }
 

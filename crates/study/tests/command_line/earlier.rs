@@ -71,7 +71,7 @@ fn a_model_of_the_same_ship_is_what_is_expected() {
     assert!(run.err.contains("Froude number of 0.142, that of the records at 0.109"), "{}", run.err);
     // The model of the second record holds the first one, too.
     let both = ["fit", "first.csv", "--prior", "g/fit.json"];
-    desk.run(&[&both[..], &KVLCC2].concat()).is_refused(2, &["g/fit.json: first.csv is in it and in first.csv"]);
+    desk.run(&[&both[..], &KVLCC2].concat()).is_refused(2, &["g/fit.json: first.csv is in this model and in first.csv"]);
 }
 
 /// A trace takes the prior too, and its page and document say so.
@@ -110,7 +110,7 @@ fn a_prediction_takes_a_prior() {
     assert!(desk.text("p/report.md").contains("prior: f/fit.json"));
     assert!((weighed - refitted).abs() < 0.25 * narrow, "{weighed} {refitted} {alone}");
     assert!(found < 0.9 * wide && (found / narrow - 1.0).abs() < 0.3, "{found} {narrow} {wide}");
-    let counted = ["first.csv is in it and in both/fit.json, and a record counts only once"];
+    let counted = ["first.csv is in this model and in both/fit.json, and a record counts only once"];
     desk.run(&["predict", "both/fit.json", "--prior", "f/fit.json"]).is_refused(2, &counted);
     let replayed = desk.run(&["predict", "g/fit.json", "--prior", "f/fit.json", "--replay", "first.csv", "--out", "p"]);
     assert!(replayed.is_done().err.contains("is fitted to it; the error on it validates nothing"), "{}", replayed.err);
@@ -156,7 +156,7 @@ fn a_prior_that_cannot_be_used_is_refused() {
     }
     let twice = [&["--prior", "f/fit.json"][..], &KVLCC2].concat();
     fit("f/fit.json", &twice)
-        .is_refused(2, &["f/fit.json: first.csv is in it and in f/fit.json, and a record counts only once"]);
+        .is_refused(2, &["f/fit.json: first.csv is in this model and in f/fit.json, and a record counts only once"]);
     desk.file("ms.csv", with_column(&desk.text("next.csv"), "t_s", |_, t| (1e3 * t).to_string()));
     let clock = ["ms has a row every 99.625 ship lengths", "trials one every 2 over 1000 at most; check the clock"];
     desk.run(&[&["fit", "ms.csv", "--prior", "f/fit.json"], &KVLCC2[..]].concat()).is_refused(2, &clock);

@@ -72,7 +72,7 @@ fn all_is_made_once_and_what_changes_is_said() {
     desk.file("results/published/one/old.png", "a figure that no page shows");
     desk.run(&WHOLE).is_done();
     assert!(!desk.path("results/published/one/old.png").exists());
-    assert!(said(&desk, "two").contains("made; 1 files changed; 0 of "), "{}", said(&desk, "two"));
+    assert!(said(&desk, "two").contains("made; 1 file changed; 0 of "), "{}", said(&desk, "two"));
     assert!(!said(&desk, "one").contains(" 0 of ") && said(&desk, "one").contains("moved beyond noise"));
     let moved = desk.text("results/changes.txt");
     assert!(moved.contains("summary.csv") && moved.contains("] → "), "{moved}");

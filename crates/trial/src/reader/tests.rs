@@ -143,7 +143,7 @@ fn rows_with_missing_values_are_left_out_or_kept_and_counted() {
     assert!(has("1 row left out as exact copies"), "{warnings:?}");
     assert!(has("1 row with fewer cells"), "{warnings:?}");
     assert!(has("`remark` holds text in 241 rows"), "{warnings:?}");
-    assert!(has("`load_t` holds text in 1 rows"), "{warnings:?}");
+    assert!(has("`load_t` holds text in 1 row,"), "{warnings:?}");
     assert!(has("`roll_deg` has no value"), "{warnings:?}");
 }
 
