@@ -130,7 +130,7 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     let (shown, folded) = page.split_once("<main").and_then(|(_, main)| main.split_once("<details>")).expect("parts");
     assert_eq!(shown.matches("<figure>").count(), 2, "the finding, and the records that were held out");
     assert!(!shown.contains("<table") && folded.contains(">Evidence</h2></summary>"));
-    let caption = "Left: a record that was fitted.";
+    let caption = "(a), (b): a record that was fitted.";
     assert_eq!((report.matches(caption).count(), page.matches(caption).count()), (1, 1));
     desk.draw(&["trace", "run.csv", "--out", "alone", "--quiet"]).is_done();
     assert!(desk.text("alone/report.md").contains("![Figure 1](record.png)") && !desk.path("alone/hero.png").exists());
