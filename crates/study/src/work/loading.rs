@@ -154,7 +154,7 @@ impl DescribedLoading {
 pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, Failure> {
     if speak_against_form(&ship.hulls) {
         let cure = "check particulars, rudder and speed of the trial, or fit more records";
-        return Err(Failure::about(shown, format!("--load needs a hull of the form mmg, and {AGAINST_FORM}; {cure}")));
+        return Err(Failure::about(shown, format!("--load needs a hull of the form mmg: {AGAINST_FORM}; {cure}")));
     }
     let mut ship = ship.clone();
     ship.hulls.retain(|own| own.form == FORM);

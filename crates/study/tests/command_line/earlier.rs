@@ -71,7 +71,8 @@ fn a_model_of_the_same_ship_is_what_is_expected() {
     assert!(run.err.contains("Froude number of 0.142, that of the records at 0.109"), "{}", run.err);
     // The model of the second record holds the first one, too.
     let both = ["fit", "first.csv", "--prior", "g/fit.json"];
-    desk.run(&[&both[..], &KVLCC2].concat()).is_refused(2, &["g/fit.json: first.csv is in this model and in first.csv"]);
+    desk.run(&[&both[..], &KVLCC2].concat())
+        .is_refused(2, &["g/fit.json: first.csv is in this model and in first.csv"]);
 }
 
 /// A trace takes the prior too, and its page and document say so.
@@ -158,7 +159,7 @@ fn a_prior_that_cannot_be_used_is_refused() {
     fit("f/fit.json", &twice)
         .is_refused(2, &["f/fit.json: first.csv is in this model and in f/fit.json, and a record counts only once"]);
     desk.file("ms.csv", with_column(&desk.text("next.csv"), "t_s", |_, t| (1e3 * t).to_string()));
-    let clock = ["ms has a row every 99.625 ship lengths", "trials one every 2 over 1000 at most; check the clock"];
+    let clock = ["ms has a row every 99.625 L/U over", "expected at most 2 L/U and 1000 L/U; check the clock"];
     desk.run(&[&["fit", "ms.csv", "--prior", "f/fit.json"], &KVLCC2[..]].concat()).is_refused(2, &clock);
     desk.run(&["trace", "next.csv", "--prior", "f/fit.json", "--without-hull"])
         .is_refused(2, &["--prior", "--without-hull"]);

@@ -170,6 +170,6 @@ fn a_loading_that_cannot_be_taken_is_refused() {
     desk.file("b/fit.json", desk.text("f/fit.json").replace("\"form\": \"mmg\"", "\"form\": \"cubic\""));
     refused(
         "predict b/fit.json --load full.toml",
-        "b/fit.json: --load needs a hull of the form mmg, and the records speak",
+        "b/fit.json: --load needs a hull of the form mmg: a hull of the form mmg does not fit the records",
     );
 }
