@@ -21,7 +21,7 @@ fn published() -> BenchDocument {
 fn the_published_benchmark_is_that_of_the_program() {
     let definition = Definition::published(None).unwrap_or_else(|failure| panic!("{failure}"));
     let results = published();
-    assert_eq!(results.definition.sha256, definition.sha256, "run `study bench` again");
+    assert_eq!(results.definition.sha256, definition.identity.sha256, "run `study bench` again");
     assert_eq!(results.skipped, [], "a published result has all records");
     let asked: usize = definition
         .sets

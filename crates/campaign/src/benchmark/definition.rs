@@ -12,22 +12,17 @@ use trial::{Manoeuvre, Sidecar};
 
 use crate::benchmark::cases::{BenchTask, MEASURED};
 use crate::benchmark::embedded;
+use crate::benchmark::results::Identity;
 use crate::benchmark::wire::{
     DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire, words,
 };
 
 /// A benchmark that has been checked.
 pub struct Definition {
-    /// What it is called.
-    pub name: String,
-    /// What it says about itself.
-    pub about: String,
+    /// Which it is.
+    pub identity: Identity,
     /// Label of the method that others are compared with.
     pub reference: String,
-    /// SHA-256 of the definition and of every file it names.
-    pub sha256: String,
-    /// Seed in place of those of the scenarios.
-    pub seed: Option<u64>,
     /// The sets, in order.
     pub sets: Vec<RecordSet>,
 }
@@ -143,7 +138,7 @@ impl Definition {
         }
         let sha256 = hex(&digest.finalize());
         let DefinitionWire { name, about, reference, .. } = wire;
-        Ok(Self { name: name.into_inner(), about, reference, sha256, seed, sets })
+        Ok(Self { identity: Identity { name: name.into_inner(), about, sha256, seed }, reference, sets })
     }
 
     /// The same benchmark with some of its sets and tasks; empty lists leave all.
@@ -154,7 +149,7 @@ impl Definition {
         known.dedup();
         if let Some(unknown) = sets.iter().find(|set| !known.contains(set)) {
             let advice = scenario::problem::suggestion(unknown, &known);
-            return Err(Failure::input(format!("--set {unknown}: {} has no such set; {advice}", self.name)));
+            return Err(Failure::input(format!("--set {unknown}: {} has no such set; {advice}", self.identity.name)));
         }
         self.sets.retain(|set| sets.is_empty() || sets.contains(&set.group));
         for set in &mut self.sets {
@@ -162,7 +157,7 @@ impl Definition {
         }
         self.sets.retain(|set| !set.questions.is_empty());
         match self.sets.is_empty() {
-            true => Err(Failure::input(format!("{}: these sets have none of these tasks", self.name))),
+            true => Err(Failure::input(format!("{}: these sets have none of these tasks", self.identity.name))),
             false => Ok(self),
         }
     }

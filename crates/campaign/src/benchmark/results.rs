@@ -126,11 +126,11 @@ impl BenchDocument {
         skipped: Vec<Skipped>,
         cases: Vec<BenchCase>,
     ) -> Self {
-        let Definition { name, about, reference, sha256, seed, .. } = definition;
+        let Definition { identity, reference, .. } = definition;
         let labels: Vec<String> = methods.iter().map(|method| method.label().to_owned()).collect();
         Self {
             schema: SCHEMA.to_owned(),
-            definition: Identity { name: name.clone(), about: about.clone(), sha256: sha256.clone(), seed: *seed },
+            definition: identity.clone(),
             program: env!("CARGO_PKG_VERSION").to_owned(),
             reference: reference.clone(),
             boards: boards(&cases, &labels, reference),

@@ -96,7 +96,7 @@ pub fn measure(
     let mut methods = methods(request)?;
     methods.extend(own);
     let store = RecordStore::search(&folders(&request.data), &definition)?;
-    let begin = || begin(&definition.name, &methods);
+    let begin = || begin(&definition.identity.name, &methods);
     let results = campaign::benchmark::run(&definition, &store, &methods, observer, begin)?;
     if results.cases.is_empty() {
         let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();

@@ -120,15 +120,17 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     };
     let mut rules: Vec<(&str, [u64; 2])> = rules.iter().map(counted).collect();
     // Rules that differ nowhere share the rows of what stands behind the comma of their labels.
-    let parts = rules.iter().filter_map(|(label, counts)| Some((label.split_once(", ")?, *counts)));
-    let variants = grouped(parts, |((_, variant), _)| *variant);
-    let kinds = distinct(variants.iter().flat_map(|(_, own)| own.iter().map(|((kind, _), _)| *kind)));
-    let is_same = |(_, own): &(&str, Vec<((&str, &str), [u64; 2])>)| {
-        own.len() == kinds.len() && own.iter().all(|(_, counts)| *counts == own[0].1)
-    };
+    let parts = rules.iter().filter_map(|(label, counts)| {
+        let (kind, variant) = label.split_once(", ")?;
+        Some((variant, kind, *counts))
+    });
+    let variants = grouped(parts, |(variant, ..)| *variant);
+    let kinds = distinct(variants.iter().flat_map(|(_, own)| own.iter().map(|(_, kind, _)| *kind)));
+    let is_same =
+        |own: &[(&str, &str, [u64; 2])]| own.len() == kinds.len() && own.iter().all(|(.., counts)| *counts == own[0].2);
     let mut note = String::from("Nothing is missing in any trial. Bars: 95 % intervals.");
-    if kinds.len() > 1 && variants.iter().all(is_same) {
-        rules = variants.iter().map(|(variant, own)| (*variant, own[0].1)).collect();
+    if kinds.len() > 1 && variants.iter().all(|(_, own)| is_same(own)) {
+        rules = variants.iter().map(|(variant, own)| (*variant, own[0].2)).collect();
         note += &format!(" The same for the rules {}.", kinds.join(", "));
     }
     let row = |(_, [wrong, trials]): &(&str, [u64; 2])| {
