@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use campaign::statistics::{Statistic, share};
-use report::number::{MISSING, fixed, interval, significant};
+use report::number::{MISSING, fixed, interval, significant, supported};
 use report::{Page, Table, TableColumn, Theme};
 
 use super::charts;
@@ -36,13 +36,12 @@ fn those(figures: &[ForecastFigure], wanted: impl Fn(&ForecastFigure) -> bool) -
 fn cells(group: &str, kind: &str, unit: &str, score: &ForecastScore) -> Vec<String> {
     let size =
         |value: f64| if unit.is_empty() { MISSING.to_owned() } else { format!("{} {unit}", significant(value, 2)) };
-    let held = score.held.ci95.map(|ends| ends.map(|end| end.round()));
     vec![
         group.to_owned(),
         kind.to_owned(),
         score.count.to_string(),
         size(score.error),
-        format!("{} {}", fixed(score.held.value, 0), interval(held)),
+        format!("{} {}", supported(score.held.value, score.held.ci95), interval(score.held.ci95)),
         size(score.width),
     ]
 }
@@ -124,7 +123,7 @@ fn signed(value: f64) -> String {
 fn in_per_cent(share: Option<Statistic>) -> String {
     share.map_or_else(
         || MISSING.to_owned(),
-        |own| format!("{} % {}", fixed(own.value, 1), interval(own.ci95.map(|ends| ends.map(f64::round)))),
+        |own| format!("{} % {}", supported(own.value, own.ci95), interval(own.ci95)),
     )
 }
 
