@@ -6,16 +6,30 @@ use std::sync::Arc;
 use crate::task::Task;
 use scenario::failure::Failure;
 use scenario::{HULL, Scenario, hex, name};
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use trial::file::{self, Kind};
 use trial::{Manoeuvre, Sidecar};
 
 use crate::benchmark::cases::{BenchTask, MEASURED};
 use crate::benchmark::embedded;
-use crate::benchmark::results::Identity;
 use crate::benchmark::wire::{
     DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire, words,
 };
+
+/// Which definition was run.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Identity {
+    /// What it is called.
+    pub name: String,
+    /// What it says about itself.
+    pub about: String,
+    /// SHA-256 of it and of all files it names.
+    pub sha256: String,
+    /// Seed in place of those of the scenarios.
+    pub seed: Option<u64>,
+}
 
 /// A benchmark that has been checked.
 pub struct Definition {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::{Board, boards};
 use crate::benchmark::cases::BenchCase;
-use crate::benchmark::definition::{Definition, RecordSet, SetRecord, SetSource};
+use crate::benchmark::definition::{Definition, Identity, RecordSet, SetRecord, SetSource};
 use crate::benchmark::method::BenchMethod;
 use crate::benchmark::naming::{self, NamingLine};
 use crate::benchmark::overall::{OverallRanking, overall};
@@ -43,20 +43,6 @@ pub struct BenchDocument {
     pub overall: Option<OverallRanking>,
     /// Every question with every answer.
     pub cases: Vec<BenchCase>,
-}
-
-/// Which definition was run.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Identity {
-    /// What it is called.
-    pub name: String,
-    /// What it says about itself.
-    pub about: String,
-    /// SHA-256 of it and of all files it names.
-    pub sha256: String,
-    /// Seed in place of those of the scenarios.
-    pub seed: Option<u64>,
 }
 
 /// A set.
