@@ -27,7 +27,7 @@ def test_the_best_answer_is_that_of_the_verdict(fitted):
 def test_results_have_their_warnings(fitted, traced, first_order, tmp_path):
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always", kempf.KempfWarning)
-        twice = kempf.fit([first_order, first_order], methods="output-error")
+        twice = kempf.fit([first_order, first_order], methods=["output-error", "srivc"])
         predicted = kempf.predict(twice, "zig-zag:10/10", draws=50)
     assert any("given twice" in warning for warning in twice.warnings)
     told = [str(one.message) for one in said]
