@@ -166,18 +166,17 @@ fn programs() -> Vec<(String, Option<ProgramRevision>)> {
     names.iter().map(|name| (name.clone(), program(name))).collect()
 }
 
-/// What is made by itself and may be of another revision: times, on a machine that does nothing beside, and the study
-/// that takes longer than all others together.
-const APART: [&str; 2] = ["performance", "predict-hulls"];
+/// What is measured by itself, on a machine that does nothing beside: it may be of another revision.
+const TIMES: &str = "performance";
 
-/// All was made by one version and, but for these, by one revision of it, whose source is in the repository.
+/// All was made by one version and, but for times, by one revision of it, whose source is in the repository.
 #[test]
 fn published_results_are_of_one_program() {
     let programs = programs();
     let (_, first) = &programs[0];
     assert!(first.as_ref().is_some_and(|first| !first.git_dirty && first.git_revision.is_some()), "{first:?}");
     let is_same = |name: &str, program: &Option<ProgramRevision>| match program.as_ref().zip(first.as_ref()) {
-        Some((own, first)) if APART.contains(&name) => own.version == first.version && !own.git_dirty,
+        Some((own, first)) if name == TIMES => own.version == first.version && !own.git_dirty,
         _ => program == first,
     };
     let others: Vec<_> = programs.iter().filter(|(name, program)| !is_same(name, program)).collect();
