@@ -42,18 +42,18 @@ pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(
     let text = reader::describe(log).map_err(Failure::input)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     ResultFolder::shared(path.parent().unwrap_or(Path::new("")))?.write(&name, &text)?;
-    let is_beside = path.parent() == log.parent();
-    tell(&text, Some((&path, log, is_beside)), common)
+    tell(&text, Some((&path, log)), common)
 }
 
 /// Tells where the description is; itself where it is in no file or a program reads.
-fn tell(text: &str, written: Option<(&Path, &Path, bool)>, common: &Common) -> Result<(), Failure> {
+fn tell(text: &str, written: Option<(&Path, &Path)>, common: &Common) -> Result<(), Failure> {
     let described: toml::Table = text.parse().map_err(Failure::work)?;
-    let file = written.map(|(path, ..)| path.display().to_string());
+    let file = written.map(|(path, _)| path.display().to_string());
     let line = match written {
         None => text.trim_end().to_owned(),
-        Some((path, log, is_beside)) => {
-            let columns = if is_beside { String::new() } else { format!(" --columns {}", path.display()) };
+        Some((path, log)) => {
+            let is_found = path == Sidecar::beside(log);
+            let columns = if is_found { String::new() } else { format!(" --columns {}", path.display()) };
             format!("{}: check every line, then run `study fit {}{columns}`", path.display(), log.display())
         }
     };
