@@ -35,7 +35,12 @@ impl<'a> PredictionCheck<'a> {
                 ..simulation.clone()
             };
             let passage = SimulatedManoeuvre::of(calm, &other, timescale).ok()?;
-            Some(figures::of(kind, &passage, None))
+            let all = figures::of(kind, &passage, None);
+            // A length counts once.
+            let in_lengths = |name: &str| {
+                name.strip_suffix("_m").is_some_and(|name| all.contains_key(format!("{name}_lengths").as_str()))
+            };
+            Some(all.iter().filter(|(name, _)| !in_lengths(name)).map(|(name, value)| (*name, *value)).collect())
         };
         Self { asked, true_manoeuvres: asked.kinds.iter().map(one).collect(), facts: RecordFacts::of(records) }
     }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use ship::Particulars;
 use ship::vessel::prime::FASTEST;
-use ship::vessel::scaled::ScaledHull;
 use simulate::simulation::{Simulated, Truth};
 use simulate::vessel::Solver;
 use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};
@@ -56,13 +56,13 @@ pub struct PlanarMotion {
 }
 
 impl PlanarMotion {
-    /// The way of a hull, which has speed and sway of her own.
-    fn of_hull(hull: &ScaledHull, trial: &Trial, heading: &[f64]) -> Option<Self> {
+    /// The way of a ship of this length, m, where her record has speed and sway.
+    fn of(length: f64, trial: &Trial, heading: &[f64]) -> Option<Self> {
         let (speed, sway) = (trial.channel(Channel::Speed)?, trial.channel(Channel::Sway)?);
         let surge = |(speed, sway): (&f64, &f64)| [(speed * speed - sway * sway).max(0.0).sqrt(), *sway];
         let velocity: Vec<[f64; 2]> = speed.iter().zip(sway).map(surge).collect();
         let track = motion::track(trial.time(), heading, &velocity);
-        Some(Self { length: hull.length, velocity, track })
+        Some(Self { length, velocity, track })
     }
 }
 
@@ -79,7 +79,8 @@ const SHARE_OF_CORRELATION: f64 = 0.5;
 /// What is steered.
 fn vessel(ship: &DrawnShip) -> Vessel {
     match &ship.hull {
-        Some(hull) => Vessel::hull(Arc::new(hull.clone())),
+        Some(hull) => Vessel::hull(Arc::new(hull.clone()))
+            .with_particulars(Particulars { length: hull.length, speed: hull.speed }),
         None => Vessel::response(ship.response.clone()),
     }
 }
@@ -129,8 +130,7 @@ impl SimulatedManoeuvre {
             let step = (shortest / STEPS).min(period(timescale));
             simulation.solver = Solver::RungeKutta(step.max(SHORTEST_STEP));
         }
-        let (mut passage, trial) = Self::recorded(simulation, &ship.key, timescale)?;
-        passage.way = ship.hull.as_ref().and_then(|hull| PlanarMotion::of_hull(hull, &trial, &passage.heading));
+        let passage = Self::of(simulation, &ship.key, timescale)?;
         match ship.hull.as_ref().and_then(|hull| passage.runs_away(FASTEST * hull.speed)) {
             Some(row) => Err(SimulateError::Diverged {
                 time: passage.time(row),
@@ -146,20 +146,18 @@ impl SimulatedManoeuvre {
         self.way.as_ref()?.velocity.iter().position(|[surge, sway]| surge.hypot(*sway) > fastest)
     }
 
-    /// What any simulated ship does, without her way; how often and how long it is recorded follows from `timescale`, a
-    /// time of the ship, s.
+    /// What any simulated ship does; how often and how long it is recorded follows from `timescale`, a time of the ship,
+    /// s.
     ///
     /// Fails as the simulation does.
-    pub fn of(simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {
-        Ok(Self::recorded(simulation, key, timescale)?.0)
-    }
-
-    fn recorded(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<(Self, Trial), SimulateError> {
+    pub fn of(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {
         simulation.recording = Recording::every(period(timescale));
         simulation.longest_wait = LONGEST_WAIT * timescale;
         let Simulated { trial, truth } = simulation.run(key)?;
         let Truth { heading, yaw_rate, rudder, executes, .. } = Arc::unwrap_or_clone(truth);
-        Ok((Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way: None }, trial))
+        let length = simulation.vessel.particulars().map(|own| own.length);
+        let way = length.and_then(|length| PlanarMotion::of(length, &trial, &heading));
+        Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })
     }
 
     /// The same on another course: every heading is larger by `angle` (rad).
