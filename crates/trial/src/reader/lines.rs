@@ -55,6 +55,8 @@ pub struct Lines<R> {
     input: BufReader<Hashed<R>>,
     hash: Hash,
     encoding: Encoding,
+    /// Byte at which lines end, known once the first is read.
+    end: u8,
     bytes: Vec<u8>,
     text: String,
     number: usize,
@@ -66,7 +68,7 @@ impl<R: Read> Lines<R> {
     pub fn new(input: R, encoding: Encoding) -> Self {
         let (hashed, hash) = Hashed::new(input);
         let input = BufReader::with_capacity(1 << 16, hashed);
-        Self { input, hash, encoding, bytes: Vec::new(), text: String::new(), number: 0, consumed: 0 }
+        Self { input, hash, encoding, end: b'\n', bytes: Vec::new(), text: String::new(), number: 0, consumed: 0 }
     }
 
     /// Number of the line read last, from 1; 0 before the first.
@@ -83,11 +85,16 @@ impl<R: Read> Lines<R> {
     /// long; how many were read, and whether the line ends with them. `None` at the end of the file.
     fn take_line(&mut self) -> Result<Option<(usize, bool)>, Problem> {
         self.bytes.clear();
+        if self.number == 0 {
+            // Old programs of the Macintosh end their lines with a carriage return alone.
+            let begin = self.input.fill_buf().map_err(Problem::of_input)?;
+            self.end = if begin.contains(&b'\r') && !begin.contains(&b'\n') { b'\r' } else { b'\n' };
+        }
         let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
-        let length = limited.read_until(b'\n', &mut self.bytes).map_err(Problem::of_input)?;
+        let length = limited.read_until(self.end, &mut self.bytes).map_err(Problem::of_input)?;
         self.number += usize::from(length > 0);
         self.consumed += length as u64;
-        let whole = length <= LONGEST_LINE || self.bytes.last() == Some(&b'\n');
+        let whole = length <= LONGEST_LINE || self.bytes.last() == Some(&self.end);
         if self.number == 1 && self.bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
             self.bytes.drain(..3);
         }
@@ -140,7 +147,7 @@ impl<R: Read> Lines<R> {
     pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
         let Some((_, whole)) = self.take_line()? else { return Ok(None) };
         if !whole {
-            self.consumed += self.input.skip_until(b'\n').map_err(Problem::of_input)? as u64;
+            self.consumed += self.input.skip_until(self.end).map_err(Problem::of_input)? as u64;
         }
         Ok(Some(&self.bytes))
     }
@@ -169,6 +176,9 @@ mod tests {
         assert_eq!(lines.next_line().expect("text"), Some("c"));
         assert_eq!(lines.next_line().expect("text"), None);
         assert_eq!((lines.number(), lines.consumed()), (4, 10));
+        let mut lines = Lines::new(&b"a\rb\r"[..], Encoding::Utf8);
+        let mut next = || lines.next_line().expect("text").map(str::to_owned);
+        assert_eq!([(); 3].map(|()| next()), [Some("a".to_owned()), Some("b".to_owned()), None]);
         // The digest of "abc" is the first example of FIPS 180-2, appendix B.1.
         let mut lines = Lines::new(&b"abc"[..], Encoding::Utf8);
         lines.next_line().expect("text");
