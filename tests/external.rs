@@ -78,7 +78,7 @@ fn refused(arguments: &[&str], timeout_s: f64) -> String {
     let settings = Settings { timeout_s, ..Settings::new([&[ESTIMATOR], arguments].concat()) };
     let method = settings.build(Path::new("")).expect("valid settings");
     let failure = |method: &dyn Identifier| match method.identify(&[record(4)]) {
-        Err(IdentifyError::Outside { reason } | IdentifyError::NotStarted { reason }) => reason,
+        Err(IdentifyError::Outside(reason) | IdentifyError::NotStarted(reason)) => reason,
         other => panic!("{arguments:?}: {other:?}"),
     };
     let reason = failure(&method);

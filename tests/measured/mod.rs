@@ -33,7 +33,7 @@ fn output_error() -> output_error::OutputError {
 /// Heading rms, deg, and 1/T, 1/s, that output error finds.
 fn found(trial: &Trial) -> (f64, f64) {
     let estimate = output_error().identify(std::slice::from_ref(trial)).expect("the record is excited");
-    let rms = estimate.diagnostics.iter().find(|(name, _)| *name == "heading_rmse_deg").expect("reported").1;
+    let rms = estimate.diagnostic("heading_rmse_deg").expect("reported");
     (rms, estimate.response.inverse_T)
 }
 

@@ -33,7 +33,7 @@ const BATCH_TIME: Duration = Duration::from_millis(250);
 /// Most trials of a batch: they are in memory.
 const MOST_BATCH: usize = 2048;
 
-/// StoredStudy trials that are run again before a study goes on, to see that this program computes the same.
+/// Stored trials that are run again before a study goes on, to see that this program computes the same.
 const SPOT_CHECKS: usize = 32;
 
 /// Runs a shard of a scenario into a folder, or what is missing of it; returns what is stored.

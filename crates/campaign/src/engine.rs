@@ -216,7 +216,7 @@ impl TrialQuestion<'_> {
             first_order => {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
                 let time = start.elapsed();
-                if let Err(IdentifyError::NotStarted { reason }) = &answer {
+                if let Err(IdentifyError::NotStarted(reason)) = &answer {
                     let command = first_order.outside().map(|outside| shown(outside.command())).unwrap_or_default();
                     let _ = self.trouble.set(format!("`{command}` is not started: {reason}"));
                 }

@@ -31,11 +31,14 @@ pub struct RecordFacts<'a> {
     zigzags: Vec<Option<ZigZag>>,
     length: Option<f64>,
     speed: Option<f64>,
-    hulls: Vec<StoredHull>,
-    /// Forms of the hulls that earlier trials are in, with the records against these; the nearest first.
-    checks: Vec<(&'static str, ExpectationCheck)>,
-    /// Why there is no track, from records with a speed or positions.
-    no_track: Option<String>,
+    /// The hulls of the ship, the nearest first.
+    pub hulls: Vec<StoredHull>,
+    /// The records against what earlier trials told of the ship, for every form of hull that they left, whether it is
+    /// near enough to take part or not; the nearest first.
+    pub checks: Vec<(&'static str, ExpectationCheck)>,
+    /// Why no track can be predicted from records that have a speed or positions; `None` where one can, and for records
+    /// without.
+    pub no_track: Option<String>,
 }
 
 impl<'a> RecordFacts<'a> {
@@ -54,23 +57,6 @@ impl<'a> RecordFacts<'a> {
             checks: Vec::new(),
             no_track: None,
         }
-    }
-
-    /// Why no track can be predicted from records that have a speed or positions; `None` where one can, and for records
-    /// without.
-    pub fn no_track(&self) -> Option<&str> {
-        self.no_track.as_deref()
-    }
-
-    /// The hulls of the ship, the nearest first.
-    pub fn hulls(&self) -> &[StoredHull] {
-        &self.hulls
-    }
-
-    /// The records against what earlier trials told of the ship, for every form of hull that they left, whether it is
-    /// near enough to take part or not; the nearest first.
-    pub fn checks(&self) -> &[(&'static str, ExpectationCheck)] {
-        &self.checks
     }
 
     /// The same with speed and drift: the hulls that these records speak for, where length and speed are known, all of
@@ -183,13 +169,12 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
     let replays: Vec<Replay> = facts.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
-    let told = |name: &str| estimate.diagnostics.iter().find(|(own, _)| *own == name).map(|(_, value)| *value);
     let kinds = [
         (Moment::White, "white_moment_rudder_deg_root_s"),
         (Moment::Walk, "moment_walk_rudder_deg_per_root_s"),
         (Moment::OrnsteinUhlenbeck, "gusts_sd_rudder_deg"),
     ];
-    let moment = kinds.into_iter().find_map(|(kind, name)| Some((kind, from_deg(told(name)?))));
+    let moment = kinds.into_iter().find_map(|(kind, name)| Some((kind, from_deg(estimate.diagnostic(name)?))));
     let (moment, moment_sd_rudder_rad) = moment.unwrap_or_default();
     let member = WeightedStructure {
         weight: 1.0,
@@ -199,12 +184,12 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
         covariance: (0..3).map(|i| (0..3).map(|j| covariance.matrix[(i, j)]).collect()).collect(),
         degrees_of_freedom: covariance.degrees_of_freedom,
     };
-    let read = told("heading_sd_deg").map(from_deg).or(facts.reading_noise);
+    let read = estimate.diagnostic("heading_sd_deg").map(from_deg).or(facts.reading_noise);
     let noise = KnownNoise {
         heading_sd_rad: read.unwrap_or_else(|| pooled_rms(&replays)),
         moment,
         moment_sd_rudder_rad,
-        moment_correlation_s: told("gusts_correlation_s"),
+        moment_correlation_s: estimate.diagnostic("gusts_correlation_s"),
     };
     Some(facts.with(vec![member], noise, replays.iter().map(|replay| replay.yaw_rate.as_slice())))
 }
@@ -230,15 +215,10 @@ fn mean_noise(records: &[RecordNoiseEntry]) -> KnownNoise {
         let values: Vec<f64> = records.iter().filter_map(of).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
-    let moment = match records.first().map(|record| record.moment.as_str()) {
-        Some("white") => Moment::White,
-        Some("ornstein-uhlenbeck") => Moment::OrnsteinUhlenbeck,
-        Some("walk") => Moment::Walk,
-        _ => Moment::None,
-    };
+    let named = |record: &RecordNoiseEntry| Moment::ALL.into_iter().find(|own| own.as_str() == record.moment);
     KnownNoise {
         heading_sd_rad: from_deg(mean(|record| Some(record.heading_sd_deg)).unwrap_or(0.0)),
-        moment,
+        moment: records.first().and_then(named).unwrap_or_default(),
         moment_sd_rudder_rad: from_deg(mean(|record| record.moment_sd_rudder_deg).unwrap_or(0.0)),
         moment_correlation_s: mean(|record| record.moment_correlation_s),
     }
@@ -346,10 +326,13 @@ fn inside_movements(trial: &Trial, rate: f64) -> Vec<f64> {
 mod tests {
     use super::*;
     use identify::output_error;
-    use predict::{ShipMixture, motion};
+    use predict::ShipMixture;
+    use scenario::Predictions;
     use ship::FirstOrder;
     use ship::vessel::prior::HullParticulars;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+
+    use crate::prediction_check::PredictionCheck;
 
     fn record(walk_deg: f64) -> Trial {
         let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
@@ -431,12 +414,17 @@ mod tests {
     /// Time of the ship KVLCC2, L/U, s.
     const KVLCC2: f64 = 320.0 / 7.97;
 
-    /// KVLCC2 in a manoeuvre, by a gear of 2.34°/s, with her particulars.
-    fn tanker(kind: &Manoeuvre) -> Trial {
-        let manoeuvre = predict::standard::steered(kind, KVLCC2).expect("steered");
+    /// KVLCC2 in a manoeuvre, by a gear of 2.34°/s.
+    fn tanker(kind: &str) -> Simulation {
+        let manoeuvre = predict::standard::steered(&kind.parse().expect("known"), KVLCC2).expect("steered");
         let mut simulation = Simulation::new(Vessel::ship(&ship::ships::kvlcc2::full_scale()), manoeuvre);
         simulation.gear = SteeringGear::with_rate(from_deg(2.34));
         simulation.recording.period = 2.0;
+        simulation
+    }
+
+    /// Her record, with her particulars.
+    fn described(simulation: &Simulation) -> Trial {
         let trial = simulation.run(&StreamKey::default()).expect("a trial").trial;
         let hull = HullParticulars {
             beam: Some(58.0),
@@ -454,25 +442,18 @@ mod tests {
     /// it is 4 % in the advance, within the interval.
     #[test]
     fn zig_zags_of_a_tanker_tell_her_circle() {
-        let zig_zags = ["zig-zag:10/10", "zig-zag:-20/20"].map(|kind| tanker(&kind.parse().expect("known")));
+        let zig_zags = ["zig-zag:10/10", "zig-zag:-20/20"].map(|kind| described(&tanker(kind)));
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
         let facts = RecordFacts::of(&zig_zags).with_motion(None, &[]);
         let known = of_estimate(&estimate, &facts).expect("a covariance");
-        assert!(facts.no_track().is_none() && !known.hulls.is_empty());
-        let kind: Manoeuvre = "turning-circle:35".parse().expect("known");
-        let circle = tanker(&kind);
-        let read = |channel| circle.channel(channel).expect("a hull");
-        let velocity: Vec<[f64; 2]> =
-            read(Channel::Speed).iter().zip(read(Channel::Sway)).map(|(u, v)| [(u * u - v * v).sqrt(), *v]).collect();
-        let (time, heading) = (circle.time(), circle.heading());
-        let track = motion::track(time, heading, &velocity);
-        let rates = vec![0.0; time.len()];
-        let truth = motion::turning_circle([time, heading, &rates], [&track, &velocity], 0.0);
-        let mixture = ShipMixture::new(vec![(known, 1.0)]).expect("sound");
-        let prediction = mixture.predict(&kind, 300, false).expect("a turn");
-        for (name, truth) in [("advance_m", truth.advance), ("tactical_diameter_m", truth.tactical_diameter)] {
-            let (interval, truth) = (prediction.figures[name].interval, truth.expect("a circle"));
-            assert!((interval.median / truth - 1.0).abs() < 0.03, "{name}: {truth} {interval:?}");
+        assert!(facts.no_track.is_none() && !known.hulls.is_empty());
+        let asked = Predictions { kinds: vec!["turning-circle:35".parse().expect("known")], draws: 300 };
+        let check = PredictionCheck::new(&asked, &tanker("zig-zag:10/10"), &StreamKey::default(), &zig_zags);
+        let figures = check.figures(|_| Some(known));
+        for name in ["advance_lengths", "tactical_diameter_lengths"] {
+            let figure = figures.iter().find(|own| own.name.ends_with(name)).expect("a hull has a track");
+            assert!((figure.median / figure.truth - 1.0).abs() < 0.03, "{figure:?}");
         }
+        assert!(figures.iter().all(|own| !own.name.ends_with("advance_m")), "a length counts once: {figures:?}");
     }
 }

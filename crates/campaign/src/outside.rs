@@ -38,9 +38,7 @@ impl<'a> RunningEstimators<'a> {
         told(scenario).iter().for_each(|line| observer.note(line));
         Ok(this)
     }
-}
 
-impl RunningEstimators<'_> {
     /// Tells of those that were given up since this was asked last.
     pub fn tell(&self, observer: &dyn Observer) {
         self.0.iter().for_each(|(method, outside)| tell(&method.label, *outside, observer));

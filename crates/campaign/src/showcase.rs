@@ -131,7 +131,7 @@ impl<'a> FourierCurve<'a> {
         let fit = |method: &Method| {
             let Procedure::Identify { settings: Some(settings), .. } = &method.procedure else { return None };
             let (curve, window) = match settings {
-                _ if seen.contains(&method.id) => return None,
+                _ if seen.contains(&method.procedure.id()) => return None,
                 IdentifierSettings::FourierPublished(settings) => {
                     (settings.clone().build().ok()?.curve(trial).ok()?.curve, [0.0, trial.duration()])
                 }
@@ -141,7 +141,7 @@ impl<'a> FourierCurve<'a> {
                 }
                 _ => return None,
             };
-            seen.push(method.id);
+            seen.push(method.procedure.id());
             Some(Self { origin: origin(names, &method.label), trial, curve, window })
         };
         cell.methods.iter().filter_map(fit).collect()

@@ -49,23 +49,16 @@ fn parse(text: &str) -> Result<Scenario, String> {
 fn every_number_is_checked_and_found_again() {
     for text in EVERYTHING {
         parse(text).unwrap_or_else(|message| panic!("{message}"));
-        let lines: Vec<&str> = text.lines().collect();
-        for (number, line) in lines.iter().enumerate() {
-            let Some((key, value)) = line.rsplit_once(" = ") else { continue };
-            if value.parse::<f64>().is_err() || ["after-execute", "every", "heading-every-rows"].contains(&key) {
-                continue;
+        with_each_number(text, "nan", |line, key, changed| {
+            if ["after-execute", "every", "heading-every-rows"].contains(&key) {
+                return;
             }
-            let changed: Vec<String> = lines
-                .iter()
-                .enumerate()
-                .map(|(other, &text)| if other == number { format!("{key} = nan") } else { text.to_owned() })
-                .collect();
-            let Err(message) = parse(&changed.join("\n")) else { panic!("`{key} = nan` was accepted in\n{text}") };
+            let Err(message) = parse(changed) else { panic!("`{key} = nan` was accepted in\n{text}") };
             let own = key.rsplit('.').next().expect("a key");
-            let place = format!("--> all.toml:{}:", number + 2);
+            let place = format!("--> all.toml:{}:", line + 2);
             assert!(message.contains(&place) && message.contains(own), "{key}, expected {place}\n{message}");
             assert!(message.to_lowercase().contains("is nan"), "{key}\n{message}");
-        }
+        });
     }
 }
 
@@ -89,8 +82,8 @@ fn every_declared_number_is_among_them() {
     }
 }
 
-/// A text with one of its numbers put to `value` after the other.
-fn with_each_number(text: &str, value: &str, mut see: impl FnMut(&str)) {
+/// A text with one of its numbers put to `value` after the other, with line and key of the number.
+fn with_each_number(text: &str, value: &str, mut see: impl FnMut(usize, &str, &str)) {
     let lines: Vec<&str> = text.lines().collect();
     for number in 0..lines.len() {
         let Some((key, before)) = lines[number].rsplit_once(" = ") else { continue };
@@ -98,7 +91,7 @@ fn with_each_number(text: &str, value: &str, mut see: impl FnMut(&str)) {
             let own = format!("{key} = {value}");
             let mut changed = lines.clone();
             changed[number] = &own;
-            see(&changed.join("\n"));
+            see(number, key, &changed.join("\n"));
         }
     }
 }
@@ -108,7 +101,7 @@ fn with_each_number(text: &str, value: &str, mut see: impl FnMut(&str)) {
 fn is_refused_or_ends(text: &str) {
     parse(text).unwrap_or_else(|message| panic!("{message}"));
     for value in EXTREMES {
-        with_each_number(text, value, |changed| match parse(changed) {
+        with_each_number(text, value, |_, _, changed| match parse(changed) {
             Err(message) => assert!(message.contains("--> all.toml:") && message.contains("= help: "), "{message}"),
             Ok(scenario) => {
                 let task = Task { cell: 0, replicate: 0 };
@@ -147,7 +140,7 @@ fn no_number_of_a_study_or_a_method_makes_a_trial_without_end() {
 #[test]
 fn no_number_of_a_trace_is_taken_for_another() {
     for value in EXTREMES {
-        with_each_number(OF_TRACE, value, |changed| {
+        with_each_number(OF_TRACE, value, |_, _, changed| {
             if !changed.contains(&OF_TRACE[..OF_TRACE.find("probability").expect("a trace")]) {
                 // Another number than one of the trace.
                 return;

@@ -30,32 +30,73 @@ pub trait Real:
     /// The value alone.
     fn value(self) -> f64;
 
-    /// Sine and cosine.
-    fn sin_cos(self) -> (Self, Self);
+    /// A function of this number, from its value and its derivative there.
+    fn chained(self, value: f64, slope: f64) -> Self;
 
-    /// The angle of the point (x, y), of which this number is y.
-    fn atan2(self, x: Self) -> Self;
-
-    /// √(x² + y²), not zero.
-    fn hypot(self, other: Self) -> Self;
-
-    /// Hyperbolic tangent.
-    fn tanh(self) -> Self;
-
-    /// The exponential.
-    fn exp(self) -> Self;
-
-    /// The natural logarithm of a positive number.
-    fn ln(self) -> Self;
-
-    /// The square root of a positive number.
-    fn sqrt(self) -> Self;
+    /// A function of two numbers, from its value and its derivative by those of both.
+    fn joined(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self;
 
     /// A power of a positive number.
     fn powf(self, exponent: Self) -> Self;
 
+    /// Sine and cosine.
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value().sin_cos();
+        (self.chained(sin, cos), self.chained(cos, -sin))
+    }
+
+    /// The angle of the point (x, y), of which this number is y.
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        let square = (self.value() * self.value() + x.value() * x.value()).max(f64::MIN_POSITIVE);
+        let (by_y, by_x) = (x.value() / square, -self.value() / square);
+        self.joined(x, self.value().atan2(x.value()), |dy, dx| by_y * dy + by_x * dx)
+    }
+
+    /// √(x² + y²), not zero.
+    #[inline]
+    fn hypot(self, other: Self) -> Self {
+        let root = self.value().hypot(other.value());
+        let (by_x, by_y) = (self.value() / root, other.value() / root);
+        self.joined(other, root, |x, y| by_x * x + by_y * y)
+    }
+
+    /// Hyperbolic tangent.
+    #[inline]
+    fn tanh(self) -> Self {
+        let tanh = self.value().tanh();
+        self.chained(tanh, 1.0 - tanh * tanh)
+    }
+
+    /// The exponential.
+    #[inline]
+    fn exp(self) -> Self {
+        let exp = self.value().exp();
+        self.chained(exp, exp)
+    }
+
+    /// The natural logarithm of a positive number.
+    #[inline]
+    fn ln(self) -> Self {
+        self.chained(self.value().ln(), self.value().recip())
+    }
+
+    /// The square root of a positive number.
+    #[inline]
+    fn sqrt(self) -> Self {
+        let root = self.value().sqrt();
+        self.chained(root, 0.5 / root)
+    }
+
     /// A whole power.
-    fn powi(self, exponent: i32) -> Self;
+    #[inline]
+    fn powi(self, exponent: i32) -> Self {
+        if exponent == 0 {
+            return Self::from(1.0);
+        }
+        self.chained(self.value().powi(exponent), f64::from(exponent) * self.value().powi(exponent - 1))
+    }
 
     /// Magnitude.
     fn abs(self) -> Self {
@@ -80,54 +121,24 @@ pub trait Real:
 }
 
 impl Real for f64 {
-    #[inline]
+    #[inline(always)]
     fn value(self) -> f64 {
         self
     }
 
-    #[inline]
-    fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+    #[inline(always)]
+    fn chained(self, value: f64, _slope: f64) -> Self {
+        value
     }
 
-    #[inline]
-    fn atan2(self, x: Self) -> Self {
-        f64::atan2(self, x)
-    }
-
-    #[inline]
-    fn hypot(self, other: Self) -> Self {
-        f64::hypot(self, other)
-    }
-
-    #[inline]
-    fn tanh(self) -> Self {
-        f64::tanh(self)
-    }
-
-    #[inline]
-    fn exp(self) -> Self {
-        f64::exp(self)
-    }
-
-    #[inline]
-    fn ln(self) -> Self {
-        f64::ln(self)
-    }
-
-    #[inline]
-    fn sqrt(self) -> Self {
-        f64::sqrt(self)
+    #[inline(always)]
+    fn joined(self, _other: Self, value: f64, _by: impl Fn(f64, f64) -> f64) -> Self {
+        value
     }
 
     #[inline]
     fn powf(self, exponent: Self) -> Self {
         f64::powf(self, exponent)
-    }
-
-    #[inline]
-    fn powi(self, exponent: i32) -> Self {
-        f64::powi(self, exponent)
     }
 
     #[inline]
@@ -151,18 +162,6 @@ impl<const N: usize> Dual<N> {
         let mut by = [0.0; N];
         by[direction] = slope;
         Self { value, by }
-    }
-
-    /// A function of this number, from its value and its derivative there.
-    #[inline(always)]
-    fn chained(self, value: f64, slope: f64) -> Self {
-        Self { value, by: self.by.map(|d| slope * d) }
-    }
-
-    /// Derivatives of both numbers, put together.
-    #[inline(always)]
-    fn joined(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
-        Self { value, by: std::array::from_fn(|k| by(self.by[k], other.by[k])) }
     }
 }
 
@@ -269,40 +268,14 @@ impl<const N: usize> Real for Dual<N> {
         self.value
     }
 
-    fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.value.sin_cos();
-        (self.chained(sin, cos), self.chained(cos, -sin))
+    #[inline(always)]
+    fn chained(self, value: f64, slope: f64) -> Self {
+        Self { value, by: self.by.map(|d| slope * d) }
     }
 
-    fn atan2(self, x: Self) -> Self {
-        let square = (self.value * self.value + x.value * x.value).max(f64::MIN_POSITIVE);
-        let (by_y, by_x) = (x.value / square, -self.value / square);
-        self.joined(x, self.value.atan2(x.value), |dy, dx| by_y * dy + by_x * dx)
-    }
-
-    fn hypot(self, other: Self) -> Self {
-        let root = self.value.hypot(other.value);
-        let (by_x, by_y) = (self.value / root, other.value / root);
-        self.joined(other, root, |x, y| by_x * x + by_y * y)
-    }
-
-    fn tanh(self) -> Self {
-        let tanh = self.value.tanh();
-        self.chained(tanh, 1.0 - tanh * tanh)
-    }
-
-    fn exp(self) -> Self {
-        let exp = self.value.exp();
-        self.chained(exp, exp)
-    }
-
-    fn ln(self) -> Self {
-        self.chained(self.value.ln(), self.value.recip())
-    }
-
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.chained(root, 0.5 / root)
+    #[inline(always)]
+    fn joined(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
+        Self { value, by: std::array::from_fn(|k| by(self.by[k], other.by[k])) }
     }
 
     fn powf(self, exponent: Self) -> Self {
@@ -311,13 +284,6 @@ impl<const N: usize> Real for Dual<N> {
         // A logarithm costs as much as the power: an exponent that is no variable needs none.
         let by_exponent = if exponent.by == [0.0; N] { 0.0 } else { power * self.value.ln() };
         self.joined(exponent, power, |x, y| by_base * x + by_exponent * y)
-    }
-
-    fn powi(self, exponent: i32) -> Self {
-        if exponent == 0 {
-            return Self::from(1.0);
-        }
-        self.chained(self.value.powi(exponent), f64::from(exponent) * self.value.powi(exponent - 1))
     }
 }
 

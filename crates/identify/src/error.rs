@@ -103,18 +103,12 @@ pub enum IdentifyError {
         /// K/T, 1/s².
         gain: f64,
     },
-    /// The system does not start another program. It is no matter of the record: a study ends with it.
-    #[error("outside: not started: {reason}")]
-    NotStarted {
-        /// What the system says.
-        reason: String,
-    },
-    /// Another program gave no answer; made by [`IdentifyError::outside`].
-    #[error("outside: {reason}")]
-    Outside {
-        /// Why, on one line that can be printed.
-        reason: String,
-    },
+    /// The system does not start another program, in its words. It is no matter of the record: a study ends with it.
+    #[error("outside: not started: {0}")]
+    NotStarted(String),
+    /// Another program gave no answer, and why, on one line that can be printed; made by [`IdentifyError::outside`].
+    #[error("outside: {0}")]
+    Outside(String),
 }
 
 impl From<Unsolvable> for IdentifyError {
@@ -151,7 +145,7 @@ impl IdentifyError {
                 }
             }
         }
-        Self::Outside { reason: if reason.is_empty() { "no reason given".to_owned() } else { reason } }
+        Self::Outside(if reason.is_empty() { "no reason given".to_owned() } else { reason })
     }
 
     /// A short word for tables and rows.
@@ -167,14 +161,14 @@ impl IdentifyError {
             Self::NotConverged { .. } => "not-converged",
             Self::NoRudderEffect { .. } => "no-rudder-effect",
             Self::NotAShip { .. } => "not-a-ship",
-            Self::NotStarted { .. } | Self::Outside { .. } => "outside",
+            Self::NotStarted(_) | Self::Outside(_) => "outside",
         }
     }
 
     /// What a row says: the same word, and behind `outside` the words of the other program.
     pub fn in_a_row(&self) -> Cow<'static, str> {
         match self {
-            Self::NotStarted { .. } | Self::Outside { .. } => self.to_string().into(),
+            Self::NotStarted(_) | Self::Outside(_) => self.to_string().into(),
             own => own.kind().into(),
         }
     }

@@ -8,8 +8,8 @@ use ship::FirstOrder;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use trial::Quantity;
 
-/// Why a method stopped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Why a method stopped; of two reasons the less welcome is the greater.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopReason {
     /// The answer comes from a closed formula.
     Direct,
@@ -111,6 +111,11 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// The diagnostic of this name, where the method has it.
+    pub fn diagnostic(&self, name: &str) -> Option<f64> {
+        self.diagnostics.iter().find(|(own, _)| *own == name).map(|(_, value)| *value)
+    }
+
     /// K with its error, 1/s.
     pub fn K(&self) -> Quantity {
         match &self.uncertainty {

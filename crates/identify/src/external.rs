@@ -18,7 +18,7 @@ use trial::{Origin, Trial};
 
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
-use crate::identifier::{Identifier, Opener, Outside};
+use crate::identifier::{Identifier, Outside};
 use crate::settings::{SettingsError, require};
 use pool::ProcessPool;
 use process_error::ProcessError;
@@ -107,8 +107,8 @@ impl Identifier for External {
         let (number, question) = protocol::question(replicate, first, others);
         let mut process = self.pool.take()?;
         loop {
-            let before = process.answered();
-            let asked = process.ask(self.pool.timeout(), question.clone());
+            let before = process.answered;
+            let asked = process.ask(self.pool.timeout, question.clone());
             match asked {
                 Err(ProcessError::Silent(_)) => self.pool.was_silent(),
                 _ => self.pool.was_answered(),
@@ -120,9 +120,7 @@ impl Identifier for External {
                 }
                 // What a process did before must not show in a row: a new one is asked once more. Not after silence,
                 // which would take the time twice.
-                Err(ProcessError::Ended(_) | ProcessError::TooLong { .. } | ProcessError::Nonsense(_))
-                    if before > 0 =>
-                {
+                Err(ProcessError::Ended(_) | ProcessError::TooLong(_) | ProcessError::Nonsense(_)) if before > 0 => {
                     process.kill();
                     process = self.pool.start()?;
                 }
@@ -135,28 +133,6 @@ impl Identifier for External {
     }
 
     fn outside(&self) -> Option<&dyn Outside> {
-        Some(self)
-    }
-}
-
-impl Outside for External {
-    fn command(&self) -> &[String] {
-        self.pool.command()
-    }
-
-    fn find(&self) -> Result<(), String> {
-        place::find(self.pool.command(), self.pool.folder())
-    }
-
-    fn notice(&self) -> Option<String> {
-        self.pool.notice()
-    }
-
-    fn log_to(&self, open: Opener) {
-        self.pool.log_to(open);
-    }
-
-    fn end(&self) {
-        self.pool.end();
+        Some(&*self.pool)
     }
 }

@@ -289,7 +289,7 @@ impl Identifier for FourierProjected {
             response: solution.response,
             uncertainty: Uncertainty::Covariance(Covariance { matrix, degrees_of_freedom: Some(freedom) }),
             robust: None,
-            stop: fits.iter().fold(StopReason::Direct, |worst, fit| fourier::worse(worst, fit.stop)),
+            stop: fits.iter().map(|fit| fit.stop).max().unwrap_or(StopReason::Direct),
             evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + 1,
             diagnostics,
             warnings,

@@ -193,7 +193,7 @@ impl Identifier for FourierPublished {
             response,
             uncertainty: self.uncertainty(answers),
             robust: None,
-            stop: fits.iter().fold(StopReason::Direct, |worst, fit| fourier::worse(worst, fit.stop)),
+            stop: fits.iter().map(|fit| fit.stop).max().unwrap_or(StopReason::Direct),
             evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + drawn.tried,
             diagnostics: diagnostics(&fits, instants.len(), &drawn),
             warnings: warnings(&fits, &drawn),

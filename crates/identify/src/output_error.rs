@@ -7,7 +7,7 @@
 //! on all, and the lowest wins. A local minimum therefore cannot be mistaken for the answer unless it is narrower than
 //! the scan.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use ship::{FirstOrder, ShortNumber};
@@ -232,7 +232,7 @@ impl OutputError {
         }
         let minimum = best.ok_or_else(|| scan.refusal(f64::INFINITY))?;
         let mut estimate = scan.estimate(profile, minimum)?;
-        estimate.evaluations += coarse.evaluations();
+        estimate.evaluations += coarse.evaluations;
         estimate.diagnostics.insert(LOCAL_MINIMA, ("local_minima", valleys.len() as f64));
         Ok(estimate)
     }
@@ -300,7 +300,7 @@ impl RangeScan {
             return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
         }
         let lag1 = robust::lag1_autocorrelation(profile.residuals());
-        let (evaluations, total) = (profile.evaluations(), profile.total_sum_of_squares());
+        let (evaluations, total) = (profile.evaluations, profile.total_sum_of_squares());
         // What the fit took from the residual it left: the factor that turns a mean square into the variance above.
         let long_run = robust::newey_west_of_three(&profile.into_scores()) * (observations as f64 / freedom);
         let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
@@ -336,11 +336,7 @@ pub(crate) const COURSE_UNSTABLE: &str = "course-unstable: 1/T is negative, K an
 /// Covariance of (1/T, K/T, δ_r) from that of (1/T, b, b δ_r).
 pub(crate) fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {
     let b = response.K_over_T;
-    let jacobian = Matrix3::from_rows(&[
-        Vector3::new(1.0, 0.0, 0.0).transpose(),
-        Vector3::new(0.0, 1.0, 0.0).transpose(),
-        Vector3::new(0.0, -response.rudder_bias / b, 1.0 / b).transpose(),
-    ]);
+    let jacobian = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -response.rudder_bias / b, 1.0 / b);
     Covariance { matrix: jacobian * of_linear * jacobian.transpose(), degrees_of_freedom: Some(freedom) }
 }
 

@@ -34,7 +34,8 @@ pub(crate) struct Profile {
     steering: Vector2<f64>,
     /// Point last evaluated and the answer there.
     last: Option<(f64, Option<f64>)>,
-    evaluations: usize,
+    /// Number of evaluations so far.
+    pub evaluations: usize,
 }
 
 /// A step of 1/T.
@@ -154,11 +155,6 @@ impl Profile {
     /// Observed headings of all trials.
     pub fn observations(&self) -> usize {
         self.parts.iter().map(|part| part.heading.len()).sum()
-    }
-
-    /// Number of evaluations so far.
-    pub fn evaluations(&self) -> usize {
-        self.evaluations
     }
 
     /// Σ(ψ − mean)² over all trials, rad².

@@ -65,14 +65,14 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     coefficients.anchor = best_start(&rest, &columns.homogeneous);
     let states = track.simulate(a, &coefficients);
     let mut residual = vec![f64::NAN; states.len()];
-    for (&row, &measured) in track.observed().iter().zip(&track.heading) {
+    for (&row, &measured) in track.observed.iter().zip(&track.heading) {
         residual[row] = measured - states[row].heading;
         if !residual[row].is_finite() {
             return None;
         }
     }
     let replay = Replay {
-        time: track.time().to_vec(),
+        time: track.time.clone(),
         heading: states.iter().map(|state| state.heading).collect(),
         yaw_rate: states.iter().map(|state| state.yaw_rate).collect(),
         residual,

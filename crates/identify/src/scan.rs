@@ -138,7 +138,7 @@ impl estimation::lanes::Kernel for Sweep<'_> {
         let (mut f_rate, mut g_rate, mut h_rate) = ([1.0; LANES], [0.0; LANES], [0.0; LANES]);
         let mut length = 0.0;
         let (mut decay, mut phi1, mut phi2, mut phi3) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        let rudder = track.rudder();
+        let rudder = &track.rudder;
         let backward = is_backward(inverse_time[0]);
         for TrackStep { from, to, length: step, rudder_rate: rate, .. } in track.steps(backward) {
             if differs(length, step) {

@@ -34,12 +34,9 @@ pub enum PredictError {
     /// A covariance is none.
     #[error("the covariance of the parameters is not positive definite; fit or trace the record again")]
     Covariance,
-    /// A hull cannot be made again.
-    #[error("the hull `{form}` of the file is not one of this program; fit or trace the record again with it")]
-    Hull {
-        /// The word for its form.
-        form: String,
-    },
+    /// A hull, by the word for its form, cannot be made again.
+    #[error("the hull `{0}` of the file is not one of this program; fit or trace the record again with it")]
+    Hull(String),
     /// There is no model.
     #[error("there is no model to predict from")]
     Empty,
@@ -49,15 +46,12 @@ pub enum PredictError {
          --length-m where the model is of that scale"
     )]
     NoParticulars,
-    /// A constant of a formula has no unit that could be scaled.
+    /// A constant of the formula of this effect has no unit that could be scaled.
     #[error(
-        "the unit of the constants of the effect {effect} is not known, so the ship cannot be scaled; write the formula over rp, \
+        "the unit of the constants of the effect {0} is not known, so the ship cannot be scaled; write the formula over rp, \
          vp, delta and psi, which have no dimension"
     )]
-    NoUnit {
-        /// The effect.
-        effect: &'static str,
-    },
+    NoUnit(&'static str),
     /// The model asks for a channel that nobody predicts.
     #[error(
         "the model uses the measured {channel}, which a trial that was not made does not have; give --length-m, and \

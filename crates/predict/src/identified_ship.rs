@@ -131,13 +131,8 @@ impl WeightedStructure {
     /// Places among the parameters of the dead times of its effects.
     pub(crate) fn dead_times(&self, model: &ResponseModel) -> Vec<usize> {
         let named = (SteeringLag::DeadTime.id(), SteeringLag::DeadTime.form());
-        let mut next = ship::response::BASE_PARAMETERS;
-        let first = model.effects().iter().map(|effect| {
-            let first = next;
-            next += effect.parameters().len();
-            (effect, first)
-        });
-        first.filter(|(effect, _)| (effect.id(), effect.form()) == named).map(|(_, first)| first).collect()
+        let dead_times = model.placed().filter(|(effect, _)| (effect.id(), effect.form()) == named);
+        dead_times.map(|(_, own)| own.start).collect()
     }
 }
 
@@ -170,7 +165,7 @@ impl IdentifiedShip {
         for member in &mut scaled.members {
             let model = member.model()?;
             if let Some(own) = model.effects().iter().find(|own| own.parameters().iter().any(Parameter::has_no_unit)) {
-                return Err(PredictError::NoUnit { effect: own.id() });
+                return Err(PredictError::NoUnit(own.id()));
             }
             let factors: Vec<f64> = model.parameters().map(|parameter| factor(parameter.dimension())).collect();
             for (value, factor) in member.parameters.iter_mut().zip(&factors) {
@@ -210,13 +205,7 @@ impl IdentifiedShip {
         calm.hulls.iter_mut().for_each(|hull| hull.moment.deviation_rudder_rad = 0.0);
         for member in &mut calm.members {
             let model = member.model()?;
-            let mut first = ship::response::BASE_PARAMETERS;
-            for effect in model.effects() {
-                let own = first..first + effect.parameters().len();
-                first = own.end;
-                if !effect.sees_heading() {
-                    continue;
-                }
+            for (effect, own) in model.placed().filter(|(effect, _)| effect.sees_heading()) {
                 for (place, parameter) in own.clone().zip(effect.parameters()) {
                     member.parameters[place] = parameter.neutral;
                 }

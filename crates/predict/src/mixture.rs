@@ -266,7 +266,7 @@ impl DrawableStructure {
 
     /// What is random in yaw: what the form of the hull leaves, or what the structures do.
     fn noise(&self, ship: &IdentifiedShip) -> KnownNoise {
-        let Some(moment) = self.hull.as_ref().map(DrawableHull::moment) else { return ship.noise };
+        let Some(moment) = self.hull.as_ref().map(|hull| hull.known.moment) else { return ship.noise };
         KnownNoise {
             moment: if moment.deviation_rudder_rad > 0.0 { Moment::OrnsteinUhlenbeck } else { Moment::None },
             moment_sd_rudder_rad: moment.deviation_rudder_rad,

@@ -119,7 +119,7 @@ impl StoredHull {
     }
 
     fn refused(&self) -> PredictError {
-        PredictError::Hull { form: self.form.clone() }
+        PredictError::Hull(self.form.clone())
     }
 
     /// Refuses what no file of this program holds: another form, other coefficients, a covariance that is none.
@@ -197,7 +197,7 @@ impl StoredHull {
 /// A hull that ships are drawn from.
 #[derive(Debug, Clone)]
 pub(crate) struct DrawableHull {
-    known: StoredHull,
+    pub known: StoredHull,
     form: HullForm,
     coefficients: Vec<HullCoefficient>,
     /// Square root of the covariance, of a hull at another loading that of what the trials do not tell of it.
@@ -233,15 +233,8 @@ impl DrawableHull {
             .as_ref()
             .map(|from| Ok::<_, PredictError>((Box::new(Self::new(&from.hull)?), from.gain.clone())));
         let hull = Self { known: known.clone(), form, coefficients, root, from: from.transpose()? };
-        match hull.with(&known.values()) {
-            Some(_) => Ok(hull),
-            None => Err(PredictError::Hull { form: known.form.clone() }),
-        }
-    }
-
-    /// What is random in yaw.
-    pub fn moment(&self) -> RandomYawMoment {
-        self.known.moment
+        hull.with(&known.values()).ok_or_else(|| known.refused())?;
+        Ok(hull)
     }
 
     fn with(&self, values: &[f64]) -> Option<ScaledHull> {

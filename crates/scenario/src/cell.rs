@@ -3,8 +3,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use simulate::StreamKey;
-use simulate::numbers::Numbers as _;
+use simulate::{Assumption, StreamKey};
 use toml::{Table, Value};
 
 use crate::draw::DrawnKey;
@@ -32,8 +31,9 @@ pub struct DesignCell {
 /// What a trial with drawn values is made from.
 struct DrawnSettings {
     draws: Vec<DrawnKey>,
-    /// The settings of the cell, with every drawn value in the middle.
-    wire: ScenarioWire,
+    /// What the document of the cell says of how a trial is made.
+    document: Table,
+    name: String,
     folder: PathBuf,
 }
 
@@ -51,12 +51,6 @@ pub struct TrialSpecification<'a> {
 pub struct Refusal(String);
 
 impl DesignCell {
-    /// The same cell; its trials carry the name of the scenario.
-    pub(crate) fn named(mut self, scenario: &str) -> Self {
-        self.specification.name(scenario);
-        self
-    }
-
     /// Whether one of its methods is a trace.
     pub fn traces(&self) -> bool {
         self.methods.iter().any(|method| matches!(method.procedure, Procedure::Trace(_)))
@@ -83,9 +77,9 @@ impl DesignCell {
         self.specification.truth.is_some()
     }
 
-    /// Whether its trials make an assumption: its place in `Assumption::ALL`.
-    pub(crate) fn assumes(&self, index: usize) -> bool {
-        self.specification.assumed[index]
+    /// Whether its trials make an assumption.
+    pub(crate) fn assumes(&self, assumption: Assumption) -> bool {
+        assumption.holds(&self.specification.simulation)
     }
 
     /// Labels of the points joined, or nothing when there is no axis.
@@ -106,8 +100,7 @@ impl DesignCell {
             return Ok(TrialSpecification { specification: Cow::Borrowed(&self.specification), drawn: Vec::new() });
         };
         let values: Vec<f64> = drawn.draws.iter().map(|draw| draw.value(key)).collect();
-        let mut specification = drawn.specification(&values).map_err(|problem| Refusal(problem.found))?;
-        specification.name(&self.specification.simulation.scenario);
+        let specification = drawn.specification(&values).map_err(|problem| Refusal(problem.found))?;
         Ok(TrialSpecification { specification: Cow::Owned(specification), drawn: values })
     }
 }
@@ -120,6 +113,7 @@ impl DrawnSettings {
     fn new(
         draws: &[DrawnKey],
         document: &Table,
+        name: &str,
         folder: &Path,
     ) -> Result<Option<(Self, Specification)>, (usize, KeyFault)> {
         if draws.is_empty() {
@@ -130,12 +124,8 @@ impl DrawnSettings {
             (of_key.unwrap_or(index), problem)
         };
         let middle: Vec<f64> = draws.iter().map(DrawnKey::middle).collect();
-        let mut document = only(document, &[ScenarioPart::Trial]);
-        for (draw, &value) in draws.iter().zip(&middle) {
-            sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| attributed(0, problem))?;
-        }
-        let wire: ScenarioWire = reader::document(&document).map_err(|problem| attributed(0, problem))?;
-        let drawn = Self { draws: draws.to_vec(), wire, folder: folder.to_owned() };
+        let document = only(document, &[ScenarioPart::Trial]);
+        let drawn = Self { draws: draws.to_vec(), document, name: name.to_owned(), folder: folder.to_owned() };
         let specification = drawn.specification(&middle).map_err(|problem| attributed(0, problem))?;
         for (index, draw) in draws.iter().enumerate() {
             for value in draw.ends() {
@@ -147,16 +137,14 @@ impl DrawnSettings {
         Ok(Some((drawn, specification)))
     }
 
-    /// The specification with these values; what they do not touch is as it is in the middle.
+    /// The specification with these values.
     fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
-        let mut wire = self.wire.clone();
+        let mut document = self.document.clone();
         for (draw, &value) in self.draws.iter().zip(values) {
-            if !wire.set(draw.key.parts(), value) {
-                let found = format!("`{}` holds no number that can be drawn", draw.key);
-                return Err(KeyFault::name(draw.key.clone(), found, "expected the key of a number", "change the key"));
-            }
+            sweep::set(&mut document, &draw.key, Value::Float(value))?;
         }
-        resolve::specification(&wire, &self.folder)
+        let wire: ScenarioWire = reader::document(&document)?;
+        resolve::specification(&wire, &self.name, &self.folder)
     }
 }
 
@@ -179,6 +167,7 @@ pub(crate) fn swept(
     document: &Table,
     points: &[&sweep::SweepPoint],
     base: &[Method],
+    name: &str,
     folder: &Path,
 ) -> Result<DesignCell, KeyFault> {
     let labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
@@ -198,7 +187,7 @@ pub(crate) fn swept(
         sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(attribute)?;
     }
     let wire: ScenarioWire = reader::document(&changed).map_err(attribute)?;
-    let specification = resolve::specification(&wire, folder).map_err(attribute)?;
+    let specification = resolve::specification(&wire, name, folder).map_err(attribute)?;
     let methods = methods(&wire.identifier, folder).map_err(attribute)?;
     if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
         return Err(attribute(KeyFault::value(
@@ -216,7 +205,7 @@ pub(crate) fn swept(
         .map(|(index, draw)| draw.resolve(index))
         .collect::<Result<_, _>>()
         .map_err(|problem| if points.is_empty() { problem } else { attribute(problem) })?;
-    let drawn = DrawnSettings::new(&draws, &changed, folder)
+    let drawn = DrawnSettings::new(&draws, &changed, name, folder)
         .map_err(|(draw, problem)| draws[draw].attributed(problem, cell.as_deref()))?;
     let (drawn, specification) = match drawn {
         Some((drawn, specification)) => (Some(drawn), specification),

@@ -63,8 +63,6 @@ struct RangeWire {
 pub struct DrawnKey {
     /// The key.
     pub key: KeyPath,
-    /// Where the file says how.
-    place: KeyPath,
     index: u32,
     shape: DrawnDistribution,
     between: [f64; 2],
@@ -122,7 +120,7 @@ impl DrawWire {
         let shape = self.shape(&place)?;
         let between = self.between.unwrap_or_else(|| shape.support());
         let [low, high] = between;
-        let draw = DrawnKey { key, place: place.child(shape.name), index: index as u32, shape, between };
+        let draw = DrawnKey { key, index: index as u32, shape, between };
         if !(low < high && draw.probability() >= LEAST_PROBABILITY) {
             return Err(KeyFault::value(
                 place.child("between"),
@@ -203,17 +201,18 @@ impl DrawnKey {
     pub fn attributed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let (key, mark, what) = match problem.mark {
-            AtFault::Name => (self.key_place(), AtFault::Value, "changes a key that cannot be drawn"),
+            AtFault::Name => (self.place().child("key"), AtFault::Value, "changes a key that cannot be drawn"),
             AtFault::Value | AtFault::Within(_) => {
-                (self.place.clone(), AtFault::Name, "reaches a value that makes no trial")
+                (self.place().child(self.shape.name), AtFault::Name, "reaches a value that makes no trial")
             }
         };
         let found = format!("the draw of `{}` {what}{cell}: {}", self.key, problem.found);
         KeyFault { key, mark, found, ..problem }
     }
 
-    fn key_place(&self) -> KeyPath {
-        KeyPath::dotted("draw").child(self.index).child("key")
+    /// Where the file says how.
+    fn place(&self) -> KeyPath {
+        KeyPath::dotted("draw").child(self.index)
     }
 
     /// Probability of a value within the range.

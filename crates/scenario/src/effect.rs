@@ -12,7 +12,6 @@ use ship::angle::DEGREE;
 use ship::effects::{Effect, Formula, listed};
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ShortNumber};
-use simulate::numbers::Numbers;
 use toml::{Table, Value};
 
 use crate::number_table::{self, NamedNumbers, NumberKey, closed};
@@ -25,15 +24,6 @@ const FORMULA: &str = "formula";
 /// An entry of `[[effect]]`: an effect of the list with its numbers below, or a formula with values beside it.
 #[derive(Debug, Clone, Deserialize, Serialize)]
 pub struct EffectWire(Table);
-
-impl Numbers for EffectWire {
-    fn set(&mut self, key: &[String], value: f64) -> bool {
-        let Some((name, above)) = key.split_last() else { return false };
-        let table = above.iter().try_fold(&mut self.0, |table, part| table.get_mut(part)?.as_table_mut());
-        let number = table.and_then(|table| table.get_mut(name)).filter(|own| own.is_float() || own.is_integer());
-        number.map(|number| *number = Value::Float(value)).is_some()
-    }
-}
 
 /// A number of an effect: identifier and form of the effect, the key and what it means.
 type EffectNumber = (&'static str, &'static str, &'static str, &'static str);
@@ -125,7 +115,7 @@ fn unit(key: &str) -> f64 {
     match key {
         key if key.ends_with("-per-deg2") => PER_DEGREE * PER_DEGREE,
         key if key.ends_with("-per-deg") => PER_DEGREE,
-        key => simulate::numbers::unit(key),
+        key => simulate::error::unit(key),
     }
 }
 
@@ -331,19 +321,4 @@ pub fn schema(_: &mut SchemaGenerator) -> Schema {
         "additionalProperties": { "type": "number" }
     });
     json_schema!({ "type": "array", "items": { "oneOf": effects.chain([formula]).collect::<Vec<_>>() } })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_an_effect_can_be_set() {
-        let text = "formula = \"a = c * r\"\nc = 1\nmoment_drift.rudder-deg-per-s = 0.5\n";
-        let mut entry: EffectWire = toml::from_str(text).expect("an entry");
-        let mut set = |key: &str| entry.set(KeyPath::dotted(key).parts(), 2.0);
-        assert_eq!(["c", "moment_drift.rudder-deg-per-s"].map(&mut set), [true, true]);
-        assert_eq!(["formula", "d", "moment_drift", "c.d", ""].map(&mut set), [false; 5]);
-        assert_eq!((&entry.0["c"], &entry.0["moment_drift"]["rudder-deg-per-s"]), (&2.0.into(), &2.0.into()));
-    }
 }

@@ -21,8 +21,6 @@ use crate::{effect, limits, name};
 pub struct Method {
     /// Label in tables and figures; unique in the scenario.
     pub label: String,
-    /// Id of the method.
-    pub id: &'static str,
     /// What it does.
     pub procedure: Procedure,
 }
@@ -133,8 +131,7 @@ pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Meth
     for (index, entry) in wire.iter().enumerate() {
         let key = list.child(index);
         let procedure = procedure(entry, &key, folder)?;
-        let id = procedure.id();
-        let label = entry.label.clone().unwrap_or_else(|| id.to_owned());
+        let label = entry.label.clone().unwrap_or_else(|| procedure.id().to_owned());
         name::label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
         if methods.iter().any(|method| method.label == label) {
             return Err(KeyFault::name(
@@ -144,7 +141,7 @@ pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Meth
                 format!("add a label to one of them, for instance `label = \"{label} (2)\"`"),
             ));
         }
-        methods.push(Method { label, id, procedure });
+        methods.push(Method { label, procedure });
     }
     if methods.is_empty() {
         return Err(KeyFault::name(

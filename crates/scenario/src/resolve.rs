@@ -6,17 +6,18 @@ use std::sync::Arc;
 use ::ship::ships::Model;
 use ::ship::{Particulars, Regressor, Ship, ShortNumber};
 use predict::motion::{Planar, PlanarShip};
-use simulate::{Assumption, Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
+use simulate::{Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
 use crate::problem::{KeyFault, KeyPath};
 use crate::specification::{HULL, Specification};
 use crate::wire::{FurtherWire, ScenarioWire};
 use crate::{effect, ship};
 
-/// Resolves everything about a trial.
-pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification, KeyFault> {
+/// Resolves everything about a trial, which carries the name of its scenario.
+pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<Specification, KeyFault> {
     let ship = effect::added(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
+        scenario: name.to_owned(),
         gear: wire.steering_gear.of(&ship),
         helmsman: wire.helmsman,
         approach: wire.approach,
@@ -48,16 +49,7 @@ pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification
         Model::Response(response) => Some(response.first_order()),
         Model::Hull(_) => None,
     };
-    let assumed = Assumption::ALL.map(|assumption| assumption.holds(&simulation));
-    Ok(Specification {
-        also,
-        validation,
-        truth: ship.first_order(),
-        base,
-        missing: missing(&ship, wire),
-        assumed,
-        simulation,
-    })
+    Ok(Specification { also, validation, truth: ship.first_order(), base, missing: missing(&ship, wire), simulation })
 }
 
 /// Channels that no trial of the scenario has.

@@ -129,7 +129,7 @@ impl Scenario {
         };
         words.check()?;
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
-        resolve::specification(&wire, folder)?;
+        resolve::specification(&wire, name, folder)?;
         let methods = methods(&wire.identifier, folder)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose()?;
         wire.stop.as_ref().map_or(Ok(()), |stop| stop.check(&methods))?;
@@ -140,8 +140,8 @@ impl Scenario {
         checks::size(wire.replicates, combinations.len(), methods.len())?;
         checks::draws(&wire.draw, &axes)?;
         let of_cells = cell::only(document, &[ScenarioPart::Trial, ScenarioPart::Cell]);
-        let cells = combinations.iter().map(|points| cell::swept(&of_cells, points, &methods, folder));
-        let cells: Vec<DesignCell> = cells.map(|cell| cell.map(|cell| cell.named(name))).collect::<Result<_, _>>()?;
+        let cells = combinations.iter().map(|points| cell::swept(&of_cells, points, &methods, name, folder));
+        let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         checks::detail(&words.output.detail, &cells)?;
         checks::marks(&words.output.marks, &axes)?;
         checks::about(&words.output.methods, &methods)?;
@@ -190,8 +190,7 @@ impl Scenario {
         }
         self.design_sha256 = hex(&Sha256::digest(format!("{} {label} {own}", self.design_sha256)));
         for cell in &mut self.cells {
-            let id = procedure.id();
-            cell.methods.push(Method { label: label.to_owned(), id, procedure: procedure.clone() });
+            cell.methods.push(Method { label: label.to_owned(), procedure: procedure.clone() });
         }
         Ok(self)
     }
@@ -205,8 +204,8 @@ impl Scenario {
     /// What the scenario leaves to be assumed and can decide what it finds, what does most harm first, each as a
     /// sentence without its full stop.
     pub fn defaults_that_matter(&self) -> Vec<(Assumption, String)> {
-        let made = |(index, assumption): (usize, Assumption)| {
-            let cells = self.cells.iter().filter(|cell| cell.assumes(index)).count();
+        let made = |assumption: Assumption| {
+            let cells = self.cells.iter().filter(|cell| cell.assumes(assumption)).count();
             let sentence = assumption.sentence();
             match cells {
                 0 => None,
@@ -214,7 +213,7 @@ impl Scenario {
                 some => Some((assumption, format!("in {some} of {} cells {sentence}", self.cells.len()))),
             }
         };
-        Assumption::ALL.into_iter().enumerate().filter_map(made).collect()
+        Assumption::ALL.into_iter().filter_map(made).collect()
     }
 
     /// Labels and ids of the methods, in the order of the scenario.
@@ -222,7 +221,7 @@ impl Scenario {
         self.cells[0]
             .methods
             .iter()
-            .map(|method| MethodName { label: method.label.clone(), id: method.id.to_owned() })
+            .map(|method| MethodName { label: method.label.clone(), id: method.procedure.id().to_owned() })
             .collect()
     }
 

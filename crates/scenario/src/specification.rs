@@ -1,7 +1,7 @@
 //! What the engine accepts: everything about a trial but its chance.
 
 use ship::FirstOrder;
-use simulate::{Assumption, Simulation, StreamKey};
+use simulate::{Simulation, StreamKey};
 
 /// Everything about a trial but its chance.
 #[derive(Debug, Clone)]
@@ -19,22 +19,12 @@ pub struct Specification {
     /// Identifiers of the effects that a first-order base lacks in a trial; [`HULL`] for a ship with equations of its
     /// own.
     pub missing: Vec<String>,
-    /// Which of [`Assumption::ALL`] the settings leave to be made.
-    pub assumed: [bool; Assumption::ALL.len()],
 }
 
 /// What a hull has that no list of effects names.
 pub const HULL: &str = "hull";
 
 impl Specification {
-    /// Trials carry the name of their scenario.
-    pub fn name(&mut self, scenario: &str) {
-        let first = std::iter::once(&mut self.simulation);
-        for simulation in first.chain(&mut self.also).chain(&mut self.validation) {
-            simulation.scenario = scenario.to_owned();
-        }
-    }
-
     /// How every record of a trial is made, with the key of its own chance.
     pub fn records(&self, key: &StreamKey) -> impl Iterator<Item = (&Simulation, StreamKey)> {
         /// Odd, so that no two of 2⁶⁴ records share a seed.

@@ -4,7 +4,7 @@
 
 use predict::motion::PlanarCoefficients;
 use serde::{Deserialize, Serialize};
-use simulate::{BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear, numbers};
+use simulate::{BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear};
 
 use crate::draw::DrawWire;
 use crate::effect::{self, EffectWire};
@@ -99,9 +99,4 @@ pub struct FurtherWire {
     pub manoeuvre: Manoeuvre,
     /// That of the trial when left out; of a validation from the start of the run.
     pub recording: Option<Recording>,
-}
-
-numbers! {
-    ScenarioWire: "ship" ship, "effect" effect, "speed-and-sway" speed_and_sway, "manoeuvre" manoeuvre,
-        "steering-gear" steering_gear, "helmsman" helmsman, "approach" approach, "recording" recording, "sensor" sensor, "disturbance" disturbance;
 }

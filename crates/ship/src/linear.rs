@@ -12,18 +12,12 @@ use crate::particulars::Particulars;
 /// Why linear equations have no indices K, T1, T2, T3.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LinearError {
-    /// Straight motion is neutrally stable: K and T1 are infinite.
-    #[error("the hull is neutrally stable (det N = {det_N}): K and T1 are infinite")]
-    NeutrallyStable {
-        /// Determinant of the damping matrix.
-        det_N: f64,
-    },
-    /// The mass matrix is not positive definite, or an entry is not finite.
-    #[error("the mass matrix needs positive inertia and a positive determinant, found det M = {det_M}")]
-    Mass {
-        /// Determinant of the mass matrix.
-        det_M: f64,
-    },
+    /// Straight motion is neutrally stable, by the determinant of the damping matrix: K and T1 are infinite.
+    #[error("the hull is neutrally stable (det N = {0}): K and T1 are infinite")]
+    NeutrallyStable(f64),
+    /// The mass matrix of this determinant is not positive definite, or an entry is not finite.
+    #[error("the mass matrix needs positive inertia and a positive determinant, found det M = {0}")]
+    Mass(f64),
     /// Sway and yaw oscillate: T1 and T2 are complex.
     #[error("T1 and T2 are complex: their sum is {sum} and their product {product}")]
     Oscillatory {
@@ -97,10 +91,10 @@ impl PrimeSwayYaw {
         let Self { M, N, b } = self;
         let (det_M, det_N) = (det(M), det(N));
         if !(det_M > 0.0 && M[0][0] > 0.0 && det_M.is_finite()) {
-            return Err(LinearError::Mass { det_M });
+            return Err(LinearError::Mass(det_M));
         }
         if det_N == 0.0 || !det_N.is_finite() {
-            return Err(LinearError::NeutrallyStable { det_N });
+            return Err(LinearError::NeutrallyStable(det_N));
         }
         let product = det_M / det_N;
         let sum = (N[0][0] * M[1][1] + N[1][1] * M[0][0] - N[0][1] * M[1][0] - N[1][0] * M[0][1]) / det_N;
@@ -177,9 +171,9 @@ mod tests {
     #[test]
     fn refuses_equations_without_indices() {
         let neutral = PrimeSwayYaw { N: [[2.0, 1.0], [4.0, 2.0]], ..S175 };
-        assert_eq!(neutral.indices(), Err(LinearError::NeutrallyStable { det_N: 0.0 }));
+        assert_eq!(neutral.indices(), Err(LinearError::NeutrallyStable(0.0)));
         let massless = PrimeSwayYaw { M: [[0.0, 0.0], [0.0, 0.0]], ..S175 };
-        assert_eq!(massless.indices(), Err(LinearError::Mass { det_M: 0.0 }));
+        assert_eq!(massless.indices(), Err(LinearError::Mass(0.0)));
         let swinging = PrimeSwayYaw { M: [[1.0, 0.0], [0.0, 1.0]], N: [[0.1, 1.0], [-1.0, 0.1]], b: [0.0, 1.0] };
         assert!(matches!(swinging.indices(), Err(LinearError::Oscillatory { .. })));
         let adrift = PrimeSwayYaw { b: [0.0, 0.0], ..S175 };

@@ -89,16 +89,13 @@ pub fn unit(dimension: Dimension) -> String {
         });
         symbols.collect::<Vec<_>>().join(" ")
     };
-    match (part(1), part(-1)) {
-        (above, below) if below.is_empty() => {
-            if above.is_empty() {
-                String::from("1")
-            } else {
-                above
-            }
-        }
-        (above, below) => format!("{}/{below}", if above.is_empty() { "1" } else { &above }),
-    }
+    fraction(part(1), part(-1))
+}
+
+/// A unit from what stands above its stroke and below.
+fn fraction(above: String, below: String) -> String {
+    let above = if above.is_empty() { String::from("1") } else { above };
+    if below.is_empty() { above } else { format!("{above}/{below}") }
 }
 
 /// The unit of a prime value: what is left of a unit without seconds and metres, "1/rad²" of "s/rad²", "1" of "1/s".
@@ -108,12 +105,7 @@ pub fn prime_unit(unit: &str) -> String {
         kept.collect::<Vec<&str>>().join(" ")
     };
     let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
-    match (angles(above), angles(below)) {
-        (above, below) if below.is_empty() && above.is_empty() => String::from("1"),
-        (above, below) if below.is_empty() => above,
-        (above, below) if above.is_empty() => format!("1/{below}"),
-        (above, below) => format!("{above}/{below}"),
-    }
+    fraction(angles(above), angles(below))
 }
 
 #[cfg(test)]

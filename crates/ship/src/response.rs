@@ -101,6 +101,11 @@ impl ResponseModel {
         &self.effects
     }
 
+    /// The same, each with the places of its values among all.
+    pub fn placed(&self) -> impl Iterator<Item = (&dyn Effect, Range<usize>)> {
+        self.effects.iter().zip(&self.places).map(|(effect, place)| (effect.as_ref(), place.parameters()))
+    }
+
     /// Number of parameters, base included.
     pub fn parameter_count(&self) -> usize {
         self.parameters

@@ -111,10 +111,11 @@ impl Simulation {
     }
 
     fn steps_per_second(&self) -> f64 {
+        let dynamics = self.vessel.dynamics();
         let step = match (self.closed_form(), self.solver) {
             (Some(ship), _) => ClosedForm::longest_step(&ship),
             (None, Solver::RungeKutta(step)) => step,
-            (None, Solver::Automatic) => exposed::largest_step(self.vessel.largest_step(), self.sensors.heading_lag),
+            (None, Solver::Automatic) => exposed::largest_step(dynamics.largest_step(), self.sensors.heading_lag),
         };
         let display = self.helmsman.reads_display_every.map_or(0.0, |period| 1.0 / period);
         let weather = if self.disturbances.change() { 1.0 / self.weather_grid } else { 0.0 };

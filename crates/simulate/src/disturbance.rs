@@ -9,7 +9,6 @@ use ship::narrow_band::NarrowBand;
 use trial::degrees::Degrees;
 
 use crate::error::{self, Check};
-use crate::numbers;
 
 /// Wind and sea; a calm in all that is left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -101,16 +100,6 @@ pub struct WaveSpectrum {
     pub frequency: f64,
     /// Relative damping: the smaller, the narrower the band.
     pub damping: f64,
-}
-
-numbers! {
-    Disturbances: "wind" wind, "gusts" gusts, "drift-deg-per-s" drift, "squall" squall,
-        "random-walk-deg-per-root-s" random_walk, "waves" waves;
-    Wind: "moment-deg" moment, "from-deg" from, "speed-m-s" speed, "gusting" gusting;
-    Gusting: "sd" sd, "correlation-s" correlation_time;
-    GaussMarkov: "sd-deg" sd, "correlation-s" correlation_time;
-    Squall: "moment-deg" moment, "start-s" start, "duration-s" duration, "edge-s" edge;
-    WaveSpectrum: "sd-deg" sd, "frequency-rad-s" frequency, "damping" damping;
 }
 
 impl WaveSpectrum {

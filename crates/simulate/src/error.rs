@@ -4,11 +4,11 @@
 use std::fmt;
 
 use ship::ShortNumber;
+use ship::angle::DEGREE;
 use thiserror::Error;
 use trial::TrialError;
 
 use crate::limits::{LONGEST_TIME, MOST_ROWS};
-use crate::numbers::unit;
 
 /// What a value of a specification has to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -206,6 +206,11 @@ pub(crate) type Check = Result<(), SpecificationError>;
 /// A number as it was written: conversion to radians and back must not show.
 pub(crate) fn shown(value: f64) -> ShortNumber {
     ShortNumber::rounded(value, 14)
+}
+
+/// Size in SI of the unit that the name of a key says.
+pub fn unit(key: &str) -> f64 {
+    if key.split(['-', '.']).any(|word| word == "deg") { DEGREE } else { 1.0 }
 }
 
 /// Refuses what no single value is to blame for.

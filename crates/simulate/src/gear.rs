@@ -9,7 +9,6 @@ use ship::{Polyline, Ship};
 use trial::degrees::Degrees;
 
 use crate::error::{self, Check};
-use crate::numbers;
 
 /// What moves the rudder: a steering gear with optional rate limit, lag, dead time, dead band and stops.
 ///
@@ -33,11 +32,6 @@ pub struct SteeringGear {
     /// Largest rudder angle to either side; that of the ship where its source gives one, and else 90°.
     #[serde(rename = "maximum-deg", with = "Degrees::<Option<f64>>")]
     pub maximum: Option<f64>,
-}
-
-numbers! {
-    SteeringGear: "rate-deg-s" rate, "lag-s" lag, "dead-time-s" dead_time, "dead-band-deg" dead_band,
-        "maximum-deg" maximum;
 }
 
 /// How the rudder moves within one [`Segment`].

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use trial::manoeuvre::{Manoeuvre, Trigger};
 
 use crate::error::{self, Check};
-use crate::numbers;
 
 /// Who reads the compass and turns the wheel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -18,10 +17,6 @@ pub struct Helmsman {
     /// Time from seeing the heading waited for to giving the order.
     #[serde(rename = "reaction-time-s")]
     pub reaction_time: f64,
-}
-
-numbers! {
-    Helmsman: "reads-display-every-s" reads_display_every, "reaction-time-s" reaction_time;
 }
 
 /// Times between two readings of an instrument, s, that make sense: none is read more often, and a manoeuvre is over in

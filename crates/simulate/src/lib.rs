@@ -15,7 +15,6 @@
 //! | noise, quantisation, lag, coloured error, spikes, clocks, drop-outs | [`sensor`] |
 //! | which part of the run is recorded | [`recording`] |
 //! | where random numbers come from | [`stream`] |
-//! | numbers that a study draws | [`mod@numbers`] |
 //! | what is taken for granted | [`assumption`] |
 //! | what a run may cost | [`cost`], [`limits`] |
 //! | what can go wrong | [`error`] |
@@ -58,7 +57,6 @@ pub mod error;
 pub mod gear;
 pub mod helm;
 pub mod limits;
-pub mod numbers;
 pub mod recording;
 pub mod sensor;
 pub mod simulation;

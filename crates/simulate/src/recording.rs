@@ -8,7 +8,6 @@ use trial::degrees::Degrees;
 use crate::error::{self, Check, Expected};
 use crate::helm::{LONGEST_PERIOD, SHORTEST_PERIOD};
 use crate::limits::{MOST_EXECUTES, MOST_ROWS};
-use crate::numbers;
 use crate::sample::Sample;
 use crate::sensor::Sensors;
 use crate::stream::{Purpose, StreamKey, normal};
@@ -46,11 +45,6 @@ pub enum RudderSource {
     Feedback,
     /// Angles rebuilt from the orders.
     Orders,
-}
-
-numbers! {
-    Recording: "sampling-s" period, "duration-s" duration, "offset-s" offset,
-        "assumed-rudder-rate-deg-s" assumed_rudder_rate;
 }
 
 impl Default for Recording {

@@ -16,7 +16,6 @@ use trial::degrees::Degrees;
 use crate::disturbance::GaussMarkov;
 use crate::error::{self, Check, Expected};
 use crate::limits::{LONGEST_TIME, MOST_ROWS};
-use crate::numbers;
 
 /// Instruments, perfect in all that is left out.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -93,16 +92,6 @@ pub struct DropOut {
     pub burst_mean_rows: Option<f64>,
     /// Whether a lost row is lost whole, or only its heading.
     pub whole_row: bool,
-}
-
-numbers! {
-    Sensors: "heading-noise-deg" heading_noise, "heading-quantum-deg" heading_quantum, "heading-lag-s" heading_lag,
-        "heading-bias-deg" heading_bias, "heading-wander" heading_wander, "heading-spikes" heading_spikes,
-        "yaw-rate-noise-deg-s" yaw_rate_noise, "yaw-rate-bias-deg-s" yaw_rate_bias,
-        "yaw-rate-scale-error" yaw_rate_scale_error, "rudder-noise-deg" rudder_noise,
-        "rudder-quantum-deg" rudder_quantum, "jitter-s" jitter, "heading-delay-s" heading_delay, "drop-out" drop_out;
-    Spikes: "probability" probability, "size-deg" size;
-    DropOut: "probability" probability, "burst-probability" burst_probability, "burst-mean-rows" burst_mean_rows;
 }
 
 /// The multiple of `quantum` that is nearest to `value`; the value itself without a quantum.

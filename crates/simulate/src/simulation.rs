@@ -19,7 +19,6 @@ use crate::helm::{Helm, HelmOrder, Helmsman};
 use crate::limits::MOST_ROWS;
 use crate::manoeuvre::{check_manoeuvre, key_of};
 use crate::measure::{self, Scene, View};
-use crate::numbers;
 use crate::propagate::{ClosedForm, Integrated, Propagator, ShipInWeather};
 use crate::recording::{Recording, RudderSource, Sampler};
 use crate::run::{Progress, Run, RunResult};
@@ -47,10 +46,6 @@ pub struct BeforeExecute {
     /// Straight run before the first execute.
     #[serde(rename = "lead-in-s")]
     pub lead_in: f64,
-}
-
-numbers! {
-    BeforeExecute: "heading-deg" heading, "yaw-rate-deg-s" yaw_rate, "rudder-deg" rudder, "lead-in-s" lead_in;
 }
 
 impl BeforeExecute {
@@ -109,7 +104,7 @@ pub struct Simulation {
     pub longest_wait: f64,
 }
 
-/// What really happened, at the stamps of the rows of the record. SeaWaves are not part of it: they are a heading that
+/// What really happened, at the stamps of the rows of the record. Waves are not part of it: they are a heading that
 /// is seen, not a response.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Truth {
@@ -388,7 +383,7 @@ impl Simulation {
         TrueRun { scene: Scene::new(truth.time.clone(), &view), truth: Arc::new(truth) }
     }
 
-    /// The record that `key` makes of a true_run.
+    /// The record that `key` makes of a run.
     fn record(&self, true_run: &TrueRun, key: &StreamKey) -> Result<Simulated, SimulateError> {
         let waves = SeaWaves::new(&self.disturbances, &self.vessel, key);
         let written = measure::write(&self.sensors, &true_run.scene, waves, key);

@@ -23,8 +23,6 @@ pub struct Vessel {
     dynamics: Arc<dyn Dynamics>,
     first_order: Option<FirstOrder>,
     random_headings: Vec<NarrowBand>,
-    /// Largest step of its equations, s.
-    largest_step: f64,
     particulars: Option<Particulars>,
 }
 
@@ -44,8 +42,7 @@ impl Vessel {
     pub fn response(response: Response) -> Self {
         let first_order = response.model().effects().is_empty().then(|| response.first_order());
         let random_headings = response.random_headings().collect();
-        let largest_step = response.largest_step();
-        Self { dynamics: Arc::new(response), first_order, random_headings, largest_step, particulars: None }
+        Self { dynamics: Arc::new(response), first_order, random_headings, particulars: None }
     }
 
     /// A purely first-order ship.
@@ -55,8 +52,7 @@ impl Vessel {
 
     /// Any other system of equations.
     pub fn hull(dynamics: Arc<dyn Dynamics>) -> Self {
-        let largest_step = dynamics.largest_step();
-        Self { dynamics, first_order: None, random_headings: Vec::new(), largest_step, particulars: None }
+        Self { dynamics, first_order: None, random_headings: Vec::new(), particulars: None }
     }
 
     /// A ship of the registry, with its particulars.
@@ -70,7 +66,7 @@ impl Vessel {
 
     /// The same vessel with equations that hold more than its own.
     pub fn with_dynamics(self, dynamics: Arc<dyn Dynamics>) -> Self {
-        Self { largest_step: dynamics.largest_step(), dynamics, first_order: None, ..self }
+        Self { dynamics, first_order: None, ..self }
     }
 
     /// The same vessel with length and approach speed declared.
@@ -81,11 +77,6 @@ impl Vessel {
     /// The equations.
     pub fn dynamics(&self) -> &dyn Dynamics {
         self.dynamics.as_ref()
-    }
-
-    /// Largest step of its equations, s, at which Runge–Kutta of order four keeps its accuracy.
-    pub fn largest_step(&self) -> f64 {
-        self.largest_step
     }
 
     /// K, T and δ_r, where the ship is exactly first order.

@@ -72,7 +72,7 @@ pub fn methods(commands: &[NamedCommand], known: &[&str]) -> Result<Vec<Named>, 
             return Err(refuse(&SAME_LABEL));
         }
         let method = Settings::new(command).build(Path::new("")).map_err(|error| refuse(&error))?;
-        method.find().map_err(|problem| refuse(&problem))?;
+        method.outside().map_or(Ok(()), Outside::find).map_err(|problem| refuse(&problem))?;
         methods.push((label.clone(), Box::new(method)));
     }
     Ok(methods)

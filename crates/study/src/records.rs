@@ -182,7 +182,7 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
         None => Ok(None),
         Some(TimePoint::Seconds(seconds)) => Ok(Some(*seconds)),
         Some(TimePoint::Clock(stamp, text)) => {
-            let time = log.clock().and_then(|clock| clock.time_of(stamp));
+            let time = log.clock.and_then(|clock| clock.time_of(stamp));
             time.map(Some).ok_or_else(|| {
                 Failure::about(
                     path,
@@ -263,7 +263,7 @@ fn ask(log: &Log, path: &Path, several: &[(usize, &FoundManoeuvre)]) -> Failure 
 
 /// A time of a log for people: seconds, and what the clock shows.
 pub fn at(log: &Log, time: f64) -> String {
-    let clock = log.clock().map(|clock| format!(" ({})", clock.at(time)));
+    let clock = log.clock.map(|clock| format!(" ({})", clock.at(time)));
     format!("{} s{}", fixed(time, 1), clock.unwrap_or_default())
 }
 
@@ -294,7 +294,7 @@ fn ship(
 
 /// Says why records that have a speed or positions tell no track.
 pub fn warn_of_no_track(shown: &RecordFacts, warnings: &mut Vec<String>) {
-    warnings.extend(shown.no_track().map(str::to_owned));
+    warnings.extend(shown.no_track.clone());
 }
 
 /// What a negative dead time of so many seconds says, and what mends it.

@@ -5,7 +5,6 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use estimation::residuals::{self, GappedSeries, Whiteness};
 use identify::hull::HullEstimate;
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
@@ -68,11 +67,6 @@ fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
         false => trials.iter().zip(&readings).map(|(trial, out)| trial.clone().without_readings(out)).collect(),
     };
     (kept, readings)
-}
-
-/// Whiteness of the residuals before and after.
-fn whiteness_of(records: &[RecordComparison], trials: &[Trial]) -> [Whiteness; 2] {
-    [whiteness(records.iter().map(|one| &one.before), trials), whiteness(records.iter().map(|one| &one.after), trials)]
 }
 
 /// Why an effect that was asked for cannot be in the model.
@@ -162,7 +156,6 @@ pub fn watched(
         validation: (&validation, &judged),
         left_out: &left_out,
         remainder: &remainder,
-        whiteness: whiteness_of(&identification, &trials),
         outliers: &outliers,
         no_nearer,
         problem: &problem,
@@ -215,7 +208,7 @@ fn fitted(
             let band = after.band;
             after = ReplayResult { band, ..before.clone() };
         }
-        Ok(RecordComparison { name: trial.name().to_owned(), before, after })
+        Ok(RecordComparison { before, after })
     };
     let all: Result<Vec<RecordComparison>, TraceError> = trials.par_iter().enumerate().map(of).collect();
     let mut all = all?;
@@ -235,13 +228,6 @@ fn keep_nearest(all: &mut [RecordComparison]) -> bool {
         }
     }
     no_nearer
-}
-
-fn whiteness<'a>(all: impl Iterator<Item = &'a ReplayResult>, trials: &[Trial]) -> Whiteness {
-    let series = all
-        .zip(trials)
-        .map(|(one, trial)| GappedSeries::new(&one.replay.time, &one.replay.residual, trial.sampling_period()));
-    residuals::whiteness(&series.collect::<Vec<_>>())
 }
 
 /// A structure that the records cannot tell from the best, as a prediction takes it: without what is of one record.

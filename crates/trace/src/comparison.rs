@@ -85,8 +85,6 @@ impl ReplayResult {
 /// One record with the models before and after.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordComparison {
-    /// Name.
-    pub name: String,
     /// Base.
     pub before: ReplayResult,
     /// Average of the structures.
@@ -128,7 +126,7 @@ impl AveragedModel<'_> {
         let mut starts = starts(trial, base);
         starts.push(before.replay.initial());
         let after = self.on(trial, &record, &starts, true)?;
-        Ok(RecordComparison { name: trial.name().to_owned(), before, after })
+        Ok(RecordComparison { before, after })
     }
 
     /// The same on several.

@@ -119,7 +119,7 @@ pub struct ParameterEntry {
     /// The one record it belongs to.
     pub only: Option<String>,
     /// Whether it ends at an end of its range; left out where it does not.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub at_bound: bool,
 }
 
@@ -131,11 +131,6 @@ pub struct PrimeEntry {
     pub quantity: Quantity,
     /// Unit: 1, or one of angles.
     pub unit: String,
-}
-
-/// Whether a flag is left out.
-pub fn is_false(flag: &bool) -> bool {
-    !flag
 }
 
 /// An effect in a form, in all records or in one.
@@ -161,7 +156,7 @@ pub struct EffectEntry {
     /// The one record in which it acts.
     pub only: Option<String>,
     /// Whether it is in the model on request; left out where it was found.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub asked: bool,
     /// Effects that the records cannot tell from it: one of the group is there.
     pub aliases: Vec<String>,

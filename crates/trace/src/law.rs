@@ -20,7 +20,7 @@ use crate::waves;
 use crate::weights::{NoiseLaw, Weights};
 
 /// No heading is believed to be better than this, rad: a thousandth of a degree.
-const FINEST: f64 = 1.75e-5;
+pub const FINEST: f64 = 1.75e-5;
 
 /// Share of the rows whose rudder bends most, by which the error of the rudder between rows is judged.
 const BENT: f64 = 0.05;
@@ -104,10 +104,9 @@ impl<'a> LinearisedFit<'a> {
 
     /// The sizes of the noise of all records under a colour, from `start`.
     fn judge(&self, colour: NoiseColour, start: &[f64]) -> ChosenLaw {
-        let ones = vec![1.0; start.len()];
-        let mut law = NoiseLaw { colour, variance: start.to_vec(), power: ones.clone() };
-        let unit = NoiseLaw { colour, variance: ones.clone(), power: ones };
+        let unit = NoiseLaw { colour, ..NoiseLaw::white(start.len(), 1.0) };
         let weights = self.problem.weights(&unit);
+        let mut law = NoiseLaw { variance: start.to_vec(), ..unit };
         // Of every record by itself, under unit variance: the sums for other sizes follow.
         let blocks: Vec<(Normal, Vec<f64>)> = (0..start.len()).map(|record| self.of_record(record, &weights)).collect();
         let mut height = f64::INFINITY;

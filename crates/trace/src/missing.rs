@@ -3,18 +3,15 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use ship::FirstOrder;
 use ship::effects::Prior;
 
 use crate::analysis::Analysis;
 use crate::candidates::is_variant;
 use crate::fit::Effort;
 use crate::full::start;
+use crate::law::FINEST;
 use crate::missing_moment::{Explanation, MissingMoment};
 use crate::model::{Structure, TermName};
-
-/// Smallest heading noise that a smoother starts from, rad.
-const FINEST: f64 = 1.75e-5;
 
 impl Analysis {
     /// The yaw moment that a base of constant K and T lacks on every fitted record; `None` for a record of too few
@@ -23,7 +20,6 @@ impl Analysis {
     /// Explanations are first the average of the structures, where it is more than the base, then every candidate alone
     /// on the base, the most probable first.
     pub fn missing_moments(&self) -> Vec<Option<MissingMoment>> {
-        let FirstOrder { inverse_T, K_over_T, rudder_bias } = self.base.response;
         let own = Structure::base(self.problem.records.len(), self.problem.time);
         let weights = self.problem.weights(&self.full.law);
         let initial: Vec<[f64; 2]> = self.identification.iter().map(|one| one.before.replay.initial()).collect();
@@ -63,8 +59,7 @@ impl Analysis {
                 heading: difference(&residual[number]),
             }));
             let sd = self.full.law.variance[number].sqrt().max(FINEST);
-            let response = FirstOrder { inverse_T, K_over_T, rudder_bias };
-            MissingMoment::new(&self.problem.records[number], &response, sd, explanations)
+            MissingMoment::new(&self.problem.records[number], &self.base.response, sd, explanations)
         };
         (0..self.problem.records.len()).into_par_iter().map(of).collect()
     }

@@ -33,8 +33,6 @@ const SMALLEST_SHARE: f64 = 0.5;
 /// One record, ready to be replayed.
 #[derive(Debug, Clone)]
 pub struct PreparedRecord {
-    /// Name of the trial.
-    pub name: String,
     /// Times of the rows, s.
     pub time: Vec<f64>,
     /// Heading of the rows, rad, the mean of their readings; NaN where it was not recorded.
@@ -126,7 +124,6 @@ impl PreparedRecord {
         let wind = relative.and_then(|(speed, from)| Some((signal(Some(speed))?, signal(Some(from))?)));
         let (wind_speed, wind_from) = wind.unzip();
         Self {
-            name: trial.name().into(),
             readings,
             full_readings,
             observed,

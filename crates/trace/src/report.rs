@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use estimation::mixture::{MixtureSummary, NormalMixture, NormalPair, ratio};
-use estimation::residuals::Whiteness;
+use estimation::residuals::{GappedSeries, whiteness};
 use ship::angle::to_deg;
 use ship::effects::{self, Effect, Parameter};
 use ship::particulars::prime_unit;
@@ -13,7 +13,7 @@ use trial::{Quantity, Trial};
 
 use crate::base::Base;
 use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME};
-use crate::comparison::RecordComparison;
+use crate::comparison::{RecordComparison, ReplayResult};
 use crate::document::*;
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
@@ -49,8 +49,6 @@ pub struct TraceParts<'a> {
     pub left_out: &'a [Option<RecordComparison>],
     /// What is left.
     pub remainder: &'a Remainder,
-    /// Whiteness before and after.
-    pub whiteness: [Whiteness; 2],
     /// Readings that were left out of the fitted records, s.
     pub outliers: &'a [Vec<f64>],
     /// Whether the structures replay the fitted records no nearer than the base.
@@ -79,12 +77,12 @@ impl TraceParts<'_> {
             (None, false) => Verdict::Traced,
         };
         let error = self.errors();
-        let indices = self.indices();
+        let (base, indices) = (&self.base.estimate, self.indices());
         Document {
             schema: SCHEMA.into(),
             headline: words::headline(verdict, &effects, &error),
             verdict,
-            base: self.base_indices(),
+            base: self.with_prime([base.K(), base.T(), base.rudder_bias()]),
             candidates: selection.ids().into_iter().map(|id| self.candidate(id.as_str(), &named)).collect(),
             structures: self.listed(),
             prior: PriorEntry {
@@ -99,7 +97,10 @@ impl TraceParts<'_> {
                 signature: signature.map(|own| words::signature(own, self.name_of(own)) + &self.bands()),
                 empirical: self.empirical(),
             },
-            residual: ResidualEntry { before: self.whiteness[0].into(), after: self.whiteness[1].into() },
+            residual: ResidualEntry {
+                before: self.whiteness(|one| &one.before),
+                after: self.whiteness(|one| &one.after),
+            },
             noise: self.noise(),
             next_trial: String::new(),
             model: ModelEntry {
@@ -121,8 +122,9 @@ impl TraceParts<'_> {
 
     /// The fitted records whose bands do not hold what they are made for.
     fn bands(&self) -> String {
-        let covered = self.identification.iter().filter_map(|one| Some((one, one.after.coverage()?)));
-        covered.filter(|(_, own)| !own.is_held()).map(|(one, own)| words::band(&one.name, &own)).collect()
+        let records = self.trials.iter().zip(self.identification);
+        let covered = records.filter_map(|(trial, one)| Some((trial, one.after.coverage()?)));
+        covered.filter(|(_, own)| !own.is_held()).map(|(trial, own)| words::band(trial.name(), &own)).collect()
     }
 
     fn ship(&self) -> Option<Particulars> {
@@ -141,11 +143,6 @@ impl TraceParts<'_> {
     fn with_prime(&self, [k, t, bias]: [Quantity; 3]) -> Indices {
         let prime = self.ship().map(|ship| PrimeIndices::of([k, t], ship));
         Indices { K_per_s: k, T_s: t, delta_r_deg: bias.scaled(to_deg(1.0)), prime }
-    }
-
-    fn base_indices(&self) -> Indices {
-        let base = &self.base.estimate;
-        self.with_prime([base.K(), base.T(), base.rudder_bias()])
     }
 
     /// K, T and δ_r averaged over the structures.
@@ -370,6 +367,14 @@ impl TraceParts<'_> {
             validation: self.validation.0.iter().zip(self.validation.1).map(of).collect(),
             leave_one_out: left_out.map(of).collect(),
         }
+    }
+
+    /// Whiteness of what a model leaves of the fitted records.
+    fn whiteness(&self, of: fn(&RecordComparison) -> &ReplayResult) -> WhitenessEntry {
+        let records = self.identification.iter().map(of).zip(self.trials);
+        let series = records
+            .map(|(one, trial)| GappedSeries::new(&one.replay.time, &one.replay.residual, trial.sampling_period()));
+        whiteness(&series.collect::<Vec<_>>()).into()
     }
 
     fn noise(&self) -> Vec<RecordNoiseEntry> {

@@ -17,12 +17,9 @@ impl EffectId {
 
     /// Every effect once, in the order of reports.
     pub fn all() -> Vec<Self> {
-        let mut ids: Vec<Self> = Vec::new();
-        for id in effects::all().iter().map(|effect| Self(effect.id())) {
-            if !ids.contains(&id) {
-                ids.push(id);
-            }
-        }
+        let mut ids: Vec<Self> = effects::all().iter().map(|effect| Self(effect.id())).collect();
+        // The forms of an effect follow one another.
+        ids.dedup();
         ids
     }
 

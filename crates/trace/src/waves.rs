@@ -26,11 +26,7 @@ pub fn find(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> O
     let beside = &NoiseColour { waves: None, ..law.colour };
     // −2 log L and whitened sum of squares of the residual under one colour.
     let judge = |colour: &NoiseColour| {
-        let weights = problem.weights(&NoiseLaw {
-            colour: *colour,
-            variance: vec![1.0; residual.len()],
-            power: vec![1.0; residual.len()],
-        });
+        let weights = problem.weights(&NoiseLaw { colour: *colour, ..NoiseLaw::white(residual.len(), 1.0) });
         let rss = weights.misfit(residual);
         let log_variance: f64 = weights.whiteners.iter().map(|whitener| whitener.log_variance).sum();
         let n = problem.observations() as f64;

@@ -80,18 +80,11 @@ impl Separator {
 
 /// Length of the text before the quote that ends a quoted cell; doubled quotes do not end it.
 fn closing_quote(text: &str) -> Option<usize> {
-    let bytes = text.as_bytes();
-    let mut at = 0;
-    while at < bytes.len() {
-        if bytes[at] == b'"' {
-            if bytes.get(at + 1) != Some(&b'"') {
-                return Some(at);
-            }
-            at += 1;
-        }
-        at += 1;
+    let mut at = text.find('"')?;
+    while text[at + 1..].starts_with('"') {
+        at += 2 + text[at + 2..].find('"')?;
     }
-    None
+    Some(at)
 }
 
 /// The text of a cell that stood in quotes, with doubled quotes made single.

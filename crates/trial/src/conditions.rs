@@ -27,16 +27,6 @@ pub enum Loading {
     Partial,
 }
 
-impl Loading {
-    /// The word used in files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Full => "full",
-            Self::Partial => "partial",
-        }
-    }
-}
-
 /// Particulars and conditions that a sidecar declares under `[form]`; SI units, `None` where nothing is declared. In
 /// brackets, what the key of a sidecar may be.
 ///

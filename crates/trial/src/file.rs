@@ -58,18 +58,14 @@ impl From<io::Error> for FileError {
 pub struct Limited<'a> {
     file: Box<dyn Read + 'a>,
     kind: Kind,
-    size: Option<u64>,
+    /// Size in bytes; `None` for a pipe.
+    pub size: Option<u64>,
     left: u64,
 }
 
 impl<'a> Limited<'a> {
     pub(crate) fn new(file: Box<dyn Read + 'a>, kind: Kind, size: Option<u64>) -> Self {
         Self { file, kind, size, left: kind.largest }
-    }
-
-    /// Size in bytes; `None` for a pipe.
-    pub fn size(&self) -> Option<u64> {
-        self.size
     }
 }
 

@@ -305,22 +305,6 @@ impl Manoeuvre {
         }
     }
 
-    /// The number under a key (SI, rad), so that a study can draw it; `None` where there is none, or one left out.
-    pub fn number(&mut self, key: &str) -> Option<&mut f64> {
-        match (self, key) {
-            (
-                Self::ZigZag { rudder, .. } | Self::TurningCircle { rudder, .. } | Self::PullOut { rudder, .. },
-                "rudder-deg",
-            ) => Some(rudder),
-            (Self::ZigZag { heading, .. }, "heading-deg") => Some(heading),
-            (Self::ZigZag { duration, .. } | Self::TurningCircle { duration, .. }, "duration-s") => duration.as_mut(),
-            (Self::TurningCircle { heading_change, .. }, "heading-change-deg") => heading_change.as_mut(),
-            (Self::PullOut { hold, .. }, "hold-s") => Some(hold),
-            (Self::PullOut { duration, .. }, "duration-s") => Some(duration),
-            _ => None,
-        }
-    }
-
     /// Time from the first to the last point of a recorded rudder, s.
     fn length_of_record(&self) -> f64 {
         let Self::Replay { rudder: Some(rudder), .. } = self else { return 0.0 };

@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 
 use ship::Particulars;
 use ship::angle::{KNOT, from_deg};
-use ship::vessel::prior::HullParticulars;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
@@ -112,16 +111,6 @@ impl Sidecar {
     /// Whether readings are cleaned, and a record that contradicts itself is refused.
     pub(crate) fn is_checked(&self) -> bool {
         self.check.plausibility.unwrap_or(true)
-    }
-
-    /// Length and approach speed of the ship, where the sidecar declares them.
-    pub fn particulars(&self) -> Option<Particulars> {
-        self.conditions.particulars
-    }
-
-    /// Particulars of the hull that are declared; without [ship] length and speed are zero.
-    pub fn hull(&self) -> HullParticulars {
-        self.conditions.hull
     }
 }
 
@@ -277,6 +266,7 @@ mod tests {
     use super::*;
     use crate::cells::Separator;
     use crate::encoding::Encoding;
+    use ship::vessel::prior::HullParticulars;
 
     fn parse(text: &str) -> Result<Sidecar, SidecarError> {
         Sidecar::parse(text, Path::new("run.trial.toml"))
@@ -311,13 +301,12 @@ mod tests {
         assert_eq!(sidecar.columns[0].line, 11);
         assert_eq!(sidecar.columns[0].which, Which::Place(3));
         assert_eq!(sidecar.columns[0].meaning, contract("heading_rad"));
-        let particulars = sidecar.particulars().expect("declared");
+        let particulars = sidecar.conditions.particulars.expect("declared");
         approx::assert_relative_eq!(particulars.speed, 7.973_888_888_888_89, max_relative = 1e-14);
         approx::assert_relative_eq!(sidecar.noise.rudder.expect("declared"), from_deg(0.2));
         assert!(!sidecar.is_checked());
         let form = &sidecar.conditions;
         assert_eq!((form.ship_type.as_deref(), form.beam), (Some("tanker"), Some(58.0)));
-        assert_eq!(form.particulars, sidecar.particulars());
         assert_eq!(form.loading(), Some(crate::conditions::Loading::Partial));
         assert!(parse("").expect("no key is required").is_checked());
     }

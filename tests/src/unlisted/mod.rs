@@ -73,6 +73,6 @@ pub fn square_to_first_order(truth: &Truth) -> f64 {
     let records = records::of(truth, 0.0, StreamKey::default());
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let base = method.identify(&records).expect("a zig-zag has a base");
-    let (_, rms) = base.diagnostics.iter().find(|(name, _)| *name == "heading_rmse_deg").expect("it is reported");
-    (records.len() * records::ROWS) as f64 * from_deg(*rms).powi(2)
+    let rms = base.diagnostic("heading_rmse_deg").expect("it is reported");
+    (records.len() * records::ROWS) as f64 * from_deg(rms).powi(2)
 }

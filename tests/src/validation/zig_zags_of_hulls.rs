@@ -199,8 +199,7 @@ fn fit(anchor: &Anchor, checks: &mut Vec<Check>) {
     let trial = anchor.run(Way::Stepped, executes[until - 1].time.floor(), 1.0).trial;
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let found = method.identify(&[trial]).expect("a zig-zag is identified");
-    let rms =
-        found.diagnostics.iter().find(|(name, _)| *name == "heading_rmse_deg").expect("output error reports its rms").1;
+    let rms = found.diagnostic("heading_rmse_deg").expect("output error reports its rms");
     for (symbol, published, decimals, ours, unit) in [
         ("K", k, decimals, found.response.K(), "1/s"),
         ("T", t, 1, found.response.T(), "s"),

@@ -9,7 +9,7 @@
 //! | the definition as a file, and its checks | [`definition`], `wire`, `embedded` |
 //! | how measured records are found | [`record_store`] |
 //! | who takes part, and what an answer can do | [`method`] |
-//! //! | what is asked and answered | [`mod@run`], [`cases`] |
+//! | what is asked and answered | [`mod@run`], [`cases`] |
 //! | leaderboards | [`board`], [`naming`], [`overall`], `statistics` |
 //! | the whole result, as it is stored | [`results`] |
 

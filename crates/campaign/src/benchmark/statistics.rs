@@ -8,13 +8,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use crate::statistics::Moments;
-
-/// Times that clusters are drawn: enough for the 2.5 and 97.5 % points to two digits.
-const RESAMPLES: usize = 1000;
-
-/// A fixed seed: the same cases give the same interval.
-const SEED: u64 = 1979;
+use crate::statistics::{Moments, RESAMPLES, SEED};
 
 /// Fewest clusters of which an interval is given: no pair of order statistics of fewer covers the median in 95 %.
 pub const FEWEST: usize = 6;

@@ -35,7 +35,7 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &Com
     track.sensitivity(a, &coefficients, &mut by_inverse_time);
     let MotionColumns { homogeneous, rudder, constant, .. } = columns;
     let mut sensitivities = [by_inverse_time, rudder, constant, vec![1.0; track.len()], homogeneous];
-    let times: Vec<f64> = track.observed().iter().map(|&row| track.time()[row]).collect();
+    let times: Vec<f64> = track.observed.iter().map(|&row| track.time[row]).collect();
     whiten(&times, error, &mut sensitivities);
     let product = |i: usize, j: usize| sensitivities[i].iter().zip(&sensitivities[j]).map(|(x, y)| x * y).sum::<f64>();
     // In units in which every parameter alone would have a standard deviation of 1.

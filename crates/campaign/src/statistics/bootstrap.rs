@@ -8,10 +8,10 @@ use super::statistic::{FEWEST, Statistic};
 use super::sums::BatchSums;
 
 /// Resamples: enough for the 2.5 and 97.5 % points to two digits.
-const RESAMPLES: usize = 1000;
+pub const RESAMPLES: usize = 1000;
 
-/// A fixed seed: the same rows give the same interval.
-const SEED: u64 = 1979;
+/// A fixed seed: the same rows or cases give the same interval.
+pub const SEED: u64 = 1979;
 
 /// How often each batch is in each resample.
 #[derive(Debug, Clone)]

@@ -9,7 +9,7 @@ mod sample;
 mod statistic;
 mod sums;
 
-pub use bootstrap::Resamples;
+pub use bootstrap::{RESAMPLES, Resamples, SEED};
 pub use groups::{distinct, grouped};
 pub use moments::Moments;
 pub use sample::{ErrorSample, Ordered};

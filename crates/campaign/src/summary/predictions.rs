@@ -18,7 +18,7 @@ pub struct PredictionSummary {
     pub trials: u64,
     /// Trials whose 90 % interval holds what the ship does.
     pub inside: u64,
-    /// ErrorSums of the median less what the ship does, of its square, of the width of the interval, and of what the
+    /// Sums of the median less what the ship does, of its square, of the width of the interval, and of what the
     /// ship does.
     sums: [f64; 4],
 }

@@ -282,7 +282,7 @@ impl Running {
 struct IndexSums {
     sample: ErrorSample,
     sums: ErrorSums,
-    /// ErrorSums of the answers less the first of them, and of their squares, after that first one.
+    /// Sums of the answers less the first of them, and of their squares, after that first one.
     answers: Option<(f64, [f64; 2])>,
     /// Sum of the squared bounds, per cent, and their number.
     bounds: (f64, f64),

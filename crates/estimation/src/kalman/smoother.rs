@@ -7,7 +7,8 @@ use super::{Filter, Reading, SETTLED, Sensor, System, identity, sandwich};
 /// The states of a system given all readings.
 #[derive(Debug, Clone)]
 pub struct Smoother<const N: usize> {
-    filter: Filter<N>,
+    /// The filter, which gives the innovations.
+    pub filter: Filter<N>,
     /// Covariance of the state of every gain before the reading is known.
     predicted: Vec<[[f64; N]; N]>,
 }
@@ -18,11 +19,6 @@ impl<const N: usize> Smoother<N> {
         let mut predicted = Vec::new();
         let filter = Filter::visiting(system, SETTLED, |covariance| predicted.push(*covariance));
         Self { filter, predicted }
-    }
-
-    /// Σ log S.
-    pub fn log_variance(&self) -> f64 {
-        self.filter.log_variance()
     }
 
     /// Predicted state and innovation of every reading, where a known input adds `forced` to the state in the step

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use super::found::{Analysed, PointsFit};
 use super::points::{Point, Points};
 use crate::error::IdentifyError;
+use estimation::column::extremes;
 use estimation::least_squares::LeastSquares;
 
 /// The points one trial contributes.
@@ -207,8 +208,7 @@ fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &GainFit) -> Vec<(
         (squares > 0.0).then(|| chosen().map(|rise| rise.rate_moment(gain) * rise.rate).sum::<f64>() / squares)
     };
     let each: Vec<f64> = rises.iter().map(|rise| rise.rate_moment(gain) / rise.rate).collect();
-    let range =
-        each.iter().copied().fold(f64::NEG_INFINITY, f64::max) - each.iter().copied().fold(f64::INFINITY, f64::min);
+    let (shortest, longest) = extremes(&each);
     let later = swings.get(1..).unwrap_or_default();
     [
         ("condition", Some(gain.condition)),
@@ -217,7 +217,7 @@ fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &GainFit) -> Vec<(
         ("K_without_first_swing_per_s", gain_of(later, &|_| true)),
         ("T_to_starboard_s", time_of(1.0)),
         ("T_to_port_s", time_of(-1.0)),
-        ("T_range_s", Some(range)),
+        ("T_range_s", Some(longest - shortest)),
     ]
     .into_iter()
     .filter_map(|(name, value)| Some((name, value?)))

@@ -4,7 +4,8 @@
 
 use std::ops::Range;
 
-use trial::zigzag::points::{self, SMALLEST_EXTREMUM};
+use estimation::column::extremes;
+use trial::zigzag::points;
 
 use crate::samples::Samples;
 use crate::savitzky_golay::local_polynomial;
@@ -80,8 +81,7 @@ impl Points {
     /// half width as the share `width_share` of half a period.
     pub fn find(samples: &Samples, base: Option<f64>, half_width: Option<f64>, width_share: f64) -> Self {
         let time = &samples.time;
-        let (lo, hi) =
-            samples.heading.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &x| (lo.min(x), hi.max(x)));
+        let (lo, hi) = extremes(&samples.heading);
         let approach = approach(samples, base, (lo, hi));
         let mean = |rows: Range<usize>| samples.heading[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
         let (base, base_from) = match (base, &approach) {
@@ -95,15 +95,12 @@ impl Points {
         let interval = time[time.len() - 1] / (time.len() - 1) as f64;
         let half_width = half_width
             .unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(FEWEST_INTERVALS * interval));
-        // Nothing here uses the uncertainty of a single point, so its noise need not be estimated.
-        let fits = |half_width| points::Settings { noise: Some(0.0), ..points::Settings::new(half_width) };
         let point =
             |time, heading, rate| Point { time, heading, rate, rudder_integral: rudder_integral(samples, time) };
-        let mut still: Vec<Point> = points::extrema(time, &off_course, &fits(half_width))
+        let mut still: Vec<Point> = points::extrema(time, &off_course, half_width)
             .into_iter()
-            .map(|extremum| {
-                let (at, heading) = centred(time, &off_course, half_width, extremum.time.value)
-                    .unwrap_or((extremum.time.value, extremum.heading.value));
+            .map(|[at, heading]| {
+                let (at, heading) = centred(time, &off_course, half_width, at).unwrap_or((at, heading));
                 point(at, heading, 0.0)
             })
             .collect();
@@ -115,9 +112,9 @@ impl Points {
             still.insert(0, point(time[last], heading, 0.0));
         }
         // A window about a passage is not centred on a row: half an interval more gives it as many rows as if it were.
-        let crossings = points::zero_crossings(time, &off_course, &fits(half_width + 0.5 * interval))
+        let crossings = points::zero_crossings(time, &off_course, half_width + 0.5 * interval)
             .into_iter()
-            .map(|crossing| point(crossing.time.value, 0.0, crossing.yaw_rate.value))
+            .map(|[time, yaw_rate]| point(time, 0.0, yaw_rate))
             // Noise on the approach crosses the base course too.
             .filter(|crossing| approach.is_none() || crossing.time > first_extremum)
             .collect();
@@ -139,15 +136,7 @@ fn approach(samples: &Samples, base: Option<f64>, (lo, hi): (f64, f64)) -> Optio
 /// Half a period, s: the mean time between alternate departures from the base course that count as a swing. The
 /// duration of the record with fewer than two of them.
 fn half_period(time: &[f64], off_course: &[f64]) -> f64 {
-    let largest = off_course.iter().fold(0.0_f64, |largest, off| largest.max(off.abs()));
-    let mut side = 0.0;
-    let mut departures = Vec::new();
-    for (&t, off) in time.iter().zip(off_course) {
-        if off.abs() > SMALLEST_EXTREMUM * largest && off.signum() != side {
-            side = off.signum();
-            departures.push(t);
-        }
-    }
+    let departures = points::departures(time, off_course);
     match departures[..] {
         // A record that starts in a swing departs before its first row.
         [_, first, .., last] => (last - first) / (departures.len() - 2) as f64,

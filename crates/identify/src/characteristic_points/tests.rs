@@ -103,7 +103,7 @@ fn trials_are_pooled_and_the_bias_is_found() {
 #[test]
 fn swings_to_either_side_are_told_apart() {
     let estimate = identify(four_seconds(), &[Case { samples: 401, ..Case::default() }.trial()]);
-    let figure = |name| estimate.diagnostics.iter().find(|(key, _)| *key == name).expect("present").1;
+    let figure = |name| estimate.diagnostic(name).expect("present");
     for name in ["K_to_starboard_per_s", "K_to_port_per_s", "K_without_first_swing_per_s"] {
         assert_abs_diff_eq!(figure(name), 0.1007, epsilon = 1e-4);
     }

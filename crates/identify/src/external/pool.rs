@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
 use std::time::Duration;
 
-use crate::identifier::Opener;
+use crate::identifier::{Opener, Outside};
 
 use super::place;
 use super::process::{Listener, Process, locked};
@@ -34,7 +34,7 @@ pub struct ProcessPool {
     command: Vec<String>,
     folder: PathBuf,
     /// How long an answer is waited for.
-    timeout: Duration,
+    pub timeout: Duration,
     /// Silences since the last answer; once it is given up, none end that.
     silences: AtomicU32,
     is_told: AtomicBool,
@@ -65,21 +65,6 @@ impl ProcessPool {
         own
     }
 
-    /// The program and its arguments.
-    pub fn command(&self) -> &[String] {
-        &self.command
-    }
-
-    /// How long an answer is waited for.
-    pub fn timeout(&self) -> Duration {
-        self.timeout
-    }
-
-    /// Where it runs.
-    pub fn folder(&self) -> &Path {
-        &self.folder
-    }
-
     /// Takes note of a question that was answered, with sense or without.
     pub fn was_answered(&self) {
         let is_kept = |count: u32| (count < MOST_SILENCES).then_some(0);
@@ -93,19 +78,6 @@ impl ProcessPool {
 
     fn is_given_up(&self) -> bool {
         self.silences.load(Ordering::Relaxed) >= MOST_SILENCES
-    }
-
-    /// That it was given up, once.
-    pub fn notice(&self) -> Option<String> {
-        let is_new = self.is_given_up() && !self.is_told.swap(true, Ordering::Relaxed);
-        is_new.then(|| {
-            format!(
-                "`{}` gave no answer within {} s to {MOST_SILENCES} trials in succession and is given up: further trials \
-                 fail at once",
-                place::shown(&self.command),
-                self.timeout.as_secs_f64()
-            )
-        })
     }
 
     /// A process to ask: one that waits, or a new one; none of a command that was given up, in the words of a silence.
@@ -132,20 +104,6 @@ impl ProcessPool {
         locked(&self.idle).push(process);
     }
 
-    /// Where what its processes say beside their answers goes from now on.
-    pub fn log_to(&self, open: Opener) {
-        *locked(&self.log) = Some(Arc::new(Mutex::new(StderrLog { open, file: None, left: MOST_LOG })));
-    }
-
-    /// Ends the processes that wait, and with them the log; whoever asks next begins anew.
-    pub fn end(&self) {
-        self.silences.store(0, Ordering::Relaxed);
-        self.is_told.store(false, Ordering::Relaxed);
-        let idle = std::mem::take(&mut *locked(&self.idle));
-        Process::end(idle);
-        *locked(&self.log) = None;
-    }
-
     /// Makes it the last that was asked; processes of the one that was not asked for so many others end.
     fn was_asked(self: &Arc<Self>) {
         let mut pools = locked(&POOLS);
@@ -163,6 +121,41 @@ impl ProcessPool {
             let idle = std::mem::take(&mut *locked(&beyond.idle));
             Process::end(idle);
         }
+    }
+}
+
+impl Outside for ProcessPool {
+    fn command(&self) -> &[String] {
+        &self.command
+    }
+
+    fn find(&self) -> Result<(), String> {
+        place::find(&self.command, &self.folder)
+    }
+
+    fn log_to(&self, open: Opener) {
+        *locked(&self.log) = Some(Arc::new(Mutex::new(StderrLog { open, file: None, left: MOST_LOG })));
+    }
+
+    fn notice(&self) -> Option<String> {
+        let is_new = self.is_given_up() && !self.is_told.swap(true, Ordering::Relaxed);
+        is_new.then(|| {
+            format!(
+                "`{}` gave no answer within {} s to {MOST_SILENCES} trials in succession and is given up: further trials \
+                 fail at once",
+                place::shown(&self.command),
+                self.timeout.as_secs_f64()
+            )
+        })
+    }
+
+    /// Whoever asks next begins anew.
+    fn end(&self) {
+        self.silences.store(0, Ordering::Relaxed);
+        self.is_told.store(false, Ordering::Relaxed);
+        let idle = std::mem::take(&mut *locked(&self.idle));
+        Process::end(idle);
+        *locked(&self.log) = None;
     }
 }
 

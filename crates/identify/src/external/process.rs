@@ -47,7 +47,8 @@ pub struct Process {
     /// Without it the input of the process ends.
     questions: Option<SyncSender<Vec<u8>>>,
     answers: Receiver<Vec<u8>>,
-    answered: u64,
+    /// Questions it has answered.
+    pub answered: u64,
     log: Option<JoinHandle<()>>,
 }
 
@@ -78,11 +79,6 @@ impl Process {
         Ok(this)
     }
 
-    /// Questions it has answered.
-    pub fn answered(&self) -> u64 {
-        self.answered
-    }
-
     /// Asks a question and waits for the line of the answer, without its end.
     pub fn ask(&mut self, timeout: Duration, question: Vec<u8>) -> Result<Vec<u8>, ProcessError> {
         if self.questions.as_ref().is_none_or(|questions| questions.send(question).is_err()) {
@@ -94,7 +90,7 @@ impl Process {
             Err(RecvTimeoutError::Disconnected) => return Err(ProcessError::Ended(self.status())),
         };
         if answer.len() > MOST_BYTES {
-            return Err(ProcessError::TooLong { most: MOST_BYTES });
+            return Err(ProcessError::TooLong(MOST_BYTES));
         }
         if answer.pop_if(|last| *last == b'\n').is_none() {
             return Err(ProcessError::Ended(self.status()));

@@ -20,11 +20,8 @@ pub enum ProcessError {
     #[error("the process ended without an answer{}", .0.map_or_else(String::new, |status| format!(" ({status})")))]
     Ended(Option<ExitStatus>),
     /// A line without an end.
-    #[error("an answer of more than {most} bytes")]
-    TooLong {
-        /// Most bytes.
-        most: usize,
-    },
+    #[error("an answer of more than {0} bytes")]
+    TooLong(usize),
     /// A line that is no answer to the question.
     #[error("{0}")]
     Nonsense(String),
@@ -33,7 +30,7 @@ pub enum ProcessError {
 impl From<ProcessError> for IdentifyError {
     fn from(error: ProcessError) -> Self {
         match error {
-            ProcessError::NotStarted(error) => Self::NotStarted { reason: error.to_string() },
+            ProcessError::NotStarted(error) => Self::NotStarted(error.to_string()),
             other => Self::outside(&other.to_string()),
         }
     }

@@ -89,7 +89,7 @@ fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) 
     let ends: Vec<(f64, ChosenFundamental)> =
         starts.iter().map(|&start| descend(&mut profile, start, length, harmonics)).collect();
     let (_, choice) = ends.into_iter().min_by(|one, other| one.0.total_cmp(&other.0)).expect("there is a start");
-    ChosenFundamental { evaluations: profile.evaluations(), ..choice }
+    ChosenFundamental { evaluations: profile.evaluations, ..choice }
 }
 
 /// Walks downhill from `from` in steps too small to leave a basin, then closes in on the minimum.
@@ -186,7 +186,7 @@ fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental 
     let at = |k: usize| lowest + k as f64 * step;
     let (lo, hi) = (at(best.saturating_sub(1)), at((best + 1).min(last)));
     let (fundamental, _) = close_in(&mut profile, lo, at(best), hi, rss[best]);
-    ChosenFundamental { fundamental, stop, evaluations: profile.evaluations() }
+    ChosenFundamental { fundamental, stop, evaluations: profile.evaluations }
 }
 
 /// Angular frequency, rad/s, of the highest peak of the transform of the heading about its mean, from one period a

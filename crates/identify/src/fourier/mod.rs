@@ -69,17 +69,6 @@ pub fn fit(
     Ok(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations })
 }
 
-/// The less welcome of two reasons to stop.
-pub(crate) fn worse(one: StopReason, other: StopReason) -> StopReason {
-    let rank = |stop| match stop {
-        StopReason::Direct => 0,
-        StopReason::Converged => 1,
-        StopReason::IterationLimit => 2,
-        StopReason::RangeLimit | StopReason::Outside => 3,
-    };
-    if rank(other) > rank(one) { other } else { one }
-}
-
 /// Figures of the fits: w and N of the first trial, R² and condition number of the worst.
 pub(crate) fn diagnostics(fits: &[Fitted]) -> Vec<(&'static str, f64)> {
     let first = fits.first().map(|fit| &fit.curve);

@@ -37,7 +37,8 @@ pub struct Profile {
     sums: Vec<Sums>,
     gram: Vec<f64>,
     right: Vec<f64>,
-    evaluations: usize,
+    /// Number of fundamentals tried so far.
+    pub evaluations: usize,
 }
 
 /// Sums over nodes with one Chebyshev polynomial Tₖ(ξ), lane by lane.
@@ -72,11 +73,6 @@ impl Profile {
             right: vec![0.0; width],
             evaluations: 0,
         }
-    }
-
-    /// Number of fundamentals tried so far.
-    pub fn evaluations(&self) -> usize {
-        self.evaluations
     }
 
     /// RSS at `fundamental` (rad/s, positive).

@@ -49,8 +49,7 @@ fn reported_errors_are_those_of_repetition() {
         for seed in 0..DRAWS {
             let trial = Case { noise_deg, seed, bias_deg: 0.5, ..Case::default() }.trial();
             let estimate = method.identify(&[trial]).expect("identified");
-            let residual =
-                estimate.diagnostics.iter().find(|(name, _)| *name == "residual_sd_deg").expect("reported").1;
+            let residual = estimate.diagnostic("residual_sd_deg").expect("reported");
             truncation = truncation.max(residual / noise_deg);
             for (column, quantity) in columns.iter_mut().zip([estimate.K(), estimate.T(), estimate.rudder_bias()]) {
                 column.push([quantity.value, quantity.sd.expect("a covariance")]);
@@ -114,8 +113,7 @@ fn averaging_a_dense_record_changes_next_to_nothing() {
     let method = build(Settings::default());
     let averaged = method.identify(std::slice::from_ref(&trial)).expect("identified");
     let whole = FourierProjected { most_rows: usize::MAX, ..method }.identify(&[trial]).expect("identified");
-    let equations = |found: &Estimate| found.diagnostics.iter().find(|(name, _)| *name == "equations").map(|(_, n)| *n);
-    assert!(equations(&averaged) < Some(40_000.0) && equations(&whole) > Some(100_000.0));
+    assert!(averaged.diagnostic("equations") < Some(40_000.0) && whole.diagnostic("equations") > Some(100_000.0));
     let pairs = [(averaged.K(), whole.K()), (averaged.T(), whole.T()), (averaged.rudder_bias(), whole.rudder_bias())];
     for (averaged, whole) in pairs {
         let sd = whole.sd.expect("a covariance");

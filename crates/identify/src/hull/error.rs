@@ -18,12 +18,9 @@ pub enum HullFitError {
     /// Length or speed are not declared.
     #[error("length and approach speed of the ship are not known")]
     Particulars,
-    /// A record is too short.
-    #[error("{trial} has fewer than {FEWEST} headings")]
-    Short {
-        /// Name of the record.
-        trial: String,
-    },
+    /// The record of this name is too short.
+    #[error("{0} has fewer than {FEWEST} headings")]
+    Short(String),
     /// Rows, or the ends of a record, that are farther apart than in any trial of a ship.
     #[error(
         "{trial} has a row every {row:.3} L/U over {whole:.0} L/U; expected at most {COARSEST} L/U and {LONGEST} L/U; check the \

@@ -78,7 +78,7 @@ impl HullTrack {
         if row > COARSEST || whole > LONGEST {
             return Err(HullFitError::Clock { trial: trial.name().to_owned(), row, whole });
         }
-        let short = || HullFitError::Short { trial: trial.name().to_owned() };
+        let short = || HullFitError::Short(trial.name().to_owned());
         let track = Self::cut(trial, reference).ok_or_else(short)?;
         match track.start[0] < SLOW {
             true => Err(HullFitError::GathersWay { trial: trial.name().to_owned(), share: track.start[0] }),

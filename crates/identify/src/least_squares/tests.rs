@@ -26,10 +26,6 @@ fn errors(estimate: &Estimate) -> [f64; 2] {
     [100.0 * (estimate.response.K() / 0.1 - 1.0), 100.0 * (estimate.response.T() / 16.3 - 1.0)]
 }
 
-fn figure(estimate: &Estimate, name: &str) -> f64 {
-    estimate.diagnostics.iter().find(|(key, _)| *key == name).expect("present").1
-}
-
 /// A record with a gyro, whose noise is the heading noise of the case per second.
 fn with_gyro(case: &Case) -> Trial {
     let (truth, noisy) = (case.truth(), case.trial());
@@ -46,7 +42,7 @@ fn the_bias_of_noise_is_foreseen() {
         for seed in 0..60 {
             let estimate = identify(Settings::default(), &[Case { noise_deg, seed, ..Case::default() }.trial()]);
             found.push(100.0 * (estimate.response.inverse_T * 16.3 - 1.0));
-            foreseen.push(figure(&estimate, "noise_bias_of_inverse_T_percent"));
+            foreseen.push(estimate.diagnostic("noise_bias_of_inverse_T_percent").expect("present"));
             assert_eq!(estimate.warnings.len(), 1);
         }
         found.sort_by(f64::total_cmp);

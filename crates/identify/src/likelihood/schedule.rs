@@ -43,10 +43,10 @@ const REMEMBERED: usize = 16;
 impl Schedule {
     /// Readings of a track; `by_row` keeps the rows of the rudder between them apart.
     pub fn new(track: &Track, by_row: bool) -> Self {
-        let time = track.time();
+        let time = &track.time;
         let mut schedule = Self { spans: Vec::new(), readings: Vec::new() };
         let mut last = None;
-        let (mut headings, mut rates) = (track.observed().iter().peekable(), track.observed_rates().iter().peekable());
+        let (mut headings, mut rates) = (track.observed.iter().peekable(), track.observed_rates.iter().peekable());
         let mut pieces = Vec::new();
         while let Some(row) = [headings.peek(), rates.peek()].into_iter().flatten().min().map(|&&row| row) {
             let step = last.map(|last: usize| {

@@ -16,18 +16,20 @@ const SAME_STEP: f64 = 1e-9;
 /// One trial, from its first to its last row with a heading.
 #[derive(Debug, Clone)]
 pub struct Track {
-    time: Vec<f64>,
-    rudder: Vec<f64>,
+    /// Time of every row, s.
+    pub time: Vec<f64>,
+    /// Rudder of every row, rad.
+    pub rudder: Vec<f64>,
     /// What lies between a row and the next.
     intervals: Vec<Interval>,
     /// Corners of the rudder between rows, in order.
     corners: Vec<CornerAfterRow>,
     /// Rows that have a heading, in order.
-    observed: Vec<usize>,
+    pub observed: Vec<usize>,
     /// Heading of the observed rows, rad.
     pub heading: Vec<f64>,
     /// Rows that have a yaw rate which is used, in order.
-    observed_rates: Vec<usize>,
+    pub observed_rates: Vec<usize>,
     /// Yaw rate of these rows, rad/s.
     pub rates: Vec<f64>,
 }
@@ -201,16 +203,6 @@ impl Track {
     /// Whether no row has a heading.
     pub fn is_empty(&self) -> bool {
         self.heading.is_empty()
-    }
-
-    /// Time of every row, s.
-    pub fn time(&self) -> &[f64] {
-        &self.time
-    }
-
-    /// Rudder of every row, rad.
-    pub fn rudder(&self) -> &[f64] {
-        &self.rudder
     }
 
     /// Length in time, s.
@@ -413,16 +405,6 @@ impl Track {
             }
             visit(to, state);
         }
-    }
-
-    /// Row of the track for every observed heading.
-    pub fn observed(&self) -> &[usize] {
-        &self.observed
-    }
-
-    /// Row of the track for every yaw rate that is used.
-    pub fn observed_rates(&self) -> &[usize] {
-        &self.observed_rates
     }
 }
 

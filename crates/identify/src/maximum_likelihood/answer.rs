@@ -177,7 +177,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
 fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
     let mut warnings = Vec::new();
     for ((trial, record), found) in trials.iter().zip(&chosen.records).zip(&chosen.outliers) {
-        let (name, time) = (trial.name(), record.track.time());
+        let (name, time) = (trial.name(), &record.track.time);
         let times = |rows: &[usize]| {
             let shown: Vec<String> = rows.iter().take(LISTED).map(|&row| ShortNumber(time[row]).to_string()).collect();
             format!("{}{}", shown.join(", "), if rows.len() > LISTED { ", …" } else { "" })

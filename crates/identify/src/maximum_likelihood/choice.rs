@@ -122,7 +122,7 @@ impl PreparedRecords {
     /// Times of the spikes of every record, s.
     pub fn spikes(&self) -> Vec<Vec<f64>> {
         let times = |(record, found): (&Record, &Suspects)| {
-            let time = record.track.time();
+            let time = &record.track.time;
             found.spikes.iter().map(|&row| time[row]).collect()
         };
         self.records.iter().zip(&self.outliers).map(times).collect()
@@ -178,7 +178,7 @@ fn left_over(track: &Track, fitted: Option<&Estimate>, known: &[usize]) -> Vec<f
     let forced = columns.rudder.iter().zip(&columns.constant);
     let rest: Vec<f64> = track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - gain * g - offset * h).collect();
     let honest = |values: &[f64]| -> Vec<f64> {
-        let rows = track.observed().iter().zip(values);
+        let rows = track.observed.iter().zip(values);
         rows.filter(|(row, _)| !known.contains(row)).map(|(_, &value)| value).collect()
     };
     let start = best_start(&honest(&rest), &honest(&columns.homogeneous));

@@ -5,6 +5,7 @@
 //! a level that changes from one reading to the next and stays is a jump. Both are looked for again in the fit without
 //! them until nothing changes, so an honest reading that stood beside a spike comes back.
 
+use estimation::column::extremes;
 use estimation::statistics::median;
 
 use crate::likelihood::track::Track;
@@ -53,10 +54,10 @@ pub(super) struct Suspects {
 /// A fit that spikes have spoilt leaves more than they: beside those that were `known` when it was made, only the
 /// grossest are taken at a time.
 pub(super) fn find(whole: &Track, residual: &[f64], known: &[usize]) -> Suspects {
-    let range = whole.heading.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], &x| [lo.min(x), hi.max(x)]);
+    let (lowest, highest) = extremes(&whole.heading);
     // The range itself may be that of a sentinel.
-    let floor = SMALLEST * (range[1] - range[0]).min(std::f64::consts::PI);
-    let rows = whole.observed();
+    let floor = SMALLEST * (highest - lowest).min(std::f64::consts::PI);
+    let rows = &whole.observed;
     let mut kept: Vec<usize> = (0..residual.len()).collect();
     let most = (LARGEST_SHARE * residual.len() as f64).ceil() as usize + 1;
     let mut sides = deviations(residual, &kept);

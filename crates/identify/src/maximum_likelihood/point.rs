@@ -110,14 +110,10 @@ impl Record {
         2 + self.jumps.len()
     }
 
-    fn stacked(&self, heading: &[f64], rate: &[f64]) -> Vec<f64> {
-        self.schedule.stacked(heading, rate)
-    }
-
     /// One from a row on in headings, zero in yaw rates.
     fn step_at(&self, jump: usize) -> Vec<f64> {
-        let heading: Vec<f64> = self.track.observed().iter().map(|&row| f64::from(u8::from(row >= jump))).collect();
-        self.stacked(&heading, &vec![0.0; self.track.rates.len()])
+        let heading: Vec<f64> = self.track.observed.iter().map(|&row| f64::from(u8::from(row >= jump))).collect();
+        self.schedule.stacked(&heading, &vec![0.0; self.track.rates.len()])
     }
 
     /// The columns of a ship with this 1/T made white under a noise, whose filter may take another 1/T. `None` when a
@@ -126,13 +122,13 @@ impl Record {
         let mut columns = MotionColumns::default();
         self.track.fill(inverse_time, &mut columns);
         let MotionColumns { homogeneous, rudder, constant, rates } = &columns;
-        let ones = self.stacked(&vec![1.0; homogeneous.len()], &vec![0.0; self.track.rates.len()]);
-        let mut own = vec![ones, self.stacked(homogeneous, &rates.homogeneous)];
+        let ones = self.schedule.stacked(&vec![1.0; homogeneous.len()], &vec![0.0; self.track.rates.len()]);
+        let mut own = vec![ones, self.schedule.stacked(homogeneous, &rates.homogeneous)];
         own.extend(self.jumps.iter().map(|&jump| self.step_at(jump)));
         let rest = [
-            self.stacked(rudder, &rates.rudder),
-            self.stacked(constant, &rates.constant),
-            self.stacked(&self.track.heading, &self.track.rates),
+            self.schedule.stacked(rudder, &rates.rudder),
+            self.schedule.stacked(constant, &rates.constant),
+            self.schedule.stacked(&self.track.heading, &self.track.rates),
         ];
         White::new(own, rest, whitener(&self.schedule, noise, [0.0; 2]))
     }
@@ -141,7 +137,7 @@ impl Record {
     fn by_time(&self, white: &White, inverse_time: f64, coefficients: &Coefficients) -> Vec<f64> {
         let (mut by_heading, mut by_rate) = (Vec::new(), Vec::new());
         self.track.sensitivities(inverse_time, coefficients, [&mut by_heading, &mut by_rate]);
-        let mut column = self.stacked(&by_heading, &by_rate);
+        let mut column = self.schedule.stacked(&by_heading, &by_rate);
         white.filter.apply(&mut [&mut column]);
         white.own.iter().for_each(|unit| _ = take_out(unit, &mut column));
         column

@@ -71,10 +71,6 @@ fn identify(trials: &[Trial]) -> Estimate {
     Settings::default().build().expect("valid").identify(trials).expect("an answer")
 }
 
-fn diagnostic(estimate: &Estimate, name: &str) -> Option<f64> {
-    estimate.diagnostics.iter().find(|(other, _)| *other == name).map(|(_, value)| *value)
-}
-
 fn noisy() -> Case {
     Case { noise_deg: 0.1, seed: 5, ..Case::default() }
 }
@@ -170,7 +166,7 @@ fn a_declared_rudder_error_counts() {
         held += usize::from((low..=high).contains(&0.0));
         let without = Settings { rudder: RudderChoice::Estimated, ..Settings::default() }.build().expect("valid");
         let estimated = without.identify(&[trial]).expect("an answer");
-        let size = diagnostic(&estimated, "rudder_sd_deg").expect("estimated");
+        let size = estimated.diagnostic("rudder_sd_deg").expect("estimated");
         known += usize::from((0.05..0.5).contains(&size));
     }
     assert!(held >= 33, "{held}");
@@ -194,8 +190,8 @@ fn outliers_are_left_out_and_listed() {
         (spoilt(&|row, psi| if row >= 150 { psi + from_deg(4.0) } else { psi }), 0.0, 1.0),
     ] {
         let found = identify(std::slice::from_ref(&trial));
-        assert_eq!(diagnostic(&found, "left_out"), Some(spikes), "{:?}", found.warnings);
-        assert_eq!(diagnostic(&found, "jumps"), Some(jumps), "{:?}", found.warnings);
+        assert_eq!(found.diagnostic("left_out"), Some(spikes), "{:?}", found.warnings);
+        assert_eq!(found.diagnostic("jumps"), Some(jumps), "{:?}", found.warnings);
         assert!(found.warnings.iter().any(|warning| warning.contains("t = ")), "{:?}", found.warnings);
         for (one, other) in [(found.K(), expected.K()), (found.T(), expected.T())] {
             let sd = other.sd.expect("known");
@@ -204,7 +200,7 @@ fn outliers_are_left_out_and_listed() {
     }
     let raw = Settings { outliers: false, ..Settings::default() }.build().expect("valid");
     let trial = spoilt(&|row, psi| if row == 77 { psi + from_deg(1.5) } else { psi });
-    assert_eq!(diagnostic(&raw.identify(&[trial]).expect("an answer"), "left_out"), Some(0.0));
+    assert_eq!(raw.identify(&[trial]).expect("an answer").diagnostic("left_out"), Some(0.0));
 }
 
 /// A compass error with a memory is named, and intervals are wider than those of a white one.
@@ -221,7 +217,7 @@ fn a_coloured_compass_is_named() {
         })
         .collect();
     let found = identify(&[record("coloured", truth.time, heading, truth.rudder)]);
-    let time = diagnostic(&found, "heading_correlation_s").expect("coloured");
+    let time = found.diagnostic("heading_correlation_s").expect("coloured");
     assert!((1.5..10.0).contains(&time), "{time}");
     assert!(found.warnings.iter().any(|warning| warning.contains("compass error")), "{:?}", found.warnings);
 }

@@ -72,7 +72,7 @@ fn no_start_beats_the_scan() {
     ] {
         let trial = case.trial();
         let estimate = method().identify(std::slice::from_ref(&trial)).expect("excited");
-        let best = estimate.diagnostics.iter().find(|(name, _)| *name == "heading_rmse_deg").expect("reported").1;
+        let best = estimate.diagnostic("heading_rmse_deg").expect("reported");
         let mut profile = Profile::new(vec![Track::new(&trial)]);
         for k in 0..=60 {
             for sign in [1.0, -1.0] {

@@ -58,10 +58,6 @@ pub struct PlanarCoefficients {
     pub Y_d: f64,
 }
 
-simulate::numbers! {
-    PlanarCoefficients: "X_0" X_0, "X_vr" X_vr, "X_dd" X_dd, "X_dv" X_dv, "Y_v" Y_v, "Y_vv" Y_vv, "Y_r" Y_r, "Y_d" Y_d;
-}
-
 impl PlanarCoefficients {
     /// The coefficients in the order of [`SYMBOLS`].
     pub fn to_array(self) -> [f64; COEFFICIENTS] {

@@ -19,7 +19,6 @@
 mod circle;
 mod coefficients;
 mod current;
-mod error;
 mod planar;
 mod planar_ship;
 #[cfg(test)]
@@ -28,6 +27,5 @@ mod tests;
 pub use circle::{TurningCircleFigures, track, turning_circle};
 pub use coefficients::{COEFFICIENTS, PlanarCoefficients, SYMBOLS};
 pub use current::{Current, current};
-pub use error::MotionError;
-pub use planar::Planar;
+pub use planar::{MotionError, Planar};
 pub use planar_ship::PlanarShip;

@@ -1,7 +1,18 @@
 //! Coefficients together with the ship they are used on.
 
+use thiserror::Error;
+
 use super::coefficients::PlanarCoefficients;
-use super::error::{MotionError, positive};
+
+/// A length or speed that no ship has.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("a {quantity} must be a positive number, found {value}")]
+pub struct MotionError {
+    /// `length` or `approach speed`.
+    quantity: &'static str,
+    /// The value.
+    value: f64,
+}
 
 /// Speed and drift of one ship.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +30,11 @@ impl Planar {
     ///
     /// Fails with [`MotionError`] for what is no length or speed.
     pub fn new(coefficients: PlanarCoefficients, length: f64, approach_speed: f64) -> Result<Self, MotionError> {
-        positive("length", length)?;
-        positive("approach speed", approach_speed)?;
+        for (quantity, value) in [("length", length), ("approach speed", approach_speed)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(MotionError { quantity, value });
+            }
+        }
         Ok(Self { coefficients: PlanarCoefficients::from_array(coefficients.to_array()), length, approach_speed })
     }
 

@@ -11,7 +11,6 @@
 use std::sync::Arc;
 
 use super::{KNOT, Model, Ship};
-use crate::particulars::Particulars;
 use crate::vessel::Hull;
 use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, Parameters, Propeller, Rudder, Wake};
 
@@ -92,7 +91,7 @@ fn ship(id: &'static str, name: &'static str, parameters: Parameters, speed: f64
         id: id.into(),
         name: name.into(),
         source: "Yasukawa and Yoshimura (2015)".into(),
-        particulars: Some(Particulars { length: hull.length(), speed }),
+        particulars: Some(hull.particulars()),
         rudder_rate: Some(rudder_rate_deg.to_radians()),
         largest_rudder: None,
         model: Model::Hull(Arc::new(hull)),

@@ -8,6 +8,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use crate::angle::KNOT;
 use crate::dynamics::Dynamics;
 use crate::first_order::FirstOrder;
 use crate::particulars::Particulars;
@@ -88,9 +89,6 @@ pub fn all() -> Vec<Ship> {
 pub fn find(id: &str) -> Option<Ship> {
     all().into_iter().find(|ship| ship.id == id)
 }
-
-/// One knot in m/s: 1852 m an hour.
-const KNOT: f64 = 1852.0 / 3600.0;
 
 #[cfg(test)]
 mod tests;

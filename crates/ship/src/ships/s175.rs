@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::{Model, Ship};
 use crate::dynamics::Input;
 use crate::particulars::Particulars;
-use crate::vessel::{Acceleration, Hull, SLOWEST, Velocity};
+use crate::vessel::{Hull, SLOWEST};
 
 /// Length and speed; the speed is that of the linear equations that the Marine Systems Simulator has of her.
 const PARTICULARS: Particulars = Particulars { length: 175.0, speed: 7.0 };
@@ -99,19 +99,15 @@ fn lateral([by_v, by_r, vvv, rrr, vvr, vrr]: [f64; 6], v: f64, r: f64) -> f64 {
 }
 
 impl Hull for ContainerHull {
-    fn length(&self) -> f64 {
-        PARTICULARS.length
-    }
-
-    fn approach_speed(&self) -> f64 {
-        PARTICULARS.speed
+    fn particulars(&self) -> Particulars {
+        PARTICULARS
     }
 
     /// m' a' = F', and a = a' U²/L (r' by U²/L²); the disturbance adds the yaw moment N'δ δ of approach speed.
-    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration {
+    fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &Input) -> [f64; 3] {
         let Particulars { length: L, speed: U0 } = PARTICULARS;
-        let U = velocity.surge.hypot(velocity.sway).max(SLOWEST * U0);
-        let (u, v, r) = (velocity.surge / U, velocity.sway / U, velocity.yaw * L / U);
+        let U = surge.hypot(sway).max(SLOWEST * U0);
+        let (u, v, r) = (surge / U, sway / U, yaw * L / U);
         let q = self.tip / U;
         let thrust = 2.0 * (DIAMETER / L).powi(2) * q * q * thrust_coefficient(inflow(u, v, r), q);
         let force = self.rudder_force([u, v, r], input.rudder, U);
@@ -130,11 +126,11 @@ impl Hull for ContainerHull {
             lateral(N, v, r) + (XR + AH * XH) * force * cos + self.rudder_slope * input.disturbance * (U0 / U).powi(2);
         let det = (M + MY) * INERTIA - COUPLING * COUPLING;
         let unit = U * U / L;
-        Acceleration {
-            surge: ahead / (M + MX) * unit,
-            sway: (INERTIA * across - COUPLING * moment) / det * unit,
-            yaw: ((M + MY) * moment - COUPLING * across) / det * unit / L,
-        }
+        [
+            ahead / (M + MX) * unit,
+            (INERTIA * across - COUPLING * moment) / det * unit,
+            ((M + MY) * moment - COUPLING * across) / det * unit / L,
+        ]
     }
 }
 

@@ -12,7 +12,6 @@
 use std::sync::Arc;
 
 use super::{KNOT, Model, Ship};
-use crate::particulars::Particulars;
 use crate::vessel::Hull;
 use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, Parameters, Propeller, Rudder, Wake};
 
@@ -66,13 +65,12 @@ pub const PARAMETERS: Parameters = Parameters {
 /// Source: the regression of Yoshimura and Masumoto (2012) with estimates, as compiled in the open-source package
 /// mmgdynamics.
 pub fn ship() -> Ship {
-    let speed = 16.7 * KNOT;
-    let hull = Mmg::at_speed(PARAMETERS, speed).expect("the set balances thrust and resistance");
+    let hull = Mmg::at_speed(PARAMETERS, 16.7 * KNOT).expect("the set balances thrust and resistance");
     Ship {
         id: "seiun-like".into(),
         name: "SEIUN-like training ship, 16.7 kn (contains estimates)".into(),
         source: "Regression of Yoshimura and Masumoto (2012) and estimates, in mmgdynamics".into(),
-        particulars: Some(Particulars { length: hull.length(), speed }),
+        particulars: Some(hull.particulars()),
         rudder_rate: None,
         largest_rudder: None,
         model: Model::Hull(Arc::new(hull)),

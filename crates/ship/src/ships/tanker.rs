@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::{Model, Ship};
 use crate::dynamics::Input;
 use crate::particulars::Particulars;
-use crate::vessel::{Acceleration, Hull, Velocity};
+use crate::vessel::Hull;
 
 /// Length and approach speed; the propeller makes 80 rpm then.
 const PARTICULARS: Particulars = Particulars { length: 304.8, speed: 8.23 };
@@ -43,15 +43,6 @@ pub struct TankerHull {
 }
 
 impl TankerHull {
-    /// Thrust balances the resistance: X_uu U²/L + (1 − t) T = 0.
-    fn new() -> Self {
-        let Particulars { length: L, speed: U } = PARTICULARS;
-        let [uu, un, nn] = THRUST;
-        let rest = (uu + X[0] / (1.0 - DEDUCTION)) * U * U / L;
-        let half = 0.5 * un * U / (L * nn);
-        Self { revolutions: (half * half - rest / (L * nn)).sqrt() - half, by_thrust: [0.04, -0.02] }
-    }
-
     /// The same ship whose thrust does not turn her.
     pub fn evened(self) -> Self {
         Self { by_thrust: [0.0; 2], ..self }
@@ -66,17 +57,12 @@ impl TankerHull {
 }
 
 impl Hull for TankerHull {
-    fn length(&self) -> f64 {
-        PARTICULARS.length
-    }
-
-    fn approach_speed(&self) -> f64 {
-        PARTICULARS.speed
+    fn particulars(&self) -> Particulars {
+        PARTICULARS
     }
 
     /// The equations of the source; the disturbance adds the yaw moment N_ccδ c² δ of approach speed.
-    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration {
-        let Velocity { surge: u, sway: v, yaw: r } = velocity;
+    fn acceleration(&self, [u, v, r]: [f64; 3], input: &Input) -> [f64; 3] {
         let L = PARTICULARS.length;
         let [thrust, cc] = self.thrust_and_stream(u);
         let delta = -input.rudder;
@@ -104,17 +90,17 @@ impl Hull for TankerHull {
             + L * TURNING[2] * u * r
             + ccbbd * stalled
             + self.by_thrust[1] * L * thrust;
-        Acceleration {
-            surge: ahead / (L * INERTIA[0]),
-            sway: across / (L * INERTIA[1]),
-            yaw: moment / (L * L * INERTIA[2]),
-        }
+        [ahead / (L * INERTIA[0]), across / (L * INERTIA[1]), moment / (L * L * INERTIA[2])]
     }
 }
 
-/// The equations of [`ship`].
+/// The equations of [`ship`]. Thrust balances the resistance: X_uu U²/L + (1 − t) T = 0.
 pub fn equations() -> TankerHull {
-    TankerHull::new()
+    let Particulars { length: L, speed: U } = PARTICULARS;
+    let [uu, un, nn] = THRUST;
+    let rest = (uu + X[0] / (1.0 - DEDUCTION)) * U * U / L;
+    let half = 0.5 * un * U / (L * nn);
+    TankerHull { revolutions: (half * half - rest / (L * nn)).sqrt() - half, by_thrust: [0.04, -0.02] }
 }
 
 /// The ship at 8.23 m/s; the rudder turns at 2.33 deg/s, as in the source of the table.

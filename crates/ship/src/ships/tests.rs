@@ -13,7 +13,7 @@ use crate::linear::PrimeSwayYaw;
 use crate::replay::{Recorded, replay};
 use crate::signal::Polyline;
 use crate::vessel::mmg::{BySign, Mmg};
-use crate::vessel::{Hull, Velocity, state};
+use crate::vessel::{Hull, state};
 
 fn every_finite(state: &[f64]) -> bool {
     state.iter().all(|x| x.is_finite())
@@ -176,11 +176,11 @@ fn linear_equations_are_the_slopes_of_the_hull() {
     let hulls: [(&dyn Hull, PrimeSwayYaw); 2] =
         [(&tanker, tanker.linearised()), (&cargo_ship, cargo_ship.linearised())];
     for (hull, PrimeSwayYaw { M, N, b }) in hulls {
-        let (L, U) = (hull.length(), hull.approach_speed());
+        let Particulars { length: L, speed: U } = hull.particulars();
         let at = |v: f64, r: f64, rudder: f64| {
-            let velocity = Velocity { surge: U, sway: v * U, yaw: r * U / L };
-            let a = hull.acceleration(velocity, &Input { rudder, ..Input::default() });
-            [a.sway * L / (U * U), a.yaw * L * L / (U * U)]
+            let velocity = [U, v * U, r * U / L];
+            let [_, sway, yaw] = hull.acceleration(velocity, &Input { rudder, ..Input::default() });
+            [sway * L / (U * U), yaw * L * L / (U * U)]
         };
         let e = 1e-5;
         let slope = |v: f64, r: f64, d: f64| {

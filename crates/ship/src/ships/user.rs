@@ -71,16 +71,9 @@ fn check_range(response: &Response, symbols: &[&'static str]) -> Result<(), Ship
     Ok(())
 }
 
-fn ship(name: String, response: Response, particulars: Option<Particulars>) -> Ship {
-    Ship {
-        id: "user".into(),
-        name: name.into(),
-        source: "user".into(),
-        particulars,
-        rudder_rate: None,
-        largest_rudder: None,
-        model: Model::Response(response),
-    }
+fn ship(name: String, source: &'static str, particulars: Option<Particulars>, model: Model) -> Ship {
+    let (id, source) = ("user".into(), source.into());
+    Ship { id, name: name.into(), source, particulars, rudder_rate: None, largest_rudder: None, model }
 }
 
 /// A first-order ship T r' + r = K (δ + δ_r), with the identifier `user`.
@@ -94,7 +87,8 @@ pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particu
     check_particulars(particulars)?;
     let response = Response::first_order_ship(FirstOrder::from_indices(K, T, rudder_bias));
     check_range(&response, &["T", "K", "rudder bias"])?;
-    Ok(ship(format!("first order, K = {K} 1/s, T = {T} s"), response, particulars))
+    let name = format!("first order, K = {K} 1/s, T = {T} s");
+    Ok(ship(name, "user", particulars, Model::Response(response)))
 }
 
 /// A second-order ship T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ', with the identifier `user`.
@@ -115,7 +109,7 @@ pub fn second_order(
     let name = format!("second order, K = {K} 1/s, T1 = {T1} s, T2 = {T2} s, T3 = {T3} s");
     let response = second_order_response(indices, rudder_bias, Vec::new(), &[]);
     check_range(&response, &["T1", "K", "rudder bias", "T2", "T3"])?;
-    Ok(ship(name, response, particulars))
+    Ok(ship(name, "user", particulars, Model::Response(response)))
 }
 
 /// Why particulars do not make a ship that sails.
@@ -135,15 +129,9 @@ pub enum HullError {
 pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {
     let hull = Mmg::at_speed(prior::priors(particulars)?.parameters, particulars.speed)?;
     let HullParticulars { length, speed, .. } = *particulars;
-    Ok(Ship {
-        id: "user".into(),
-        name: format!("MMG hull by particulars, L = {length} m, U = {speed} m/s").into(),
-        source: "regressions on the particulars".into(),
-        particulars: Some(Particulars { length, speed }),
-        rudder_rate: None,
-        largest_rudder: None,
-        model: Model::Hull(Arc::new(hull)),
-    })
+    let name = format!("MMG hull by particulars, L = {length} m, U = {speed} m/s");
+    let scale = Some(Particulars { length, speed });
+    Ok(ship(name, "regressions on the particulars", scale, Model::Hull(Arc::new(hull))))
 }
 
 /// A second-order response, and after it `more` effects with their `values`.

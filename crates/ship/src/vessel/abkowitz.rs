@@ -8,7 +8,7 @@
 //! coefficients as printed), and nowhere else.
 #![expect(non_snake_case, reason = "Xvv is a derivative of the force X; names are those of the source")]
 
-use super::{Acceleration, Hull, SLOWEST, Velocity};
+use super::{Hull, SLOWEST};
 use crate::dynamics::Input;
 use crate::linear::PrimeSwayYaw;
 use crate::particulars::Particulars;
@@ -105,22 +105,18 @@ impl Abkowitz {
 }
 
 impl Hull for Abkowitz {
-    fn length(&self) -> f64 {
-        self.particulars.length
-    }
-
-    fn approach_speed(&self) -> f64 {
-        self.particulars.speed
+    fn particulars(&self) -> Particulars {
+        self.particulars
     }
 
     /// m' a' = F'(u', v', r', δ), and a = a' U²/L (r' by U²/L²).
     ///
     /// The disturbance adds the yaw moment N_δ δ of approach speed. The polynomial was fitted near that speed.
-    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration {
+    fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &Input) -> [f64; 3] {
         let p = &self.derivatives;
         let Particulars { length: L, speed: U0 } = self.particulars;
-        let U = velocity.surge.hypot(velocity.sway).max(SLOWEST * U0);
-        let (u, v, r) = ((velocity.surge - U0) / U, velocity.sway / U, velocity.yaw * L / U);
+        let U = surge.hypot(sway).max(SLOWEST * U0);
+        let (u, v, r) = ((surge - U0) / U, sway / U, yaw * L / U);
         let d = -input.rudder;
 
         let X = u * (p.Xu + p.Xuu * u + p.Xuuu * u * u)
@@ -134,10 +130,6 @@ impl Hull for Abkowitz {
         let [[m11, m12], [m21, m22]] = self.mass();
         let det = m11 * m22 - m12 * m21;
         let unit = U * U / L;
-        Acceleration {
-            surge: X / (p.m - p.Xudot) * unit,
-            sway: (m22 * Y - m12 * N) / det * unit,
-            yaw: (m11 * N - m21 * Y) / det * unit / L,
-        }
+        [X / (p.m - p.Xudot) * unit, (m22 * Y - m12 * N) / det * unit, (m11 * N - m21 * Y) / det * unit / L]
     }
 }

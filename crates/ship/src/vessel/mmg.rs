@@ -21,9 +21,10 @@ use estimation::number::Real;
 use thiserror::Error;
 
 pub use self::parameters::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
-use super::{Acceleration, Hull, SLOWEST, Velocity};
+use super::{Hull, SLOWEST};
 use crate::dynamics::Input;
 use crate::linear::PrimeSwayYaw;
+use crate::particulars::Particulars;
 
 /// Why parameters do not make a hull.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -36,12 +37,9 @@ pub enum MmgError {
         /// Its value.
         value: f64,
     },
-    /// The inertia in sway and yaw is not positive.
-    #[error("mass and added mass leave no positive inertia in sway and yaw (determinant {det})")]
-    Inertia {
-        /// Determinant of the prime mass matrix.
-        det: f64,
-    },
+    /// The inertia in sway and yaw is not positive, by the determinant of the prime mass matrix.
+    #[error("mass and added mass leave no positive inertia in sway and yaw (determinant {0})")]
+    Inertia(f64),
     /// Thrust and resistance balance at no advance ratio.
     #[error("thrust balances the resistance at no advance ratio: k0 = {k0}, R0' = {R0}")]
     NoBalance {
@@ -95,7 +93,7 @@ impl<R: Real> Mmg<R> {
         let inertia = [mass + p.hull.my, xG * mass, (p.kzz * p.kzz + xG * xG) * mass + p.hull.Jz];
         let det = (inertia[0] * inertia[2] - inertia[1] * inertia[1]).value();
         if !(det > 0.0 && inertia[0].value() > 0.0 && (mass + p.hull.mx).value() > 0.0) {
-            return Err(MmgError::Inertia { det });
+            return Err(MmgError::Inertia(det));
         }
         let mut hull = Self {
             parameters,
@@ -264,19 +262,13 @@ fn speed_per_revolution<R: Real>(p: &Parameters<R>) -> Result<R, MmgError> {
 }
 
 impl Hull for Mmg {
-    fn length(&self) -> f64 {
-        self.parameters.Lpp
-    }
-
-    fn approach_speed(&self) -> f64 {
-        self.approach_speed
+    fn particulars(&self) -> Particulars {
+        Particulars { length: self.parameters.Lpp, speed: self.approach_speed }
     }
 
     /// The equations of the module; the disturbance adds the yaw moment (dN/dδ) δ of the straight approach.
-    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration {
-        let Velocity { surge, sway, yaw } = velocity;
-        let [surge, sway, yaw] = self.accelerations([surge, sway, yaw], input.rudder, 1.0, input.disturbance);
-        Acceleration { surge, sway, yaw }
+    fn acceleration(&self, velocity: [f64; 3], input: &Input) -> [f64; 3] {
+        self.accelerations(velocity, input.rudder, 1.0, input.disturbance)
     }
 }
 
@@ -327,6 +319,6 @@ mod tests {
         assert_eq!(Mmg::at_speed(thrustless, 8.0), Err(MmgError::NoBalance { k0: -0.1, R0: 0.022 }));
         let mut light = FULL_SCALE;
         light.hull.my = -5.0;
-        assert!(matches!(Mmg::at_speed(light, 8.0), Err(MmgError::Inertia { .. })));
+        assert!(matches!(Mmg::at_speed(light, 8.0), Err(MmgError::Inertia(_))));
     }
 }

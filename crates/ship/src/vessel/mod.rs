@@ -14,6 +14,7 @@ pub mod prior;
 pub mod scaled;
 
 use crate::dynamics::{Dynamics, Input, Motion};
+use crate::particulars::Particulars;
 
 /// Places in the state vector of every hull.
 pub mod state {
@@ -39,45 +40,21 @@ pub mod state {
 /// and turning circles keep more than a quarter of their speed, so trials never see this bound.
 pub const SLOWEST: f64 = 0.1;
 
-/// Velocities in the frame of the ship, at midship.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Velocity {
-    /// Surge velocity u, m/s.
-    pub surge: f64,
-    /// Sway velocity v, to starboard, m/s.
-    pub sway: f64,
-    /// Yaw rate r, rad/s.
-    pub yaw: f64,
-}
-
-/// Rates of change of [`Velocity`], in the rotating frame of the ship.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Acceleration {
-    /// u', m/s².
-    pub surge: f64,
-    /// v', m/s².
-    pub sway: f64,
-    /// r', rad/s².
-    pub yaw: f64,
-}
-
 /// A hull with three degrees of freedom at constant propeller revolutions.
 ///
 /// Implementing it makes a [`Dynamics`] with the states of [`state`]: ψ' = r, x' = u cos ψ − v sin ψ, y' = u sin ψ + v
 /// cos ψ.
 pub trait Hull: Send + Sync {
-    /// Length between perpendiculars L, m.
-    fn length(&self) -> f64;
+    /// Length, and speed of the steady straight approach.
+    fn particulars(&self) -> Particulars;
 
-    /// Speed of the steady straight approach, m/s.
-    fn approach_speed(&self) -> f64;
-
-    /// Accelerations at these velocities under this input; finite for finite arguments.
-    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration;
+    /// (u', v', r'), m/s² and rad/s², in the frame of the ship, which turns, at surge u, sway v to starboard (m/s) and
+    /// yaw rate r (rad/s) of midship under this input; finite for finite arguments.
+    fn acceleration(&self, velocity: [f64; 3], input: &Input) -> [f64; 3];
 }
 
-fn velocity(state: &[f64]) -> Velocity {
-    Velocity { surge: state[state::SURGE], sway: state[state::SWAY], yaw: state[state::YAW_RATE] }
+fn velocity(state: &[f64]) -> [f64; 3] {
+    [state::SURGE, state::SWAY, state::YAW_RATE].map(|place| state[place])
 }
 
 impl<H: Hull> Dynamics for H {
@@ -90,30 +67,23 @@ impl<H: Hull> Dynamics for H {
         state.fill(0.0);
         state[state::HEADING] = heading;
         state[state::YAW_RATE] = yaw_rate;
-        state[state::SURGE] = self.approach_speed();
+        state[state::SURGE] = self.particulars().speed;
     }
 
     fn rates(&self, _t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
-        let velocity = velocity(state);
-        let acceleration = self.acceleration(velocity, input);
+        let velocity @ [surge, sway, yaw_rate] = velocity(state);
         let (sin, cos) = state[state::HEADING].sin_cos();
-        rate[state::HEADING] = velocity.yaw;
-        rate[state::YAW_RATE] = acceleration.yaw;
-        rate[state::SURGE] = acceleration.surge;
-        rate[state::SWAY] = acceleration.sway;
-        rate[state::NORTH] = velocity.surge * cos - velocity.sway * sin;
-        rate[state::EAST] = velocity.surge * sin + velocity.sway * cos;
+        rate[state::HEADING] = yaw_rate;
+        [rate[state::SURGE], rate[state::SWAY], rate[state::YAW_RATE]] = self.acceleration(velocity, input);
+        rate[state::NORTH] = surge * cos - sway * sin;
+        rate[state::EAST] = surge * sin + sway * cos;
     }
 
     fn motion(&self, _t: f64, state: &[f64], input: &Input) -> Motion {
-        let velocity = velocity(state);
-        Motion {
-            heading: state[state::HEADING],
-            yaw_rate: velocity.yaw,
-            yaw_acceleration: self.acceleration(velocity, input).yaw,
-            speed: Some(velocity.surge.hypot(velocity.sway)),
-            sway: Some(velocity.sway),
-        }
+        let velocity @ [surge, sway, yaw_rate] = velocity(state);
+        let [.., yaw_acceleration] = self.acceleration(velocity, input);
+        let heading = state[state::HEADING];
+        Motion { heading, yaw_rate, yaw_acceleration, speed: Some(surge.hypot(sway)), sway: Some(sway) }
     }
 
     /// A hundredth of the time the ship needs for its own length, so that a model is stepped as finely as its ship.
@@ -121,6 +91,6 @@ impl<H: Hull> Dynamics for H {
     /// After five reversals of a 20° rudder the heading is then within 0.0001° of that of a far smaller step; what is
     /// left comes from the kinks of an MMG hull.
     fn largest_step(&self) -> f64 {
-        self.length() / self.approach_speed() / 100.0
+        self.particulars().time() / 100.0
     }
 }

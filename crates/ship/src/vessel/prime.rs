@@ -176,13 +176,13 @@ impl HullForm {
 
     /// The MMG model about what the particulars of a ship say.
     pub fn mmg(prior: &HullPrior) -> Self {
-        let of = |key: &&str| prior.coefficients.iter().find(|own| own.key() == *key);
+        let of = |key: &&str| prior.coefficients.iter().find(|own| own.formula.key == *key);
         let free = FREE.iter().filter_map(of).map(|own| HullCoefficient {
-            key: own.key(),
-            symbol: own.symbol(),
+            key: own.formula.key,
+            symbol: own.formula.symbol,
             mean: own.mean,
             sd: own.sd,
-            ends: ends_of(own.key()),
+            ends: ends_of(own.formula.key),
         });
         Self::Mmg(Box::new(prior.parameters.of_length_one()), free.collect())
     }

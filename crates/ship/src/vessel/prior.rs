@@ -11,40 +11,20 @@ mod particulars;
 
 pub use self::particulars::{HullParticulars, PARTICULARS, Particular, ParticularsError, USUAL_FROUDE_NUMBER};
 
-use self::formulas::{FORMULAS, Formula, Spread};
+pub use self::formulas::Formula;
+use self::formulas::{FORMULAS, Spread};
 use self::particulars::{HullDimensions, RATIOS};
 use super::mmg::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
 
 /// The prior of one coefficient.
 #[derive(Debug, Clone, Copy)]
 pub struct Coefficient {
-    formula: &'static Formula,
+    /// What it is called, and where it comes from.
+    pub formula: &'static Formula,
     /// Mean.
     pub mean: f64,
     /// Standard deviation.
     pub sd: f64,
-}
-
-impl Coefficient {
-    /// Its name in files: "Nvvr", "gammaR-port".
-    pub fn key(&self) -> &'static str {
-        self.formula.key
-    }
-
-    /// Its symbol, for people.
-    pub fn symbol(&self) -> &'static str {
-        self.formula.symbol
-    }
-
-    /// Where the mean comes from: an equation in L, B, d, C_b and what else is known, or a number.
-    pub fn formula(&self) -> &'static str {
-        self.formula.text
-    }
-
-    /// Author and year of the formula.
-    pub fn source(&self) -> &'static str {
-        self.formula.source
-    }
 }
 
 /// Source of every ratio that fills in a particular.
@@ -108,7 +88,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
         })
         .collect();
     for coefficient in &coefficients {
-        *parameters.named(coefficient.key()).expect("every coefficient has its place") = coefficient.mean;
+        *parameters.named(coefficient.formula.key).expect("every coefficient has its place") = coefficient.mean;
     }
     let assumed = PARTICULARS.iter().filter_map(|particular| {
         let of = |form: &HullDimensions| particular.of_form.map_or(f64::NAN, |of| of(form));

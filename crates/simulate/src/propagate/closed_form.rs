@@ -64,9 +64,7 @@ impl ClosedForm {
         let rudder = segment.at(self.time) + self.ship.rudder_bias + cell.moment(self.time);
         (self.ship.K_over_T * rudder, self.ship.K_over_T * (slope + cell.moment_slope()))
     }
-}
 
-impl ClosedForm {
     /// What can be recorded now, under the steering term `u0`, rad/s².
     fn sample_under(&self, u0: f64) -> Sample {
         let State { heading, yaw_rate } = self.state;

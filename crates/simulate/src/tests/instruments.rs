@@ -1,17 +1,15 @@
 //! Every instrument does what its specification says, at a fixed key and within its own sampling error.
 
-use std::sync::Arc;
-
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use ship::angle::{from_deg, to_deg};
-use ship::{Dynamics, Input, Motion, Particulars};
+use ship::{Input, Particulars};
 use trial::Channel;
 
-use super::{KEY, zig_zag};
+use super::{KEY, TestShip, zig_zag};
 use crate::disturbance::{GaussMarkov, Gusting, WaveSpectrum, Wind};
 use crate::recording::RudderSource;
 use crate::sensor::Spikes;
-use crate::{Recording, Simulated, Simulation, Vessel};
+use crate::{Recording, Simulated, Simulation};
 
 const ROWS: f64 = 2001.0;
 
@@ -360,34 +358,12 @@ fn wind_acts_by_heading_and_is_recorded() {
     assert_eq!(trial.channel(Channel::WindTrueSpeed).expect("recorded")[5], 10.0);
 }
 
-/// A ship that weathercocks: its yaw moment is the relative wind direction it is given.
-struct Vane;
-
-impl Dynamics for Vane {
-    fn dimension(&self) -> usize {
-        2
-    }
-
-    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
-        state.copy_from_slice(&[heading, yaw_rate]);
-    }
-
-    fn rates(&self, _t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
-        rate[0] = state[1];
-        rate[1] = 1e-3 * input.measured.wind_from.unwrap_or(f64::NAN) - 0.05 * state[1];
-    }
-
-    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
-        let mut rate = [0.0; 2];
-        self.rates(t, state, input, &mut rate);
-        Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration: rate[1], speed: Some(6.0), sway: None }
-    }
-}
-
 #[test]
 fn the_wind_a_ship_feels_is_the_wind_its_record_holds() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 60.0);
-    simulation.vessel = Vessel::hull(Arc::new(Vane));
+    // She weathercocks: her yaw moment is the relative wind direction that she is given.
+    let vane = |r: f64, input: &Input| 1e-3 * input.measured.wind_from.unwrap_or(f64::NAN) - 0.05 * r;
+    simulation.vessel = TestShip::vessel(vane, |_| 6.0, 0.0);
     simulation.longest_wait = 1e3;
     let gusting = Some(Gusting { sd: 0.3, correlation_time: 5.0 });
     simulation.disturbances.wind = Some(Wind { moment: 0.0, from: 1.5, speed: Some(9.0), gusting });

@@ -4,51 +4,22 @@ use std::sync::Arc;
 
 use approx::assert_abs_diff_eq;
 use ship::angle::{from_deg, to_deg};
-use ship::{Dynamics, FirstOrder, Input, Motion, Polyline};
+use ship::{Input, Polyline};
 
-use super::{KEY, training_ship, zig_zag};
+use super::{KEY, TestShip, training_ship, zig_zag};
 use crate::disturbance::{GaussMarkov, Gusting, Squall, WaveSpectrum, Wind};
 use crate::sensor::{DropOut, Spikes};
 use crate::vessel::Solver;
 use crate::{Manoeuvre, PreparedSimulation, Sensors, Side, Simulated, Simulation, StreamKey, Truth, Vessel};
 
-/// A ship with cubic damping and a rudder that acts late, for which nothing has a closed form.
-struct Cubic {
-    base: FirstOrder,
-    n3: f64,
-    dead_time: f64,
-}
-
-impl Dynamics for Cubic {
-    fn dimension(&self) -> usize {
-        2
-    }
-
-    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
-        state.copy_from_slice(&[heading, yaw_rate]);
-    }
-
-    fn rates(&self, _t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
-        let (a, r) = (self.base.inverse_T, state[1]);
-        let steering = input.rudder + input.disturbance + self.base.rudder_bias;
-        rate[0] = r;
-        rate[1] = -a * (r + self.n3 * r * r * r) + self.base.K_over_T * steering;
-    }
-
-    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
-        let mut rate = [0.0; 2];
-        self.rates(t, state, input, &mut rate);
-        let speed = Some(7.0 - 1e3 * state[1] * state[1]);
-        Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration: rate[1], speed, sway: None }
-    }
-
-    fn dead_time(&self) -> f64 {
-        self.dead_time
-    }
-}
-
+/// A ship with cubic damping and a rudder that acts late.
 fn cubic(dead_time: f64) -> Vessel {
-    Vessel::hull(Arc::new(Cubic { base: training_ship(), n3: 2000.0, dead_time }))
+    let base = training_ship();
+    let acceleration = move |r: f64, input: &Input| {
+        let steering = input.rudder + input.disturbance + base.rudder_bias;
+        -base.inverse_T * (r + 2000.0 * r * r * r) + base.K_over_T * steering
+    };
+    TestShip::vessel(acceleration, |r| 7.0 - 1e3 * r * r, dead_time)
 }
 
 fn truth(simulation: &Simulation) -> Arc<Truth> {

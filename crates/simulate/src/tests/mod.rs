@@ -4,8 +4,10 @@ mod failures;
 mod instruments;
 mod invariance;
 
-use ship::FirstOrder;
+use std::sync::Arc;
+
 use ship::angle::from_deg;
+use ship::{Dynamics, FirstOrder, Input, Motion};
 
 use crate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
 
@@ -21,6 +23,45 @@ pub(crate) fn zig_zag(delta_deg: f64, psi_deg: f64, rate_deg_s: f64, duration: f
     simulation.gear = SteeringGear::with_rate(from_deg(rate_deg_s));
     simulation.recording.duration = Some(duration);
     simulation
+}
+
+/// A ship of two states by her yaw acceleration, for which nothing has a closed form.
+struct TestShip<F> {
+    /// Yaw acceleration, rad/s², from the yaw rate and what acts.
+    acceleration: F,
+    /// Speed, m/s, from the yaw rate.
+    speed: fn(f64) -> f64,
+    dead_time: f64,
+}
+
+impl<F: Fn(f64, &Input) -> f64 + Send + Sync + 'static> TestShip<F> {
+    fn vessel(acceleration: F, speed: fn(f64) -> f64, dead_time: f64) -> Vessel {
+        Vessel::hull(Arc::new(Self { acceleration, speed, dead_time }))
+    }
+}
+
+impl<F: Fn(f64, &Input) -> f64 + Send + Sync> Dynamics for TestShip<F> {
+    fn dimension(&self) -> usize {
+        2
+    }
+
+    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+        state.copy_from_slice(&[heading, yaw_rate]);
+    }
+
+    fn rates(&self, _t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+        rate.copy_from_slice(&[state[1], (self.acceleration)(state[1], input)]);
+    }
+
+    fn motion(&self, _t: f64, state: &[f64], input: &Input) -> Motion {
+        let yaw_acceleration = (self.acceleration)(state[1], input);
+        let speed = Some((self.speed)(state[1]));
+        Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration, speed, sway: None }
+    }
+
+    fn dead_time(&self) -> f64 {
+        self.dead_time
+    }
 }
 
 pub(crate) const KEY: StreamKey = StreamKey { seed: 20, cell: 3, replicate: 7 };

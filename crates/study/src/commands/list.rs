@@ -7,7 +7,7 @@ use identify::{IdentifierSettings, external, registry};
 use report::Table;
 use report::number::MISSING;
 use ship::angle::KNOT;
-use ship::vessel::prior::{self, Assumed, Particular};
+use ship::vessel::prior::{self, Assumed, Formula, Particular};
 use ship::{effects, ships};
 
 use crate::documents::{self, answers::ListAnswer};
@@ -173,7 +173,7 @@ fn sidecar() -> Table {
 /// What stands for particulars that are missing, and the prior of every coefficient.
 fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Failure> {
     let declared = columns.as_deref().map(Sidecar::load).transpose().map_err(Failure::input)?;
-    let mut hull = declared.map(|sidecar| sidecar.hull()).unwrap_or_default();
+    let mut hull = declared.map(|sidecar| sidecar.conditions.hull).unwrap_or_default();
     hull.length = ship.scale.length_m.unwrap_or(hull.length);
     hull.speed = ship.scale.speed().unwrap_or(hull.speed);
     ship.form.apply(&mut hull);
@@ -194,7 +194,8 @@ fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Fail
         table.push([key, symbol, &digits(value), &digits(sd), &formula, prior::SOURCE_OF_RATIOS]);
     }
     for own in &prior.coefficients {
-        table.push([own.key(), own.symbol(), &digits(own.mean), &digits(own.sd), own.formula(), own.source()]);
+        let Formula { key, symbol, text, source, .. } = *own.formula;
+        table.push([key, symbol, &digits(own.mean), &digits(own.sd), text, source]);
     }
     Ok(table)
 }

@@ -62,7 +62,7 @@ pub struct ManoeuvreEntry {
 impl LogEntry {
     /// A log with its manoeuvres.
     pub fn of(file: &Path, log: &Log, found: &[FoundManoeuvre]) -> Self {
-        let clock = |time: f64| log.clock().map(|clock| clock.at(time).to_string());
+        let clock = |time: f64| log.clock.map(|clock| clock.at(time).to_string());
         let manoeuvre = |(trial, one): (usize, &FoundManoeuvre)| {
             let [rudder_deg, heading_deg] = one.angles().map(|angle| angle.map(to_deg));
             ManoeuvreEntry {
@@ -82,7 +82,7 @@ impl LogEntry {
             file: file.display().to_string(),
             rows: log.time().len(),
             duration_s: last - first,
-            date: log.clock().and_then(|clock| clock.date_at(first)).map(|day| day.to_string()),
+            date: log.clock.and_then(|clock| clock.date_at(first)).map(|day| day.to_string()),
             manoeuvres: (1..).zip(found).map(manoeuvre).collect(),
         }
     }

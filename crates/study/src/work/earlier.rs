@@ -170,8 +170,8 @@ pub fn entry(
     warnings: &mut Vec<String>,
 ) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
-    let is_member = |form: &str| facts.hulls().iter().any(|own| own.form == form);
-    let entry = said(models, &ship, facts.checks(), is_member);
+    let is_member = |form: &str| facts.hulls.iter().any(|own| own.form == form);
+    let entry = said(models, &ship, &facts.checks, is_member);
     warnings.extend(entry.warning());
     Some(entry)
 }

@@ -129,7 +129,7 @@ pub fn fit(
     let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
     warn_of_no_track(&shown, warnings);
     let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
-    if has_form && speak_against_form(shown.hulls()) {
+    if has_form && speak_against_form(&shown.hulls) {
         warnings.push(format!("{AGAINST_FORM}; `study predict --load` cannot take this ship to another loading"));
     }
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {

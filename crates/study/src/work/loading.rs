@@ -41,7 +41,7 @@ impl DescribedLoading {
     ///
     /// Fails as a sidecar does, and for a file without a draught.
     pub fn of_file(path: &Path) -> Result<Self, Failure> {
-        let given = Sidecar::load(path).map_err(Failure::input)?.hull();
+        let given = Sidecar::load(path).map_err(Failure::input)?.conditions.hull;
         let loading = Self { file: file::called(path).display().to_string(), given };
         match given.draught {
             Some(_) => Ok(loading),

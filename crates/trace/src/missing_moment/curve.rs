@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::smoother::{HeadingColumn, MomentFilter, MomentRows, STATES};
+use crate::law::FINEST;
 
 /// Inner knots, on a range from −1 to 1.
 const KNOTS: [f64; 2] = [-1.0 / 3.0, 1.0 / 3.0];
@@ -29,9 +30,6 @@ const VARIES: f64 = 5e-3;
 
 /// Smallest pivot of the normalised normal equations: below it the rows do not determine the curve.
 const SINGULAR: f64 = 1e-10;
-
-/// No heading is believed to be better than this, rad.
-const FINEST: f64 = 1.75e-5;
 
 /// Sizes of the walk that are tried: variance of the heading that it would leave at the end of the record of a ship
 /// without damping, over σ².

@@ -113,7 +113,7 @@ pub(super) struct MomentFilter(Smoother<STATES>);
 impl MomentFilter {
     /// Σ log S.
     pub fn log_variance(&self) -> f64 {
-        self.0.log_variance()
+        self.0.filter.log_variance()
     }
 
     /// The innovations in units of their standard deviation over σ.

@@ -133,7 +133,7 @@ pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free:
     let rudder = RudderMovements::new(&time[window..=end], angle, &local, Some(record.rest.noise));
     let Some(movement) = rudder.first() else { return hold.first };
     let start = time.partition_point(|&t| t < movement.start.value).clamp(window, hold.first);
-    let rate = movement.rate.map(f64::abs).or(rudder.rate());
+    let rate = movement.rate.map(f64::abs).or(rudder.rate);
     rate.map_or(start, |rate| {
         start.max(window + on_ramp(&time[window..=end], angle, &local[0], rate, record.rest.floor))
     })

@@ -50,7 +50,7 @@ pub(super) fn stem(path: &Path) -> String {
 /// Opens a file and tells what it holds; its size in bytes where that says how long its text is.
 pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Problem> {
     let file = file::open(path, RECORD)?;
-    let size = file.size();
+    let size = file.size;
     let content = recognise(Box::new(file))?;
     let plain = matches!(&content, Content::Table(text) | Content::Sentences(text) if text.on_disk.is_none());
     Ok((content, size.filter(|_| plain)))

@@ -35,7 +35,7 @@ pub(super) enum Content {
 
 impl Content {
     /// Whether the values of the column are kept.
-    fn is_kept(self) -> bool {
+    pub fn is_kept(self) -> bool {
         !matches!(self, Self::Time(_) | Self::Stamp | Self::Date | Self::Ignored)
     }
 }
@@ -70,8 +70,6 @@ pub(super) struct RawColumn {
     pub sentinels: (usize, f64),
     /// Cells with text.
     pub text: usize,
-    /// Whether its values are kept.
-    pub kept: bool,
     pub values: Vec<f64>,
 }
 
@@ -113,7 +111,6 @@ impl Layout {
             largest: 0.0,
             sentinels: (0, 0.0),
             text: 0,
-            kept: false,
             values: Vec::new(),
         };
         let mut layout = Self {
@@ -142,7 +139,6 @@ impl Layout {
             let (line, found) = (head.line, layout.names());
             return Err(fault(Problem::NoColumn { line, wanted: "time", accepted, found }));
         }
-        layout.columns.iter_mut().for_each(|column| column.kept = column.content.is_kept());
         Ok(layout)
     }
 

@@ -157,11 +157,6 @@ impl Log {
         Ok(())
     }
 
-    /// What the clock shows at time 0, where the files have stamps.
-    pub fn clock(&self) -> Option<Clock> {
-        self.clock
-    }
-
     /// Time of every row, s.
     pub fn time(&self) -> &[f64] {
         &self.columns.time
@@ -223,7 +218,7 @@ impl Log {
         if trial.heading_from_yaw_rate() {
             warnings.push("there is no heading; it is the integral of the yaw rate, from zero".to_owned());
         }
-        if let Some(particulars) = ship.or(sidecar.particulars()) {
+        if let Some(particulars) = ship.or(sidecar.conditions.particulars) {
             trial = trial.with_particulars(particulars);
         }
         let trial = trial.with_noise(sidecar.noise).with_rejected(rejected).with_conditions(sidecar.conditions);

@@ -95,7 +95,7 @@ impl<'a> Rows<'a> {
             wanted,
             stamps: stamped.then(Stamps::default),
             whole_seconds: true,
-            width: 1 + layout.columns.iter().filter(|column| column.kept).count(),
+            width: 1 + layout.columns.iter().filter(|column| column.content.is_kept()).count(),
             time: Vec::new(),
             cells: Vec::new(),
             row: vec![f64::NAN; layout.columns.len()],
@@ -172,7 +172,8 @@ impl<'a> Rows<'a> {
         if self.stamps.is_some() || (self.usable - 1).is_multiple_of(self.every) {
             self.before.kept = true;
             self.time.push(time);
-            for (column, &value) in self.layout.columns.iter_mut().zip(&self.row).filter(|(column, _)| column.kept) {
+            let columns = self.layout.columns.iter_mut().zip(&self.row);
+            for (column, &value) in columns.filter(|(column, _)| column.content.is_kept()) {
                 column.values.push(value);
             }
         }

@@ -25,7 +25,7 @@ pub struct Log {
     pub(super) path: PathBuf,
     pub(super) columns: Columns,
     /// What the clock shows at time 0, where the files have stamps.
-    pub(super) clock: Option<Clock>,
+    pub clock: Option<Clock>,
     /// SHA-256 of the bytes, hexadecimal.
     pub(super) sha256: String,
     /// Rows or lines of the files.

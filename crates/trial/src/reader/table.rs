@@ -77,7 +77,7 @@ impl Rows<'_> {
         let open_time = open_time.map(|column| column.name.clone());
         let (mut channels, mut unknown, mut open) = (BTreeMap::new(), Vec::new(), Vec::new());
         let [mut latitude, mut longitude] = [None, None];
-        for column in columns.into_iter().filter(|column| column.kept) {
+        for column in columns.into_iter().filter(|column| column.content.is_kept()) {
             let RawColumn { name, content, values, largest, .. } = column;
             let missing = values.iter().all(|value| value.is_nan());
             match content {

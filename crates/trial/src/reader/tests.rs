@@ -44,12 +44,12 @@ pub(super) fn simple() -> String {
     table("t_s,heading_deg,rudder_deg", ",")
 }
 
-fn parse_with(bytes: impl AsRef<[u8]>, sidecar: &str) -> Result<ReadRecord, ReadError> {
+pub(super) fn parse_with(bytes: impl AsRef<[u8]>, sidecar: &str) -> Result<ReadRecord, ReadError> {
     let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
     read_bytes(Path::new("run.csv"), bytes.as_ref(), None, Some(&sidecar))
 }
 
-fn parse(bytes: impl AsRef<[u8]>) -> Result<ReadRecord, ReadError> {
+pub(super) fn parse(bytes: impl AsRef<[u8]>) -> Result<ReadRecord, ReadError> {
     read_bytes(Path::new("run.csv"), bytes.as_ref(), None, None)
 }
 

@@ -95,7 +95,7 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
         reach: from_first.then(|| since_first(back_on_base(1))).flatten(),
         complete_cycle_time: from_first.then(|| since_first(back_on_base(2))).flatten(),
         largest_yaw_rate: heading.largest_rate(executes[0].time.value, end),
-        rudder_rate: rudder.rate(),
+        rudder_rate: rudder.rate,
         heading_noise: heading.noise,
         executes,
     })
@@ -176,13 +176,13 @@ fn begins_moving(first: &Movement, holds: &[Hold]) -> bool {
 
 /// Whether the record has half a fit of headings before an execute: a fit to one side misses the bend there.
 fn shows_execute(execute: &Execute, heading: &Heading) -> bool {
-    execute.time.value - heading.half_width() >= heading.time[0]
+    execute.time.value - heading.half_width >= heading.time[0]
 }
 
 /// Heading (relative) and yaw rate at a time by a polynomial with `N` coefficients; `None` where the noise leaves the
 /// rate with more than the standard deviation `precise`.
 fn start_motion<const N: usize>(heading: &Heading, time: f64, precise: f64) -> Option<(f64, f64)> {
-    let fit = Local::<N>::fit(&heading.time, &heading.relative, time, 2.0 * heading.half_width())?;
+    let fit = Local::<N>::fit(&heading.time, &heading.relative, time, 2.0 * heading.half_width)?;
     (fit.slope_gain(time) * heading.noise.unwrap_or(0.0) <= precise).then(|| (fit.value(time), fit.slope(time)))
 }
 

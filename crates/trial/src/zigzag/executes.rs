@@ -47,8 +47,9 @@ pub struct RudderMovements<'a> {
     holds: &'a [Hold],
     /// Standard deviation of the rudder noise, rad; not less than that of the rounding of the channel.
     noise: f64,
-    /// Median speed of the reversals that the sampling resolves, or the best bound on it, rad/s.
-    rate: Option<f64>,
+    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves, a bound where a ramp is about
+    /// as long as a sampling interval, `None` where it is shorter.
+    pub rate: Option<f64>,
     /// Whether that speed is a lower bound.
     rate_is_bound: bool,
 }
@@ -76,12 +77,6 @@ impl<'a> RudderMovements<'a> {
         rudder.rate = median(&mut rates).or(tightest);
         rudder.rate_is_bound = rates.is_empty() && tightest.is_some();
         rudder
-    }
-
-    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves, a bound where a ramp is about
-    /// as long as a sampling interval, `None` where it is shorter.
-    pub fn rate(&self) -> Option<f64> {
-        self.rate
     }
 
     /// The movement into hold `index` from the hold before it; `index` is 1 or more.

@@ -63,10 +63,7 @@ impl Side {
 
 impl fmt::Display for Side {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Port => "port",
-            Self::Starboard => "starboard",
-        })
+        self.serialize(f)
     }
 }
 

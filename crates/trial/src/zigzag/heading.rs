@@ -57,7 +57,7 @@ pub(super) struct Heading {
     /// Standard deviation of the noise, rad.
     pub noise: Option<f64>,
     /// Half-width of local fits for values, s.
-    half_width: f64,
+    pub half_width: f64,
     /// Longest step between headings across which a peak is believed, s.
     longest_step: f64,
 }
@@ -87,11 +87,6 @@ impl Heading {
         let half_width = best.clamp(narrowest, narrowest.max(WIDEST * period));
         let longest_step = (2.0 * half_width).max(4.0 * step);
         Some(Self { time, relative, origin, noise, half_width, longest_step })
-    }
-
-    /// Half-width of local fits for values, s.
-    pub fn half_width(&self) -> f64 {
-        self.half_width
     }
 
     /// Half-width of local fits for slopes, s.

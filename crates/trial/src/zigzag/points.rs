@@ -4,63 +4,26 @@
 //! Source of the procedure: the analysis of Nomoto (1960) as re-derived for this project; the parabola at an extremum
 //! carries a known small bias, because the turning rate of a ship does not change uniformly through a peak.
 
-use super::heading::noise_sd;
 use super::local::{Cubic, Parabola};
-use crate::quantity::Quantity;
 use estimation::statistics::median;
 
 /// Extrema below this share of the largest |heading| are ripples or the remains of the start.
-pub const SMALLEST_EXTREMUM: f64 = 0.35;
+const SMALLEST_EXTREMUM: f64 = 0.35;
 
-/// How points are looked for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Half-width h of the local fits, s: the parabola and the cubic use the samples within ±h. About 3 samples on a
-    /// quiet record at 1 s, 4 to 6 on a noisy one.
-    pub half_width: f64,
-    /// Standard deviation of the heading noise, rad; `None` estimates it from the record.
-    pub noise: Option<f64>,
-}
-
-impl Settings {
-    /// Fits over ±`half_width` seconds, everything else from the record.
-    pub fn new(half_width: f64) -> Self {
-        Self { half_width, noise: None }
-    }
-}
-
-/// A peak of the heading to one side, where the yaw rate is zero.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extremum {
-    /// Time of the vertex, s.
-    pub time: Quantity,
-    /// Heading at the vertex, rad.
-    pub heading: Quantity,
-}
-
-/// A passage of the heading through zero, where the yaw rate is large.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Crossing {
-    /// Time of the passage, s.
-    pub time: Quantity,
-    /// Yaw rate there, rad/s.
-    pub yaw_rate: Quantity,
-}
-
-/// Extrema of a heading (rad, measured from the base course, NaN where missing) at increasing times (s).
+/// Extrema of a heading (rad, measured from the base course) at increasing times (s): time (s) and heading (rad) of the
+/// vertex of each, where the yaw rate is zero.
 ///
-/// The record is split at its zero-crossings; in each part a parabola is fitted to the samples within ±h of the largest
-/// |heading| of a lightly smoothed (three-point mean) record. A part gives no extremum when the parabola bends the
-/// wrong way, its vertex lies outside the fit or the part, the record ends within h of it, or it is below
-/// [`SMALLEST_EXTREMUM`] of the largest |heading|. Empty for a record without a swing.
-pub fn extrema(time: &[f64], heading: &[f64], settings: &Settings) -> Vec<Extremum> {
-    let (time, heading) = observed(time, heading);
+/// The record is split at its zero-crossings; in each part a parabola is fitted to the samples within ±`half_width` (s)
+/// of the largest |heading| of a lightly smoothed (three-point mean) record: about 3 samples on a quiet record at 1 s,
+/// 4 to 6 on a noisy one. A part gives no extremum when the parabola bends the wrong way, its vertex lies outside the
+/// fit or the part, the record ends within the half width of it, or it is below 0.35 of the largest |heading|. Empty
+/// for a record without a swing.
+pub fn extrema(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f64; 2]> {
     let Some((&start, &end)) = time.first().zip(time.last()) else { return Vec::new() };
-    let noise = settings.noise.or_else(|| noise_sd(&time, &heading, settings.half_width));
     let largest = heading.iter().fold(0.0_f64, |most, psi| most.max(psi.abs()));
-    let smooth = three_point_mean(&heading);
+    let smooth = three_point_mean(heading);
     let mut bounds = vec![start];
-    bounds.extend(passages(&time, &heading).iter().map(|passage| passage.time));
+    bounds.extend(passages(time, heading).iter().map(|(time, _)| time));
     bounds.push(end);
     let mut extrema = Vec::new();
     for (part, bound) in bounds.windows(2).enumerate() {
@@ -68,51 +31,43 @@ pub fn extrema(time: &[f64], heading: &[f64], settings: &Settings) -> Vec<Extrem
         let Some(row) = rows.max_by(|&a, &b| smooth[a].abs().total_cmp(&smooth[b].abs())) else { continue };
         let centre = time[row];
         // One-sided fits at the ends of a record put their vertex anywhere.
-        let cut_off = (part == 0 && centre - settings.half_width < start)
-            || (part + 2 == bounds.len() && centre + settings.half_width > end);
+        let cut_off =
+            (part == 0 && centre - half_width < start) || (part + 2 == bounds.len() && centre + half_width > end);
         if cut_off {
             continue;
         }
-        let Some(fit) = Parabola::fit(&time, &heading, centre, settings.half_width) else { continue };
+        let Some(fit) = Parabola::fit(time, heading, centre, half_width) else { continue };
         let Some(t) = fit.stationary_point() else { continue };
         let (psi, curvature) = (fit.value(t), fit.curvature(t));
         let outside = t < bound[0] || t > bound[1];
         if outside || psi * curvature >= 0.0 || psi.abs() < SMALLEST_EXTREMUM * largest {
             continue;
         }
-        extrema.push(Extremum { time: fit.time_of_peak(t, noise), heading: fit.value_at(t, noise) });
+        extrema.push([t, psi]);
     }
     extrema
 }
 
-/// Zero-crossings of a heading (rad, measured from the base course, NaN where missing) at increasing times (s).
+/// Zero-crossings of a heading (rad, measured from the base course) at increasing times (s): time (s) and yaw rate
+/// (rad/s) of each.
 ///
-/// A cubic is fitted to the samples within ±h of each crossing; its root gives the time, its slope there the yaw rate.
-/// A crossing whose cubic has no root in the fit, or the wrong slope, is left out.
-pub fn zero_crossings(time: &[f64], heading: &[f64], settings: &Settings) -> Vec<Crossing> {
-    let (time, heading) = observed(time, heading);
-    let noise = settings.noise.or_else(|| noise_sd(&time, &heading, settings.half_width));
-    passages(&time, &heading)
-        .iter()
-        .filter_map(|passage| {
-            let fit = Cubic::fit(&time, &heading, passage.time, settings.half_width)?;
-            let t = fit.crossing(0.0)?;
-            let (time, yaw_rate) = (fit.time_of_crossing(t, noise), fit.slope_at(t, noise));
-            (passage.direction * yaw_rate.value > 0.0).then_some(Crossing { time, yaw_rate })
-        })
-        .collect()
+/// A cubic is fitted to the samples within ±`half_width` (s) of each crossing; its root gives the time, its slope there
+/// the yaw rate. A crossing whose cubic has no root in the fit, or the wrong slope, is left out.
+pub fn zero_crossings(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f64; 2]> {
+    let crossing = |(about, direction): (f64, f64)| {
+        let fit = Cubic::fit(time, heading, about, half_width)?;
+        let t = fit.crossing(0.0)?;
+        let yaw_rate = fit.slope(t);
+        (direction * yaw_rate > 0.0).then_some([t, yaw_rate])
+    };
+    passages(time, heading).into_iter().filter_map(crossing).collect()
 }
 
-/// A change of sign of the heading, several close ones taken together.
-struct RoughCrossing {
-    time: f64,
-    /// +1 when the heading goes to starboard.
-    direction: f64,
-}
-
-fn passages(time: &[f64], heading: &[f64]) -> Vec<RoughCrossing> {
+/// Changes of sign of the heading, several close ones taken together: time (s), and +1 where it goes to starboard.
+fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
     // Crossings nearer to each other than a twelfth of the period are one: 10 s for a ship with a period of 120 s.
-    let merge = half_period(time, heading).map_or(0.0, |half| half / 6.0);
+    let mut halves: Vec<f64> = departures(time, heading).windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let merge = median(&mut halves).map_or(0.0, |half| half / 6.0);
     let mut changes: Vec<(f64, f64)> = Vec::new();
     let mut last: Option<(f64, f64)> = None;
     // A heading of exactly zero has no side: it neither makes a change of sign nor hides one.
@@ -128,31 +83,23 @@ fn passages(time: &[f64], heading: &[f64]) -> Vec<RoughCrossing> {
     changes
         .chunk_by(|a, b| b.0 - a.0 < merge)
         .filter(|cluster| cluster.len() % 2 == 1)
-        .map(|cluster| RoughCrossing {
-            time: 0.5 * (cluster[0].0 + cluster[cluster.len() - 1].0),
-            direction: cluster[0].1,
-        })
+        .map(|cluster| (0.5 * (cluster[0].0 + cluster[cluster.len() - 1].0), cluster[0].1))
         .collect()
 }
 
-/// Half a period of the record, s: the median time between alternating passages of ±0.35 of the largest |heading|,
-/// which noise about zero cannot fake. `None` with fewer than two such passages.
-fn half_period(time: &[f64], heading: &[f64]) -> Option<f64> {
+/// Times, s, at which a heading (rad, measured from the base course) departs to the other side by 0.35 of its largest
+/// size: one for every swing, for noise about zero cannot fake any.
+pub fn departures(time: &[f64], heading: &[f64]) -> Vec<f64> {
     let largest = heading.iter().fold(0.0_f64, |most, psi| most.max(psi.abs()));
     let mut side = 0.0;
-    let mut entries = Vec::new();
+    let mut departures = Vec::new();
     for (&t, &psi) in time.iter().zip(heading) {
         if psi.abs() > SMALLEST_EXTREMUM * largest && psi.signum() != side {
             side = psi.signum();
-            entries.push(t);
+            departures.push(t);
         }
     }
-    let mut halves: Vec<f64> = entries.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    median(&mut halves)
-}
-
-fn observed(time: &[f64], heading: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    time.iter().zip(heading).filter(|(_, psi)| psi.is_finite()).map(|(&t, &psi)| (t, psi)).unzip()
+    departures
 }
 
 fn three_point_mean(values: &[f64]) -> Vec<f64> {
@@ -175,20 +122,19 @@ mod tests {
     fn a_sine_gives_its_peaks_and_crossings() {
         let time: Vec<f64> = (0..400).map(|k| 0.5 * f64::from(k)).collect();
         let heading: Vec<f64> = time.iter().map(|t| 0.3 * (t / 15.0).sin()).collect();
-        let settings = Settings::new(2.0);
-        let extrema = extrema(&time, &heading, &settings);
+        let extrema = extrema(&time, &heading, 2.0);
         assert_eq!(extrema.len(), 4);
-        for (k, extremum) in extrema.iter().enumerate() {
+        for (k, [time, heading]) in extrema.into_iter().enumerate() {
             let phase = (k as f64 + 0.5) * std::f64::consts::PI;
-            assert_relative_eq!(extremum.time.value, 15.0 * phase, max_relative = 1e-3);
-            assert_relative_eq!(extremum.heading.value, 0.3 * phase.sin(), max_relative = 1e-4);
+            assert_relative_eq!(time, 15.0 * phase, max_relative = 1e-3);
+            assert_relative_eq!(heading, 0.3 * phase.sin(), max_relative = 1e-4);
         }
-        let crossings = zero_crossings(&time, &heading, &settings);
+        let crossings = zero_crossings(&time, &heading, 2.0);
         assert_eq!(crossings.len(), 4);
-        for (k, crossing) in crossings.iter().enumerate() {
+        for (k, [time, yaw_rate]) in crossings.into_iter().enumerate() {
             let phase = (k as f64 + 1.0) * std::f64::consts::PI;
-            assert_relative_eq!(crossing.time.value, 15.0 * phase, max_relative = 1e-6);
-            assert_relative_eq!(crossing.yaw_rate.value, 0.02 * phase.cos(), max_relative = 1e-3);
+            assert_relative_eq!(time, 15.0 * phase, max_relative = 1e-6);
+            assert_relative_eq!(yaw_rate, 0.02 * phase.cos(), max_relative = 1e-3);
         }
     }
 
@@ -196,19 +142,21 @@ mod tests {
     #[test]
     fn noise_about_zero_makes_one_crossing() {
         let (time, mut heading, _) = Plant::default().record(600.0, 0.1);
-        let quiet = zero_crossings(&time, &heading, &Settings::new(4.0));
+        let quiet = zero_crossings(&time, &heading, 4.0);
         let mut gaussian = Gaussian::new(4);
         heading.iter_mut().for_each(|psi| *psi += from_deg(gaussian.draw()));
         let changes = heading.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
-        let noisy = zero_crossings(&time, &heading, &Settings::new(4.0));
+        let noisy = zero_crossings(&time, &heading, 4.0);
         // The record begins on the base course, so noise may add a first crossing there.
-        let noisy: Vec<_> = noisy.into_iter().filter(|crossing| crossing.time.value > 20.0).collect();
-        let quiet: Vec<_> = quiet.into_iter().filter(|crossing| crossing.time.value > 20.0).collect();
+        let [noisy, quiet] = [noisy, quiet].map(|mut found| {
+            found.retain(|[time, _]| *time > 20.0);
+            found
+        });
         assert!(changes > quiet.len() + 4, "{changes} changes of sign");
         assert_eq!(noisy.len(), quiet.len());
-        for (noisy, quiet) in noisy.iter().zip(&quiet) {
-            let sd = noisy.time.sd.expect("noise was estimated");
-            assert!((noisy.time.value - quiet.time.value).abs() < 5.0 * sd);
+        for ([noisy, _], [quiet, _]) in noisy.iter().zip(&quiet) {
+            // A cubic through 81 samples passes 0.17 of the noise, and the ship turns at 0.86 deg/s: 0.2 s.
+            assert!((noisy - quiet).abs() < 5.0 * 0.2, "{noisy} s for {quiet} s");
         }
     }
 
@@ -216,12 +164,12 @@ mod tests {
     fn extrema_of_a_zig_zag_match_the_simulation() {
         let plant = Plant::default();
         let (time, heading, _) = plant.record(300.0, 1.0);
-        let extrema = extrema(&time, &heading, &Settings::new(3.0));
+        let extrema = extrema(&time, &heading, 3.0);
         // 10 degrees and the overshoots 6.35, 8.07, 8.14 (independent simulation, tolerance 0.02).
         let expected = [16.35, -18.07, 18.14, -18.14, 18.14];
         assert_eq!(extrema.len(), expected.len());
-        for (extremum, expected) in extrema.iter().zip(expected) {
-            assert_relative_eq!(to_deg(extremum.heading.value), expected, epsilon = 0.02);
+        for ([_, heading], expected) in extrema.into_iter().zip(expected) {
+            assert_relative_eq!(to_deg(heading), expected, epsilon = 0.02);
         }
     }
 }

@@ -26,7 +26,7 @@ impl Formula {
 
     /// Which constants the moment is proportional to.
     pub(super) fn sizes(&self) -> Vec<bool> {
-        let count = self.program.constants().len();
+        let count = self.program.constants.len();
         let is_size = |own: usize| {
             let value = |size: f64, point: &SignalPoint| {
                 let mut constants: Vec<f64> = (0..count).map(|place| 0.7 + 0.3 * place as f64).collect();
@@ -64,7 +64,7 @@ impl Formula {
         let shapes = self.shapes(&SignalSizes::ones());
         let units = self.units(&shapes);
         let parameter = |place: usize| {
-            let key = kept(self.program.constants()[place].clone());
+            let key = kept(self.program.constants[place].clone());
             let unit = units[place].map_or(Parameter::NO_UNIT, |dimension| kept(particulars::unit(dimension)));
             let size = if self.is_size[place] { 0.01 } else { shapes[place] };
             let typical = self.expected[place].about.unwrap_or(size);

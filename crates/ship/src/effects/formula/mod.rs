@@ -165,11 +165,11 @@ impl Formula {
         }
         let (formula, said) = text.split_once(';').unwrap_or((text, ""));
         let program = parse::parse(formula.trim_end(), true)?;
-        if program.constants().is_empty() {
+        if program.constants.is_empty() {
             return Err(error(0, String::from("no constant to be fitted: expected one, as in `c * r * abs(v)`")));
         }
         let expected =
-            expectations(said, program.constants()).map_err(|problem| error(formula.chars().count() + 1, problem))?;
+            expectations(said, &program.constants).map_err(|problem| error(formula.chars().count() + 1, problem))?;
         let kept = |words: String| -> &'static str { words.leak() };
         let equation = kept(format!("T r' + r = K (δ + δ_r + {})", formula.trim()));
         let none = Description { id: "", form: "", equation, parameters: &[] };
@@ -186,7 +186,7 @@ impl Formula {
 
     /// Numbers of [`OF_RECORD`] that it takes, by their places.
     fn taken(&self) -> impl Iterator<Item = usize> {
-        (0..OF_RECORD.len()).filter(|place| self.program.signals().contains(&OF_RECORD[*place].0))
+        (0..OF_RECORD.len()).filter(|place| self.program.signals.contains(&OF_RECORD[*place].0))
     }
 
     /// The same for a ship of this length, m.
@@ -236,7 +236,7 @@ impl Effect for Formula {
     }
 
     fn uses(&self, channel: Regressor) -> bool {
-        let has_ratio = || self.program.signals().contains(&FormulaSignal::SpeedRatio);
+        let has_ratio = || self.program.signals.contains(&FormulaSignal::SpeedRatio);
         self.channels.contains(&channel) || channel == Regressor::Speed && has_ratio()
     }
 
@@ -251,11 +251,11 @@ impl Effect for Formula {
     }
 
     fn is_of_time(&self) -> bool {
-        self.program.signals().contains(&FormulaSignal::Time)
+        self.program.signals.contains(&FormulaSignal::Time)
     }
 
     fn sees_heading(&self) -> bool {
-        self.program.signals().contains(&FormulaSignal::Heading)
+        self.program.signals.contains(&FormulaSignal::Heading)
     }
 }
 

@@ -1,7 +1,5 @@
 //! From the text of a formula to a program: recursive descent over sums, products, signs, powers and atoms.
 
-use std::fmt;
-
 use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK};
 
 /// Longest text, characters.
@@ -12,7 +10,8 @@ const DEEPEST: usize = 24;
 const MOST_CONSTANTS: usize = 4;
 
 /// Why a text is no formula, and where.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{problem}\n{}", marked(text, *at))]
 pub struct FormulaError {
     /// The text.
     pub text: String,
@@ -22,15 +21,11 @@ pub struct FormulaError {
     pub problem: String,
 }
 
-impl std::error::Error for FormulaError {}
-
-impl fmt::Display for FormulaError {
-    /// The text, or what is near, with a mark under the place.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let left_out = self.at.saturating_sub(LONGEST);
-        let near: String = self.text.chars().skip(left_out).take(2 * LONGEST).collect();
-        write!(f, "{}\n  {near}\n  {}^", self.problem, " ".repeat(self.at - left_out))
-    }
+/// The text, or what is near, with a mark under the place.
+fn marked(text: &str, at: usize) -> String {
+    let left_out = at.saturating_sub(LONGEST);
+    let near: String = text.chars().skip(left_out).take(2 * LONGEST).collect();
+    format!("  {near}\n  {}^", " ".repeat(at - left_out))
 }
 
 /// Reads a formula; of a moment as an angle of the rudder the program is the yaw acceleration, K/T times that.
@@ -363,7 +358,7 @@ mod tests {
         ] {
             assert!((value(text) - expected).abs() < 1e-12, "{text}: {} is not {expected}", value(text));
         }
-        assert_eq!(parse("k*tanh(c*psi)*k", false).expect("a formula").constants(), ["k", "c"]);
+        assert_eq!(parse("k*tanh(c*psi)*k", false).expect("a formula").constants, ["k", "c"]);
     }
 
     #[test]

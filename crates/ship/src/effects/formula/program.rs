@@ -260,7 +260,7 @@ pub(super) enum Instruction {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FormulaProgram {
     pub(super) instructions: Vec<Instruction>,
-    /// The constants in the order of their first use.
+    /// The constants in the order of their first use, in which their values travel.
     pub(super) constants: Vec<String>,
     /// The signals in the order of their first use.
     pub(super) signals: Vec<FormulaSignal>,
@@ -269,16 +269,6 @@ pub struct FormulaProgram {
 }
 
 impl FormulaProgram {
-    /// Names of the constants, in the order in which their values travel.
-    pub fn constants(&self) -> &[String] {
-        &self.constants
-    }
-
-    /// The signals it names, each once.
-    pub fn signals(&self) -> &[FormulaSignal] {
-        &self.signals
-    }
-
     /// The measured channels that these need, the sway first.
     pub(super) fn channels(&self) -> Vec<Regressor> {
         let all = [Regressor::Sway, Regressor::Speed, Regressor::Wind, Regressor::Propeller];

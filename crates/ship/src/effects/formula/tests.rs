@@ -27,8 +27,8 @@ fn what_the_list_says_of_constants_is_what_their_formula_does() {
         let name = format!("{} ({})", formula.id(), formula.form());
         let parameters = formula.parameters();
         let keys: Vec<&str> = parameters.iter().map(|own| own.key).collect();
-        assert_eq!(formula.program.constants(), keys, "{name}");
-        assert!(!formula.acts.rudder || formula.program.signals() == [FormulaSignal::Rudder], "{name}");
+        assert_eq!(formula.program.constants, keys, "{name}");
+        assert!(!formula.acts.rudder || formula.program.signals == [FormulaSignal::Rudder], "{name}");
         let (second, metre): (f64, f64) = (2.0, 3.0);
         for point in SignalPoint::all(&SignalSizes::ones()) {
             let value = |point: SignalPoint, factor: &dyn Fn(&Parameter) -> f64| {

@@ -141,15 +141,7 @@ pub struct Parameters<R = f64> {
 
 /// The same numbers without derivatives, in another kind of number.
 macro_rules! constants {
-    ($name:ident { $($field:ident),* }) => {
-        impl $name {
-            /// The same without derivatives, as yet.
-            pub fn constant<R: Real>(&self) -> $name<R> {
-                $name { $($field: R::from(self.$field)),* }
-            }
-        }
-    };
-    ($name:ident { $($field:ident),* } with $($part:ident = $made:expr),*) => {
+    ($name:ident: $($field:ident)* $(, $part:ident = $made:expr)*) => {
         impl $name {
             /// The same without derivatives, as yet.
             pub fn constant<R: Real>(&self) -> $name<R> {
@@ -159,32 +151,27 @@ macro_rules! constants {
     };
 }
 
-constants!(BySign { positive, negative });
-constants!(HullDerivatives {
-    mx,
-    my,
-    Jz,
-    R0,
-    Xvv,
-    Xvr,
-    Xrr,
-    Xvvvv,
-    Yv,
-    Yr,
-    Yvvv,
-    Yvvr,
-    Yvrr,
-    Yrrr,
-    Nv,
-    Nr,
-    Nvvv,
-    Nvvr,
-    Nvrr,
-    Nrrr
-});
-constants!(Propeller { DP, wP0, tP, xP } with wake = Wake::constant, k = |k: &[f64; 3]| k.map(R::from));
-constants!(Rudder { AR, eta, f_alpha, epsilon, kappa, tR, aH, xH, xR, lR } with gammaR = BySign::constant);
-constants!(Parameters { Lpp, d, volume, xG, kzz } with
+/// The same of numbers that all have names in files: those of their fields.
+macro_rules! named_constants {
+    ($name:ident: $($field:ident)*) => {
+        constants!($name: $($field)*);
+
+        impl<R> $name<R> {
+            fn named(&mut self, name: &str) -> Option<&mut R> {
+                match name {
+                    $(stringify!($field) => Some(&mut self.$field),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+constants!(BySign: positive negative);
+named_constants!(HullDerivatives: mx my Jz R0 Xvv Xvr Xrr Xvvvv Yv Yr Yvvv Yvvr Yvrr Yrrr Nv Nr Nvvv Nvvr Nvrr Nrrr);
+constants!(Propeller: DP wP0 tP xP, wake = Wake::constant, k = |k: &[f64; 3]| k.map(R::from));
+constants!(Rudder: AR eta f_alpha epsilon kappa tR aH xH xR lR, gammaR = BySign::constant);
+constants!(Parameters: Lpp d volume xG kzz,
     hull = HullDerivatives::constant, propeller = Propeller::constant, rudder = Rudder::constant);
 
 impl Wake {
@@ -218,26 +205,6 @@ impl<R> Parameters<R> {
     pub fn named(&mut self, name: &str) -> Option<&mut R> {
         let Self { hull, propeller, rudder, kzz, .. } = self;
         Some(match name {
-            "mx" => &mut hull.mx,
-            "my" => &mut hull.my,
-            "Jz" => &mut hull.Jz,
-            "R0" => &mut hull.R0,
-            "Xvv" => &mut hull.Xvv,
-            "Xvr" => &mut hull.Xvr,
-            "Xrr" => &mut hull.Xrr,
-            "Xvvvv" => &mut hull.Xvvvv,
-            "Yv" => &mut hull.Yv,
-            "Yr" => &mut hull.Yr,
-            "Yvvv" => &mut hull.Yvvv,
-            "Yvvr" => &mut hull.Yvvr,
-            "Yvrr" => &mut hull.Yvrr,
-            "Yrrr" => &mut hull.Yrrr,
-            "Nv" => &mut hull.Nv,
-            "Nr" => &mut hull.Nr,
-            "Nvvv" => &mut hull.Nvvv,
-            "Nvvr" => &mut hull.Nvvr,
-            "Nvrr" => &mut hull.Nvrr,
-            "Nrrr" => &mut hull.Nrrr,
             "kzz" => kzz,
             "wP0" => &mut propeller.wP0,
             "C1" | "C2-starboard" | "C2-port" => match (&mut propeller.wake, name) {
@@ -261,7 +228,7 @@ impl<R> Parameters<R> {
             "lR" => &mut rudder.lR,
             "gammaR-starboard" => &mut rudder.gammaR.positive,
             "gammaR-port" => &mut rudder.gammaR.negative,
-            _ => return None,
+            _ => return hull.named(name),
         })
     }
 }

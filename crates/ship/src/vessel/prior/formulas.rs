@@ -21,12 +21,16 @@ use Spread::{Absolute, Share};
 
 /// How a coefficient follows from the particulars.
 #[derive(Debug)]
-pub(super) struct Formula {
+pub struct Formula {
+    /// Name of the coefficient in files: "Nvvr", "gammaR-port".
     pub key: &'static str,
+    /// Its symbol, for people.
     pub symbol: &'static str,
-    pub of: fn(&HullDimensions) -> f64,
-    pub spread: Spread,
+    pub(super) of: fn(&HullDimensions) -> f64,
+    pub(super) spread: Spread,
+    /// The formula in words: an equation in L, B, d, C_b and what else is known, or a number.
     pub text: &'static str,
+    /// Author and year of it.
     pub source: &'static str,
 }
 

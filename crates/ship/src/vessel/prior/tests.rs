@@ -52,7 +52,7 @@ fn bare(length: f64, speed: f64) -> HullParticulars {
 }
 
 fn found<'a>(prior: &'a HullPrior, key: &str) -> &'a Coefficient {
-    prior.coefficients.iter().find(|coefficient| coefficient.key() == key).expect(key)
+    prior.coefficients.iter().find(|coefficient| coefficient.formula.key == key).expect(key)
 }
 
 /// Error of the mean, per cent of the published value.
@@ -70,7 +70,7 @@ fn errors_are(prior: &HullPrior, expected: &[(&str, f64, f64)]) {
 
 /// The value of a coefficient in some parameters; NaN where they have none.
 fn of(coefficient: &Coefficient, mut parameters: Parameters) -> f64 {
-    parameters.named(coefficient.key()).map_or(f64::NAN, |own| *own)
+    parameters.named(coefficient.formula.key).map_or(f64::NAN, |own| *own)
 }
 
 /// Yasukawa and Yoshimura (2015). Yr needs m_x', which is a formula as well and 5 % high.
@@ -127,7 +127,7 @@ fn published_hulls_are_plausible_under_their_prior() {
     for (given, published) in [(KVLCC2, kvlcc2::FULL_SCALE), (SEIUN_LIKE, seiun_like::PARAMETERS)] {
         let prior = priors(&given).expect("a ship");
         let off = |one: &&Coefficient| (of(one, published) - one.mean).abs() > 2.0 * one.sd;
-        let beyond: Vec<&str> = prior.coefficients.iter().filter(off).map(Coefficient::key).collect();
+        let beyond: Vec<&str> = prior.coefficients.iter().filter(off).map(|one| one.formula.key).collect();
         assert!(10 * beyond.len() <= prior.coefficients.len(), "{beyond:?}");
     }
 }
@@ -141,8 +141,8 @@ fn the_mean_hull_sails_and_turns_her_propeller_as_declared() {
         assert!((hull.revolutions() / rate - 1.0).abs() < 1e-9, "{} against {rate}", hull.revolutions());
         assert!(prior.assumed.is_empty(), "{:?}", prior.assumed);
         for coefficient in &prior.coefficients {
-            assert_eq!(of(coefficient, prior.parameters), coefficient.mean, "{}", coefficient.key());
-            assert!(coefficient.sd > 0.0 && coefficient.sd.is_finite(), "{}", coefficient.key());
+            assert_eq!(of(coefficient, prior.parameters), coefficient.mean, "{}", coefficient.formula.key);
+            assert!(coefficient.sd > 0.0 && coefficient.sd.is_finite(), "{}", coefficient.formula.key);
         }
     }
     for given in [bare(320.0, 7.97), bare(7.0, 1.179), ESSO_OSAKA] {

@@ -6,22 +6,11 @@ mod parquet;
 mod spreadsheet;
 
 use std::io::{Read, Write};
-use std::path::Path;
 
 use crate::reader::lines::sha256;
-use crate::reader::tests::{rows, simple};
-use crate::reader::{ReadError, ReadRecord, read, read_bytes};
+use crate::reader::tests::{parse, parse_with, rows, simple};
+use crate::reader::{ReadError, ReadRecord, read};
 use crate::record::Origin;
-use crate::sidecar::Sidecar;
-
-fn parse(bytes: &[u8]) -> Result<ReadRecord, ReadError> {
-    read_bytes(Path::new("run"), bytes, None, None)
-}
-
-fn parse_with(bytes: &[u8], sidecar: &str) -> Result<ReadRecord, ReadError> {
-    let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
-    read_bytes(Path::new("run"), bytes, None, Some(&sidecar))
-}
 
 /// Time, heading and rudder of the rows of the plainest table.
 fn columns() -> [Vec<f64>; 3] {
