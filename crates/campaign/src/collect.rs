@@ -105,13 +105,10 @@ fn look_again(
         machine: stored.machine.clone(),
         git_revision: stored.git_revision.clone(),
         git_dirty: stored.git_dirty,
-        sha256: stored.sha256.clone(),
         ..manifest
     };
-    if told != *stored {
-        told.write(folder)?;
-    }
-    Ok(study.with_words_of(told))
+    let design = study.design.told_by(scenario);
+    study.told_again(told, design, folder)
 }
 
 /// Everything of a study in a folder, thrown away on request.

@@ -46,6 +46,9 @@ pub struct CellFacts {
     /// itself.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_nearest: bool,
+    /// Length over approach speed, s, which limits of IMO follow, where manoeuvres are predicted and it is not drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length_over_speed_s: Option<f64>,
     /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a
     /// bound of its own, and where there is none.
     pub bound_percent2: Option<[[f64; 2]; 2]>,
@@ -54,22 +57,34 @@ pub struct CellFacts {
 impl Design {
     /// The design of a scenario of which no trial is stored, and no bound is known.
     pub fn of(scenario: &Scenario) -> Self {
+        let predicts = scenario.predictions.is_some();
+        let has_limits = predicts && !scenario.draws.iter().any(|key| key.contains("length") || key.contains("speed"));
         let bare = |cell: &DesignCell| CellFacts {
             labels: cell.labels.clone(),
             values: cell.values.clone(),
             missing: cell.missing(),
             has_own_indices: cell.has_own_indices(),
             is_nearest: !cell.is_first_order(),
+            length_over_speed_s: cell.particulars().filter(|_| has_limits).map(|own| own.length / own.speed),
             ..CellFacts::default()
         };
         Self {
             axes: scenario.axes.iter().map(|axis| axis.name.clone()).collect(),
             methods: scenario.method_names(),
             draws: scenario.draws.clone(),
-            predicts: scenario.predictions.is_some(),
+            predicts,
             cells: scenario.cells.iter().map(bare).collect(),
             words: scenario.words.clone(),
         }
+    }
+
+    /// The same with what a scenario says of every cell, as this version tells it; its trials and bounds stay.
+    pub(crate) fn told_by(&self, scenario: &Scenario) -> Self {
+        let mut own = Self::of(scenario);
+        for (cell, stored) in own.cells.iter_mut().zip(&self.cells) {
+            (cell.trials, cell.bound_percent2) = (stored.trials.clone(), stored.bound_percent2);
+        }
+        own
     }
 
     /// The design in the text of a `cells.json`.

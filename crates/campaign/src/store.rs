@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use scenario::failure::{Failure, OnPath};
 use scenario::hex;
+use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use crate::design::Design;
@@ -71,10 +72,17 @@ impl StoredStudy {
         Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings, _lock: None })
     }
 
-    /// The same study after its words have changed.
-    pub(crate) fn with_words_of(self, manifest: Manifest) -> Self {
-        let design = Design { words: manifest.words(), ..self.design };
-        Self { manifest, design, ..self }
+    /// The same study after its words, or what is told of its cells, have changed; they are written where they have.
+    pub(crate) fn told_again(self, manifest: Manifest, design: Design, folder: &ResultFolder) -> Result<Self, Failure> {
+        let (name, text) = described(DESIGN, &design, folder)?;
+        let sha256 = hex(&Sha256::digest(&text));
+        let is_same = self.manifest.sha256.get(DESIGN) == Some(&sha256);
+        let own = [(name, if is_same { sha256 } else { folder.keep(DESIGN, text)? })];
+        let manifest = Manifest { sha256: self.manifest.sha256.clone().into_iter().chain(own).collect(), ..manifest };
+        if manifest != self.manifest {
+            manifest.write(folder)?;
+        }
+        Ok(Self { design: Design { words: manifest.words(), ..design }, manifest, ..self })
     }
 
     /// Hands every row to `take`, in order. Fails when one is missing or is not of this study.
@@ -145,6 +153,12 @@ fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
     })
 }
 
+/// The name of a file and its text.
+fn described(name: &str, what: &impl Serialize, folder: &ResultFolder) -> Result<(String, String), Failure> {
+    let text = serde_json::to_string(what).on("describe", &folder.path().join(name))?;
+    Ok((name.to_owned(), text + "\n"))
+}
+
 /// Makes a folder that holds rows with this SHA-256 a finished study: design, showcases, times, and the manifest last.
 /// What is returned is what was written, and need not be read again.
 pub fn finish(
@@ -156,9 +170,9 @@ pub fn finish(
     timings: &Timings,
 ) -> Result<StoredStudy, Failure> {
     let mut sha256 = BTreeMap::from([(ROWS.to_owned(), rows_sha256)]);
-    for (name, text) in [(DESIGN, serde_json::to_string(&design)), (SHOWCASES, serde_json::to_string(&showcases))] {
-        let text = text.on("describe", &folder.path().join(name))?;
-        sha256.insert(name.to_owned(), folder.keep(name, text + "\n")?);
+    for (name, text) in [described(DESIGN, &design, folder)?, described(SHOWCASES, &showcases, folder)?] {
+        let kept = folder.keep(&name, text)?;
+        sha256.insert(name, kept);
     }
     let times = timings.to_text(&design)?;
     sha256.insert(TIMINGS.to_owned(), folder.keep(TIMINGS, &times)?);

@@ -128,6 +128,15 @@ impl Limit {
     }
 }
 
+/// The criterion that limits a figure of a manoeuvre (such as `zig-zag 10/10 first_overshoot_deg`), and its limit for a
+/// ship with this L/V, s; `None` where none does.
+pub fn limit_of(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
+    let scale = Particulars { length: length_over_speed, speed: 1.0 };
+    let is_limited =
+        |limit: &&Limit| figure.strip_prefix(limit.manoeuvre).is_some_and(|own| own.trim() == limit.figure);
+    LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.of)(Some(scale))?)))
+}
+
 /// The criteria that some predicted manoeuvres answer, for a ship of this length and speed.
 pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<PredictedCriterion> {
     let answer = |prediction: &Prediction, limit: &Limit| {
@@ -176,5 +185,8 @@ mod tests {
         }
         // L/V = 12.5 s.
         assert!((found[1].limit - 11.25).abs() < 1e-12);
+        let (name, limit) = limit_of("zig-zag 10/10 first_overshoot_deg", 12.5).expect("it is limited");
+        assert_eq!((name, limit), ("10/10 first overshoot", found[1].limit));
+        assert_eq!(limit_of("zig-zag 20/20 second_overshoot_deg", 12.5), None);
     }
 }

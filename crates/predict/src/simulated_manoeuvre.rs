@@ -146,8 +146,8 @@ impl SimulatedManoeuvre {
         self.way.as_ref()?.velocity.iter().position(|[surge, sway]| surge.hypot(*sway) > fastest)
     }
 
-    /// What any simulated ship does; how often and how long it is recorded follows from `timescale`, a time of the ship,
-    /// s.
+    /// What any simulated ship does; how often and how long it is recorded follows from `timescale`, a time of the
+    /// ship, s.
     ///
     /// Fails as the simulation does.
     pub fn of(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {

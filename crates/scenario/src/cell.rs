@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use ship::Particulars;
 use simulate::{Assumption, StreamKey};
 use toml::{Table, Value};
 
@@ -75,6 +76,11 @@ impl DesignCell {
     /// Whether the ship is a first-order response, so that K and T of a method are held against its own.
     pub fn is_first_order(&self) -> bool {
         self.specification.truth.is_some()
+    }
+
+    /// Length and approach speed of the ship, where they are known; with drawn values those in the middle.
+    pub fn particulars(&self) -> Option<Particulars> {
+        self.specification.simulation.vessel.particulars()
     }
 
     /// Whether its trials make an assumption.

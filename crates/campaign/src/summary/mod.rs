@@ -11,7 +11,7 @@ mod tally;
 mod tracing;
 
 pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
-pub use predictions::PredictionSummary;
+pub use predictions::{CriterionTally, PredictionSummary};
 pub use record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 pub use tally::{Tally, summarise};
 pub use tracing::{CALIBRATION, CLEAR, CalibrationBin, TraceSummary, effect_ids};

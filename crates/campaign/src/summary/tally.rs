@@ -9,7 +9,7 @@ use super::detail::{CellDetail, Cloud, ErrorDensity, MOST_PAIRS, MethodDetail};
 use super::predictions::{PredictionSummary, add_predictions};
 use super::record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use super::tracing::TraceTally;
-use crate::design::Design;
+use crate::design::{CellFacts, Design};
 use crate::rows::StudyRow;
 use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, share};
 
@@ -74,7 +74,7 @@ impl<'a> Tally<'a> {
         let errors = row.errors().map(|error| error.map(|error| 100.0 * error));
         let own = &mut self.present[row.method];
         own.add(row, &errors);
-        own.add_details(row, &self.design.cells[cell].missing, self.detailed.contains(&cell));
+        own.add_details(row, &self.design.cells[cell], self.detailed.contains(&cell));
         // Batches over all cells: a replicate of one cell goes with the same of another, since they may share a ship.
         self.overall[row.method].add(row, &errors);
     }
@@ -229,11 +229,11 @@ impl Running {
     }
 
     /// What is not summed over all cells.
-    fn add_details(&mut self, row: &StudyRow, missing: &[String], detailed: bool) {
+    fn add_details(&mut self, row: &StudyRow, cell: &CellFacts, detailed: bool) {
         if let Some(answer) = &row.traced {
-            self.trace.get_or_insert_with(|| TraceTally::new(row, missing)).add(answer);
+            self.trace.get_or_insert_with(|| TraceTally::new(row, &cell.missing)).add(answer);
         }
-        add_predictions(&mut self.predictions, row);
+        add_predictions(&mut self.predictions, row, cell.length_over_speed_s);
         if let [Some(k), Some(t)] = self.latest
             && detailed
             && self.cloud.len() < MOST_PAIRS

@@ -6,8 +6,8 @@ use report::{Table, TableColumn};
 use super::predict_tables::words;
 use super::tables::{head, place};
 use campaign::design::Design;
-use campaign::statistics::Statistic;
-use campaign::summary::PredictionSummary;
+use campaign::statistics::{Statistic, grouped, share};
+use campaign::summary::{CriterionTally, PredictionSummary};
 
 /// Every figure of every cell and method.
 pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
@@ -21,7 +21,7 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
         let mut cells = place(design, line.cell, line.method);
         let (name, unit) = words(&line.name);
         cells.extend([name, unit.to_owned(), line.trials.to_string()]);
-        cells.extend(percent(line));
+        cells.extend(percent(line.coverage()));
         cells.extend([line.truth(), line.bias(), line.rms(), line.width()].map(|value| significant(value, 3)));
         table.push(cells);
     }
@@ -51,7 +51,27 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     table
 }
 
-/// The share of trials whose interval holds, with its own 95 % interval.
-fn percent(line: &PredictionSummary) -> [String; 3] {
-    Statistic::flat(line.coverage()).map(|value| optional(value.map(|value| 100.0 * value), 1))
+/// What was told of every criterion of IMO, over all cells; `None` where no figure is limited.
+pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
+    let heads = "criterion | method | >trials | >ships within it | .told rightly [%] | .lower 95 [%] | .upper 95 [%] | \
+                 .told wrongly [%] | .lower 95 [%] | .upper 95 [%]";
+    let mut table = Table::new(TableColumn::all(heads));
+    let limited = lines.iter().filter_map(|line| Some((line, line.criterion.as_ref()?)));
+    let limited = grouped(limited, |(line, told)| (told.name.clone(), line.method));
+    let is_empty = limited.is_empty();
+    for ((name, method), own) in limited {
+        let trials: u64 = own.iter().map(|(line, _)| line.trials).sum();
+        let count = |of: fn(&CriterionTally) -> u64| own.iter().map(|(_, told)| of(told)).sum::<u64>();
+        let mut cells = vec![name.to_string(), design.methods[method].label.clone(), trials.to_string()];
+        cells.push(count(|told| told.kept).to_string());
+        cells.extend(percent(share(count(|told| told.right), trials)));
+        cells.extend(percent(share(count(|told| told.wrong), trials)));
+        table.push(cells);
+    }
+    (!is_empty).then_some(table)
+}
+
+/// A share of trials with its own 95 % interval.
+fn percent(share: Option<Statistic>) -> [String; 3] {
+    Statistic::flat(share).map(|value| optional(value.map(|value| 100.0 * value), 1))
 }

@@ -79,6 +79,9 @@ pub fn put(
     }
     if !summary.predictions.is_empty() {
         write_csv(folder, "predictions.csv", &summary.predictions, |lines| coverage_table::table(lines, design))?;
+        if let Some(criteria) = coverage_table::criteria(&summary.predictions, design) {
+            folder.write("criteria.csv", criteria.to_csv())?;
+        }
     }
     let brief = (design.cells.len() <= LISTED_CELLS).then(|| tables::summary_in_brief(&summary, design));
     if let Some(brief) = &brief {

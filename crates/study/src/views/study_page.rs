@@ -53,6 +53,10 @@ const PREDICTED: &str = "Manoeuvres are predicted from every answer, and the sam
                          not have are left out. `predictions.csv` has every figure with its interval (Wilson, 95 %), bias, rms \
                          error and width.";
 
+const TOLD: &str = "Criteria of IMO MSC.137(76), over all cells. *told*: the 90 % interval lies on one side of the limit, so \
+                    that a prediction gives a probability of 95 % or more that the ship is there; *rightly*: she is; \
+                    *wrongly*: she is not. What is left of the trials was left open.";
+
 const READING: &str = "*median*, *rms*: median and root mean square error, with a bootstrap interval; *coverage*: share of \
                        quoted 95 % intervals that hold the truth; *sd/bound*: standard deviation over the Cramér–Rao bound; \
                        *validation*: median error of the heading on a manoeuvre no method has seen. All figures with all \
@@ -98,6 +102,10 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
         page.part("What intervals of predictions hold");
         page.table(coverage_table::pooled(&summary.predictions, design));
         page.say(PREDICTED);
+        if let Some(criteria) = coverage_table::criteria(&summary.predictions, design) {
+            page.say(TOLD);
+            page.table(criteria);
+        }
     }
     page.part("Over all trials");
     page.figures(at(&|place| matches!(place, FigurePlace::Chart | FigurePlace::AllTrials)));
