@@ -83,6 +83,7 @@ fn identification(rows: &[ComparedWork]) -> NamedRows {
         note: Some(String::from(
             "Left of the line a method is faster. Times on one core; bars: 95 % intervals; none seen: within the mark.",
         )),
+        ..NamedRows::default()
     }
 }
 

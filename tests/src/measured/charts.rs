@@ -61,12 +61,12 @@ pub fn before_after(analyses: &[MeasuredAnalysis]) -> PageFigure {
             names: names.collect(),
             columns: vec![
                 column("rms heading error, whole replay [°]", WHOLE),
-                column("rms heading error, windows of 60 s [°]", WINDOWS_60_S),
+                column("rms heading error, windows of 60\u{a0}s [°]", WINDOWS_60_S),
             ],
             title: Some(title),
+            of: String::from("fitted: zig-zag (rudder/heading angle), or how many together"),
             note: Some(String::from(
-                "Rows: the fitted zig-zag (rudder/heading angle, side of the first execute, or propeller turns a second), or how \
-                 many were fitted together. One mark: both coincide.",
+                "Side of the first execute, or turns of the propeller a second. One mark: both coincide.",
             )),
         },
     )

@@ -52,12 +52,12 @@ fn by_overshoot(figures: &[ForecastFigure]) -> Vec<PredictedOvershoot<'_>> {
     own.into_iter().map(|(_, models)| PredictedOvershoot::of(models)).collect()
 }
 
-/// Median sizes of the errors of first and of later overshoots over all models.
-fn errors<'a>(overshoots: impl Iterator<Item = &'a PredictedOvershoot<'a>> + Clone) -> [String; 2] {
+/// Median sizes of the errors of first and of later overshoots of a group over all models.
+fn errors(overshoots: &[PredictedOvershoot], group: ForecastGroup) -> [f64; 2] {
     [true, false].map(|is_first| {
-        let own = overshoots.clone().filter(|own| own.is_first == is_first).flat_map(|own| &own.models);
-        let mut sizes: Vec<f64> = own.map(|own| own.error().abs()).collect();
-        median(&mut sizes).map_or_else(|| String::from("–"), |size| significant(size, 2))
+        let own = overshoots.iter().filter(|own| own.group == group && own.is_first == is_first);
+        let mut sizes: Vec<f64> = own.flat_map(|own| &own.models).map(|own| own.error().abs()).collect();
+        median(&mut sizes).unwrap_or(f64::NAN)
     })
 }
 
@@ -81,19 +81,24 @@ pub fn overshoots(figures: &[ForecastFigure]) -> PageFigure {
             marks("first overshoot", blue, true),
             Layer::line("predicted = measured", line, Pen { dash: DASHED, ..Pen::new(INK).width(0.8) }),
         ];
-        let [first, later] = errors(overshoots.iter().filter(|own| own.group == group));
+        let [first, later] = errors(&overshoots, group).map(|size| significant(size, 2));
         let words = group.words().trim_start_matches("KVLCC2: ");
         LayeredPanel { head: Some(format!("{words}: first\u{a0}{first}°, later\u{a0}{later}°")), layers }
     };
     let groups = ForecastGroup::ALL.into_iter().filter(|group| overshoots.iter().any(|own| own.group == *group));
+    let groups: Vec<ForecastGroup> = groups.collect();
     let row = PanelRow::new(Ruler::decimal("predicted overshoot [°]").within(2.0, None), 0.28);
-    let stack = Stack::multiples(3, Ruler::decimal("measured overshoot [°]"), row, groups.map(panel).collect());
+    let stack =
+        Stack::multiples(3, Ruler::decimal("measured overshoot [°]"), row, groups.iter().copied().map(panel).collect());
     let caption = "Overshoots of trials that were not fitted, predicted against measured: medians from every single record as \
                    dots, the middle one of them as a mark with its 90 % interval.";
-    let of_basin =
-        |is_hsva: bool| errors(overshoots.iter().filter(|own| (own.group == ForecastGroup::Hsva) == is_hsva));
-    let [[hsva, _], [marin, _]] = [true, false].map(of_basin);
-    let title = format!("KVLCC2: median error of first overshoots {hsva}° at HSVA, {marin}° over all of MARIN’s");
+    let marin = groups.iter().filter(|group| **group != ForecastGroup::Hsva);
+    let marin = marin.map(|group| errors(&overshoots, *group)[0]);
+    let (least, most) = (marin.clone().fold(f64::INFINITY, f64::min), marin.fold(0.0, f64::max));
+    let [hsva, least, most] =
+        [errors(&overshoots, ForecastGroup::Hsva)[0], least, most].map(|size| significant(size, 2));
+    let title =
+        format!("KVLCC2: first overshoots off by {hsva}° in the median at HSVA, by {least} to {most}° at MARIN");
     let note = "Degrees: median errors. Bars: 90 % intervals.";
     let data = Panels { title: Some(title), note: Some(note.to_owned()), ..Panels::of(stack) };
     PageFigure::new("overshoots", caption, data)
@@ -204,9 +209,10 @@ pub fn rates(ships: &[PredictedSteady]) -> PageFigure {
             all().filter(|own| own.inside).count(),
             all().count()
         )),
+        of: String::from("rudder angle of a circle [°], each mark from one model"),
         names: names.collect(),
         columns: vec![column],
-        note: Some(String::from("Rows: rudder angle of a circle, predicted from one model. Bars: 90 % intervals.")),
+        note: Some(String::from("Bars: 90 % intervals.")),
     };
     PageFigure::new(
         "turn-rates",
@@ -273,6 +279,7 @@ pub fn coverage(figures: &[ForecastFigure]) -> PageFigure {
     let [(zig_zags, ..), (circles, ..)] = &parts;
     let title = format!("90 % intervals hold {inside} of {all} predicted figures: of {zig_zags}, of {circles}");
     let note = format!("{all} figures; a mark rests on {FEWEST} or more. Grey: 85 to 95 %. Bars: 95 % intervals.");
-    let data = NamedRows { title: Some(title), names, columns: vec![held, width], note: Some(note) };
+    let (title, note) = (Some(title), Some(note));
+    let data = NamedRows { title, names, columns: vec![held, width], note, ..NamedRows::default() };
     PageFigure::new("coverage", caption, data)
 }

@@ -302,6 +302,18 @@ fn draw_layer(sheet: &mut Sheet, place: &Panel, layer: &Layer, theme: &Theme, ou
             }
         }
         LayerKind::Marks(marks) => draw_marks(place, scene, theme, (&layer.curve, marks), outside),
+        LayerKind::Words(colour, is_above, words) => {
+            let right = 1.2 * theme.marker;
+            let (right, down, anchor) = match is_above {
+                true => (right, -theme.marker, Anchor::Start),
+                false => (-right, theme.marker + 0.7 * theme.small_font, Anchor::End),
+            };
+            for (pair, words) in layer.curve.pairs().zip(words) {
+                let Some((x, y)) = place.inside(pair) else { continue };
+                let text = TextLine::new(words.as_str(), theme.small_font).colour(*colour).anchor(anchor);
+                scene.text_on_ground(Height::Note, (x + right, y + down), text);
+            }
+        }
         LayerKind::Ships(colour, headings) => {
             for (pair, heading) in layer.curve.pairs().zip(headings) {
                 let (sine, cosine) = heading.to_radians().sin_cos();

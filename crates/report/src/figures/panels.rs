@@ -167,6 +167,8 @@ pub enum LayerKind {
     Marks(Marks),
     /// Ships seen from above, with these headings in degrees.
     Ships(Paint, Vec<f64>),
+    /// Words beside the points, above them at their right, or below them at their left.
+    Words(Paint, bool, Vec<String>),
 }
 
 /// One thing in a panel.
@@ -236,7 +238,7 @@ impl Layer {
         match &self.kind {
             LayerKind::Line(pen) => pen.colour,
             LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
-            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) => *colour,
+            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour,
             LayerKind::Marks(marks) => marks.look.colour,
             LayerKind::Record => crate::palette::RECORD,
         }
@@ -256,6 +258,7 @@ impl Layer {
                 KeySample::LineAndMarker(pen.stroke(theme), *look)
             }
             LayerKind::Marks(Marks { look, .. }) => KeySample::Marker(*look),
+            LayerKind::Words(..) => return None,
             LayerKind::Ships(..) if self.curve.finite().next().is_none() => return None,
             LayerKind::Ships(colour, _) => KeySample::Hull(*colour),
         })

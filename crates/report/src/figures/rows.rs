@@ -151,6 +151,8 @@ pub struct RowsColumn {
     pub reference: Option<Reference95>,
     /// Values that all rows are held against, with their names in the key.
     pub lines: Vec<(String, Pen, f64)>,
+    /// Values that the axis reaches whatever else there is.
+    pub reached: Vec<f64>,
 }
 
 /// What [`super::Plot::Rows`] draws.
@@ -158,6 +160,8 @@ pub struct RowsColumn {
 pub struct NamedRows {
     /// Title above the figure.
     pub title: Option<String>,
+    /// What the names are, beside them; nothing where they say it themselves.
+    pub of: String,
     /// Names from top to bottom.
     pub names: Vec<String>,
     /// The columns, side by side.
@@ -196,7 +200,7 @@ pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
     let heights = [0.95 + 1.15 * lines.max().unwrap_or(1).max(1) as f64, 0.62 * stacked as f64 + 1.1];
     let pitch = heights[0].max(heights[1]).max(if is_wide { 2.6 } else { 0.0 }) * theme.tick_font;
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
-    let row = (AxisSide::new(PlotAxis::names(data.names.clone()), ""), height);
+    let row = (AxisSide::new(PlotAxis::names(data.names.clone()), data.of.clone()), height);
     let sides: Vec<AxisSide> =
         data.columns.iter().map(|column| AxisSide::new(axis(column), column.x.title.clone())).collect();
     let across = match theme.is_narrow() {
@@ -236,7 +240,7 @@ fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
 fn axis(column: &RowsColumn) -> PlotAxis {
     let mut data = Extents::default();
     column.rows.iter().flatten().for_each(|item| item.enter(&mut data));
-    data.fixed.extend(column.lines.iter().map(|(.., value)| *value));
+    data.fixed.extend(column.lines.iter().map(|(.., value)| *value).chain(column.reached.iter().copied()));
     // Numbers stand beyond all that is drawn.
     let kept = if column.room > 0.0 { std::mem::take(&mut data.soft) } else { Vec::new() };
     data.fixed.extend(kept.iter().map(|(value, _)| *value));

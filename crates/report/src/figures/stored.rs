@@ -252,6 +252,7 @@ impl Intervals {
                 column(format!("{} [s]", symbol("T")), |own| own.t_s, |own| own.t_s),
             ],
             note: (!note.is_empty()).then(|| note.join(" ")),
+            ..NamedRows::default()
         }
     }
 }

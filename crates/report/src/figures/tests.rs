@@ -188,17 +188,19 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         room: 0.2,
         reference: Some(Reference95::line(1.0)),
         lines: vec![("truth".into(), Pen::new(INK), 0.2)],
+        reached: vec![-0.1],
     };
     let names: Vec<String> =
         (0..n.min(5)).map(|row| format!("orders at {row} °/s, a name of a row that is long")).collect();
     let rows = NamedRows {
         title: None,
+        of: "rates [°/s]".into(),
         names: names.clone(),
         columns: vec![
             column(Ruler::new("rms error [%]", Division::Factors), false),
             column(Ruler::decimal("coverage [%]").within(4.0, Some(0.0)), true),
         ],
-        note: Some("Rows: rates.".into()),
+        note: Some("Rates are those of the gear.".into()),
     };
     let cell = |x: usize, y: usize, empty: bool| MapCell {
         value: (!empty).then(|| size(x + y)),

@@ -110,5 +110,6 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
              records on.",
             results.reference
         )),
+        ..NamedRows::default()
     })
 }

@@ -380,13 +380,12 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
             ..RowsColumn::default()
         }
     };
-    // Names of trials say what they are.
-    let rows = design.axes[x].contains('[').then(|| format!("Rows: {}.", design.axes[x]));
-    let said: Vec<String> = rows.into_iter().chain(compared.note(part)).collect();
     NamedRows {
-        title: None,
+        // Names of trials say what they are.
+        of: if design.axes[x].contains('[') { design.axes[x].clone() } else { String::new() },
         names: group.cells.iter().map(|&cell| design.cells[cell].labels[x].clone()).collect(),
         columns: compared.titles().into_iter().enumerate().map(column).collect(),
-        note: (!said.is_empty()).then(|| said.join(" ")),
+        note: compared.note(part),
+        ..NamedRows::default()
     }
 }

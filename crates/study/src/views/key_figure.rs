@@ -85,6 +85,12 @@ fn keep_t(stack: &mut Stack) {
 
 fn of_rows(data: &mut NamedRows, about: &[String]) {
     data.columns.retain(|column| !is_of_k(&column.x.title));
+    for column in &mut data.columns {
+        let own = column.rows.iter().zip(&data.names).filter(|(_, name)| about.contains(name)).flat_map(|(row, _)| row);
+        let densities =
+            own.filter_map(|item| if let RowKind::Violin(_, own, _) = &item.kind { Some(own) } else { None });
+        column.reached = densities.flat_map(|own| own.iter().map(|(value, _)| *value)).collect();
+    }
     for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
         // The others share a line.
         row.sort_by_key(|item| is_quiet(item.name.as_ref(), about));

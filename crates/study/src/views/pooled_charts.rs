@@ -31,7 +31,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
         let (methods, to_nearest) = comparable(design, measure, design.cells.iter())?;
         let title = match measure {
             ErrorMeasure::Rms => rms_title(stem, to_nearest),
-            _ => String::from("error of the predicted heading [°]"),
+            _ => String::from("median error of an unseen heading [°]"),
         };
         // Cells are the product of the axes, the first axis slowest.
         let cell = |x: usize, y: usize, method: usize| {
@@ -89,7 +89,7 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
         let names = (0..detail.methods.len()).map(|method| design.methods[method].label.clone()).collect();
         let note =
             Some(String::from("Shape: density. Box: quartiles, with the median. Line, or numbers: 2.5 to 97.5 %."));
-        (trials >= 10 && known).then_some((detail.cell, NamedRows { title: None, names, columns, note }))
+        (trials >= 10 && known).then_some((detail.cell, NamedRows { names, columns, note, ..NamedRows::default() }))
     };
     summary.details.iter().filter_map(of_cell).collect()
 }
@@ -177,10 +177,11 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
         RowsColumn { x, rows: (0..names.len()).map(row).collect(), ..RowsColumn::default() }
     };
     let rows = NamedRows {
-        title: None,
+        of: design.axes[last].clone(),
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
-        note: Some(format!("Rows: {}. Marks: means. {BARS}", design.axes[last])),
+        note: Some(format!("Marks: means. {BARS}")),
+        ..NamedRows::default()
     };
     Some((rows, design.methods[summary.reference].label.clone()))
 }
@@ -207,10 +208,10 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
             let is_of = |line: &&PredictionSummary, cell| (line.cell, line.method) == (cell, method);
             let of_cell = |cell| summed(summary.predictions.iter().filter(|line| is_of(line, cell)).map(of).collect());
             let cells: Vec<_> = (0..design.cells.len()).map(of_cell).collect();
-            // The last row is of the marks of all others.
+            // The first row is of the marks of all others.
             let all = summed(cells.iter().flatten().map(|(value, _)| *value).collect()).filter(|_| several);
             let rows = cells.into_iter().map(|own| own.map(|(value, bar)| item(value, Some(bar))));
-            rows.chain(several.then(|| all.map(|(value, _)| item(value, None)))).collect()
+            several.then(|| all.map(|(value, _)| item(value, None))).into_iter().chain(rows).collect()
         };
         let columns: Vec<_> = (0..design.methods.len()).map(of_method).collect();
         let row = |row: usize| columns.iter().filter_map(|column| column[row].clone()).collect();
@@ -218,11 +219,10 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
         RowsColumn { x, rows, lines, ..RowsColumn::default() }
     };
     let names = design.cells.iter().map(|cell| cell.labels.join(", "));
-    let names = names.chain(several.then(|| String::from("all"))).collect();
+    let names = several.then(|| String::from("all")).into_iter().chain(names).collect();
     let inside = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
     let width = |line: &PredictionSummary| 100.0 * line.width() / line.truth().abs();
     (!summary.predictions.is_empty()).then(|| NamedRows {
-        title: None,
         names,
         columns: vec![
             column(
@@ -231,11 +231,12 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
                 0,
                 vec![(String::from("90 %"), Pen { dash: DASHED, ..Pen::new(INK) }, 90.0)],
             ),
-            column(Ruler::new("their width [% of the predicted value]", Division::Factors), width, 25, Vec::new()),
+            column(Ruler::new("width [% of value]", Division::Factors), width, 25, Vec::new()),
         ],
         note: Some(String::from(
             "Over the predicted overshoots, times and turns. Marks: mean share, median width. Bars: lowest to highest share, \
              middle half of the widths.",
         )),
+        ..NamedRows::default()
     })
 }

@@ -139,7 +139,7 @@ fn intervals(title: &str, unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> Name
         title: Some(title.to_owned()),
         names,
         columns: vec![RowsColumn { x, rows, zero: true, ..RowsColumn::default() }],
-        note: None,
+        ..NamedRows::default()
     }
 }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use report::figures::{
-    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
-    Shades, Stack,
+    CellMap, Division, Layer, LayerKind, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind,
+    RowsColumn, Ruler, Shades, Stack,
 };
 use report::paint::Paint;
 use report::palette::{BEFORE, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
@@ -153,31 +153,29 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     })
 }
 
-/// Rules as points: a colour for what stands before the comma of their labels, a shape for what stands behind it.
+/// Rules as points: a line for what stands before the comma of their labels, and what stands behind it beside them.
 fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
     const COLOURS: [Paint; 3] = [HEADING, RUDDER, DIMENSION];
-    const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
+    const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Diamond];
     let parts: Vec<(&str, &str)> =
         rules.iter().map(|(label, ..)| label.split_once(", ").unwrap_or((label, ""))).collect();
-    let variants = distinct(parts.iter().map(|(_, variant)| *variant));
-    let look = |colour: Paint, variant: &str| {
-        let number = variants.iter().position(|own| *own == variant).unwrap_or_default();
-        Look { colour, marker: MARKERS[number % MARKERS.len()], dash: SOLID, hollow: false }
-    };
     let mut layers = Vec::new();
     for (number, (kind, own)) in grouped(rules.iter().zip(&parts), |(_, (kind, _))| *kind).iter().enumerate() {
-        let colour = COLOURS[number % COLOURS.len()];
-        let line = |name, curve, width| Layer::line(name, curve, Pen::new(colour).width(width));
-        let (x, y): (Vec<f64>, Vec<f64>) = own.iter().map(|((_, wrong, exact), _)| (wrong.value, exact.value)).unzip();
-        layers.push(line(*kind, PlotCurve::new(x, y), 1.0));
-        for ((_, wrong, exact), (_, variant)) in own {
+        let (colour, marker) = (COLOURS[number % COLOURS.len()], MARKERS[number % MARKERS.len()]);
+        let pen = Pen::new(colour);
+        for ((_, wrong, exact), _) in own {
             let level = PlotCurve::new(wrong.ci95.unwrap_or([wrong.value; 2]), [exact.value; 2]);
-            layers.push(line("", level, 0.56).within(1.0));
-            layers.push(Layer::marks("", look(colour, variant), vec![(wrong.value, exact.value, exact.ci95)]));
+            layers.push(Layer::line("", level, pen.width(0.7)).within(1.0));
         }
+        let points = || own.iter().map(|((_, wrong, exact), _)| (wrong.value, exact.value, exact.ci95));
+        let look = Look { colour, marker, dash: SOLID, hollow: false };
+        layers.push(Layer::marks(*kind, look, points().collect()).joined(pen));
+        let (x, y): (Vec<f64>, Vec<f64>) = points().map(|(x, y, _)| (x, y)).unzip();
+        // The words before the last are those of all.
+        let words = own.iter().map(|(_, (_, variant))| variant.rsplit(' ').next().unwrap_or(variant).to_owned());
+        let words = LayerKind::Words(colour, number % 2 == 0, words.collect());
+        layers.push(Layer::new("", PlotCurve::new(x, y), words));
     }
-    // The shapes stand in the key, in ink.
-    layers.extend(variants.iter().map(|variant| Layer::marks(*variant, look(INK, variant), Vec::new())));
     let row = PanelRow::new(Ruler::decimal("trials named exactly [%]"), 0.42);
     let stack =
         Stack { zero: true, ..Stack::over(Ruler::decimal("trials with a false name [%]"), vec![(row, layers)]) };
@@ -337,8 +335,11 @@ mod tests {
             [line(0, &["wave_yaw"], 1, 1), line(0, &[], 2, 0), line(1, &["wave_yaw"], 0, 0), line(1, &[], 2, 0)];
         let data = rules(&design, &lines).expect("two rules");
         let layers = &data.stacks[0].panels[0].layers;
-        let key: Vec<&str> = layers.iter().filter_map(|layer| layer.name.as_deref()).collect();
-        assert_eq!((&layers[0].curve, key), (&PlotCurve::new([25.0, 0.0], [50.0, 0.0]), vec!["bic", "0.5", "0.9"]));
+        let named = layers.iter().find(|layer| layer.name.as_deref() == Some("bic")).expect("one kind of rule");
+        assert_eq!(named.curve, PlotCurve::new([25.0, 0.0], [50.0, 0.0]));
+        let words =
+            layers.iter().find_map(|layer| if let LayerKind::Words(.., own) = &layer.kind { Some(own) } else { None });
+        assert_eq!(words.expect("thresholds"), &["0.5", "0.9"]);
         assert!(rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]).is_none());
         assert!(rules(&design, &lines[..2]).is_none() && false_names(&design, &lines).is_none());
         // Of ships that lack nothing the bound is shown: Wilson's of 0 of 2.

@@ -160,7 +160,7 @@ pub fn held_out(document: &TraceDocument) -> Option<PageFigure> {
         title: Some(title),
         names: judged.iter().map(|one| format!("{}, {}", one.name, one.used)).collect(),
         columns,
-        note: None,
+        ..NamedRows::default()
     };
     let caption = "Error of the heading on records that were not fitted, before and after: of the whole replay, and of \
                    replays that begin anew every 20 and 60 s.";
@@ -219,7 +219,7 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
     let columns =
         vec![column(Ruler::decimal("probability"), room, probability.collect()), column(cut, 0.3, support.collect())];
     let names = rows.iter().map(|row| row.0.clone()).collect();
-    let data = NamedRows { title: Some(document.title()), names, columns, note: None };
+    let data = NamedRows { title: Some(document.title()), names, columns, ..NamedRows::default() };
     let group =
         if has_group { " In brackets: that it, or one that the records cannot tell from it, is there." } else { "" };
     let caption = format!(
@@ -269,7 +269,8 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
     let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of IMO \
                    MSC.137(76) where one is for this zig-zag and for a ship of this length. Without a mark: that \
                    replay has no such overshoot.";
-    Some(PageFigure::new("overshoots", caption, NamedRows { title, names, columns: vec![column], note: None }))
+    let data = NamedRows { title, names, columns: vec![column], ..NamedRows::default() };
+    Some(PageFigure::new("overshoots", caption, data))
 }
 
 /// The residual before and after from several sides.
