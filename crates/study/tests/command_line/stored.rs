@@ -4,6 +4,9 @@
 use std::fs;
 use std::time::Duration;
 
+use campaign::folder::sha256_of;
+use serde_json::Value;
+
 use crate::desk::{Desk, copy, interrupted, killed};
 use crate::monte_carlo::parts;
 
@@ -277,4 +280,20 @@ fn coverage_of_predictions_is_drawn() {
     );
     let table = desk.text("out/predictions.csv");
     assert!(table.lines().count() > 4, "{table}");
+    // What an earlier version did not tell of the cells is told when the study is drawn again.
+    let told = |text: &str| text.contains("length_over_speed_s");
+    let criteria = desk.text("out/criteria.csv");
+    let (cells, before) = (desk.text("out/cells.json"), sha256_of(&desk.path("out/cells.json")).expect("a file"));
+    assert!(told(&cells) && criteria.contains("20/20 first overshoot,output-error,4,"), "{criteria}");
+    let [mut earlier, whole] = [(); 2].map(|()| serde_json::from_str::<Value>(&cells).expect("it is JSON"));
+    for cell in earlier["cells"].as_array_mut().expect("cells") {
+        cell.as_object_mut().expect("a cell").remove("length_over_speed_s");
+    }
+    desk.file("out/cells.json", earlier.to_string());
+    let sha256 = sha256_of(&desk.path("out/cells.json")).expect("a file");
+    desk.file("out/manifest.toml", desk.text("out/manifest.toml").replace(&before, &sha256));
+    fs::remove_file(desk.path("out/criteria.csv")).expect("it is there");
+    desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
+    assert_eq!(desk.text("out/criteria.csv"), criteria);
+    assert_eq!(serde_json::from_str::<Value>(&desk.text("out/cells.json")).expect("it is JSON"), whole);
 }
