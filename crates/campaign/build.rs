@@ -1,9 +1,9 @@
 //! What a manifest says of the program, known when it is built: the last revision in which its source changed, whether
 //! that had been changed since, and the versions of the crates that decide the numbers.
 
-use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::{env, fs};
 
 /// Crates whose version is part of a result's identity.
 const NUMERIC: [&str; 5] = ["nalgebra", "rand", "rand_distr", "realfft", "statrs"];
@@ -12,7 +12,8 @@ const NUMERIC: [&str; 5] = ["nalgebra", "rand", "rand_distr", "realfft", "statrs
 const SOURCE: [&str; 3] = ["crates", "Cargo.toml", "Cargo.lock"];
 
 fn main() {
-    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // As it is when this runs: a compiled script may have come here with its folder.
+    let package = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     println!("cargo::rerun-if-changed=build.rs");
     let lock = package.ancestors().map(|folder| folder.join("Cargo.lock")).find(|lock| lock.is_file());
     let locked = lock.as_deref().and_then(|lock| fs::read_to_string(lock).ok()).unwrap_or_default();
