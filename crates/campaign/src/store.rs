@@ -74,11 +74,12 @@ impl StoredStudy {
 
     /// The same study after its words, or what is told of its cells, have changed; they are written where they have.
     pub(crate) fn told_again(self, manifest: Manifest, design: Design, folder: &ResultFolder) -> Result<Self, Failure> {
-        let (name, text) = described(DESIGN, &design, folder)?;
-        let sha256 = hex(&Sha256::digest(&text));
-        let is_same = self.manifest.sha256.get(DESIGN) == Some(&sha256);
-        let own = [(name, if is_same { sha256 } else { folder.keep(DESIGN, text)? })];
-        let manifest = Manifest { sha256: self.manifest.sha256.clone().into_iter().chain(own).collect(), ..manifest };
+        let text = described(DESIGN, &design, folder)?;
+        let mut sha256 = self.manifest.sha256.clone();
+        if sha256.get(DESIGN) != Some(&hex(&Sha256::digest(&text))) {
+            sha256.insert(DESIGN.to_owned(), folder.keep(DESIGN, text)?);
+        }
+        let manifest = Manifest { sha256, ..manifest };
         if manifest != self.manifest {
             manifest.write(folder)?;
         }
@@ -153,10 +154,9 @@ fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
     })
 }
 
-/// The name of a file and its text.
-fn described(name: &str, what: &impl Serialize, folder: &ResultFolder) -> Result<(String, String), Failure> {
-    let text = serde_json::to_string(what).on("describe", &folder.path().join(name))?;
-    Ok((name.to_owned(), text + "\n"))
+/// The text of a file of this name.
+fn described(name: &str, what: &impl Serialize, folder: &ResultFolder) -> Result<String, Failure> {
+    Ok(serde_json::to_string(what).on("describe", &folder.path().join(name))? + "\n")
 }
 
 /// Makes a folder that holds rows with this SHA-256 a finished study: design, showcases, times, and the manifest last.
@@ -170,10 +170,8 @@ pub fn finish(
     timings: &Timings,
 ) -> Result<StoredStudy, Failure> {
     let mut sha256 = BTreeMap::from([(ROWS.to_owned(), rows_sha256)]);
-    for (name, text) in [described(DESIGN, &design, folder)?, described(SHOWCASES, &showcases, folder)?] {
-        let kept = folder.keep(&name, text)?;
-        sha256.insert(name, kept);
-    }
+    sha256.insert(DESIGN.to_owned(), folder.keep(DESIGN, described(DESIGN, &design, folder)?)?);
+    sha256.insert(SHOWCASES.to_owned(), folder.keep(SHOWCASES, described(SHOWCASES, &showcases, folder)?)?);
     let times = timings.to_text(&design)?;
     sha256.insert(TIMINGS.to_owned(), folder.keep(TIMINGS, &times)?);
     let manifest = Manifest { sha256, ..manifest.clone() };

@@ -1,8 +1,7 @@
 //! Whether the intervals of predictions hold, figure by figure.
 
-use serde::{Deserialize, Serialize};
-
 use predict::imo::limit_of;
+use serde::{Deserialize, Serialize};
 
 use crate::rows::{PredictedFigure, StudyRow};
 use crate::statistics::{Statistic, share};

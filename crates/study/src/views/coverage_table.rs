@@ -53,12 +53,14 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
 
 /// What was told of every criterion of IMO, over all cells; `None` where no figure is limited.
 pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
+    let limited = lines.iter().filter_map(|line| Some((line, line.criterion.as_ref()?)));
+    let limited = grouped(limited, |(line, told)| (told.name.clone(), line.method));
+    if limited.is_empty() {
+        return None;
+    }
     let heads = "criterion | method | >trials | >ships within it | .told rightly [%] | .lower 95 [%] | .upper 95 [%] | \
                  .told wrongly [%] | .lower 95 [%] | .upper 95 [%]";
     let mut table = Table::new(TableColumn::all(heads));
-    let limited = lines.iter().filter_map(|line| Some((line, line.criterion.as_ref()?)));
-    let limited = grouped(limited, |(line, told)| (told.name.clone(), line.method));
-    let is_empty = limited.is_empty();
     for ((name, method), own) in limited {
         let trials: u64 = own.iter().map(|(line, _)| line.trials).sum();
         let count = |of: fn(&CriterionTally) -> u64| own.iter().map(|(_, told)| of(told)).sum::<u64>();
@@ -68,7 +70,7 @@ pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
         cells.extend(percent(share(count(|told| told.wrong), trials)));
         table.push(cells);
     }
-    (!is_empty).then_some(table)
+    Some(table)
 }
 
 /// A share of trials with its own 95 % interval.
