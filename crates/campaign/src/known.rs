@@ -2,7 +2,7 @@
 //! traces and hulls leave.
 
 use identify::estimate::{Estimate, Uncertainty};
-use identify::hull::{self, EarlierHull, ExpectationCheck, HullEstimate, HullFitError, HullReference};
+use identify::hull::{self, EarlierHull, ExpectationCheck, HullEstimate, HullFitError, HullReference, HullResidual};
 use identify::replay::{Replay, pooled_rms, replay};
 use identify::{Identifier, maximum_likelihood};
 use predict::IdentifiedShip;
@@ -73,7 +73,7 @@ impl<'a> RecordFacts<'a> {
         let after_trials = fitted.iter().filter(|hull| hull.expected.has_trials);
         self.checks = after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect();
         let hulls = hull::members(fitted, f64::INFINITY);
-        self.hulls = hulls.iter().map(|hull| stored(hull, hulls.len())).collect();
+        self.hulls = hulls.iter().map(|hull| self.stored(hull, hulls.len())).collect();
         if self.hulls.is_empty() && tells_hull && self.length.is_some() {
             let reason = hull::refusal(self.trials).unwrap_or(HullFitError::NoReplay);
             self.no_track = Some(format!("{NO_MOTION}: {reason}"));
@@ -108,6 +108,46 @@ impl<'a> RecordFacts<'a> {
         }
     }
 
+    /// A fitted hull as a file holds it, one of so many.
+    fn stored(&self, hull: &HullEstimate, of: usize) -> StoredHull {
+        let expected = &hull.expected;
+        let coefficient = |(own, value): (&HullCoefficient, &f64)| StoredCoefficient {
+            key: own.key.to_owned(),
+            symbol: own.symbol.to_owned(),
+            value: *value,
+            expected: own.mean,
+            expected_sd: own.sd,
+        };
+        let particulars =
+            expected.particulars.filter(|_| matches!(expected.form, HullForm::Mmg(..))).unwrap_or_default();
+        let HullReference { length, speed, propeller } = hull.reference;
+        StoredHull {
+            form: expected.form.as_str().to_owned(),
+            weight: 1.0 / of as f64,
+            length_m: length,
+            speed_m_s: speed,
+            propeller_per_s: propeller,
+            particulars: by_keys(&particulars),
+            coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
+            covariance: rows_of(&hull.covariance),
+            moment: RandomYawMoment {
+                deviation_rudder_rad: hull.moment.deviation,
+                correlation_s: hull.moment.correlation_time,
+            },
+            beginning_yaw_rate_rad_s: self.beginning(hull),
+            from: None,
+        }
+    }
+
+    /// Root mean square of what replays of a hull begin with beyond the yaw rate of a straight approach, rad/s.
+    fn beginning(&self, hull: &HullEstimate) -> f64 {
+        let beyond = |(zigzag, record): (&Option<ZigZag>, &HullResidual)| {
+            Some((record.begins_with - zigzag.as_ref()?.straight_yaw_rate()?.value).powi(2))
+        };
+        let squares: Vec<f64> = self.zigzags.iter().zip(&hull.records).filter_map(beyond).collect();
+        (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+    }
+
     /// Root mean square of the yaw rates at the ends of straight approaches, rad/s: of a zig-zag that at its first
     /// execute, without what its reading errors make of it, of another record the first of its replay. Records that
     /// begin in a turn have no part in it; 0 without any other.
@@ -124,35 +164,6 @@ impl<'a> RecordFacts<'a> {
         };
         let squares: Vec<f64> = self.zigzags.iter().zip(replays).filter_map(square).collect();
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).max(0.0).sqrt()
-    }
-}
-
-/// A fitted hull as a file holds it, one of so many.
-fn stored(hull: &HullEstimate, of: usize) -> StoredHull {
-    let expected = &hull.expected;
-    let coefficient = |(own, value): (&HullCoefficient, &f64)| StoredCoefficient {
-        key: own.key.to_owned(),
-        symbol: own.symbol.to_owned(),
-        value: *value,
-        expected: own.mean,
-        expected_sd: own.sd,
-    };
-    let particulars = expected.particulars.filter(|_| matches!(expected.form, HullForm::Mmg(..))).unwrap_or_default();
-    let HullReference { length, speed, propeller } = hull.reference;
-    StoredHull {
-        form: expected.form.as_str().to_owned(),
-        weight: 1.0 / of as f64,
-        length_m: length,
-        speed_m_s: speed,
-        propeller_per_s: propeller,
-        particulars: by_keys(&particulars),
-        coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
-        covariance: rows_of(&hull.covariance),
-        moment: RandomYawMoment {
-            deviation_rudder_rad: hull.moment.deviation,
-            correlation_s: hull.moment.correlation_time,
-        },
-        from: None,
     }
 }
 

@@ -73,7 +73,7 @@ impl SteeredZigZag {
         let manoeuvre = standard::steered(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
         drawn(draws, |number| {
             let mut ship = mixture.draw(number, &UncertaintySource::ALL);
-            ship.yaw_rate = self.yaw_rate;
+            ship.yaw_rate = self.yaw_rate + ship.beginning;
             ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
             let mut figures = figures::of(&self.kind, &passage, mixture.particulars());

@@ -202,7 +202,9 @@ impl IdentifiedShip {
     pub fn in_calm(&self) -> Result<Self, PredictError> {
         let mut calm = self.clone();
         calm.noise.moment = Moment::None;
-        calm.hulls.iter_mut().for_each(|hull| hull.moment.deviation_rudder_rad = 0.0);
+        for hull in &mut calm.hulls {
+            (hull.moment.deviation_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
+        }
         for member in &mut calm.members {
             let model = member.model()?;
             for (effect, own) in model.placed().filter(|(effect, _)| effect.sees_heading()) {

@@ -72,6 +72,10 @@ pub struct StoredHull {
     pub covariance: Vec<Vec<f64>>,
     /// What the form leaves of the records.
     pub moment: RandomYawMoment,
+    /// Root mean square of what its replays of records begin with beyond the yaw rate of the straight approach, rad/s:
+    /// an error of the form in the first seconds of a manoeuvre. 0 where no record begins straight.
+    #[serde(default)]
+    pub beginning_yaw_rate_rad_s: f64,
     /// Of a hull at another loading the one of the trials; not written to a file.
     #[serde(skip)]
     pub from: Option<TrialHull>,
@@ -139,7 +143,8 @@ impl StoredHull {
         let second = length / speed * self.speed_m_s / self.length_m;
         let moment = RandomYawMoment { correlation_s: self.moment.correlation_s * second, ..self.moment };
         let propeller_per_s = self.propeller_per_s.map(|rate| rate / second);
-        Self { length_m: length, speed_m_s: speed, propeller_per_s, moment, ..self.clone() }
+        let beginning_yaw_rate_rad_s = self.beginning_yaw_rate_rad_s / second;
+        Self { length_m: length, speed_m_s: speed, propeller_per_s, moment, beginning_yaw_rate_rad_s, ..self.clone() }
     }
 
     /// The hull at another loading and at its approach speed: `expected` of its coefficients after the trials that left

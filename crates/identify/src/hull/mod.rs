@@ -6,7 +6,7 @@
 //!
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of the speed where it was
 //! recorded]
-//!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.65)/0.2)² in a turn with 35° of rudder
+//!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.65)/0.2)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
 //!
 //! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
 //! or twenty numbers is the ship. They start large and follow what is left of every record, to 1°, 0.2° and 0.1 U₀.
@@ -76,6 +76,8 @@ pub struct HullResidual {
     pub whole: f64,
     /// The same in windows of 3.5 L/U₀, rad.
     pub window: f64,
+    /// Yaw rate with which the whole replay begins, rad/s.
+    pub begins_with: f64,
 }
 
 /// A hull with what is known of its coefficients.
@@ -117,14 +119,15 @@ pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, Hu
     let covariance = Cholesky::new(found.normal.matrix.clone()).map(|factor| factor.inverse());
     let covariance = covariance.ok_or(HullFitError::NoReplay)?;
     let left = problem.left(found.at.as_slice()).unwrap_or_default();
-    let residual = |(trial, left): (&Trial, objective::Left)| HullResidual {
+    let residual = |((trial, left), rate): ((&Trial, objective::Left), f64)| HullResidual {
         name: trial.name().to_owned(),
         whole: left.whole.sqrt(),
         window: left.window.sqrt(),
+        begins_with: rate / reference.time(),
     };
     let moment = RandomMoment::of(&form.with(found.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &left);
     let moment = RandomMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
-    let records = trials.iter().zip(left).map(residual).collect();
+    let records = trials.iter().zip(left).zip(problem.begun()).map(residual).collect();
     let expected = expected.clone();
     Ok(HullEstimate { expected, reference, values: found.at, covariance, records, moment })
 }

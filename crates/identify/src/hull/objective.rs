@@ -181,10 +181,9 @@ impl<'a> HullObjective<'a> {
         Some(self.tracks.iter().zip(&mut self.starts).map(of).collect())
     }
 
-    /// The best yaw rate at the start of the first record; `None` where the values make no ship.
-    fn begin(mut self, at: &[f64]) -> Option<f64> {
-        self.left(at)?;
-        Some(self.starts[0].whole[0])
+    /// The best yaw rates at the starts of the records, U₀/L, at the values that were last asked for.
+    pub fn begun(&self) -> impl Iterator<Item = f64> {
+        self.starts.iter().map(|starts| starts.whole[0])
     }
 
     /// Believes every record as far as what is left of it, and no further than a hull of the right form.
@@ -230,7 +229,7 @@ impl Objective for HullObjective<'_> {
             self.weight(track) * (headings + share(left.speed, speed))
         };
         self.of_priors(at).1
-            + self.turn.departure(&hull).powi(2)
+            + self.turn.departures(&hull).iter().map(|own| own.powi(2)).sum::<f64>()
             + self.tracks.iter().zip(left).zip(&self.deviations).map(of).sum::<f64>()
     }
 
@@ -240,10 +239,11 @@ impl Objective for HullObjective<'_> {
         let values: Vec<Dual<DIRECTIONS>> =
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
         let Some(hull) = self.expected.form.with(&values) else { return f64::INFINITY };
-        let turn = self.turn.departure(&hull);
-        let by = DVector::from_column_slice(&turn.by[..at.len()]);
-        normal.matrix.ger(1.0, &by, &by, 1.0);
-        normal.gradient.axpy(-turn.value, &by, 1.0);
+        for departure in self.turn.departures(&hull) {
+            let by = DVector::from_column_slice(&departure.by[..at.len()]);
+            normal.matrix.ger(1.0, &by, &by, 1.0);
+            normal.gradient.axpy(-departure.value, &by, 1.0);
+        }
         for ((track, starts), believed) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
             let HullDeviations { whole, window, speed } = *believed;
             let lengths = self.weight(track);
@@ -320,7 +320,9 @@ pub(super) fn variances(
     values: &[f64],
     covariance: &DMatrix<f64>,
 ) -> Option<[Vec<f64>; 2]> {
-    let rate = HullObjective::new(expected, std::slice::from_ref(track)).begin(values)?;
+    let mut problem = HullObjective::new(expected, std::slice::from_ref(track));
+    problem.left(values)?;
+    let rate = problem.begun().next()?;
     let unknowns = values.len();
     let variables: Vec<Dual<DIRECTIONS>> =
         values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
