@@ -458,6 +458,12 @@ mod tests {
         let facts = RecordFacts::of(&zig_zags).with_motion(None, &[]);
         let known = of_estimate(&estimate, &facts).expect("a covariance");
         assert!(facts.no_track.is_none() && !known.hulls.is_empty());
+        // She begins straight, so what replays begin with is an error, of less than a twentieth of her rate in the circle.
+        assert!(
+            facts.hulls.iter().all(|own| (1e-6..1e-3).contains(&own.beginning_yaw_rate_rad_s)),
+            "{:?}",
+            facts.hulls
+        );
         let asked = Predictions { kinds: vec!["turning-circle:35".parse().expect("known")], draws: 300 };
         let check = PredictionCheck::new(&asked, &tanker("zig-zag:10/10"), &StreamKey::default(), &zig_zags);
         let figures = check.figures(|_| Some(known));

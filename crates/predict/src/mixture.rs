@@ -366,6 +366,23 @@ mod tests {
         assert_eq!(mixture.likeliest().weight, 0.3);
     }
 
+    /// Ships that are drawn from a hull begin with what its replays begin with, those in a calm do not.
+    #[test]
+    fn hulls_begin_with_the_error_of_their_replays() {
+        let rate = 1e-3;
+        let hulls = vec![StoredHull { beginning_yaw_rate_rad_s: rate, ..testing::hull("quadratic") }];
+        let known = IdentifiedShip { hulls, approach_yaw_rate_rad_s: 0.0, ..testing::known() };
+        let of = |known: IdentifiedShip, sources: &[UncertaintySource]| {
+            let mixture = testing::mixture(known);
+            let squares = (0..1000).map(|number| mixture.draw(number, sources).yaw_rate.powi(2));
+            (squares.sum::<f64>() / 1000.0).sqrt()
+        };
+        let found = of(known.clone(), &UncertaintySource::ALL);
+        assert!((found / rate - 1.0).abs() < 0.07, "{found}");
+        assert_eq!(of(known.clone(), &[UncertaintySource::InitialState]), 0.0);
+        assert_eq!(of(known.in_calm().expect("known"), &UncertaintySource::ALL), 0.0);
+    }
+
     /// A rudder that was logged late gives a negative dead time; no ship has one.
     #[test]
     fn a_rudder_logged_late_is_told_and_steered_on_time() {

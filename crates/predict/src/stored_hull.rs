@@ -355,6 +355,7 @@ mod tests {
             assert!((small - other).abs() <= 1e-12 * small.abs(), "{small} {other}");
         }
         assert_eq!(large.moment.correlation_s, known.moment.correlation_s * time);
+        assert_eq!(large.beginning_yaw_rate_rad_s, known.beginning_yaw_rate_rad_s / time);
         assert_eq!(large.particulars, known.particulars);
     }
 

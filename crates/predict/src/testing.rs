@@ -76,7 +76,7 @@ pub(crate) fn hull(form: &str) -> StoredHull {
         covariance: (0..coefficients.len()).map(row).collect(),
         coefficients,
         moment: RandomYawMoment { deviation_rudder_rad: from_deg(0.5), correlation_s: 25.0 },
-        beginning_yaw_rate_rad_s: 0.0,
+        beginning_yaw_rate_rad_s: from_deg(0.01),
         from: None,
     }
 }
