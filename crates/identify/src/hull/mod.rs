@@ -119,15 +119,15 @@ pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, Hu
     let covariance = Cholesky::new(found.normal.matrix.clone()).map(|factor| factor.inverse());
     let covariance = covariance.ok_or(HullFitError::NoReplay)?;
     let left = problem.left(found.at.as_slice()).unwrap_or_default();
-    let residual = |((trial, left), rate): ((&Trial, objective::Left), f64)| HullResidual {
+    let residual = |(trial, left): (&Trial, objective::Left)| HullResidual {
         name: trial.name().to_owned(),
         whole: left.whole.sqrt(),
         window: left.window.sqrt(),
-        begins_with: rate / reference.time(),
+        begins_with: left.begins_with / reference.time(),
     };
     let moment = RandomMoment::of(&form.with(found.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &left);
     let moment = RandomMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
-    let records = trials.iter().zip(left).zip(problem.begun()).map(residual).collect();
+    let records = trials.iter().zip(left).map(residual).collect();
     let expected = expected.clone();
     Ok(HullEstimate { expected, reference, values: found.at, covariance, records, moment })
 }

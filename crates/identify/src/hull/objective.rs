@@ -40,12 +40,13 @@ const LEAST: HullDeviations = HullDeviations { whole: 1.0 * DEGREE, window: 0.2 
 /// Where a search begins: so much that the hull is hardly another than expected.
 const FIRST: HullDeviations = HullDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
 
-/// Mean squares of what a hull leaves on one record.
+/// Mean squares of what a hull leaves on one record, and the yaw rate with which the whole replay begins, U₀/L.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Left {
     pub whole: f64,
     pub window: f64,
     pub speed: f64,
+    pub begins_with: f64,
 }
 
 /// The yaw rates at the start of a record and of its windows, kept from one evaluation to the next.
@@ -175,15 +176,11 @@ impl<'a> HullObjective<'a> {
                 let squares = pairs.map(|(measured, row)| (measured - row[1].hypot(row[2])).powi(2));
                 left.speed = squares.sum::<f64>() / found.rows.len() as f64;
             });
+            left.begins_with = starts.whole[0];
             left.window = left_of_windows(&hull, track, &mut starts.windows, is_begun);
             left
         };
         Some(self.tracks.iter().zip(&mut self.starts).map(of).collect())
-    }
-
-    /// The best yaw rates at the starts of the records, U₀/L, at the values that were last asked for.
-    pub fn begun(&self) -> impl Iterator<Item = f64> {
-        self.starts.iter().map(|starts| starts.whole[0])
     }
 
     /// Believes every record as far as what is left of it, and no further than a hull of the right form.
@@ -320,9 +317,7 @@ pub(super) fn variances(
     values: &[f64],
     covariance: &DMatrix<f64>,
 ) -> Option<[Vec<f64>; 2]> {
-    let mut problem = HullObjective::new(expected, std::slice::from_ref(track));
-    problem.left(values)?;
-    let rate = problem.begun().next()?;
+    let rate = HullObjective::new(expected, std::slice::from_ref(track)).left(values)?[0].begins_with;
     let unknowns = values.len();
     let variables: Vec<Dual<DIRECTIONS>> =
         values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
