@@ -458,7 +458,7 @@ mod tests {
         let facts = RecordFacts::of(&zig_zags).with_motion(None, &[]);
         let known = of_estimate(&estimate, &facts).expect("a covariance");
         assert!(facts.no_track.is_none() && !known.hulls.is_empty());
-        // She begins straight, so what replays begin with is an error, of less than a twentieth of her rate in the circle.
+        // She begins straight: the yaw rate of replays is an error, less than a twentieth of her rate in the circle.
         assert!(
             facts.hulls.iter().all(|own| (1e-6..1e-3).contains(&own.beginning_yaw_rate_rad_s)),
             "{:?}",
