@@ -21,7 +21,7 @@ pub enum UncertaintySource {
     Parameters,
     /// Structures that the records cannot tell apart.
     Structure,
-    /// The random yaw moment.
+    /// The random yaw moment, and what a hull gets wrong in the first seconds.
     ProcessNoise,
     /// The rate of the rudder.
     SteeringGear,
