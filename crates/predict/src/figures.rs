@@ -159,7 +159,6 @@ mod tests {
             gear: SteeringGear::with_rate(from_deg(2.5)),
             disturbances: Disturbances::default(),
             yaw_rate: 0.0,
-            beginning: 0.0,
             key: StreamKey::default(),
         };
         SimulatedManoeuvre::sail(&ship, &crate::standard::steered(kind, 12.8).expect("steered"), 12.8)

@@ -71,9 +71,12 @@ impl SteeredZigZag {
     /// What drawn ships do, in the order of their numbers; `None` for one that does not come to the end.
     pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<DrawResult>> {
         let manoeuvre = standard::steered(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
+        // The record tells the yaw rate of the approach.
+        let in_doubt = UncertaintySource::ALL.into_iter().filter(|own| *own != UncertaintySource::InitialState);
+        let in_doubt: Vec<UncertaintySource> = in_doubt.collect();
         drawn(draws, |number| {
-            let mut ship = mixture.draw(number, &UncertaintySource::ALL);
-            ship.yaw_rate = self.yaw_rate + ship.beginning;
+            let mut ship = mixture.draw(number, &in_doubt);
+            ship.yaw_rate += self.yaw_rate;
             ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
             let mut figures = figures::of(&self.kind, &passage, mixture.particulars());

@@ -94,10 +94,8 @@ pub struct DrawnShip {
     pub gear: SteeringGear,
     /// What acts on it.
     pub disturbances: Disturbances,
-    /// Yaw rate that it begins with, rad/s.
+    /// Yaw rate that it begins with, rad/s: that of the approach, and the error of a hull.
     pub yaw_rate: f64,
-    /// The part of it that is no yaw rate of an approach but the error of a hull, rad/s.
-    pub beginning: f64,
     /// Where its random moment comes from.
     pub key: StreamKey,
 }
@@ -176,9 +174,10 @@ impl ShipMixture {
         part.dead_times.iter().for_each(|place| values[*place] = values[*place].max(0.0));
         let mut other = key.indexed(Purpose::Specification, 1);
         let [of_gear, of_rate, of_beginning]: [f64; 3] = std::array::from_fn(|_| other.sample(StandardNormal));
+        let doubt = |source, value: f64| if has(source) { value } else { 0.0 };
         let gear = known.gear.map_or_else(SteeringGear::default, |gear| {
-            let doubt = if has(UncertaintySource::SteeringGear) { of_gear * gear.sd_rad_s } else { 0.0 };
-            SteeringGear::with_rate((gear.rate_rad_s + doubt).max(0.1 * gear.rate_rad_s))
+            let rate = gear.rate_rad_s + doubt(UncertaintySource::SteeringGear, of_gear * gear.sd_rad_s);
+            SteeringGear::with_rate(rate.max(0.1 * gear.rate_rad_s))
         });
         // A hull at another loading has the draws of the hull of the trials, and some of its own.
         let of_trial = StreamKey { seed: u64::from(self.apart && !self.follows), ..key };
@@ -187,18 +186,16 @@ impl ShipMixture {
             true => hull.drawn(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
             false => hull.most_probable(),
         });
-        let doubt = |source, value: f64| if has(source) { value } else { 0.0 };
         let approach = doubt(UncertaintySource::InitialState, of_rate * known.approach_yaw_rate_rad_s);
         let of_hull = part.hull.as_ref().map_or(0.0, |hull| hull.known.beginning_yaw_rate_rad_s);
-        let beginning = doubt(UncertaintySource::ProcessNoise, of_beginning * of_hull);
+        let error = doubt(UncertaintySource::ProcessNoise, of_beginning * of_hull);
         let noise = if has(UncertaintySource::ProcessNoise) { part.noise(known) } else { KnownNoise::default() };
         DrawnShip {
             response: part.model.clone().with(values),
             hull,
             gear,
             disturbances: self.disturbances(&noise),
-            yaw_rate: approach + beginning,
-            beginning,
+            yaw_rate: approach + error,
             key,
         }
     }
