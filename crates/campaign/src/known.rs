@@ -10,7 +10,7 @@ use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, Vali
 use predict::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull, by_keys, rows_of};
 use ship::Particulars;
 use ship::angle::{from_deg, to_deg};
-use ship::vessel::prime::{HullCoefficient, HullForm};
+use ship::vessel::prime::HullCoefficient;
 use trace::Analysis;
 use trace::analysis::Plausible;
 use trace::document::RecordNoiseEntry;
@@ -118,8 +118,6 @@ impl<'a> RecordFacts<'a> {
             expected: own.mean,
             expected_sd: own.sd,
         };
-        let particulars =
-            expected.particulars.filter(|_| matches!(expected.form, HullForm::Mmg(..))).unwrap_or_default();
         let HullReference { length, speed, propeller } = hull.reference;
         StoredHull {
             form: expected.form.as_str().to_owned(),
@@ -127,7 +125,7 @@ impl<'a> RecordFacts<'a> {
             length_m: length,
             speed_m_s: speed,
             propeller_per_s: propeller,
-            particulars: by_keys(&particulars),
+            particulars: by_keys(&expected.particulars.unwrap_or_default()),
             coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
             covariance: rows_of(&hull.covariance),
             moment: RandomYawMoment {

@@ -62,8 +62,8 @@ pub struct StoredHull {
     pub speed_m_s: f64,
     /// Rate of the propeller on the approach, 1/s, where it was recorded.
     pub propeller_per_s: Option<f64>,
-    /// Particulars of the ship of the records by their keys, which the form `mmg` is made from; at the scale of the
-    /// records, whatever the scale of this hull.
+    /// Particulars of the ship of the records by their keys, which say what is expected of the form; at the scale of
+    /// the records, whatever the scale of this hull.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub particulars: BTreeMap<String, f64>,
     /// Its coefficients.
@@ -226,7 +226,7 @@ impl DrawableHull {
                 return Err(PredictError::Value { key, value });
             }
         }
-        let coefficients = form.coefficients();
+        let coefficients = form.coefficients().to_vec();
         let found = known.covariance.len();
         if found != coefficients.len() {
             let expected = coefficients.len();

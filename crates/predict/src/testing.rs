@@ -53,7 +53,7 @@ pub(crate) fn hull(form: &str) -> StoredHull {
     let (length_m, speed_m_s) = (75.0, 6.0);
     let particulars = HullParticulars { length: length_m, speed: speed_m_s, ..HullParticulars::default() };
     let forms = HullForm::of_ship(Some(&particulars)).into_iter();
-    let own = forms.filter(|own| own.as_str() == form).flat_map(|own| own.coefficients());
+    let own = forms.filter(|own| own.as_str() == form).flat_map(|own| own.coefficients().to_vec());
     let coefficients: Vec<StoredCoefficient> = own
         .map(|own| StoredCoefficient {
             key: own.key.into(),
@@ -87,7 +87,7 @@ pub(crate) fn at_same_loading(own: &StoredHull, factor: f64) -> StoredHull {
     let size = own.coefficients.len();
     let covariance = DMatrix::from_fn(size, size, |i, j| factor * factor * own.covariance[i][j]);
     let ship = HullParticulars { length: own.length_m, speed: own.speed_m_s, ..HullParticulars::default() };
-    own.at_loading(&ship, &form.coefficients(), [covariance, DMatrix::identity(size, size)])
+    own.at_loading(&ship, form.coefficients(), [covariance, DMatrix::identity(size, size)])
 }
 
 /// The ships of what is known.

@@ -1,8 +1,7 @@
 //! What is expected of the coefficients of a hull before its records are seen: what its form or its particulars say,
 //! and what earlier trials have told of her, or of a ship like her.
 //!
-//! An earlier trial left values θ₁ with a covariance C₁; before it μ₁ was expected with the precision Λ₁, a diagonal
-//! matrix. What the trial itself told has the precision D₁ = C₁⁻¹ − Λ₁ and the vector h₁ = C₁⁻¹ θ₁ − Λ₁ μ₁. Expected of
+//! An earlier trial left values θ₁ with a covariance C₁; before it μ₁ was expected with the precision Λ₁. What the trial itself told has the precision D₁ = C₁⁻¹ − Λ₁ and the vector h₁ = C₁⁻¹ θ₁ − Λ₁ μ₁. Expected of
 //! the next trial are
 //!
 //! Λ = Λ₀ + Σ D₁/f², Λ μ = Λ₀ μ₀ + Σ (h₁ + D₁ s)/f²
@@ -102,8 +101,7 @@ pub fn is_other_froude_number(earlier: &HullParticulars, ship: &HullParticulars)
 impl ExpectedHull {
     /// What a form says by itself.
     pub fn of_form(form: HullForm) -> Self {
-        let coefficients = form.coefficients();
-        let precision = diagonal(&coefficients);
+        let (coefficients, precision) = (form.coefficients().to_vec(), precision_of(&form));
         Self { form, particulars: None, coefficients, precision, has_trials: false }
     }
 
@@ -133,7 +131,7 @@ impl ExpectedHull {
     /// G = C (Λ − Λ₀): the identity where its trials told all, 0 where these told nothing. `None` without trials.
     pub fn law(&self) -> Option<[DMatrix<f64>; 2]> {
         let covariance = Cholesky::new(self.precision.clone()).filter(|_| self.has_trials)?.inverse();
-        let gain = &covariance * (&self.precision - diagonal(&self.form.coefficients()));
+        let gain = &covariance * (&self.precision - precision_of(&self.form));
         Some([covariance, gain])
     }
 
@@ -157,8 +155,9 @@ impl ExpectedHull {
     }
 }
 
-fn diagonal(coefficients: &[HullCoefficient]) -> DMatrix<f64> {
-    DMatrix::from_diagonal(&DVector::from_iterator(coefficients.len(), coefficients.iter().map(|own| own.sd.powi(-2))))
+/// Λ₀.
+fn precision_of(form: &HullForm) -> DMatrix<f64> {
+    Cholesky::new(form.covariance().clone()).expect("a covariance").inverse()
 }
 
 impl EarlierHull {
@@ -172,11 +171,14 @@ impl EarlierHull {
         let of_ship = |key: &str| !is_of_trial(key) && (likeness == Likeness::Same || !is_of_friction(key));
         let kept: Vec<usize> = (0..before.len()).filter(|&place| of_ship(before[place].key)).collect();
         let count = kept.len();
-        // In standard deviations of what was expected before, so that every direction is measured alike.
-        let sd = |place: usize| before[kept[place]].sd;
-        let covariance = DMatrix::from_fn(count, count, |i, j| self.covariance[(kept[i], kept[j])] / (sd(i) * sd(j)));
-        let after = Cholesky::new(covariance)?.inverse();
-        let departure = DVector::from_fn(count, |i, _| (self.values[kept[i]] - before[kept[i]].mean) / sd(i));
+        // In standard deviations of what was expected before, so that every direction is measured alike: L with L Lᵀ
+        // its covariance.
+        let of = |matrix: &DMatrix<f64>| DMatrix::from_fn(count, count, |i, j| matrix[(kept[i], kept[j])]);
+        let root = Cholesky::new(of(self.form.covariance()))?.l();
+        let in_root = |vector: DVector<f64>| root.solve_lower_triangular(&vector);
+        let half = root.solve_lower_triangular(&of(&self.covariance))?;
+        let after = Cholesky::new(root.solve_lower_triangular(&half.transpose())?)?.inverse();
+        let departure = in_root(DVector::from_fn(count, |i, _| self.values[kept[i]] - before[kept[i]].mean))?;
         // h − D μ₁ = C₁⁻¹ (θ₁ − μ₁): what was told of the departure from what was expected.
         let of_departure = &after * departure;
         let eigen = SymmetricEigen::new(after - DMatrix::identity(count, count));
@@ -189,16 +191,18 @@ impl EarlierHull {
             }
         }
         // About the other ship the same departure is counted from what her own particulars say: D s + D μ₁ = D μ₀.
-        let about = self.carried(expected, ship, &before);
-        let about = DVector::from_fn(count, |i, _| about[kept[i]] / sd(i));
-        vector += &told * about;
+        let about = self.carried(expected, ship, before);
+        vector += &told * in_root(DVector::from_fn(count, |i, _| about[kept[i]]))?;
         let weight = likeness.factor().powi(-2);
+        let vector = root.tr_solve_lower_triangular(&vector)? * weight;
+        let half = root.tr_solve_lower_triangular(&told)?;
+        let told = root.tr_solve_lower_triangular(&half.transpose())? * weight;
         let size = before.len();
         let (mut matrix, mut all) = (DMatrix::zeros(size, size), DVector::zeros(size));
         for i in 0..count {
-            all[kept[i]] = weight * vector[i] / sd(i);
+            all[kept[i]] = vector[i];
             for j in 0..count {
-                matrix[(kept[i], kept[j])] = weight * told[(i, j)] / (sd(i) * sd(j));
+                matrix[(kept[i], kept[j])] = told[(i, j)];
             }
         }
         Some((matrix, all))

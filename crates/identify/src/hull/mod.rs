@@ -6,7 +6,7 @@
 //!
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of the speed where it was
 //! recorded]
-//!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.65)/0.2)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
+//!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.75)/0.25)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
 //!
 //! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
 //! or twenty numbers is the ship. They start large and follow what is left of every record, to 1°, 0.2° and 0.1 U₀.

@@ -14,10 +14,10 @@ const HELD: f64 = 24.0;
 
 /// Mean and standard deviation of r L/U in the turn.
 ///
-/// Ships have tactical diameters of 2.5 L to 5 L, which is the limit of IMO MSC.137(76), and about the same diameter
-/// 2 U/r in the steady turn: r L/U of 0.4 to 0.8. The hulls of this project lie between 0.29 (Mariner) and 1.14
-/// (SEIUN-like, in part estimated), so the interval is twice as wide.
-const CURVATURE: [f64; 2] = [0.65, 0.2];
+/// Ships have tactical diameters of 2.5 L to 5 L, which is the limit of IMO MSC.137(76), and steady turns of about 0.8
+/// of that: r L/U of 0.5 to 1.0. The hulls of this project lie between 0.29 (Mariner) and 1.14 (SEIUN-like, in part
+/// estimated), so half of that range is the standard deviation.
+const CURVATURE: [f64; 2] = [0.75, 0.25];
 
 /// Mean and standard deviation of −v/r in the turn, L: how far ahead of midship the pivot point lies.
 ///

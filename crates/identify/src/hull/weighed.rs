@@ -13,7 +13,7 @@ use super::expected::{EarlierHull, ExpectedHull};
 /// normal laws: where they are far apart, a fit about the earlier trials is better.
 pub fn after_earlier(own: &EarlierHull, earlier: &[EarlierHull]) -> Option<(EarlierHull, Option<ExpectationCheck>)> {
     let is_own_form = |form: &HullForm| form.as_str() == own.form.as_str();
-    let mut coefficients = own.form.coefficients();
+    let mut coefficients = own.form.coefficients().to_vec();
     for (place, known) in coefficients.iter_mut().enumerate() {
         (known.mean, known.sd) = (own.values[place], own.covariance[(place, place)].sqrt());
     }

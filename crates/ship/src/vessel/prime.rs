@@ -10,22 +10,18 @@
 //! differs by side). What stands for "…" is N_rr r|r| + N_vv v|v| and Y_rr r|r| + Y_vv v|v| in the quadratic form, and
 //! terms of third order over u in the cubic one. The third form is the MMG model with its hull, propeller and rudder.
 //!
-//! Priors of the two polynomials are those that an independent fit to models of tankers was made with; no test holds
-//! them to other ships.
+//! What is expected of the polynomials is what is expected of the MMG model ([`nearest`]).
+
+mod equations;
+mod nearest;
 
 use estimation::number::Real;
+use nalgebra::{DMatrix, DVector};
 
+use self::equations::{BIAS, COMMON, CUBIC, QUADRATIC, Term};
+pub use self::equations::{FASTEST, PrimeHull};
 use super::mmg::{Mmg, Parameters};
 use super::prior::{HullParticulars, HullPrior, priors};
-
-/// Least surge, in U₀, at which the equations are evaluated: below, the ship has all but stopped.
-const LEAST_SURGE: f64 = 0.15;
-
-/// Largest speed or yaw rate, in U₀ and U₀/L: no ship is as fast, and what runs away stays finite.
-pub const FASTEST: f64 = 2.0;
-
-/// Least inflow to the rudder, in U₀.
-const LEAST_INFLOW: f64 = 0.05;
 
 /// A coefficient, with what is expected of it before a record is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,54 +38,8 @@ pub struct HullCoefficient {
     pub ends: [f64; 2],
 }
 
-const fn normal(key: &'static str, symbol: &'static str, mean: f64, sd: f64) -> HullCoefficient {
-    HullCoefficient { key, symbol, mean, sd, ends: [f64::NEG_INFINITY, f64::INFINITY] }
-}
-
-const fn within(key: &'static str, symbol: &'static str, [mean, sd]: [f64; 2], ends: [f64; 2]) -> HullCoefficient {
-    HullCoefficient { key, symbol, mean, sd, ends }
-}
-
 /// Standard deviation of δ_r, rad: 1.7°.
 const RUDDER_BIAS: f64 = 0.03;
-
-/// δ_r, which every form has.
-const BIAS: HullCoefficient = normal("delta_r", "δ_r", 0.0, RUDDER_BIAS);
-
-/// Coefficients that both polynomials have.
-const COMMON: [HullCoefficient; 14] = [
-    normal("Nv", "N_v", -3.0, 1.2),
-    normal("Nr", "N_r", -1.6, 0.5),
-    within("Nd", "N_δ", [0.9, 0.3], [0.05, 5.0]),
-    normal("Yv", "Y_v", -0.6, 0.2),
-    normal("Yr", "Y_r", -0.4, 0.15),
-    normal("Yd", "Y_δ", -0.12, 0.05),
-    within("e", "e", [0.5, 0.25], [-0.5, 1.5]),
-    normal("b", "b", 0.0, 0.1),
-    BIAS,
-    within("x0", "x₀", [0.07, 0.03], [0.005, 0.5]),
-    within("k", "k", [0.5, 0.1], [0.0, 0.9]),
-    normal("Xvr", "X_vr", 1.64, 0.3),
-    normal("Xrr", "X_rr", 0.07, 0.05),
-    normal("Xdd", "X_δδ", 0.07, 0.04),
-];
-
-const QUADRATIC: [HullCoefficient; 4] = [
-    within("Nrr", "N_rr", [-0.5, 1.0], [-20.0, 0.5]),
-    normal("Nvv", "N_vv", 0.0, 2.0),
-    within("Yvv", "Y_vv", [-0.6, 0.6], [-20.0, 0.5]),
-    normal("Yrr", "Y_rr", 0.0, 0.3),
-];
-
-const CUBIC: [HullCoefficient; 7] = [
-    normal("Nvvv", "N_vvv", 0.0, 20.0),
-    normal("Nvvr", "N_vvr", 0.0, 10.0),
-    normal("Nvrr", "N_vrr", 0.0, 3.0),
-    within("Nrrr", "N_rrr", [-1.0, 1.5], [-20.0, 0.5]),
-    within("Yvvv", "Y_vvv", [-4.0, 4.0], [-60.0, 1.0]),
-    normal("Yvvr", "Y_vvr", 0.0, 2.0),
-    normal("Yvrr", "Y_vrr", -0.8, 0.8),
-];
 
 /// Coefficients of the MMG model that records of rudder and heading can tell something of; the others stay as expected.
 const FREE: [&str; 23] = [
@@ -145,6 +95,11 @@ pub fn meaning(key: &str) -> Option<&'static str> {
     })
 }
 
+/// Whether a coefficient of a polynomial is the negative one in the mirror.
+fn is_of_side(key: &str) -> bool {
+    matches!(key, "b" | "delta_r")
+}
+
 /// Whether a coefficient belongs to a trial and not to the ship, which has another in the next one.
 pub fn is_of_trial(key: &str) -> bool {
     key == BIAS.key
@@ -155,23 +110,64 @@ pub fn is_of_friction(key: &str) -> bool {
     matches!(key, "x0" | "k" | "R0" | "wP0")
 }
 
-/// What a hull is made of.
+/// The equations of a form.
 #[derive(Debug, Clone, PartialEq)]
-pub enum HullForm {
+enum Equations {
     /// Terms of second order.
     Quadratic,
     /// Terms of third order.
     Cubic,
-    /// Hull, propeller and rudder of the MMG model about these parameters, without dimension (length 1); the
-    /// coefficients are those that are free.
-    Mmg(Box<Parameters>, Vec<HullCoefficient>),
+    /// Hull, propeller and rudder of the MMG model about these parameters, without dimension (length 1).
+    Mmg(Box<Parameters>),
 }
 
+/// What a hull is made of, and what is expected of its coefficients: a normal law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HullForm {
+    equations: Equations,
+    coefficients: Vec<HullCoefficient>,
+    covariance: DMatrix<f64>,
+}
+
+/// A ship of which nothing is known: length (m) and speed (m/s) at a usual Froude number.
+const ANY_SHIP: [f64; 2] = [100.0, 6.0];
+
 impl HullForm {
-    /// The forms that a ship can be fitted with: the two polynomials, and the MMG model about what her particulars say.
+    /// The forms that a ship can be fitted with, about what her particulars say: the two polynomials, and the MMG model
+    /// where these are known. Without them the polynomials are those of any ship.
     pub fn of_ship(particulars: Option<&HullParticulars>) -> Vec<Self> {
-        let mmg = particulars.and_then(|own| priors(own).ok()).map(|prior| Self::mmg(&prior));
-        [Self::Quadratic, Self::Cubic].into_iter().chain(mmg).collect()
+        let own = particulars.and_then(|own| priors(own).ok());
+        let polynomials = own.as_ref().and_then(Self::polynomials).unwrap_or_else(|| {
+            let [length, speed] = ANY_SHIP;
+            let any = priors(&HullParticulars { length, speed, ..HullParticulars::default() });
+            Self::polynomials(&any.expect("a ship")).expect("a ship")
+        });
+        polynomials.into_iter().chain(own.as_ref().map(Self::mmg)).collect()
+    }
+
+    /// The two polynomials about what the particulars of a ship say; `None` where these make no ship. A ship and her
+    /// mirror image are as probable, so what differs by side is expected to be 0.
+    fn polynomials(prior: &HullPrior) -> Option<[Self; 2]> {
+        let [quadratic, cubic] = nearest::polynomials(prior)?;
+        let form = |equations, terms: &[Term], (mut values, mut covariance): (DVector<f64>, DMatrix<f64>)| {
+            let terms = [&COMMON[..], terms].concat();
+            for place in (0..terms.len()).filter(|&place| is_of_side(terms[place].key)) {
+                let own = if terms[place].key == BIAS.key { RUDDER_BIAS } else { 0.0 };
+                let variance = covariance[(place, place)] + values[place] * values[place] + own * own;
+                covariance.row_mut(place).fill(0.0);
+                covariance.column_mut(place).fill(0.0);
+                (values[place], covariance[(place, place)]) = (0.0, variance);
+            }
+            let coefficient = |(place, Term { key, symbol, ends }): (usize, &Term)| HullCoefficient {
+                key,
+                symbol,
+                mean: values[place].clamp(ends[0], ends[1]),
+                sd: covariance[(place, place)].sqrt(),
+                ends: *ends,
+            };
+            Self { equations, coefficients: terms.iter().enumerate().map(coefficient).collect(), covariance }
+        };
+        Some([form(Equations::Quadratic, &QUADRATIC, quadratic), form(Equations::Cubic, &CUBIC, cubic)])
     }
 
     /// The MMG model about what the particulars of a ship say.
@@ -184,110 +180,46 @@ impl HullForm {
             sd: own.sd,
             ends: ends_of(own.formula.key),
         });
-        Self::Mmg(Box::new(prior.parameters.of_length_one()), free.collect())
+        let Term { key, symbol, ends } = BIAS;
+        let bias = HullCoefficient { key, symbol, mean: 0.0, sd: RUDDER_BIAS, ends };
+        let coefficients: Vec<HullCoefficient> = free.chain([bias]).collect();
+        let variances = DVector::from_iterator(coefficients.len(), coefficients.iter().map(|own| own.sd * own.sd));
+        let equations = Equations::Mmg(Box::new(prior.parameters.of_length_one()));
+        Self { equations, coefficients, covariance: DMatrix::from_diagonal(&variances) }
     }
 
     /// Its coefficients, in the order in which their values travel.
-    pub fn coefficients(&self) -> Vec<HullCoefficient> {
-        match self {
-            Self::Quadratic => [&COMMON[..], &QUADRATIC].concat(),
-            Self::Cubic => [&COMMON[..], &CUBIC].concat(),
-            Self::Mmg(_, free) => [&free[..], &[BIAS]].concat(),
-        }
+    pub fn coefficients(&self) -> &[HullCoefficient] {
+        &self.coefficients
+    }
+
+    /// Covariance of what is expected of them.
+    pub fn covariance(&self) -> &DMatrix<f64> {
+        &self.covariance
     }
 
     /// The word used in files.
     pub fn as_str(&self) -> &'static str {
-        match self {
-            Self::Quadratic => "quadratic",
-            Self::Cubic => "cubic",
-            Self::Mmg(..) => "mmg",
+        match self.equations {
+            Equations::Quadratic => "quadratic",
+            Equations::Cubic => "cubic",
+            Equations::Mmg(_) => "mmg",
         }
     }
 
     /// The hull with these values of its coefficients; `None` where they make no ship.
     pub fn with<R: Real>(&self, values: &[R]) -> Option<PrimeHull<R>> {
-        Some(match self {
-            Self::Quadratic => PrimeHull::Quadratic(values.try_into().ok()?),
-            Self::Cubic => PrimeHull::Cubic(values.try_into().ok()?),
-            Self::Mmg(about, free) => {
+        Some(match &self.equations {
+            Equations::Quadratic => PrimeHull::Quadratic(values.try_into().ok()?),
+            Equations::Cubic => PrimeHull::Cubic(values.try_into().ok()?),
+            Equations::Mmg(about) => {
                 let mut parameters = about.constant::<R>();
-                for (coefficient, value) in free.iter().zip(values) {
+                let (bias, free) = values.split_last()?;
+                for (coefficient, value) in self.coefficients.iter().zip(free) {
                     *parameters.named(coefficient.key)? = *value;
                 }
-                PrimeHull::Mmg(Box::new(Mmg::at_speed(parameters, 1.0).ok()?), *values.last()?)
+                PrimeHull::Mmg(Box::new(Mmg::at_speed(parameters, 1.0).ok()?), *bias)
             }
         })
-    }
-}
-
-/// A hull ready to be asked for its accelerations.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PrimeHull<R = f64> {
-    /// Of second order.
-    Quadratic([R; COMMON.len() + QUADRATIC.len()]),
-    /// Of third order.
-    Cubic([R; COMMON.len() + CUBIC.len()]),
-    /// MMG, and δ_r.
-    Mmg(Box<Mmg<R>>, R),
-}
-
-impl<R: Real> PrimeHull<R> {
-    /// (u', v', r') at surge, sway and yaw rate, rudder (rad), rate of the propeller over that of the approach, and a
-    /// yaw moment as rudder angle at approach speed (rad).
-    #[inline]
-    pub fn accelerations(&self, [u, v, r]: [R; 3], rudder: R, turning: f64, disturbance: f64) -> [R; 3] {
-        let [u, v, r] = [of_ship(u, LEAST_SURGE), of_ship(v, -FASTEST), of_ship(r, -FASTEST)];
-        match self {
-            Self::Mmg(hull, bias) => hull.accelerations([u, v, r], rudder + *bias, turning, disturbance),
-            Self::Quadratic(p) => {
-                let [surge, sway, yaw] = common(p, [u, v, r], rudder, turning, disturbance);
-                let (vv, rr) = (v * v.abs(), r * r.abs());
-                [surge, sway + p[16] * vv + p[17] * rr, yaw + p[14] * rr + p[15] * vv]
-            }
-            Self::Cubic(p) => {
-                let [surge, sway, yaw] = common(p, [u, v, r], rudder, turning, disturbance);
-                let (vv, vr, rr) = (v * v / u, v * r / u, r * r / u);
-                [
-                    surge,
-                    sway + p[18] * vv * v + p[19] * vr * v + p[20] * vr * r,
-                    yaw + p[14] * vv * v + p[15] * vr * v + p[16] * vr * r + p[17] * rr * r,
-                ]
-            }
-        }
-    }
-}
-
-/// A speed or yaw rate of a ship.
-#[inline]
-fn of_ship<R: Real>(value: R, least: f64) -> R {
-    value.between(R::from(least), R::from(FASTEST))
-}
-
-/// What both polynomials have, with their coefficients in the order of [`COMMON`].
-#[inline]
-fn common<R: Real>(p: &[R], [u, v, r]: [R; 3], rudder: R, n: f64, disturbance: f64) -> [R; 3] {
-    let w = (p[6] * (u - n) + n).at_least(LEAST_INFLOW);
-    let angle = p[8] + rudder - p[7] * r.abs() / w;
-    let force = w * w * angle;
-    let thrust = -(p[10] * n) * u + n * n;
-    [
-        p[9] * (thrust / (-p[10] + 1.0) - u * u) + p[11] * v * r + p[12] * r * r - p[13] * force * angle,
-        p[3] * u * v + p[4] * u * r + p[5] * force,
-        p[0] * u * v + p[1] * u * r + p[2] * (force + disturbance),
-    ]
-}
-
-impl PrimeHull {
-    /// The same without derivatives, as yet.
-    pub fn constant<R: Real>(&self) -> PrimeHull<R> {
-        match self {
-            Self::Quadratic(p) => PrimeHull::Quadratic(p.map(R::from)),
-            Self::Cubic(p) => PrimeHull::Cubic(p.map(R::from)),
-            Self::Mmg(hull, bias) => {
-                let again = Mmg::at_speed(hull.parameters().constant(), 1.0).expect("it made a ship");
-                PrimeHull::Mmg(Box::new(again), R::from(*bias))
-            }
-        }
     }
 }

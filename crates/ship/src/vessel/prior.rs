@@ -52,6 +52,9 @@ pub struct HullPrior {
     pub coefficients: Vec<Coefficient>,
     /// What was filled in.
     pub assumed: Vec<Assumed>,
+    /// Hulls a standard deviation above and below the mean: in every ratio that may be filled in, and in every
+    /// coefficient whose particulars are known.
+    pub deviations: Vec<[Parameters; 2]>,
 }
 
 /// The prior of the hull with these particulars.
@@ -75,28 +78,36 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
     let spread = |of: &dyn Fn(&HullDimensions) -> f64| -> f64 {
         shifted.iter().map(|[above, below]| (0.5 * (of(above) - of(below))).powi(2)).sum()
     };
-    let mut parameters = blank(&form);
-    let coefficients: Vec<Coefficient> = FORMULAS
-        .iter()
-        .map(|formula| {
-            let mean = (formula.of)(&form);
-            let own = match formula.spread {
-                Spread::Share(share) => share * mean,
-                Spread::Absolute(sd) => sd,
-            };
-            Coefficient { formula, mean, sd: (own * own + spread(&formula.of)).sqrt() }
-        })
-        .collect();
-    for coefficient in &coefficients {
-        *parameters.named(coefficient.formula.key).expect("every coefficient has its place") = coefficient.mean;
-    }
+    let parameters = hull(&form);
+    let mut deviations: Vec<[Parameters; 2]> = shifted.iter().map(|pair| pair.each_ref().map(hull)).collect();
+    let coefficient = |formula: &'static Formula| {
+        let mean = (formula.of)(&form);
+        let own = match formula.spread {
+            Spread::Share(share) => share * mean,
+            Spread::Absolute(sd) => sd,
+        };
+        deviations.push([own, -own].map(|shift| with(parameters, formula, mean + shift)));
+        Coefficient { formula, mean, sd: (own * own + spread(&formula.of)).sqrt() }
+    };
+    let coefficients = FORMULAS.iter().map(coefficient).collect();
     let assumed = PARTICULARS.iter().filter_map(|particular| {
         let of = |form: &HullDimensions| particular.of_form.map_or(f64::NAN, |of| of(form));
         let formula = RATIOS.iter().find(|ratio| ratio.fills == particular.key)?.text();
         let missing = particular.get(given).is_none() && particular.of_form.is_some();
         missing.then(|| Assumed { key: particular.key, value: of(&form), sd: spread(&of).sqrt(), formula })
     });
-    Ok(HullPrior { parameters, assumed: assumed.collect(), coefficients })
+    Ok(HullPrior { parameters, assumed: assumed.collect(), coefficients, deviations })
+}
+
+/// Parameters with another value of one coefficient.
+fn with(mut parameters: Parameters, formula: &Formula, value: f64) -> Parameters {
+    *parameters.named(formula.key).expect("every coefficient has its place") = value;
+    parameters
+}
+
+/// The hull of these dimensions, by the formulas.
+fn hull(form: &HullDimensions) -> Parameters {
+    FORMULAS.iter().fold(blank(form), |hull, formula| with(hull, formula, (formula.of)(form)))
 }
 
 /// The dimensions of a hull; its coefficients are still to be set.

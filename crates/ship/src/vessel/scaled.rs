@@ -140,8 +140,9 @@ mod tests {
 
     /// The hull as expected, and KVLCC2.
     fn hulls() -> [ScaledHull; 2] {
-        let means: Vec<f64> = HullForm::Quadratic.coefficients().iter().map(|own| own.mean).collect();
-        let quadratic = HullForm::Quadratic.with(&means).expect("a ship");
+        let form = &HullForm::of_ship(None)[0];
+        let means: Vec<f64> = form.coefficients().iter().map(|own| own.mean).collect();
+        let quadratic = form.with(&means).expect("a ship");
         let mmg = Mmg::at_speed(kvlcc2::FULL_SCALE.of_length_one(), 1.0).expect("a ship");
         [quadratic, PrimeHull::Mmg(Box::new(mmg), 0.0)].map(scaled)
     }

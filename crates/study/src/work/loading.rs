@@ -198,7 +198,7 @@ mod tests {
 
     /// What the formulas say at some particulars.
     fn formulas(at: &HullParticulars) -> Vec<HullCoefficient> {
-        HullForm::mmg(&priors(at).expect("a ship")).coefficients()
+        HullForm::mmg(&priors(at).expect("a ship")).coefficients().to_vec()
     }
 
     /// Her hull at a loading, and the warnings; at the trial it is half a standard deviation above the formulas, known

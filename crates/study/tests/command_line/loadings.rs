@@ -39,7 +39,7 @@ fn values(at: &HullParticulars) -> (HullForm, Vec<f64>) {
         let is_ship = !is_of_friction(own.key) && !is_of_trial(own.key);
         own.mean + if is_ship { [0.5, -0.3, 0.4][place % 3] * trial } else { 0.0 }
     };
-    let sd = ballast.coefficients().into_iter().map(|own| own.sd);
+    let sd = ballast.coefficients().iter().map(|own| own.sd);
     let values = form.coefficients().iter().zip(sd).enumerate().map(departs).collect();
     (form, values)
 }

@@ -1,0 +1,141 @@
+//! The equations of a hull without dimension, and the coefficients that its polynomials have.
+
+use estimation::number::Real;
+
+use crate::vessel::mmg::Mmg;
+
+/// Least surge, in U₀, at which the equations are evaluated: below, the ship has all but stopped.
+const LEAST_SURGE: f64 = 0.15;
+
+/// Largest speed or yaw rate, in U₀ and U₀/L: no ship is as fast, and what runs away stays finite.
+pub const FASTEST: f64 = 2.0;
+
+/// Least inflow to the rudder, in U₀.
+const LEAST_INFLOW: f64 = 0.05;
+
+/// A coefficient of a polynomial: name in files, symbol, smallest and largest value.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Term {
+    pub key: &'static str,
+    pub symbol: &'static str,
+    pub ends: [f64; 2],
+}
+
+const fn free(key: &'static str, symbol: &'static str) -> Term {
+    Term { key, symbol, ends: [f64::NEG_INFINITY, f64::INFINITY] }
+}
+
+const fn within(key: &'static str, symbol: &'static str, ends: [f64; 2]) -> Term {
+    Term { key, symbol, ends }
+}
+
+/// δ_r, which every form has.
+pub(super) const BIAS: Term = free("delta_r", "δ_r");
+
+/// Coefficients that both polynomials have.
+pub(super) const COMMON: [Term; 14] = [
+    free("Nv", "N_v"),
+    free("Nr", "N_r"),
+    within("Nd", "N_δ", [0.05, 5.0]),
+    free("Yv", "Y_v"),
+    free("Yr", "Y_r"),
+    free("Yd", "Y_δ"),
+    within("e", "e", [-0.5, 1.5]),
+    free("b", "b"),
+    BIAS,
+    within("x0", "x₀", [0.005, 0.5]),
+    within("k", "k", [0.0, 0.9]),
+    free("Xvr", "X_vr"),
+    free("Xrr", "X_rr"),
+    free("Xdd", "X_δδ"),
+];
+
+/// Those of second order.
+pub(super) const QUADRATIC: [Term; 4] = [
+    within("Nrr", "N_rr", [-20.0, 0.5]),
+    free("Nvv", "N_vv"),
+    within("Yvv", "Y_vv", [-20.0, 0.5]),
+    free("Yrr", "Y_rr"),
+];
+
+/// Those of third order.
+pub(super) const CUBIC: [Term; 7] = [
+    free("Nvvv", "N_vvv"),
+    free("Nvvr", "N_vvr"),
+    free("Nvrr", "N_vrr"),
+    within("Nrrr", "N_rrr", [-20.0, 0.5]),
+    within("Yvvv", "Y_vvv", [-60.0, 1.0]),
+    free("Yvvr", "Y_vvr"),
+    free("Yvrr", "Y_vrr"),
+];
+
+/// A hull ready to be asked for its accelerations.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PrimeHull<R = f64> {
+    /// Of second order.
+    Quadratic([R; COMMON.len() + QUADRATIC.len()]),
+    /// Of third order.
+    Cubic([R; COMMON.len() + CUBIC.len()]),
+    /// MMG, and δ_r.
+    Mmg(Box<Mmg<R>>, R),
+}
+
+impl<R: Real> PrimeHull<R> {
+    /// (u', v', r') at surge, sway and yaw rate, rudder (rad), rate of the propeller over that of the approach, and a
+    /// yaw moment as rudder angle at approach speed (rad).
+    #[inline]
+    pub fn accelerations(&self, [u, v, r]: [R; 3], rudder: R, turning: f64, disturbance: f64) -> [R; 3] {
+        let [u, v, r] = [of_ship(u, LEAST_SURGE), of_ship(v, -FASTEST), of_ship(r, -FASTEST)];
+        match self {
+            Self::Mmg(hull, bias) => hull.accelerations([u, v, r], rudder + *bias, turning, disturbance),
+            Self::Quadratic(p) => {
+                let [surge, sway, yaw] = common(p, [u, v, r], rudder, turning, disturbance);
+                let (vv, rr) = (v * v.abs(), r * r.abs());
+                [surge, sway + p[16] * vv + p[17] * rr, yaw + p[14] * rr + p[15] * vv]
+            }
+            Self::Cubic(p) => {
+                let [surge, sway, yaw] = common(p, [u, v, r], rudder, turning, disturbance);
+                let (vv, vr, rr) = (v * v / u, v * r / u, r * r / u);
+                [
+                    surge,
+                    sway + p[18] * vv * v + p[19] * vr * v + p[20] * vr * r,
+                    yaw + p[14] * vv * v + p[15] * vr * v + p[16] * vr * r + p[17] * rr * r,
+                ]
+            }
+        }
+    }
+}
+
+/// A speed or yaw rate of a ship.
+#[inline]
+fn of_ship<R: Real>(value: R, least: f64) -> R {
+    value.between(R::from(least), R::from(FASTEST))
+}
+
+/// What both polynomials have, with their coefficients in the order of [`COMMON`].
+#[inline]
+fn common<R: Real>(p: &[R], [u, v, r]: [R; 3], rudder: R, n: f64, disturbance: f64) -> [R; 3] {
+    let w = (p[6] * (u - n) + n).at_least(LEAST_INFLOW);
+    let angle = p[8] + rudder - p[7] * r.abs() / w;
+    let force = w * w * angle;
+    let thrust = -(p[10] * n) * u + n * n;
+    [
+        p[9] * (thrust / (-p[10] + 1.0) - u * u) + p[11] * v * r + p[12] * r * r - p[13] * force * angle,
+        p[3] * u * v + p[4] * u * r + p[5] * force,
+        p[0] * u * v + p[1] * u * r + p[2] * (force + disturbance),
+    ]
+}
+
+impl PrimeHull {
+    /// The same without derivatives, as yet.
+    pub fn constant<R: Real>(&self) -> PrimeHull<R> {
+        match self {
+            Self::Quadratic(p) => PrimeHull::Quadratic(p.map(R::from)),
+            Self::Cubic(p) => PrimeHull::Cubic(p.map(R::from)),
+            Self::Mmg(hull, bias) => {
+                let again = Mmg::at_speed(hull.parameters().constant(), 1.0).expect("it made a ship");
+                PrimeHull::Mmg(Box::new(again), R::from(*bias))
+            }
+        }
+    }
+}

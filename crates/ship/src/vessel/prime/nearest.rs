@@ -1,0 +1,168 @@
+//! What is expected of the coefficients of a polynomial: those of the polynomial that is nearest to an MMG hull.
+//!
+//! The polynomial has the least squares of its accelerations less those of the MMG hull that the particulars of a ship
+//! say, over states that trials visit, θ = argmin Σ |a(θ) − a_MMG|². How θ varies among ships follows from hulls that
+//! depart from that one by a standard deviation, in one coefficient of the MMG model or in one ratio that was filled in:
+//! with J the derivatives of a, J⁺ = (JᵀJ)⁻¹Jᵀ and a± their accelerations,
+//!
+//! Cov θ = f² Σ d dᵀ, d = J⁺ (a₊ − a₋)/2.
+//!
+//! So coefficients that a state ties together, such as N_v and N_vv or N_δ and Y_δ, are correlated. The formulas of the
+//! MMG model were held against two hulls, so other ships depart from them by more: f is the root of the median of
+//! d² / p over the hulls of this project that no formula was made with, with d the Mahalanobis distance and p the number
+//! of coefficients. It is the same to a tenth whichever of them is left out.
+
+use estimation::number::{Dual, Real};
+use nalgebra::{DMatrix, DVector};
+
+use super::equations::{COMMON, CUBIC, PrimeHull, QUADRATIC, Term};
+use crate::vessel::mmg::{Mmg, Parameters};
+use crate::vessel::prior::HullPrior;
+
+/// f: how many times the standard deviations of the formulas ships depart.
+const OTHER_SHIPS: f64 = 1.6;
+
+/// Surge, curvature r L/u, drift beyond that of the turn, v/u + 0.35 r L/u, and rudder (rad) of zig-zags and circles.
+const SURGES: [f64; 3] = [1.0, 0.8, 0.6];
+const CURVATURES: [f64; 5] = [-0.8, -0.4, 0.0, 0.4, 0.8];
+const DRIFTS: [f64; 4] = [-0.12, -0.04, 0.04, 0.12];
+const RUDDERS: [f64; 3] = [-0.6, 0.0, 0.6];
+
+/// Where the pivot point of a turn lies ahead of midship, L.
+const PIVOT: f64 = 0.35;
+
+/// Steps of the search: only e, b, k and δ_r are not linear.
+const STEPS: usize = 8;
+
+/// Where the search begins: far from it, k leaves what a ship can have.
+fn begin(term: &Term) -> f64 {
+    match term.key {
+        "Nd" => 1.0,
+        "Yd" => -0.1,
+        "x0" => 0.05,
+        "e" | "k" => 0.5,
+        _ => 0.0,
+    }
+}
+
+/// Values of the coefficients and their covariance.
+type Law = (DVector<f64>, DMatrix<f64>);
+
+/// Of the quadratic and of the cubic polynomial; `None` where the prior makes no ship.
+pub(super) fn polynomials(prior: &HullPrior) -> Option<[Law; 2]> {
+    let of_mmg = |parameters: &Parameters| {
+        let hull = Mmg::at_speed(parameters.of_length_one(), 1.0).ok()?;
+        Some(DVector::from_vec(accelerations(&PrimeHull::Mmg(Box::new(hull), 0.0))))
+    };
+    let mean = of_mmg(&prior.parameters)?;
+    let differences = prior.deviations.iter().filter_map(|[above, below]| Some(of_mmg(above)? - of_mmg(below)?));
+    let differences = DMatrix::from_columns(&differences.collect::<Vec<_>>()) * (0.5 * OTHER_SHIPS);
+    Some([
+        law(PrimeHull::<Dual<{ COMMON.len() + QUADRATIC.len() }>>::Quadratic, &mean, &differences)?,
+        law(PrimeHull::<Dual<{ COMMON.len() + CUBIC.len() }>>::Cubic, &mean, &differences)?,
+    ])
+}
+
+/// Surge, sway, yaw rate and rudder of every state.
+fn states() -> impl Iterator<Item = ([f64; 3], f64)> {
+    let of = |(u, curvature, drift): (f64, f64, f64)| [u, u * (drift - PIVOT * curvature), u * curvature];
+    SURGES.into_iter().flat_map(move |u| {
+        CURVATURES.into_iter().flat_map(move |curvature| {
+            DRIFTS.into_iter().flat_map(move |drift| RUDDERS.map(|rudder| (of((u, curvature, drift)), rudder)))
+        })
+    })
+}
+
+/// u', v' and r' in every state.
+fn accelerations<R: Real>(hull: &PrimeHull<R>) -> Vec<R> {
+    states().flat_map(|(state, rudder)| hull.accelerations(state.map(R::from), R::from(rudder), 1.0, 0.0)).collect()
+}
+
+/// The nearest polynomial by Gauss and Newton, and how it follows differences of the accelerations.
+fn law<const N: usize>(
+    polynomial: fn([Dual<N>; N]) -> PrimeHull<Dual<N>>,
+    truth: &DVector<f64>,
+    differences: &DMatrix<f64>,
+) -> Option<Law> {
+    let mut values = DVector::from_fn(N, |place, _| COMMON.get(place).map_or(0.0, begin));
+    let linearised = |values: &DVector<f64>| {
+        let variables = std::array::from_fn(|place| Dual::variable(values[place], place, 1.0));
+        let rows = accelerations(&polynomial(variables));
+        let by = DMatrix::from_fn(rows.len(), N, |row, column| rows[row].by[column]);
+        let left = DVector::from_fn(rows.len(), |row, _| truth[row] - rows[row].value);
+        Some((by.tr_mul(&by).cholesky()?, by, left))
+    };
+    for _ in 0..STEPS {
+        let (normal, by, left) = linearised(&values)?;
+        values += normal.solve(&by.tr_mul(&left));
+    }
+    let (normal, by, _) = linearised(&values)?;
+    let spread = normal.solve(&by.tr_mul(differences));
+    Some((values, &spread * spread.transpose()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::Input;
+    use crate::ships::{self, Model};
+    use crate::vessel::prime::HullForm;
+    use crate::vessel::state::{SURGE, SWAY, YAW_RATE};
+
+    /// u', v' and r' of a hull in every state; `None` for a ship that is a response model.
+    fn published(ship: &ships::Ship) -> Option<DVector<f64>> {
+        let (Model::Hull(hull), Some(own)) = (&ship.model, ship.particulars) else { return None };
+        let second = own.length / own.speed;
+        let mut state = vec![0.0; hull.dimension()];
+        hull.approach(0.0, 0.0, &mut state);
+        let mut rates = state.clone();
+        let mut accelerations = Vec::new();
+        for ([u, v, r], rudder) in states() {
+            (state[SURGE], state[SWAY], state[YAW_RATE]) = (u * own.speed, v * own.speed, r / second);
+            hull.rates(0.0, &state, &Input { rudder, ..Input::default() }, &mut rates);
+            let [u, v, r] = [SURGE, SWAY, YAW_RATE].map(|place| rates[place]);
+            accelerations.extend([u * second / own.speed, v * second / own.speed, r * second * second]);
+        }
+        Some(DVector::from_vec(accelerations))
+    }
+
+    fn median(mut all: Vec<f64>) -> f64 {
+        all.sort_by(f64::total_cmp);
+        let middle = all.len() / 2;
+        if all.len() % 2 == 0 { 0.5 * (all[middle - 1] + all[middle]) } else { all[middle] }
+    }
+
+    /// f by the hulls that no formula was made with, by all and with each left out; KVLCC2, with which some were, is
+    /// nearer.
+    #[test]
+    fn published_hulls_depart_from_the_formulas_by_so_much() {
+        let forms = HullForm::of_ship(None);
+        let of = |ship: &ships::Ship| {
+            let truth = published(ship)?;
+            let none = DMatrix::zeros(truth.len(), 0);
+            let own = [
+                law(PrimeHull::<Dual<18>>::Quadratic, &truth, &none),
+                law(PrimeHull::<Dual<21>>::Cubic, &truth, &none),
+            ];
+            let square = |form: &HullForm, (own, _): Law| {
+                let mean = form.coefficients().iter().map(|own| own.mean);
+                let left = own - DVector::from_iterator(form.coefficients().len(), mean);
+                let precision = form.covariance().clone().cholesky().expect("a covariance").inverse();
+                OTHER_SHIPS * OTHER_SHIPS * left.dot(&(precision * &left)) / left.len() as f64
+            };
+            let squares: Vec<f64> =
+                own.into_iter().zip(&forms).map(|(own, form)| square(form, own.expect("terms"))).collect();
+            Some((ship.name.to_string(), squares))
+        };
+        let found: Vec<(String, Vec<f64>)> = ships::all().iter().filter_map(of).collect();
+        let (known, others): (Vec<_>, Vec<_>) = found.into_iter().partition(|(name, _)| name.contains("KVLCC2"));
+        assert!(known.iter().all(|(_, own)| own.iter().all(|square| *square < 1.0)), "{known:?}");
+        for form in 0..2 {
+            for left_out in 0..=others.len() {
+                let kept = others.iter().enumerate().filter(|(place, _)| *place != left_out);
+                let factor = median(kept.map(|(_, (_, own))| own[form]).collect()).sqrt();
+                assert!((factor / OTHER_SHIPS - 1.0).abs() < 0.1, "{form} without {left_out}: {factor} {others:?}");
+            }
+        }
+    }
+}
