@@ -1,6 +1,6 @@
 //! What earlier trials tell of the next: made-up numbers, and KVLCC2 as she is simulated.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use ship::ships::kvlcc2::MODEL_L7;
 use ship::vessel::mmg::Mmg;
 use ship::vessel::prime::HullForm;
@@ -26,13 +26,14 @@ const SHIP: HullParticulars = HullParticulars {
     x_g: None,
 };
 
-/// A hull whose every coefficient is a deviation above what was expected, known to a tenth of a deviation.
+/// A hull whose every coefficient is a deviation above what was expected, known to a tenth of the deviation in every
+/// direction.
 fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
     let form = HullForm::of_ship(Some(&particulars)).into_iter().find(|own| own.as_str() == form).expect("known");
     let own = form.coefficients();
     let values = DVector::from_iterator(own.len(), own.iter().map(|one| one.mean + one.sd));
-    let variances = DVector::from_iterator(own.len(), own.iter().map(|one| (0.1 * one.sd).powi(2)));
-    EarlierHull { form, particulars, values, covariance: DMatrix::from_diagonal(&variances) }
+    let covariance = form.covariance() * 0.01;
+    EarlierHull { form, particulars, values, covariance }
 }
 
 /// What is expected of a coefficient after earlier trials: how far from what her particulars say, and its deviation,
@@ -86,10 +87,10 @@ fn a_hull_is_weighed_together_with_earlier_trials() {
 #[test]
 fn another_scale_tells_less_and_nothing_of_friction() {
     let large = HullParticulars { length: 320.0, speed: 8.11, beam: Some(58.0), draught: Some(20.8), ..SHIP };
-    let one = earlier(large, "quadratic");
-    let found = after(&SHIP, "quadratic", std::slice::from_ref(&one), "Nv");
+    let one = earlier(large, "mmg");
+    let found = after(&SHIP, "mmg", std::slice::from_ref(&one), "epsilon");
     near(found, [100.0 / 4.0 / (1.0 + 99.0 / 4.0), (1.0_f64 + 99.0 / 4.0).powf(-0.5)]);
-    near(after(&SHIP, "quadratic", &[one], "x0"), [0.0, 1.0]);
+    near(after(&SHIP, "mmg", &[one], "R0"), [0.0, 1.0]);
     assert_eq!(Likeness::of(&large, &SHIP), Likeness::OtherScale);
     assert_eq!(Likeness::of(&SHIP, &SHIP), Likeness::Same);
 }
@@ -118,14 +119,14 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
 #[test]
 fn what_is_expected_follows_the_hull_of_the_trials() {
     let ballast = HullParticulars { draught: Some(0.3), ..SHIP };
-    let expected = ExpectedHull::of_ship(Some(&ballast), &[earlier(SHIP, "quadratic")]);
-    let [covariance, gain] = expected[0].law().expect("trials are in it");
-    let own = expected[0].form.coefficients();
+    let expected = ExpectedHull::of_ship(Some(&ballast), &[earlier(SHIP, "mmg")]).pop().expect("the last is MMG");
+    let [covariance, gain] = expected.law().expect("trials are in it");
+    let own = expected.form.coefficients();
     let place = |key: &str| own.iter().position(|one| one.key == key).expect("known");
     let of =
         |key: &str| [gain[(place(key), place(key))], covariance[(place(key), place(key))] / own[place(key)].sd.powi(2)];
-    near(of("Nv"), [11.0 / 12.0, 1.0 / 12.0]);
-    near(of("x0"), [0.0, 1.0]);
+    near(of("epsilon"), [11.0 / 12.0, 1.0 / 12.0]);
+    near(of("R0"), [0.0, 1.0]);
     near(of("delta_r"), [0.0, 1.0]);
     assert!(ExpectedHull::of_ship(Some(&ballast), &[])[0].law().is_none());
 }
@@ -173,7 +174,7 @@ fn half_of(trial: &Trial) -> Trial {
 }
 
 /// KVLCC2, of which no form is true: with a prior from her 10/10 and 20/20, half of a 15/15 foretells three other
-/// zig-zags as well as the whole 15/15 does without, over all forms; for the worst of them to within 30 %.
+/// zig-zags as well as the whole 15/15 does without, to 5 % over all forms and to 30 % for the worst of them.
 #[test]
 fn half_a_trial_after_two_tells_as_much_as_a_whole_one() {
     let ship = Mmg::at_speed(MODEL_L7, SPEED).expect("it balances");
@@ -194,7 +195,7 @@ fn half_a_trial_after_two_tells_as_much_as_a_whole_one() {
         let check = half.check().expect("a record tells something");
         assert!(!check.is_conflict(), "{}: {check:?}", expected.form.as_str());
     }
-    assert!(squares[0] <= squares[1], "{squares:?}");
+    assert!(squares[0] < 1.05 * 1.05 * squares[1], "{squares:?}");
 }
 
 /// The ship herself agrees with her earlier trials; one of another N_v, N_r and N_δ does not.

@@ -87,11 +87,11 @@ fn a_hull_of_the_form_comes_back() {
     for left in &found.records {
         assert!(to_deg(left.whole) < 0.2, "{}: {}°", left.name, to_deg(left.whole));
     }
-    assert!(found.moment.deviation < from_deg(0.15), "{:?}", found.moment);
+    assert!(found.moment.deviation < from_deg(0.2), "{:?}", found.moment);
 }
 
 /// KVLCC2 is of no polynomial form, and of the MMG one with another wake and propeller than expected: a 20/20 alone
-/// foretells her 10/10 within 2.5°, rms.
+/// foretells her 10/10 within 3.5°, rms.
 #[test]
 fn a_hull_of_another_form_is_foreseen_as_well() {
     let ship = Mmg::at_speed(MODEL_L7, SPEED).expect("it balances");
@@ -103,7 +103,7 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
         let tracks = [HullTrack::of(&other, &estimate.reference).expect("a record")];
         let mut problem = HullObjective::new(&expected, &tracks);
         let left = to_deg(problem.left(estimate.values.as_slice()).expect("a ship")[0].whole.sqrt());
-        assert!(left < 2.5, "{}: {left}", expected.form.as_str());
+        assert!(left < 3.5, "{}: {left}", expected.form.as_str());
     }
 }
 

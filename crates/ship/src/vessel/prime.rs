@@ -158,6 +158,7 @@ impl HullForm {
                 covariance.column_mut(place).fill(0.0);
                 (values[place], covariance[(place, place)]) = (0.0, variance);
             }
+            let is_law = values.iter().all(|value| value.is_finite()) && covariance.clone().cholesky().is_some();
             let coefficient = |(place, Term { key, symbol, ends }): (usize, &Term)| HullCoefficient {
                 key,
                 symbol,
@@ -165,9 +166,10 @@ impl HullForm {
                 sd: covariance[(place, place)].sqrt(),
                 ends: *ends,
             };
-            Self { equations, coefficients: terms.iter().enumerate().map(coefficient).collect(), covariance }
+            let coefficients = terms.iter().enumerate().map(coefficient).collect();
+            is_law.then_some(Self { equations, coefficients, covariance })
         };
-        Some([form(Equations::Quadratic, &QUADRATIC, quadratic), form(Equations::Cubic, &CUBIC, cubic)])
+        Some([form(Equations::Quadratic, &QUADRATIC, quadratic)?, form(Equations::Cubic, &CUBIC, cubic)?])
     }
 
     /// The MMG model about what the particulars of a ship say.
@@ -221,5 +223,34 @@ impl HullForm {
                 PrimeHull::Mmg(Box::new(Mmg::at_speed(parameters, 1.0).ok()?), *bias)
             }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever particulars are accepted, what is expected of every form is a normal law whose mean is a ship.
+    #[test]
+    fn every_ship_has_an_expected_hull_of_every_form() {
+        let any = HullParticulars { length: 100.0, speed: 6.0, ..HullParticulars::default() };
+        let mut own = vec![any];
+        for (beam, draught) in [(8.4, 7.0), (8.4, 1.1), (45.0, 37.0), (45.0, 6.0), (15.0, 5.0)] {
+            for block in [0.31, 0.6, 0.99] {
+                let form = HullParticulars { beam: Some(beam), draught: Some(draught), ..any };
+                own.push(HullParticulars { block_coefficient: Some(block), ..form });
+                let area = |share: f64| Some(share * draught * 100.0);
+                own.extend([0.0051, 0.099].map(|share| HullParticulars { rudder_area: area(share), ..form }));
+            }
+        }
+        for ship in own {
+            for form in HullForm::of_ship(Some(&ship)) {
+                let means: Vec<f64> = form.coefficients().iter().map(|own| own.mean).collect();
+                let name = form.as_str();
+                assert!(form.covariance().clone().cholesky().is_some(), "{name} {ship:?}");
+                let rates = form.with(&means).map(|hull| hull.accelerations([1.0, 0.0, 0.1], 0.3, 1.0, 0.0));
+                assert!(name == "mmg" || rates.expect("a ship").iter().all(|rate| rate.is_finite()), "{name} {ship:?}");
+            }
+        }
     }
 }

@@ -108,6 +108,7 @@ mod tests {
     use crate::ships::{self, Model};
     use crate::vessel::prime::HullForm;
     use crate::vessel::state::{SURGE, SWAY, YAW_RATE};
+    use estimation::statistics::median;
 
     /// u', v' and r' of a hull in every state; `None` for a ship that is a response model.
     fn published(ship: &ships::Ship) -> Option<DVector<f64>> {
@@ -124,12 +125,6 @@ mod tests {
             accelerations.extend([u * second / own.speed, v * second / own.speed, r * second * second]);
         }
         Some(DVector::from_vec(accelerations))
-    }
-
-    fn median(mut all: Vec<f64>) -> f64 {
-        all.sort_by(f64::total_cmp);
-        let middle = all.len() / 2;
-        if all.len() % 2 == 0 { 0.5 * (all[middle - 1] + all[middle]) } else { all[middle] }
     }
 
     /// f by the hulls that no formula was made with, by all and with each left out; KVLCC2, with which some were, is
@@ -160,7 +155,8 @@ mod tests {
         for form in 0..2 {
             for left_out in 0..=others.len() {
                 let kept = others.iter().enumerate().filter(|(place, _)| *place != left_out);
-                let factor = median(kept.map(|(_, (_, own))| own[form]).collect()).sqrt();
+                let mut kept: Vec<f64> = kept.map(|(_, (_, own))| own[form]).collect();
+                let factor = median(&mut kept).expect("some are left").sqrt();
                 assert!((factor / OTHER_SHIPS - 1.0).abs() < 0.1, "{form} without {left_out}: {factor} {others:?}");
             }
         }
