@@ -1,8 +1,9 @@
 //! What is expected of the coefficients of a hull before its records are seen: what its form or its particulars say,
 //! and what earlier trials have told of her, or of a ship like her.
 //!
-//! An earlier trial left values θ₁ with a covariance C₁; before it μ₁ was expected with the precision Λ₁. What the trial itself told has the precision D₁ = C₁⁻¹ − Λ₁ and the vector h₁ = C₁⁻¹ θ₁ − Λ₁ μ₁. Expected of
-//! the next trial are
+//! An earlier trial left values θ₁ with a covariance C₁; before it μ₁ was expected with the precision Λ₁. What the
+//! trial itself told has the precision D₁ = C₁⁻¹ − Λ₁ and the vector h₁ = C₁⁻¹ θ₁ − Λ₁ μ₁. Expected of the next trial
+//! are
 //!
 //! Λ = Λ₀ + Σ D₁/f², Λ μ = Λ₀ μ₀ + Σ (h₁ + D₁ s)/f²
 //!

@@ -18,7 +18,7 @@ mod nearest;
 use estimation::number::Real;
 use nalgebra::{DMatrix, DVector};
 
-use self::equations::{BIAS, COMMON, CUBIC, QUADRATIC, Term};
+use self::equations::{BIAS, COMMON, CUBIC, PolynomialTerm, QUADRATIC};
 pub use self::equations::{FASTEST, PrimeHull};
 use super::mmg::{Mmg, Parameters};
 use super::prior::{HullParticulars, HullPrior, priors};
@@ -112,7 +112,7 @@ pub fn is_of_friction(key: &str) -> bool {
 
 /// The equations of a form.
 #[derive(Debug, Clone, PartialEq)]
-enum Equations {
+enum FormEquations {
     /// Terms of second order.
     Quadratic,
     /// Terms of third order.
@@ -124,7 +124,7 @@ enum Equations {
 /// What a hull is made of, and what is expected of its coefficients: a normal law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HullForm {
-    equations: Equations,
+    equations: FormEquations,
     coefficients: Vec<HullCoefficient>,
     covariance: DMatrix<f64>,
 }
@@ -149,7 +149,7 @@ impl HullForm {
     /// mirror image are as probable, so what differs by side is expected to be 0.
     fn polynomials(prior: &HullPrior) -> Option<[Self; 2]> {
         let [quadratic, cubic] = nearest::polynomials(prior)?;
-        let form = |equations, terms: &[Term], (mut values, mut covariance): (DVector<f64>, DMatrix<f64>)| {
+        let form = |equations, terms: &[PolynomialTerm], (mut values, mut covariance): (DVector<f64>, DMatrix<f64>)| {
             let terms = [&COMMON[..], terms].concat();
             for place in (0..terms.len()).filter(|&place| is_of_side(terms[place].key)) {
                 let own = if terms[place].key == BIAS.key { RUDDER_BIAS } else { 0.0 };
@@ -159,17 +159,18 @@ impl HullForm {
                 (values[place], covariance[(place, place)]) = (0.0, variance);
             }
             let is_law = values.iter().all(|value| value.is_finite()) && covariance.clone().cholesky().is_some();
-            let coefficient = |(place, Term { key, symbol, ends }): (usize, &Term)| HullCoefficient {
-                key,
-                symbol,
-                mean: values[place].clamp(ends[0], ends[1]),
-                sd: covariance[(place, place)].sqrt(),
-                ends: *ends,
-            };
+            let coefficient =
+                |(place, PolynomialTerm { key, symbol, ends }): (usize, &PolynomialTerm)| HullCoefficient {
+                    key,
+                    symbol,
+                    mean: values[place].clamp(ends[0], ends[1]),
+                    sd: covariance[(place, place)].sqrt(),
+                    ends: *ends,
+                };
             let coefficients = terms.iter().enumerate().map(coefficient).collect();
             is_law.then_some(Self { equations, coefficients, covariance })
         };
-        Some([form(Equations::Quadratic, &QUADRATIC, quadratic)?, form(Equations::Cubic, &CUBIC, cubic)?])
+        Some([form(FormEquations::Quadratic, &QUADRATIC, quadratic)?, form(FormEquations::Cubic, &CUBIC, cubic)?])
     }
 
     /// The MMG model about what the particulars of a ship say.
@@ -182,11 +183,11 @@ impl HullForm {
             sd: own.sd,
             ends: ends_of(own.formula.key),
         });
-        let Term { key, symbol, ends } = BIAS;
+        let PolynomialTerm { key, symbol, ends } = BIAS;
         let bias = HullCoefficient { key, symbol, mean: 0.0, sd: RUDDER_BIAS, ends };
         let coefficients: Vec<HullCoefficient> = free.chain([bias]).collect();
         let variances = DVector::from_iterator(coefficients.len(), coefficients.iter().map(|own| own.sd * own.sd));
-        let equations = Equations::Mmg(Box::new(prior.parameters.of_length_one()));
+        let equations = FormEquations::Mmg(Box::new(prior.parameters.of_length_one()));
         Self { equations, coefficients, covariance: DMatrix::from_diagonal(&variances) }
     }
 
@@ -203,18 +204,18 @@ impl HullForm {
     /// The word used in files.
     pub fn as_str(&self) -> &'static str {
         match self.equations {
-            Equations::Quadratic => "quadratic",
-            Equations::Cubic => "cubic",
-            Equations::Mmg(_) => "mmg",
+            FormEquations::Quadratic => "quadratic",
+            FormEquations::Cubic => "cubic",
+            FormEquations::Mmg(_) => "mmg",
         }
     }
 
     /// The hull with these values of its coefficients; `None` where they make no ship.
     pub fn with<R: Real>(&self, values: &[R]) -> Option<PrimeHull<R>> {
         Some(match &self.equations {
-            Equations::Quadratic => PrimeHull::Quadratic(values.try_into().ok()?),
-            Equations::Cubic => PrimeHull::Cubic(values.try_into().ok()?),
-            Equations::Mmg(about) => {
+            FormEquations::Quadratic => PrimeHull::Quadratic(values.try_into().ok()?),
+            FormEquations::Cubic => PrimeHull::Cubic(values.try_into().ok()?),
+            FormEquations::Mmg(about) => {
                 let mut parameters = about.constant::<R>();
                 let (bias, free) = values.split_last()?;
                 for (coefficient, value) in self.coefficients.iter().zip(free) {

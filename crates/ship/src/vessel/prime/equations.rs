@@ -15,25 +15,25 @@ const LEAST_INFLOW: f64 = 0.05;
 
 /// A coefficient of a polynomial: name in files, symbol, smallest and largest value.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Term {
+pub(super) struct PolynomialTerm {
     pub key: &'static str,
     pub symbol: &'static str,
     pub ends: [f64; 2],
 }
 
-const fn free(key: &'static str, symbol: &'static str) -> Term {
-    Term { key, symbol, ends: [f64::NEG_INFINITY, f64::INFINITY] }
+const fn free(key: &'static str, symbol: &'static str) -> PolynomialTerm {
+    PolynomialTerm { key, symbol, ends: [f64::NEG_INFINITY, f64::INFINITY] }
 }
 
-const fn within(key: &'static str, symbol: &'static str, ends: [f64; 2]) -> Term {
-    Term { key, symbol, ends }
+const fn within(key: &'static str, symbol: &'static str, ends: [f64; 2]) -> PolynomialTerm {
+    PolynomialTerm { key, symbol, ends }
 }
 
 /// δ_r, which every form has.
-pub(super) const BIAS: Term = free("delta_r", "δ_r");
+pub(super) const BIAS: PolynomialTerm = free("delta_r", "δ_r");
 
 /// Coefficients that both polynomials have.
-pub(super) const COMMON: [Term; 14] = [
+pub(super) const COMMON: [PolynomialTerm; 14] = [
     free("Nv", "N_v"),
     free("Nr", "N_r"),
     within("Nd", "N_δ", [0.05, 5.0]),
@@ -51,7 +51,7 @@ pub(super) const COMMON: [Term; 14] = [
 ];
 
 /// Those of second order.
-pub(super) const QUADRATIC: [Term; 4] = [
+pub(super) const QUADRATIC: [PolynomialTerm; 4] = [
     within("Nrr", "N_rr", [-20.0, 0.5]),
     free("Nvv", "N_vv"),
     within("Yvv", "Y_vv", [-20.0, 0.5]),
@@ -59,7 +59,7 @@ pub(super) const QUADRATIC: [Term; 4] = [
 ];
 
 /// Those of third order.
-pub(super) const CUBIC: [Term; 7] = [
+pub(super) const CUBIC: [PolynomialTerm; 7] = [
     free("Nvvv", "N_vvv"),
     free("Nvvr", "N_vvr"),
     free("Nvrr", "N_vrr"),

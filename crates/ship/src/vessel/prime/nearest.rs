@@ -1,21 +1,21 @@
 //! What is expected of the coefficients of a polynomial: those of the polynomial that is nearest to an MMG hull.
 //!
-//! The polynomial has the least squares of its accelerations less those of the MMG hull that the particulars of a ship
-//! say, over states that trials visit, θ = argmin Σ |a(θ) − a_MMG|². How θ varies among ships follows from hulls that
-//! depart from that one by a standard deviation, in one coefficient of the MMG model or in one ratio that was filled in:
-//! with J the derivatives of a, J⁺ = (JᵀJ)⁻¹Jᵀ and a± their accelerations,
+//! Nearest is θ = argmin Σ |a(θ) − a_MMG|², the sum of squares of differences of accelerations over states that trials
+//! visit. How θ varies among ships follows from hulls that depart from that one by a standard deviation, in one
+//! coefficient of the MMG model or in one ratio that was filled in: with J the derivatives of a, J⁺ = (JᵀJ)⁻¹Jᵀ and a±
+//! their accelerations,
 //!
 //! Cov θ = f² Σ d dᵀ, d = J⁺ (a₊ − a₋)/2.
 //!
 //! So coefficients that a state ties together, such as N_v and N_vv or N_δ and Y_δ, are correlated. The formulas of the
-//! MMG model were held against two hulls, so other ships depart from them by more: f is the root of the median of
-//! d² / p over the hulls of this project that no formula was made with, with d the Mahalanobis distance and p the number
-//! of coefficients. It is the same to a tenth whichever of them is left out.
+//! MMG model were held against two hulls, so other ships depart from them by more: f is the root of the median of D²/p
+//! over the hulls of this project that no formula was made with, with D the Mahalanobis distance of their nearest
+//! polynomials and p the number of coefficients. It is the same to a tenth whichever of them is left out.
 
 use estimation::number::{Dual, Real};
 use nalgebra::{DMatrix, DVector};
 
-use super::equations::{COMMON, CUBIC, PrimeHull, QUADRATIC, Term};
+use super::equations::{COMMON, CUBIC, PolynomialTerm, PrimeHull, QUADRATIC};
 use crate::vessel::mmg::{Mmg, Parameters};
 use crate::vessel::prior::HullPrior;
 
@@ -35,7 +35,7 @@ const PIVOT: f64 = 0.35;
 const STEPS: usize = 8;
 
 /// Where the search begins: far from it, k leaves what a ship can have.
-fn begin(term: &Term) -> f64 {
+fn begin(term: &PolynomialTerm) -> f64 {
     match term.key {
         "Nd" => 1.0,
         "Yd" => -0.1,
@@ -46,10 +46,10 @@ fn begin(term: &Term) -> f64 {
 }
 
 /// Values of the coefficients and their covariance.
-type Law = (DVector<f64>, DMatrix<f64>);
+type PolynomialLaw = (DVector<f64>, DMatrix<f64>);
 
 /// Of the quadratic and of the cubic polynomial; `None` where the prior makes no ship.
-pub(super) fn polynomials(prior: &HullPrior) -> Option<[Law; 2]> {
+pub(super) fn polynomials(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
     let of_mmg = |parameters: &Parameters| {
         let hull = Mmg::at_speed(parameters.of_length_one(), 1.0).ok()?;
         Some(DVector::from_vec(accelerations(&PrimeHull::Mmg(Box::new(hull), 0.0))))
@@ -83,7 +83,7 @@ fn law<const N: usize>(
     polynomial: fn([Dual<N>; N]) -> PrimeHull<Dual<N>>,
     truth: &DVector<f64>,
     differences: &DMatrix<f64>,
-) -> Option<Law> {
+) -> Option<PolynomialLaw> {
     let mut values = DVector::from_fn(N, |place, _| COMMON.get(place).map_or(0.0, begin));
     let linearised = |values: &DVector<f64>| {
         let variables = std::array::from_fn(|place| Dual::variable(values[place], place, 1.0));
@@ -139,7 +139,7 @@ mod tests {
                 law(PrimeHull::<Dual<18>>::Quadratic, &truth, &none),
                 law(PrimeHull::<Dual<21>>::Cubic, &truth, &none),
             ];
-            let square = |form: &HullForm, (own, _): Law| {
+            let square = |form: &HullForm, (own, _): PolynomialLaw| {
                 let mean = form.coefficients().iter().map(|own| own.mean);
                 let left = own - DVector::from_iterator(form.coefficients().len(), mean);
                 let precision = form.covariance().clone().cholesky().expect("a covariance").inverse();
