@@ -10,7 +10,7 @@
 //! differs by side). What stands for "…" is N_rr r|r| + N_vv v|v| and Y_rr r|r| + Y_vv v|v| in the quadratic form, and
 //! terms of third order over u in the cubic one. The third form is the MMG model with its hull, propeller and rudder.
 //!
-//! What is expected of the polynomials is what is expected of the MMG model ([`nearest`]).
+//! What is expected of the polynomials follows from what is expected of the MMG model.
 
 mod equations;
 mod nearest;

@@ -88,8 +88,8 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-/// Nine of ten figures at full load, at least, lie in their intervals and nearer than those in ballast: the overshoot
-/// of her 20/20 is 17.0°, and in ballast 11.5°. Her trial is corrected to it.
+/// Nine of ten figures at full load, at least, lie in their intervals, and eight of ten nearer than those in ballast:
+/// the overshoot of her 20/20 is 17.0°, and in ballast 11.5°. Her trial is corrected to it.
 #[test]
 fn a_ship_tried_in_ballast_is_predicted_at_full_load() {
     let desk = with_trial();
@@ -111,7 +111,7 @@ fn a_ship_tried_in_ballast_is_predicted_at_full_load() {
             all += 1;
         }
     }
-    assert!(all > 30 && 10 * held >= 9 * all && 10 * nearer >= 9 * all, "{held} and {nearer} of {all}");
+    assert!(all > 30 && 10 * held >= 9 * all && 10 * nearer >= 8 * all, "{held} and {nearer} of {all}");
     let correct = "predict f/fit.json --load full.toml --ballast f/fit.json --replay run.csv --form --draws 300 --out c \
                    --length-m 160 --speed-m-s 7.7";
     let run = desk.run(&words(correct));
