@@ -53,7 +53,7 @@ pub struct HullPrior {
     /// What was filled in.
     pub assumed: Vec<Assumed>,
     /// Hulls a standard deviation above and below the mean: in every ratio that may be filled in, and in every
-    /// coefficient whose particulars are known.
+    /// coefficient by the error of its formula.
     pub deviations: Vec<[Parameters; 2]>,
 }
 
