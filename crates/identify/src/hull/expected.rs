@@ -165,7 +165,8 @@ impl EarlierHull {
     /// D/f² and (h + D s)/f² of the trials of this hull, in the places of the coefficients of another ship. `None`
     /// where its covariance is none.
     ///
-    /// What belongs to a trial is not told; nor at another scale what depends on friction.
+    /// What belongs to a trial is not told; nor at another scale what depends on friction, but by what is correlated
+    /// with it.
     fn told(&self, expected: &ExpectedHull, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let likeness = Likeness::of(&self.particulars, ship);
         let before = self.form.coefficients();

@@ -129,17 +129,14 @@ pub struct HullForm {
     covariance: DMatrix<f64>,
 }
 
-/// A ship of which nothing is known: length (m) and speed (m/s) at a usual Froude number.
-const ANY_SHIP: [f64; 2] = [100.0, 6.0];
-
 impl HullForm {
     /// The forms that a ship can be fitted with, about what her particulars say: the two polynomials, and the MMG model
     /// where these are known. Without them the polynomials are those of any ship.
     pub fn of_ship(particulars: Option<&HullParticulars>) -> Vec<Self> {
         let own = particulars.and_then(|own| priors(own).ok());
         let polynomials = own.as_ref().and_then(Self::polynomials).unwrap_or_else(|| {
-            let [length, speed] = ANY_SHIP;
-            let any = priors(&HullParticulars { length, speed, ..HullParticulars::default() });
+            // Of any ship at a usual Froude number: the forms have no dimension.
+            let any = priors(&HullParticulars { length: 100.0, speed: 6.0, ..HullParticulars::default() });
             Self::polynomials(&any.expect("a ship")).expect("a ship")
         });
         polynomials.into_iter().chain(own.as_ref().map(Self::mmg)).collect()

@@ -54,12 +54,16 @@ pub(super) fn polynomials(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
         let hull = Mmg::at_speed(parameters.of_length_one(), 1.0).ok()?;
         Some(DVector::from_vec(accelerations(&PrimeHull::Mmg(Box::new(hull), 0.0))))
     };
-    let mean = of_mmg(&prior.parameters)?;
     let differences = prior.deviations.iter().filter_map(|[above, below]| Some(of_mmg(above)? - of_mmg(below)?));
     let differences = DMatrix::from_columns(&differences.collect::<Vec<_>>()) * (0.5 * OTHER_SHIPS);
+    laws(&of_mmg(&prior.parameters)?, &differences)
+}
+
+/// The same of a hull with these accelerations.
+fn laws(truth: &DVector<f64>, differences: &DMatrix<f64>) -> Option<[PolynomialLaw; 2]> {
     Some([
-        law(PrimeHull::<Dual<{ COMMON.len() + QUADRATIC.len() }>>::Quadratic, &mean, &differences)?,
-        law(PrimeHull::<Dual<{ COMMON.len() + CUBIC.len() }>>::Cubic, &mean, &differences)?,
+        law(PrimeHull::<Dual<{ COMMON.len() + QUADRATIC.len() }>>::Quadratic, truth, differences)?,
+        law(PrimeHull::<Dual<{ COMMON.len() + CUBIC.len() }>>::Cubic, truth, differences)?,
     ])
 }
 
@@ -134,19 +138,14 @@ mod tests {
         let forms = HullForm::of_ship(None);
         let of = |ship: &ships::Ship| {
             let truth = published(ship)?;
-            let none = DMatrix::zeros(truth.len(), 0);
-            let own = [
-                law(PrimeHull::<Dual<18>>::Quadratic, &truth, &none),
-                law(PrimeHull::<Dual<21>>::Cubic, &truth, &none),
-            ];
+            let own = laws(&truth, &DMatrix::zeros(truth.len(), 0)).expect("independent terms");
             let square = |form: &HullForm, (own, _): PolynomialLaw| {
                 let mean = form.coefficients().iter().map(|own| own.mean);
                 let left = own - DVector::from_iterator(form.coefficients().len(), mean);
                 let precision = form.covariance().clone().cholesky().expect("a covariance").inverse();
                 OTHER_SHIPS * OTHER_SHIPS * left.dot(&(precision * &left)) / left.len() as f64
             };
-            let squares: Vec<f64> =
-                own.into_iter().zip(&forms).map(|(own, form)| square(form, own.expect("terms"))).collect();
+            let squares: Vec<f64> = own.into_iter().zip(&forms).map(|(own, form)| square(form, own)).collect();
             Some((ship.name.to_string(), squares))
         };
         let found: Vec<(String, Vec<f64>)> = ships::all().iter().filter_map(of).collect();
