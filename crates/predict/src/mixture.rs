@@ -6,8 +6,9 @@ use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use ship::vessel::scaled::ScaledHull;
 use ship::{Regressor, Response, ResponseModel};
-use simulate::disturbance::GaussMarkov;
+use simulate::disturbance::{GaussMarkov, Wind};
 use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
+use trial::Trial;
 
 use crate::error::PredictError;
 use crate::identified_ship::{IdentifiedShip, KnownNoise, Moment, WeightedStructure};
@@ -81,6 +82,8 @@ pub struct ShipMixture {
     apart: bool,
     /// Whether its hulls follow those of the other mixture all the same, each at another loading.
     follows: bool,
+    /// The wind that blows at hulls, from off the heading of the approach.
+    wind: Option<Wind>,
 }
 
 /// A ship for one trial.
@@ -125,7 +128,7 @@ impl ShipMixture {
         }
         let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
         let files = files.into_iter().map(|(known, _)| known).collect();
-        Ok(Self { parts, files, shares, timescale, apart: false, follows: false })
+        Ok(Self { parts, files, shares, timescale, apart: false, follows: false, wind: None })
     }
 
     /// The same ships drawn with other numbers, so that they have no chance in common with those of another mixture,
@@ -194,15 +197,28 @@ impl ShipMixture {
             response: part.model.clone().with(values),
             hull,
             gear,
-            disturbances: self.disturbances(&noise),
+            disturbances: self.disturbances(&noise, part.hull.is_some()),
             yaw_rate: approach + error,
             key,
         }
     }
 
-    fn disturbances(&self, noise: &KnownNoise) -> Disturbances {
+    /// The same ships in the mean wind of a record, where it was measured; structures know nothing of it.
+    #[must_use]
+    pub(crate) fn in_wind_of(&self, trial: &Trial) -> Self {
+        let approach = trial.observed_rows().next().map(|row| trial.heading()[row]);
+        let wind = approach.zip(trial.mean_wind()).map(|(heading, [speed, from])| Wind {
+            moment: 0.0,
+            from: from - heading,
+            speed: Some(speed),
+            gusting: None,
+        });
+        Self { wind, ..self.clone() }
+    }
+
+    fn disturbances(&self, noise: &KnownNoise, has_hull: bool) -> Disturbances {
         let sd = noise.moment_sd_rudder_rad;
-        let mut disturbances = Disturbances::default();
+        let mut disturbances = Disturbances { wind: self.wind.filter(|_| has_hull), ..Disturbances::default() };
         match noise.moment {
             Moment::None => {}
             Moment::White => {

@@ -103,8 +103,9 @@ impl ShipMixture {
     ///
     /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those
     /// of a helm that reverses the rudder where the record did, because a rudder that is replayed knows nothing of the
-    /// heading. `current` is the one that was taken out of the positions of the record
-    /// ([`without_current`](turn::without_current)). `None` where the record has too few headings at its beginning.
+    /// heading. A hull is in the mean wind of the record, where it was measured. `current` is the one that was taken out
+    /// of the positions of the record ([`without_current`](turn::without_current)). `None` where the record has too few
+    /// headings at its beginning.
     pub fn replay(
         &self,
         trial: &Trial,
@@ -113,9 +114,10 @@ impl ShipMixture {
     ) -> Result<Option<RecordReplay>, PredictError> {
         let start = trial.time()[0];
         let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
-        let Some([first, rate]) = self.beginning(trial)? else { return Ok(None) };
+        let ships = self.in_wind_of(trial);
+        let Some([first, rate]) = ships.beginning(trial)? else { return Ok(None) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
-            let mut ship = self.draw(number, sources);
+            let mut ship = ships.draw(number, sources);
             let mut rng = ship.key.rng(Purpose::Heading);
             let [of_heading, of_rate]: [f64; 2] = std::array::from_fn(|_| rng.sample(StandardNormal));
             let doubt = if sources.is_empty() { 0.0 } else { 1.0 };
@@ -147,7 +149,7 @@ impl ShipMixture {
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let square: f64 = measured.iter().zip(&heading.most_probable).map(|(one, other)| (one - other).powi(2)).sum();
         let figures = match Measured::of(trial) {
-            Ok(zigzag) if zigzag.executes.len() > 1 => self.zig_zag(trial, &zigzag, draws)?,
+            Ok(zigzag) if zigzag.executes.len() > 1 => ships.zig_zag(trial, &zigzag, draws)?,
             _ => turns(trial, &made, self.timescale(), current),
         };
         Ok(Some(RecordReplay {

@@ -328,8 +328,8 @@ mod tests {
         assert_eq!(draw(7), draw(7));
         assert_ne!(draw(7), draw(8));
         assert_eq!(circle(&mixture, 20).figures, circle(&mixture, 20).figures);
-        let bound = |hull: &ScaledHull| match &hull.hull {
-            ship::vessel::prime::PrimeHull::Quadratic(values) => values[10] <= 0.9 && values[9] >= 0.005,
+        let bound = |hull: &ScaledHull| match &hull.hull.in_calm {
+            ship::vessel::prime::CalmHull::Quadratic(values) => values[10] <= 0.9 && values[9] >= 0.005,
             _ => true,
         };
         assert!((0..300).map(draw).all(|hull| bound(&hull)), "coefficients keep within their ends");
@@ -368,8 +368,8 @@ mod tests {
             .map(|hull| testing::mixture(IdentifiedShip { hulls: vec![hull], ..testing::known() }));
         let full = full.apart_from(&trial);
         let values = |ship: &ShipMixture, number| {
-            let hull = ship.draw(number, &[UncertaintySource::Parameters]).hull.expect("a hull").hull;
-            let ship::vessel::prime::PrimeHull::Quadratic(values) = hull else { panic!("{hull:?}") };
+            let hull = ship.draw(number, &[UncertaintySource::Parameters]).hull.expect("a hull").hull.in_calm;
+            let ship::vessel::prime::CalmHull::Quadratic(values) = hull else { panic!("{hull:?}") };
             [0, 8].map(|place| (values[place] - own.coefficients[place].value) / own.covariance[place][place].sqrt())
         };
         let [mut of_full, mut common] = [0.0; 2];

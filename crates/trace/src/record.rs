@@ -117,11 +117,9 @@ impl PreparedRecord {
             let (surge, sway) = (channel(Channel::Surge)?, channel(Channel::Sway)?);
             Some(surge.iter().zip(&sway).map(|(u, v)| u.hypot(*v)).collect())
         });
-        let relative = match (trial.channel(Channel::WindRelativeSpeed), trial.channel(Channel::WindRelativeFrom)) {
-            (Some(speed), Some(from)) => Some((take(speed), take(&unwrapped(from)))),
-            _ => relative_wind(trial).map(|(speed, from)| (take(&speed), take(&unwrapped(&from)))),
-        };
-        let wind = relative.and_then(|(speed, from)| Some((signal(Some(speed))?, signal(Some(from))?)));
+        let relative = trial.relative_wind();
+        let wind = relative
+            .and_then(|[speed, from]| Some((signal(Some(take(&speed)))?, signal(Some(take(&unwrapped(&from))))?)));
         let (wind_speed, wind_from) = wind.unzip();
         Self {
             readings,
@@ -201,19 +199,6 @@ fn unwrapped(angles: &[f64]) -> Vec<f64> {
             near
         })
         .collect()
-}
-
-/// Relative wind (speed, direction from the bow) from the true one, the heading and the speed of the ship.
-fn relative_wind(trial: &Trial) -> Option<(Vec<f64>, Vec<f64>)> {
-    let speed = trial.channel(Channel::WindTrueSpeed)?;
-    let from = trial.channel(Channel::WindTrueFrom)?;
-    let ship = trial.channel(Channel::Speed)?;
-    let rows = (0..trial.len()).map(|row| {
-        let angle = from[row] - trial.heading()[row];
-        let (across, ahead) = (speed[row] * angle.sin(), speed[row] * angle.cos() + ship[row]);
-        (across.hypot(ahead), across.atan2(ahead))
-    });
-    Some(rows.unzip())
 }
 
 #[cfg(test)]

@@ -204,7 +204,7 @@ fn another_ship_contradicts_the_prior() {
     let sailed = |ship: &dyn ship::Dynamics, angles: [f64; 2]| record(ship, angles, |_| 0.0);
     let two = [sailed(&hull(&TRUTH), [10.0, 10.0]), sailed(&hull(&TRUTH), [-20.0, 20.0])];
     let expected = quadratic(&[left_by(&fit(&two, &quadratic(&[])).expect("a fit"))]);
-    let check = |truth: &[f64; 18]| {
+    let check = |truth: &[f64; 19]| {
         let found = fit(&[sailed(&hull(truth), [15.0, 15.0])], &expected).expect("a fit");
         found.check().expect("a record tells something")
     };

@@ -36,7 +36,8 @@ pub(super) fn replayed<R: Real>(
             let rates = |state: [R; 3], piece: usize| {
                 let share = piece as f64 / pieces;
                 let rudder = R::from(between(&track.rudder, share));
-                hull.accelerations(state, rudder, between(&track.turning, share), between(&track.moment, share))
+                let wind = track.wind.as_ref().map_or([0.0; 3], |own| own.each_ref().map(|axis| between(axis, share)));
+                hull.accelerations(state, rudder, between(&track.turning, share), between(&track.moment, share), wind)
             };
             let first = rates(state, piece);
             let ahead: [R; 3] = std::array::from_fn(|i| state[i] + first[i] * step);

@@ -1,6 +1,7 @@
 //! A record without dimension, as a hull is fitted to it.
 
 use estimation::statistics::upper_median;
+use ship::vessel::prime::in_wind;
 use trial::{Channel, Trial};
 
 use super::error::{COARSEST, FEWEST, HullFitError, LONGEST};
@@ -59,6 +60,8 @@ pub(super) struct HullTrack {
     pub turning: Vec<f64>,
     /// Yaw moment as rudder angle, rad: none of a record.
     pub moment: Vec<f64>,
+    /// What the relative wind does over Y_w, where it was recorded: surge, sway and yaw.
+    pub wind: Option<[Vec<f64>; 3]>,
     /// Speed, where it was recorded or positions tell it.
     pub speed: Option<Vec<f64>>,
     /// Surge and sway in the first row.
@@ -93,6 +96,7 @@ impl HullTrack {
             rudder: vec![rudder; 2],
             turning: vec![1.0; 2],
             moment: vec![0.0; 2],
+            wind: None,
             cuts: vec![0, 2],
             whole: [0, 2],
             start: [1.0, 0.0],
@@ -130,12 +134,20 @@ impl HullTrack {
         let drift = sway.as_ref().map_or(0.0, |sway| sway[0]);
         let surge = speed.as_ref().map_or(1.0, |speed| (speed[0] * speed[0] - drift * drift).max(0.0).sqrt());
         let turning = known.and_then(|reference| channel(Channel::PropellerRate, reference));
+        let wind = trial.relative_wind().and_then(|[speed, from]| {
+            let blown: Vec<[f64; 3]> =
+                speed.iter().zip(&from).map(|(wind, from)| in_wind(wind / speed_unit, *from)).collect();
+            let [surge, sway, yaw] =
+                [0, 1, 2].map(|axis| filled(take(&blown.iter().map(|own| own[axis]).collect::<Vec<f64>>())));
+            Some([surge?, sway?, yaw?])
+        });
         let count = time.len();
         (rows.len() >= FEWEST).then(|| Self {
             heading: take(trial.heading()),
             rudder: take(trial.rudder()),
             turning: turning.unwrap_or_else(|| vec![1.0; count]),
             moment: vec![0.0; count],
+            wind,
             cuts: cuts(&time),
             whole: [0, count],
             start: [surge, drift],

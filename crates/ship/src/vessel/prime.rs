@@ -10,16 +10,20 @@
 //! differs by side). What stands for "…" is N_rr r|r| + N_vv v|v| and Y_rr r|r| + Y_vv v|v| in the quadratic form, and
 //! terms of third order over u in the cubic one. The third form is the MMG model with its hull, propeller and rudder.
 //!
+//! Every form has Y_w, by which a measured wind acts on it.
+//!
 //! What is expected of the polynomials follows from what is expected of the MMG model.
 
 mod equations;
 mod nearest;
+mod wind;
 
 use estimation::number::Real;
 use nalgebra::{DMatrix, DVector};
 
 use self::equations::{BIAS, COMMON, CUBIC, PolynomialTerm, QUADRATIC};
-pub use self::equations::{FASTEST, PrimeHull};
+pub use self::equations::{CalmHull, FASTEST, PrimeHull};
+pub use self::wind::in_wind;
 use super::mmg::{Mmg, Parameters};
 use super::prior::{HullParticulars, HullPrior, priors};
 
@@ -91,6 +95,7 @@ pub fn meaning(key: &str) -> Option<&'static str> {
         "epsilon" | "e" | "Nd" | "aH" => "a rudder of another force: damaged, fouled, or of another size",
         "Nv" | "Nr" | "lR" => "trim, or shallow water",
         "Yv" | "Yr" | "my" => "another draught, or shallow water",
+        "Yw" => "another area above water: freeboard, deck cargo, or another draught",
         _ => return None,
     })
 }
@@ -165,7 +170,7 @@ impl HullForm {
                     ends: *ends,
                 };
             let coefficients = terms.iter().enumerate().map(coefficient).collect();
-            is_law.then_some(Self { equations, coefficients, covariance })
+            is_law.then(|| Self { equations, coefficients, covariance }.in_wind(prior))
         };
         Some([form(FormEquations::Quadratic, &QUADRATIC, quadratic)?, form(FormEquations::Cubic, &CUBIC, cubic)?])
     }
@@ -185,7 +190,17 @@ impl HullForm {
         let coefficients: Vec<HullCoefficient> = free.chain([bias]).collect();
         let variances = DVector::from_iterator(coefficients.len(), coefficients.iter().map(|own| own.sd * own.sd));
         let equations = FormEquations::Mmg(Box::new(prior.parameters.of_length_one()));
-        Self { equations, coefficients, covariance: DMatrix::from_diagonal(&variances) }
+        Self { equations, coefficients, covariance: DMatrix::from_diagonal(&variances) }.in_wind(prior)
+    }
+
+    /// The same with Y_w as its last coefficient.
+    fn in_wind(mut self, prior: &HullPrior) -> Self {
+        let PolynomialTerm { key, symbol, ends } = wind::WINDAGE;
+        let ([mean, sd], calm) = (wind::windage(&prior.parameters), self.coefficients.len());
+        self.covariance = self.covariance.resize(calm + 1, calm + 1, 0.0);
+        self.covariance[(calm, calm)] = sd * sd;
+        self.coefficients.push(HullCoefficient { key, symbol, mean, sd, ends });
+        self
     }
 
     /// Its coefficients, in the order in which their values travel.
@@ -209,18 +224,20 @@ impl HullForm {
 
     /// The hull with these values of its coefficients; `None` where they make no ship.
     pub fn with<R: Real>(&self, values: &[R]) -> Option<PrimeHull<R>> {
-        Some(match &self.equations {
-            FormEquations::Quadratic => PrimeHull::Quadratic(values.try_into().ok()?),
-            FormEquations::Cubic => PrimeHull::Cubic(values.try_into().ok()?),
+        let (&windage, values) = values.split_last()?;
+        let in_calm = match &self.equations {
+            FormEquations::Quadratic => CalmHull::Quadratic(values.try_into().ok()?),
+            FormEquations::Cubic => CalmHull::Cubic(values.try_into().ok()?),
             FormEquations::Mmg(about) => {
                 let mut parameters = about.constant::<R>();
                 let (bias, free) = values.split_last()?;
                 for (coefficient, value) in self.coefficients.iter().zip(free) {
                     *parameters.named(coefficient.key)? = *value;
                 }
-                PrimeHull::Mmg(Box::new(Mmg::at_speed(parameters, 1.0).ok()?), *bias)
+                CalmHull::Mmg(Box::new(Mmg::at_speed(parameters, 1.0).ok()?), *bias)
             }
-        })
+        };
+        Some(PrimeHull { in_calm, windage })
     }
 }
 
@@ -246,7 +263,7 @@ mod tests {
                 let means: Vec<f64> = form.coefficients().iter().map(|own| own.mean).collect();
                 let name = form.as_str();
                 assert!(form.covariance().clone().cholesky().is_some(), "{name} {ship:?}");
-                let rates = form.with(&means).map(|hull| hull.accelerations([1.0, 0.0, 0.1], 0.3, 1.0, 0.0));
+                let rates = form.with(&means).map(|hull| hull.accelerations([1.0, 0.0, 0.1], 0.3, 1.0, 0.0, [0.0; 3]));
                 assert!(name == "mmg" || rates.expect("a ship").iter().all(|rate| rate.is_finite()), "{name} {ship:?}");
             }
         }

@@ -3,7 +3,7 @@
 use estimation::number::{Dual, Real};
 use nalgebra::{Matrix3, Vector3};
 
-use super::prime::PrimeHull;
+use super::prime::{PrimeHull, in_wind};
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
 use crate::number::Tangent;
 use crate::replayable::{Pace, Replayable, ReplayedShip};
@@ -13,7 +13,8 @@ const STEPS: f64 = 25.0;
 
 /// A hull of three degrees of freedom: states ψ (rad), r (rad/s), u and v (m/s).
 ///
-/// ψ' = r; (u', v', r') are those of the [`PrimeHull`], which sees the propeller where it was recorded.
+/// ψ' = r; (u', v', r') are those of the [`PrimeHull`], which sees the propeller and the relative wind where
+/// they were recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScaledHull<R = f64> {
     /// The hull.
@@ -38,9 +39,12 @@ impl<R: Real> Dynamics<R> for ScaledHull<R> {
 
     fn rates(&self, _t: f64, state: &[R], input: &Input<R>, rate: &mut [R]) {
         let Self { length, speed, .. } = *self;
-        let turning = input.measured.propeller.zip(self.propeller).map_or(1.0, |(now, approach)| now / approach);
+        let measured = &input.measured;
+        let wind =
+            measured.wind_speed.zip(measured.wind_from).map_or([0.0; 3], |(wind, from)| in_wind(wind / speed, from));
+        let turning = measured.propeller.zip(self.propeller).map_or(1.0, |(now, approach)| now / approach);
         let prime = [state[2] / speed, state[3] / speed, state[1] * (length / speed)];
-        let [surge, sway, yaw] = self.hull.accelerations(prime, input.rudder, turning, input.disturbance);
+        let [surge, sway, yaw] = self.hull.accelerations(prime, input.rudder, turning, input.disturbance, wind);
         let unit = speed * speed / length;
         rate.copy_from_slice(&[state[1], yaw * (unit / length), surge * unit, sway * unit]);
     }
@@ -70,8 +74,8 @@ impl<R: Real> Replayable<R> for ScaledHull<R> {
         (state[0], state[1]) = (heading, yaw_rate);
     }
 
-    fn needs(&self, channel: Regressor) -> bool {
-        channel != Regressor::Wind
+    fn needs(&self, _channel: Regressor) -> bool {
+        true
     }
 
     fn pace(&self) -> Pace {
@@ -102,7 +106,7 @@ impl ScaledHull {
         let mut step = FIRST_STEP;
         for _ in 0..SETTLING {
             let [u, v, rudder] = [0, 1, 2].map(|place| Dual::variable(at[place], place, 1.0));
-            let left = hull.accelerations([u, v, Dual::from(rate)], rudder, 1.0, 0.0);
+            let left = hull.accelerations([u, v, Dual::from(rate)], rudder, 1.0, 0.0, [0.0; 3]);
             let mut matrix = Matrix3::from_fn(|row, column| -left[row].by[column]);
             matrix[(0, 0)] += step.recip();
             matrix[(1, 1)] += step.recip();
@@ -132,7 +136,7 @@ mod tests {
     use crate::integrate::RungeKutta4;
     use crate::ships::kvlcc2;
     use crate::vessel::mmg::Mmg;
-    use crate::vessel::prime::HullForm;
+    use crate::vessel::prime::{CalmHull, HullForm};
 
     fn scaled(hull: PrimeHull) -> ScaledHull {
         ScaledHull { hull, length: 320.0, speed: 7.97, propeller: None }
@@ -144,7 +148,8 @@ mod tests {
         let means: Vec<f64> = form.coefficients().iter().map(|own| own.mean).collect();
         let quadratic = form.with(&means).expect("a ship");
         let mmg = Mmg::at_speed(kvlcc2::FULL_SCALE.of_length_one(), 1.0).expect("a ship");
-        [quadratic, PrimeHull::Mmg(Box::new(mmg), 0.0)].map(scaled)
+        let mmg = PrimeHull { in_calm: CalmHull::Mmg(Box::new(mmg), 0.0), windage: 0.0 };
+        [quadratic, mmg].map(scaled)
     }
 
     /// A ship that is left to her rudder comes to the rate that this rudder is said to keep.

@@ -25,7 +25,7 @@ const fn free(key: &'static str, symbol: &'static str) -> PolynomialTerm {
     PolynomialTerm { key, symbol, ends: [f64::NEG_INFINITY, f64::INFINITY] }
 }
 
-const fn within(key: &'static str, symbol: &'static str, ends: [f64; 2]) -> PolynomialTerm {
+pub(super) const fn within(key: &'static str, symbol: &'static str, ends: [f64; 2]) -> PolynomialTerm {
     PolynomialTerm { key, symbol, ends }
 }
 
@@ -71,7 +71,16 @@ pub(super) const CUBIC: [PolynomialTerm; 7] = [
 
 /// A hull ready to be asked for its accelerations.
 #[derive(Debug, Clone, PartialEq)]
-pub enum PrimeHull<R = f64> {
+pub struct PrimeHull<R = f64> {
+    /// The hull in a calm.
+    pub in_calm: CalmHull<R>,
+    /// Y_w.
+    pub windage: R,
+}
+
+/// A hull to which no wind blows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CalmHull<R = f64> {
     /// Of second order.
     Quadratic([R; COMMON.len() + QUADRATIC.len()]),
     /// Of third order.
@@ -81,8 +90,17 @@ pub enum PrimeHull<R = f64> {
 }
 
 impl<R: Real> PrimeHull<R> {
-    /// (u', v', r') at surge, sway and yaw rate, rudder (rad), rate of the propeller over that of the approach, and a
-    /// yaw moment as rudder angle at approach speed (rad).
+    /// (u', v', r') at surge, sway and yaw rate, rudder (rad), rate of the propeller over that of the approach, a yaw
+    /// moment as rudder angle at approach speed (rad), and what the wind does ([`in_wind`](super::in_wind)).
+    #[inline]
+    pub fn accelerations(&self, state: [R; 3], rudder: R, turning: f64, disturbance: f64, wind: [f64; 3]) -> [R; 3] {
+        let calm = self.in_calm.accelerations(state, rudder, turning, disturbance);
+        std::array::from_fn(|axis| calm[axis] + self.windage * wind[axis])
+    }
+}
+
+impl<R: Real> CalmHull<R> {
+    /// The same without wind.
     #[inline]
     pub fn accelerations(&self, [u, v, r]: [R; 3], rudder: R, turning: f64, disturbance: f64) -> [R; 3] {
         let [u, v, r] = [of_ship(u, LEAST_SURGE), of_ship(v, -FASTEST), of_ship(r, -FASTEST)];
@@ -129,13 +147,14 @@ fn common<R: Real>(p: &[R], [u, v, r]: [R; 3], rudder: R, n: f64, disturbance: f
 impl PrimeHull {
     /// The same without derivatives, as yet.
     pub fn constant<R: Real>(&self) -> PrimeHull<R> {
-        match self {
-            Self::Quadratic(p) => PrimeHull::Quadratic(p.map(R::from)),
-            Self::Cubic(p) => PrimeHull::Cubic(p.map(R::from)),
-            Self::Mmg(hull, bias) => {
+        let in_calm = match &self.in_calm {
+            CalmHull::Quadratic(p) => CalmHull::Quadratic(p.map(R::from)),
+            CalmHull::Cubic(p) => CalmHull::Cubic(p.map(R::from)),
+            CalmHull::Mmg(hull, bias) => {
                 let again = Mmg::at_speed(hull.parameters().constant(), 1.0).expect("it made a ship");
-                PrimeHull::Mmg(Box::new(again), R::from(*bias))
+                CalmHull::Mmg(Box::new(again), R::from(*bias))
             }
-        }
+        };
+        PrimeHull { in_calm, windage: R::from(self.windage) }
     }
 }

@@ -15,7 +15,7 @@
 use estimation::number::{Dual, Real};
 use nalgebra::{DMatrix, DVector};
 
-use super::equations::{COMMON, CUBIC, PolynomialTerm, PrimeHull, QUADRATIC};
+use super::equations::{COMMON, CUBIC, CalmHull, PolynomialTerm, QUADRATIC};
 use crate::vessel::mmg::{Mmg, Parameters};
 use crate::vessel::prior::HullPrior;
 
@@ -52,7 +52,7 @@ type PolynomialLaw = (DVector<f64>, DMatrix<f64>);
 pub(super) fn polynomials(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
     let of_mmg = |parameters: &Parameters| {
         let hull = Mmg::at_speed(parameters.of_length_one(), 1.0).ok()?;
-        Some(DVector::from_vec(accelerations(&PrimeHull::Mmg(Box::new(hull), 0.0))))
+        Some(DVector::from_vec(accelerations(&CalmHull::Mmg(Box::new(hull), 0.0))))
     };
     let differences = prior.deviations.iter().filter_map(|[above, below]| Some(of_mmg(above)? - of_mmg(below)?));
     let differences = DMatrix::from_columns(&differences.collect::<Vec<_>>()) * (0.5 * OTHER_SHIPS);
@@ -62,8 +62,8 @@ pub(super) fn polynomials(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
 /// The same of a hull with these accelerations.
 fn laws(truth: &DVector<f64>, differences: &DMatrix<f64>) -> Option<[PolynomialLaw; 2]> {
     Some([
-        law(PrimeHull::<Dual<{ COMMON.len() + QUADRATIC.len() }>>::Quadratic, truth, differences)?,
-        law(PrimeHull::<Dual<{ COMMON.len() + CUBIC.len() }>>::Cubic, truth, differences)?,
+        law(CalmHull::<Dual<{ COMMON.len() + QUADRATIC.len() }>>::Quadratic, truth, differences)?,
+        law(CalmHull::<Dual<{ COMMON.len() + CUBIC.len() }>>::Cubic, truth, differences)?,
     ])
 }
 
@@ -78,13 +78,13 @@ fn states() -> impl Iterator<Item = ([f64; 3], f64)> {
 }
 
 /// u', v' and r' in every state.
-fn accelerations<R: Real>(hull: &PrimeHull<R>) -> Vec<R> {
+fn accelerations<R: Real>(hull: &CalmHull<R>) -> Vec<R> {
     states().flat_map(|(state, rudder)| hull.accelerations(state.map(R::from), R::from(rudder), 1.0, 0.0)).collect()
 }
 
 /// The nearest polynomial by Gauss and Newton, and how it follows differences of the accelerations.
 fn law<const N: usize>(
-    polynomial: fn([Dual<N>; N]) -> PrimeHull<Dual<N>>,
+    polynomial: fn([Dual<N>; N]) -> CalmHull<Dual<N>>,
     truth: &DVector<f64>,
     differences: &DMatrix<f64>,
 ) -> Option<PolynomialLaw> {
@@ -140,9 +140,11 @@ mod tests {
             let truth = published(ship)?;
             let own = laws(&truth, &DMatrix::zeros(truth.len(), 0)).expect("independent terms");
             let square = |form: &HullForm, (own, _): PolynomialLaw| {
-                let mean = form.coefficients().iter().map(|own| own.mean);
-                let left = own - DVector::from_iterator(form.coefficients().len(), mean);
-                let precision = form.covariance().clone().cholesky().expect("a covariance").inverse();
+                // Without Y_w, the last.
+                let count = own.len();
+                let left = own - DVector::from_fn(count, |place, _| form.coefficients()[place].mean);
+                let covariance = form.covariance().view((0, 0), (count, count)).into_owned();
+                let precision = covariance.cholesky().expect("a covariance").inverse();
                 OTHER_SHIPS * OTHER_SHIPS * left.dot(&(precision * &left)) / left.len() as f64
             };
             let squares: Vec<f64> = own.into_iter().zip(&forms).map(|(own, form)| square(form, own)).collect();
