@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter, SteeringLag};
+use ship::vessel::prime::is_of_wind;
 use ship::{Particulars, ResponseModel};
 pub use trial::noise_model::Moment;
 
@@ -204,6 +205,11 @@ impl IdentifiedShip {
         calm.noise.moment = Moment::None;
         for hull in &mut calm.hulls {
             (hull.moment.deviation_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
+            if let Some(place) = hull.coefficients.iter().position(|own| is_of_wind(&own.key)) {
+                hull.coefficients[place].value = 0.0;
+                hull.covariance.iter_mut().for_each(|row| row[place] = 0.0);
+                hull.covariance[place].fill(0.0);
+            }
         }
         for member in &mut calm.members {
             let model = member.model()?;

@@ -2,6 +2,7 @@
 
 mod changed;
 mod corners;
+mod wind;
 
 use std::collections::BTreeMap;
 
@@ -330,45 +331,6 @@ impl Trial {
     /// Rows in which the heading was recorded.
     pub fn observed_rows(&self) -> impl Iterator<Item = usize> {
         self.heading().iter().enumerate().filter(|(_, psi)| psi.is_finite()).map(|(row, _)| row)
-    }
-
-    /// Relative wind, m/s, and the angle that it comes from, clockwise from the bow, rad: as measured, else from the
-    /// true one and the speed of the ship.
-    pub fn relative_wind(&self) -> Option<[Vec<f64>; 2]> {
-        let own = [Channel::WindRelativeSpeed, Channel::WindRelativeFrom].map(|own| self.channel(own));
-        if let [Some(speed), Some(from)] = own {
-            return Some([speed.to_vec(), from.to_vec()]);
-        }
-        let [speed, from, ship] =
-            [Channel::WindTrueSpeed, Channel::WindTrueFrom, Channel::Speed].map(|own| self.channel(own));
-        let (speed, from, ship) = (speed?, from?, ship?);
-        let rows = (0..self.len()).map(|row| {
-            let (side, ahead) = (from[row] - self.heading()[row]).sin_cos();
-            let (across, ahead) = (speed[row] * side, speed[row] * ahead + ship[row]);
-            (across.hypot(ahead), across.atan2(ahead))
-        });
-        let (speed, from) = rows.unzip();
-        Some([speed, from])
-    }
-
-    /// True wind of the record as one wind: root mean square of its speed, m/s, and the mean direction that it comes
-    /// from, clockwise from north, rad. `None` without the relative wind and the speed of the ship.
-    pub fn mean_wind(&self) -> Option<[f64; 2]> {
-        let ([speed, from], ship) = (self.relative_wind()?, self.channel(Channel::Speed)?);
-        let (mut squares, mut north, mut east, mut count) = (0.0, 0.0, 0.0, 0.0);
-        for row in self.observed_rows() {
-            let (side, ahead) = from[row].sin_cos();
-            let (side, ahead) = (speed[row] * side, speed[row] * ahead - ship[row]);
-            let (sin, cos) = self.heading()[row].sin_cos();
-            if !(side + ahead).is_finite() {
-                continue;
-            }
-            squares += side * side + ahead * ahead;
-            north += ahead * cos - side * sin;
-            east += ahead * sin + side * cos;
-            count += 1.0;
-        }
-        (count > 0.0).then(|| [(squares / count).sqrt(), east.atan2(north)])
     }
 }
 

@@ -17,7 +17,7 @@ const INTRODUCTION: &str = "A ship is traced from some trials, and what she does
 is fitted to the trials that are predicted. Every figure of every trial stands beside its 90 % interval in \
 [predicted.csv](predicted.csv), a row each. KVLCC2 goes from the 7 m model of HSVA to the full-scale values of MARIN by \
 Froude; Esso Osaka from one rate of her propeller to another, and with it to another approach speed. The hulls of the trace \
-take the particulars of the sidecars. [METHODOLOGY](../../../METHODOLOGY.md) says what was looked at when hulls were \
+take the particulars of the sidecars; trials whose wind was measured are predicted in their mean wind. [METHODOLOGY](../../../METHODOLOGY.md) says what was looked at when hulls were \
 fitted: these records are not blind for it. Where the records come from says [the \
 book](../../../docs/src/howto/public-trials.md). Made by";
 

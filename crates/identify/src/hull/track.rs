@@ -1,7 +1,7 @@
 //! A record without dimension, as a hull is fitted to it.
 
 use estimation::statistics::upper_median;
-use ship::vessel::prime::in_wind;
+use ship::vessel::prime::wind_accelerations;
 use trial::{Channel, Trial};
 
 use super::error::{COARSEST, FEWEST, HullFitError, LONGEST};
@@ -136,7 +136,7 @@ impl HullTrack {
         let turning = known.and_then(|reference| channel(Channel::PropellerRate, reference));
         let wind = trial.relative_wind().and_then(|[speed, from]| {
             let blown: Vec<[f64; 3]> =
-                speed.iter().zip(&from).map(|(wind, from)| in_wind(wind / speed_unit, *from)).collect();
+                speed.iter().zip(&from).map(|(wind, from)| wind_accelerations(wind / speed_unit, *from)).collect();
             let [surge, sway, yaw] =
                 [0, 1, 2].map(|axis| filled(take(&blown.iter().map(|own| own[axis]).collect::<Vec<f64>>())));
             Some([surge?, sway?, yaw?])

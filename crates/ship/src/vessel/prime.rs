@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, DVector};
 
 use self::equations::{BIAS, COMMON, CUBIC, PolynomialTerm, QUADRATIC};
 pub use self::equations::{CalmHull, FASTEST, PrimeHull};
-pub use self::wind::in_wind;
+pub use self::wind::wind_accelerations;
 use super::mmg::{Mmg, Parameters};
 use super::prior::{HullParticulars, HullPrior, priors};
 
@@ -110,6 +110,11 @@ pub fn is_of_trial(key: &str) -> bool {
     key == BIAS.key
 }
 
+/// Whether a coefficient says what the wind does.
+pub fn is_of_wind(key: &str) -> bool {
+    key == wind::WINDAGE.key
+}
+
 /// Whether a coefficient depends on friction, which is another at another scale: resistance and wake (Reynolds).
 pub fn is_of_friction(key: &str) -> bool {
     matches!(key, "x0" | "k" | "R0" | "wP0")
@@ -170,7 +175,7 @@ impl HullForm {
                     ends: *ends,
                 };
             let coefficients = terms.iter().enumerate().map(coefficient).collect();
-            is_law.then(|| Self { equations, coefficients, covariance }.in_wind(prior))
+            is_law.then(|| Self { equations, coefficients, covariance }.with_windage(prior))
         };
         Some([form(FormEquations::Quadratic, &QUADRATIC, quadratic)?, form(FormEquations::Cubic, &CUBIC, cubic)?])
     }
@@ -190,11 +195,11 @@ impl HullForm {
         let coefficients: Vec<HullCoefficient> = free.chain([bias]).collect();
         let variances = DVector::from_iterator(coefficients.len(), coefficients.iter().map(|own| own.sd * own.sd));
         let equations = FormEquations::Mmg(Box::new(prior.parameters.of_length_one()));
-        Self { equations, coefficients, covariance: DMatrix::from_diagonal(&variances) }.in_wind(prior)
+        Self { equations, coefficients, covariance: DMatrix::from_diagonal(&variances) }.with_windage(prior)
     }
 
     /// The same with Y_w as its last coefficient.
-    fn in_wind(mut self, prior: &HullPrior) -> Self {
+    fn with_windage(mut self, prior: &HullPrior) -> Self {
         let PolynomialTerm { key, symbol, ends } = wind::WINDAGE;
         let ([mean, sd], calm) = (wind::windage(&prior.parameters), self.coefficients.len());
         self.covariance = self.covariance.resize(calm + 1, calm + 1, 0.0);

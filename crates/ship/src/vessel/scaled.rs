@@ -3,7 +3,7 @@
 use estimation::number::{Dual, Real};
 use nalgebra::{Matrix3, Vector3};
 
-use super::prime::{PrimeHull, in_wind};
+use super::prime::{PrimeHull, wind_accelerations};
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
 use crate::number::Tangent;
 use crate::replayable::{Pace, Replayable, ReplayedShip};
@@ -40,8 +40,10 @@ impl<R: Real> Dynamics<R> for ScaledHull<R> {
     fn rates(&self, _t: f64, state: &[R], input: &Input<R>, rate: &mut [R]) {
         let Self { length, speed, .. } = *self;
         let measured = &input.measured;
-        let wind =
-            measured.wind_speed.zip(measured.wind_from).map_or([0.0; 3], |(wind, from)| in_wind(wind / speed, from));
+        let wind = measured
+            .wind_speed
+            .zip(measured.wind_from)
+            .map_or([0.0; 3], |(wind, from)| wind_accelerations(wind / speed, from));
         let turning = measured.propeller.zip(self.propeller).map_or(1.0, |(now, approach)| now / approach);
         let prime = [state[2] / speed, state[3] / speed, state[1] * (length / speed)];
         let [surge, sway, yaw] = self.hull.accelerations(prime, input.rudder, turning, input.disturbance, wind);

@@ -91,7 +91,8 @@ pub enum CalmHull<R = f64> {
 
 impl<R: Real> PrimeHull<R> {
     /// (u', v', r') at surge, sway and yaw rate, rudder (rad), rate of the propeller over that of the approach, a yaw
-    /// moment as rudder angle at approach speed (rad), and what the wind does ([`in_wind`](super::in_wind)).
+    /// moment as rudder angle at approach speed (rad), and what the wind does
+    /// ([`wind_accelerations`](super::wind_accelerations)).
     #[inline]
     pub fn accelerations(&self, state: [R; 3], rudder: R, turning: f64, disturbance: f64, wind: [f64; 3]) -> [R; 3] {
         let calm = self.in_calm.accelerations(state, rudder, turning, disturbance);

@@ -44,7 +44,7 @@ pub(super) fn windage(hull: &Parameters) -> [f64; 2] {
 
 /// (u', v', r') over Y_w in a relative wind, in U₀, from an angle off the bow, rad.
 #[inline]
-pub fn in_wind(speed: f64, from: f64) -> [f64; 3] {
+pub fn wind_accelerations(speed: f64, from: f64) -> [f64; 3] {
     let off_bow = (from + PI).rem_euclid(TAU) - PI;
     let (sin, cos) = off_bow.sin_cos();
     [-AHEAD * cos, -sin, -YAW * (FRAC_PI_2 - off_bow.abs()) * sin].map(|share| speed * speed * share)
@@ -60,13 +60,13 @@ mod tests {
     #[test]
     fn wind_pushes_and_turns() {
         for (from, ahead, turning) in [(0.8, -1.0, -1.0), (2.4, 1.0, 1.0)] {
-            let [u, v, r] = in_wind(2.0, from);
+            let [u, v, r] = wind_accelerations(2.0, from);
             assert!(u * ahead > 0.0 && v < 0.0 && r * turning > 0.0, "{from}: {u} {v} {r}");
             let near = |other: [f64; 3]| other.iter().zip([u, v, r]).all(|(one, other)| (one - other).abs() < 1e-12);
-            let [ahead, side, yaw] = in_wind(2.0, -from);
-            assert!(near([ahead, -side, -yaw]) && near(in_wind(2.0, from + TAU)));
+            let [ahead, side, yaw] = wind_accelerations(2.0, -from);
+            assert!(near([ahead, -side, -yaw]) && near(wind_accelerations(2.0, from + TAU)));
         }
-        assert!(in_wind(1.0, FRAC_PI_2)[2].abs() < 1e-12);
+        assert!(wind_accelerations(1.0, FRAC_PI_2)[2].abs() < 1e-12);
     }
 
     /// KVLCC2 with the lateral area of a loaded tanker, a half of L d, lies within what is expected.
