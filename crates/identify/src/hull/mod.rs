@@ -32,6 +32,8 @@ mod track;
 mod turn;
 mod weighed;
 
+use std::f64::consts::PI;
+
 use estimation::levenberg_marquardt::{End, Rules, minimise};
 use estimation::number::Real;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -171,12 +173,16 @@ impl HullEstimate {
     }
 
     /// Variance of the heading of the replay of a record over time (s), rad²: by the covariance of the coefficients,
-    /// and by what the form has left of the records of the fit. `None` for a record that cannot be replayed.
+    /// and by what the form has left of the records of the fit. `None` for a record that cannot be replayed, and where
+    /// the standard deviation is more than half a turn, which no linear law says.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
         let track = HullTrack::of(trial, &self.reference).ok()?;
         let [time, mut variance] = variances(&self.expected, &track, self.values.as_slice(), &self.covariance)?;
         let left = self.mean_square();
         variance.iter_mut().for_each(|own| *own += left);
+        if variance.iter().any(|own| *own > PI * PI) {
+            return None;
+        }
         Polyline::new(time.into_iter().map(|t| t * track.second).collect(), variance).ok()
     }
 

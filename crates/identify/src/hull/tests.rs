@@ -15,7 +15,7 @@ use trial::{Channel, Columns, Origin, Trial};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
-use super::{ExpectedHull, HullEstimate, HullFitError, RandomMoment, fit, fit_all, members};
+use super::{ExpectedHull, HullEstimate, HullFitError, HullReference, RandomMoment, fit, fit_all, members};
 
 pub(super) const LENGTH: f64 = 7.0;
 pub(super) const SPEED: f64 = 1.2;
@@ -242,6 +242,20 @@ fn the_hulls_that_records_speak_for_are_near_them() {
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(found[0].expected.form.as_str() == "quadratic" && left.iter().all(|own| *own <= 3.0 * least), "{left:?}");
     assert!(members(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
+}
+
+/// Near rest is said of the approach at the rate of the propeller of the record.
+#[test]
+fn a_trial_at_slow_ahead_is_one() {
+    let trial = &records(|_| 0.0)[0];
+    let own = [Channel::Rudder, Channel::Heading, Channel::Speed];
+    let own = own.map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
+    let channels = own.into_iter().chain([(Channel::PropellerRate, vec![3.5; trial.len()])]).collect();
+    let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
+    let slow = Trial::new("slow", trial.origin().clone(), columns).expect("a record");
+    let slow = slow.with_particulars(trial.particulars().expect("declared"));
+    let reference = HullReference { length: LENGTH, speed: SPEED / 0.35, propeller: Some(10.0) };
+    assert!((HullTrack::of(&slow, &reference).expect("a track").start[0] - 0.35).abs() < 1e-6);
 }
 
 #[test]

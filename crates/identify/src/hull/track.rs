@@ -83,8 +83,11 @@ impl HullTrack {
         }
         let short = || HullFitError::Short(trial.name().to_owned());
         let track = Self::cut(trial, reference).ok_or_else(short)?;
-        match track.start[0] < SLOW {
-            true => Err(HullFitError::GathersWay { trial: trial.name().to_owned(), share: track.start[0] }),
+        // Of her approach at this rate of the propeller, which may be another than that of the reference.
+        let approach = trial.particulars().map_or(reference.speed, |own| own.speed);
+        let share = track.start[0] * reference.length / (track.second * approach);
+        match share < SLOW {
+            true => Err(HullFitError::GathersWay { trial: trial.name().to_owned(), share }),
             false => Ok(track),
         }
     }
