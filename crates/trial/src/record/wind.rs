@@ -27,20 +27,17 @@ impl Trial {
     /// from, clockwise from north, rad. `None` without the relative wind and the speed of the ship.
     pub fn mean_wind(&self) -> Option<[f64; 2]> {
         let ([speed, from], ship) = (self.relative_wind()?, self.channel(Channel::Speed)?);
-        let (mut squares, mut north, mut east, mut count) = (0.0, 0.0, 0.0, 0.0);
-        for row in self.observed_rows() {
+        let to_north_and_east = |row: usize| {
             let (side, ahead) = from[row].sin_cos();
             let (side, ahead) = (speed[row] * side, speed[row] * ahead - ship[row]);
             let (sin, cos) = self.heading()[row].sin_cos();
-            if !(side + ahead).is_finite() {
-                continue;
-            }
-            squares += side * side + ahead * ahead;
-            north += ahead * cos - side * sin;
-            east += ahead * sin + side * cos;
-            count += 1.0;
-        }
-        (count > 0.0).then(|| [(squares / count).sqrt(), east.atan2(north)])
+            [ahead * cos - side * sin, ahead * sin + side * cos]
+        };
+        let read = self.observed_rows().map(to_north_and_east).filter(|own| own.iter().all(|one| one.is_finite()));
+        let read: Vec<[f64; 2]> = read.collect();
+        let square = read.iter().flatten().map(|one| one * one).sum::<f64>() / read.len() as f64;
+        let [north, east] = [0, 1].map(|axis| read.iter().map(|own| own[axis]).sum::<f64>());
+        (!read.is_empty()).then(|| [square.sqrt(), east.atan2(north)])
     }
 }
 
