@@ -8,7 +8,6 @@ use ship::vessel::scaled::ScaledHull;
 use ship::{Regressor, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Wind};
 use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
-use trial::Trial;
 
 use crate::error::PredictError;
 use crate::identified_ship::{IdentifiedShip, KnownNoise, Moment, WeightedStructure};
@@ -83,7 +82,7 @@ pub struct ShipMixture {
     /// Whether its hulls follow those of the other mixture all the same, each at another loading.
     follows: bool,
     /// The wind that blows at hulls, from off the heading of the approach.
-    wind: Option<Wind>,
+    pub(crate) wind: Option<Wind>,
 }
 
 /// A ship for one trial.
@@ -203,19 +202,6 @@ impl ShipMixture {
         }
     }
 
-    /// The same ships in the mean wind of a record, where it was measured; structures know nothing of it.
-    #[must_use]
-    pub(crate) fn in_wind_of(&self, trial: &Trial) -> Self {
-        let approach = trial.observed_rows().next().map(|row| trial.heading()[row]);
-        let wind = approach.zip(trial.mean_wind()).map(|(heading, [speed, from])| Wind {
-            moment: 0.0,
-            from: from - heading,
-            speed: Some(speed),
-            gusting: None,
-        });
-        Self { wind, ..self.clone() }
-    }
-
     fn disturbances(&self, noise: &KnownNoise, has_hull: bool) -> Disturbances {
         let sd = noise.moment_sd_rudder_rad;
         let mut disturbances = Disturbances { wind: self.wind.filter(|_| has_hull), ..Disturbances::default() };
@@ -327,7 +313,6 @@ mod tests {
     use super::*;
     use crate::stored_hull::StoredHull;
     use crate::testing;
-    use trial::{Channel, Columns, Origin};
 
     /// Mean and covariance of the draws are those that are known.
     #[test]
@@ -395,24 +380,6 @@ mod tests {
         assert!((found / rate - 1.0).abs() < 0.07, "{found}");
         assert_eq!(of(known.clone(), &[UncertaintySource::InitialState]), 0.0);
         assert_eq!(of(known.in_calm().expect("known"), &UncertaintySource::ALL), 0.0);
-    }
-
-    /// A hull meets the mean wind of a record from off the course of the approach, a structure meets none, and in a calm
-    /// the wind does nothing.
-    #[test]
-    fn hulls_meet_the_wind_of_a_record() {
-        let known = IdentifiedShip { hulls: vec![testing::hull("quadratic")], ..testing::known() };
-        let wind = [(Channel::WindTrueSpeed, 9.0), (Channel::WindTrueFrom, 0.5), (Channel::Speed, 6.0)];
-        let time: Vec<f64> = (0..100).map(f64::from).collect();
-        let channels = [(Channel::Rudder, 0.1), (Channel::Heading, 0.2)].into_iter().chain(wind);
-        let channels = channels.map(|(channel, value)| (channel, vec![value; time.len()])).collect();
-        let origin = Origin::Measured { file: "made up".into(), sha256: String::new() };
-        let trial = Trial::new("blown", origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
-        let of = |known: IdentifiedShip| testing::mixture(known).in_wind_of(&trial).draw(1, &UncertaintySource::ALL);
-        let met = of(known.clone()).disturbances.wind.expect("a wind");
-        assert!((met.from - 0.3).abs() < 1e-12 && (met.speed.expect("known") - 9.0).abs() < 1e-12, "{met:?}");
-        assert_eq!(of(testing::known()).disturbances.wind, None);
-        assert_eq!(of(known.in_calm().expect("known")).hull.expect("a hull").hull.windage, 0.0);
     }
 
     /// A rudder that was logged late gives a negative dead time; no ship has one.

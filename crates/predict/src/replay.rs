@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ship::Polyline;
 use ship::angle::to_deg;
+use simulate::disturbance::Wind;
 use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
@@ -165,6 +166,19 @@ impl ShipMixture {
         }))
     }
 
+    /// The same ships in the mean wind of a record, where it was measured; structures know nothing of it.
+    fn in_wind_of(&self, trial: &Trial) -> Self {
+        let approach = trial.observed_rows().next().map(|row| trial.heading()[row]);
+        let mut ships = self.clone();
+        ships.wind = approach.zip(trial.mean_wind()).map(|(heading, [speed, from])| Wind {
+            moment: 0.0,
+            from: from - heading,
+            speed: Some(speed),
+            gusting: None,
+        });
+        ships
+    }
+
     /// Overshoots, times and period of a measured zig-zag, steered anew.
     fn zig_zag(&self, trial: &Trial, measured: &Measured, draws: usize) -> Result<ByName, PredictError> {
         let Some(steered) = SteeredZigZag::of(measured, self.first().approach_yaw_rate_rad_s) else {
@@ -238,8 +252,10 @@ fn turns(trial: &Trial, made: &[SimulatedManoeuvre], timescale: f64, current: Op
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::IdentifiedShip;
     use crate::testing;
     use ship::angle::from_deg;
+    use trial::{Channel, Columns};
 
     /// Records of ships that are drawn as the prediction draws them lie in its intervals nine times out of ten.
     #[test]
@@ -281,6 +297,24 @@ mod tests {
         let thin = thinned(&signal);
         assert!(thin.times().len() <= 8, "{:?}", thin.times());
         assert!(times.iter().all(|t| (thin.at(*t) - signal.at(*t)).abs() <= STRAIGHT));
+    }
+
+    /// A hull meets the mean wind of a record from off the course of the approach, a structure meets none, and in a
+    /// calm the wind does nothing.
+    #[test]
+    fn hulls_meet_the_wind_of_a_record() {
+        let known = IdentifiedShip { hulls: vec![testing::hull("quadratic")], ..testing::known() };
+        let wind = [(Channel::WindTrueSpeed, 9.0), (Channel::WindTrueFrom, 0.5), (Channel::Speed, 6.0)];
+        let time: Vec<f64> = (0..100).map(f64::from).collect();
+        let channels = [(Channel::Rudder, 0.1), (Channel::Heading, 0.2)].into_iter().chain(wind);
+        let channels = channels.map(|(channel, value)| (channel, vec![value; time.len()])).collect();
+        let origin = Origin::Measured { file: "made up".into(), sha256: String::new() };
+        let trial = Trial::new("blown", origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
+        let of = |known: IdentifiedShip| testing::mixture(known).in_wind_of(&trial).draw(1, &UncertaintySource::ALL);
+        let met = of(known.clone()).disturbances.wind.expect("a wind");
+        assert!((met.from - 0.3).abs() < 1e-12 && (met.speed.expect("known") - 9.0).abs() < 1e-12, "{met:?}");
+        assert_eq!(of(testing::known()).disturbances.wind, None);
+        assert_eq!(of(known.in_calm().expect("known")).hull.expect("a hull").hull.windage, 0.0);
     }
 
     #[test]
