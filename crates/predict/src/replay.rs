@@ -104,9 +104,9 @@ impl ShipMixture {
     ///
     /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those
     /// of a helm that reverses the rudder where the record did, because a rudder that is replayed knows nothing of the
-    /// heading. A hull is in the mean wind of the record, where it was measured. `current` is the one that was taken out
-    /// of the positions of the record ([`without_current`](turn::without_current)). `None` where the record has too few
-    /// headings at its beginning.
+    /// heading. A hull is in the mean wind of the record, where it was measured. `current` is the one that was taken
+    /// out of the positions of the record ([`without_current`](turn::without_current)). `None` where the record has too
+    /// few headings at its beginning.
     pub fn replay(
         &self,
         trial: &Trial,
