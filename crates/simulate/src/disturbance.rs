@@ -181,9 +181,7 @@ impl Wind {
     /// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π), for a true wind of `speed`
     /// (m/s) on a ship that makes `U` (m/s) ahead; its drift angle is left out.
     pub fn relative(&self, speed: f64, U: f64, heading: f64) -> (f64, f64) {
-        let (side, ahead) = (self.from - heading).sin_cos();
-        let (ahead, side) = (speed * ahead + U, speed * side);
-        (ahead.hypot(side), side.atan2(ahead))
+        trial::relative_wind(speed, self.from, U, heading)
     }
 }
 

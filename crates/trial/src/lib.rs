@@ -53,7 +53,7 @@ pub use file::FileError;
 pub use manoeuvre::Manoeuvre;
 pub use quantity::Quantity;
 pub use reader::{Log, ReadError, ReadRecord, read, read_with};
-pub use record::{Columns, Corner, Noise, Origin, RejectedReading, Trial, TrialError};
+pub use record::{Columns, Corner, Noise, Origin, RejectedReading, Trial, TrialError, relative_wind};
 pub use scale::{ScaleError, Scales, Scaling};
 pub use sidecar::{Sidecar, SidecarError};
 pub use writer::write_csv;

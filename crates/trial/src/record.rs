@@ -4,6 +4,8 @@ mod changed;
 mod corners;
 mod wind;
 
+pub use wind::relative_wind;
+
 use std::collections::BTreeMap;
 
 use ship::signal::SignalError;

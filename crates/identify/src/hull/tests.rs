@@ -11,7 +11,7 @@ use ship::vessel::prime::HullForm;
 use ship::vessel::prior::HullParticulars;
 use ship::vessel::scaled::ScaledHull;
 use ship::{Dynamics, Input, Measured, Motion, Particulars};
-use trial::{Channel, Columns, Origin, Trial};
+use trial::{Channel, Columns, Origin, Trial, relative_wind};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
@@ -90,6 +90,17 @@ fn a_hull_of_the_form_comes_back() {
     assert!(found.moment.deviation < from_deg(0.2), "{:?}", found.moment);
 }
 
+/// Rudder, heading and speed of a record, and channels that do not vary.
+fn beside_constants(trial: &Trial, constants: &[(Channel, f64)]) -> Trial {
+    let own = [Channel::Rudder, Channel::Heading, Channel::Speed];
+    let own = own.map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
+    let constants = constants.iter().map(|&(channel, value)| (channel, vec![value; trial.len()]));
+    let channels = own.into_iter().chain(constants).collect();
+    let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
+    let ship = trial.particulars().expect("declared");
+    Trial::new(trial.name(), trial.origin().clone(), columns).expect("a record").with_particulars(ship)
+}
+
 /// A hull in a true wind of some speed (m/s) and direction (rad).
 struct InWind(ScaledHull, [f64; 2]);
 
@@ -104,10 +115,8 @@ impl Dynamics for InWind {
 
     fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
         let Self(ship, [speed, from]) = self;
-        let (side, ahead) = (from - state[0]).sin_cos();
-        let (side, ahead) = (speed * side, speed * ahead + state[2].hypot(state[3]));
-        let (wind_speed, wind_from) = (Some(side.hypot(ahead)), Some(side.atan2(ahead)));
-        let measured = Measured { wind_speed, wind_from, ..Measured::default() };
+        let (wind, from) = relative_wind(*speed, *from, state[2].hypot(state[3]), state[0]);
+        let measured = Measured { wind_speed: Some(wind), wind_from: Some(from), ..Measured::default() };
         ship.rates(t, state, &Input { measured, ..*input }, rate);
     }
 
@@ -127,16 +136,8 @@ fn a_measured_wind_tells_how_it_acts() {
     let wind = [5.0 * SPEED, 0.7];
     let ship = InWind(hull(&TRUTH), wind);
     let blown = [[10.0, 10.0], [-20.0, 20.0]].map(|angles| record(&ship, angles, |_| 0.0));
-    let measured = blown.each_ref().map(|trial| {
-        let constant = |value: f64| vec![value; trial.len()];
-        let own = [Channel::Rudder, Channel::Heading, Channel::Speed];
-        let own = own.map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
-        let of_wind = [(Channel::WindTrueSpeed, constant(wind[0])), (Channel::WindTrueFrom, constant(wind[1]))];
-        let channels = own.into_iter().chain(of_wind).collect();
-        let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
-        let ship = trial.particulars().expect("declared");
-        Trial::new(trial.name(), trial.origin().clone(), columns).expect("a record").with_particulars(ship)
-    });
+    let of_wind = [(Channel::WindTrueSpeed, wind[0]), (Channel::WindTrueFrom, wind[1])];
+    let measured = blown.each_ref().map(|trial| beside_constants(trial, &of_wind));
     let [found, blind] = [measured, blown].map(|trials| quadratic(&trials));
     let [windage, truth] = [found.values[18], TRUTH[18]];
     assert!((windage / truth - 1.0).abs() < 0.05, "{windage}");
@@ -248,12 +249,7 @@ fn the_hulls_that_records_speak_for_are_near_them() {
 #[test]
 fn a_trial_at_slow_ahead_is_one() {
     let trial = &records(|_| 0.0)[0];
-    let own = [Channel::Rudder, Channel::Heading, Channel::Speed];
-    let own = own.map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
-    let channels = own.into_iter().chain([(Channel::PropellerRate, vec![3.5; trial.len()])]).collect();
-    let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
-    let slow = Trial::new("slow", trial.origin().clone(), columns).expect("a record");
-    let slow = slow.with_particulars(trial.particulars().expect("declared"));
+    let slow = beside_constants(trial, &[(Channel::PropellerRate, 3.5)]);
     let reference = HullReference { length: LENGTH, speed: SPEED / 0.35, propeller: Some(10.0) };
     assert!((HullTrack::of(&slow, &reference).expect("a track").start[0] - 0.35).abs() < 1e-6);
 }

@@ -3,6 +3,14 @@
 use super::Trial;
 use crate::channel::Channel;
 
+/// Relative wind, m/s, and the angle that it comes from, clockwise from the bow, rad, −π to π: of a true wind of `speed`
+/// (m/s) from `from` (rad, clockwise from north) on a ship that makes `ahead` (m/s); her drift angle is left out.
+pub fn relative_wind(speed: f64, from: f64, ahead: f64, heading: f64) -> (f64, f64) {
+    let (side, bow) = (from - heading).sin_cos();
+    let (bow, side) = (speed * bow + ahead, speed * side);
+    (bow.hypot(side), side.atan2(bow))
+}
+
 impl Trial {
     /// Relative wind, m/s, and the angle that it comes from, clockwise from the bow, rad: as measured, else from the
     /// true one and the speed of the ship.
@@ -14,11 +22,7 @@ impl Trial {
         let [speed, from, ship] =
             [Channel::WindTrueSpeed, Channel::WindTrueFrom, Channel::Speed].map(|own| self.channel(own));
         let (speed, from, ship) = (speed?, from?, ship?);
-        let rows = (0..self.len()).map(|row| {
-            let (side, ahead) = (from[row] - self.heading()[row]).sin_cos();
-            let (across, ahead) = (speed[row] * side, speed[row] * ahead + ship[row]);
-            (across.hypot(ahead), across.atan2(ahead))
-        });
+        let rows = (0..self.len()).map(|row| relative_wind(speed[row], from[row], ship[row], self.heading()[row]));
         let (speed, from) = rows.unzip();
         Some([speed, from])
     }
