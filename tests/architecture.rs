@@ -38,7 +38,7 @@ const LARGEST_ROOM: f64 = 1.0 / 6.0;
 const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
-const REACHED: Size = Size { code: 60_659, tests: 30_532, long_functions: 0, shared_types: 8, packages: 295 };
+const REACHED: Size = Size { code: 60_658, tests: 30_533, long_functions: 0, shared_types: 8, packages: 295 };
 
 /// The size of the house.
 #[derive(Debug, Default, PartialEq)]

@@ -2,9 +2,7 @@
 
 mod changed;
 mod corners;
-mod wind;
-
-pub use wind::relative_wind;
+pub(crate) mod wind;
 
 use std::collections::BTreeMap;
 

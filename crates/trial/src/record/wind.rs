@@ -3,8 +3,9 @@
 use super::Trial;
 use crate::channel::Channel;
 
-/// Relative wind, m/s, and the angle that it comes from, clockwise from the bow, rad, −π to π: of a true wind of `speed`
-/// (m/s) from `from` (rad, clockwise from north) on a ship that makes `ahead` (m/s); her drift angle is left out.
+/// Relative wind, m/s, and the angle that it comes from, clockwise from the bow, rad, −π to π: of a true wind of
+/// `speed` (m/s) from `from` (rad, clockwise from north) on a ship that makes `ahead` (m/s). Her drift angle is left
+/// out.
 pub fn relative_wind(speed: f64, from: f64, ahead: f64, heading: f64) -> (f64, f64) {
     let (side, bow) = (from - heading).sin_cos();
     let (bow, side) = (speed * bow + ahead, speed * side);
