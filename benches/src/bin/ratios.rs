@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::write(folder.join("report.md"), report)?;
         fs::write(folder.join("performance.csv"), numbers.to_csv())?;
         if let Some(figure) = figure {
-            fs::write(folder.join(format!("{}.png", FIGURE.1)), figure.draw(&Theme::column()).png()?)?;
+            fs::write(folder.join(format!("{}.png", FIGURE.1)), figure.draw(&Theme::screen()).png()?)?;
         }
     }
     Ok(())

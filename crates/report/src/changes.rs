@@ -1,8 +1,8 @@
 //! What a style changes in a finished drawing besides sizes: one colour for another, and the ends of axes.
 
-use crate::axis::PlotAxis;
+use crate::axis::Axis;
 use crate::markup::is_markup;
-use crate::paint::Paint;
+use plotters::style::RGBColor;
 
 /// Most colours that can be changed.
 pub(crate) const COLOURS: usize = 16;
@@ -10,26 +10,26 @@ pub(crate) const COLOURS: usize = 16;
 /// Colours in the place of others, and ends of axes by their titles.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Changes {
-    pub colours: [Option<(Paint, Paint)>; COLOURS],
+    pub colours: [Option<(RGBColor, RGBColor)>; COLOURS],
     pub limits: &'static [(String, [f64; 2])],
 }
 
 /// Reads `#0072B2`.
-pub(crate) fn colour(text: &str) -> Option<Paint> {
+pub(crate) fn colour(text: &str) -> Option<RGBColor> {
     let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
     let part = |at: usize| u8::from_str_radix(&digits[at..at + 2], 16).ok();
-    Some(Paint(part(0)?, part(2)?, part(4)?))
+    Some(RGBColor(part(0)?, part(2)?, part(4)?))
 }
 
 impl Changes {
     /// The colour in whose place this one stands.
-    pub(crate) fn of(&self, own: Paint) -> Paint {
+    pub(crate) fn of(&self, own: RGBColor) -> RGBColor {
         self.colours.iter().flatten().find(|(old, _)| *old == own).map_or(own, |(_, new)| *new)
     }
 
     /// Ends of the axis with a title, where they are given. A list of names stays, as does a logarithmic axis that
     /// should begin at zero or below.
-    pub(crate) fn limit(&self, axis: &mut PlotAxis, title: &str) {
+    pub(crate) fn limit(&self, axis: &mut Axis, title: &str) {
         let is_titled = |wanted: &str| wanted.chars().eq(title.chars().filter(|&c| !is_markup(c)));
         let Some((_, [lo, hi])) = self.limits.iter().find(|(wanted, _)| is_titled(wanted)) else { return };
         if axis.is_numeric() && (*lo > 0.0 || !axis.is_logarithmic()) {

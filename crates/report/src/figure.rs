@@ -105,14 +105,15 @@ impl Drawing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::changes::Changes;
-    use crate::scene::{Canvas, Layer, TextLine};
-    use crate::svg;
+    use crate::canvas::TextLine;
+    use crate::sheet::Sheet;
+    use crate::theme::Theme;
 
     fn sample() -> Drawing {
-        let mut scene = Canvas::default();
-        scene.text(Layer::Note, (10.0, 30.0), TextLine::new("ψ", 24.0));
-        Drawing::new(svg::render(&scene, 72.0, 36.0, &Changes::default()), 72.0, 36.0, 300.0)
+        let sheet = Sheet::new(&Theme::screen(), None).unwrap();
+        sheet.canvas.text((10.0, 22.0), &TextLine::new("ψ", 24.0)).unwrap();
+        let svg = sheet.canvas.svg.finish(36.0).replace("width=\"675.000pt\"", "width=\"72.000pt\"");
+        Drawing::new(svg.replace("0 0 13500 720", "0 0 1440 720"), 72.0, 36.0, 300.0)
     }
 
     #[test]

@@ -17,6 +17,9 @@ pub(crate) const FAMILY: &str = "DejaVu Sans";
 /// which the labels are measured.
 pub(crate) const FAMILY_WITH_FALLBACK: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 
+/// Distance of the lines of a text, in font sizes.
+pub(crate) const LINE: f64 = 1.15;
+
 /// Units of the font in an em.
 const UNITS_PER_EM: f64 = 2048.0;
 
@@ -39,7 +42,7 @@ pub(crate) fn database() -> Arc<Database> {
         .clone()
 }
 
-/// Width of `text` in points at `size` points. Italic is as wide as upright in this family.
+/// Width of the widest line of `text` in points at `size` points. Italic is as wide as upright in this family.
 pub(crate) fn text_width(text: &str, size: f64, bold: bool) -> f64 {
     static FONTS: OnceLock<[FontRef; 2]> = OnceLock::new();
     let fonts = FONTS.get_or_init(|| {
@@ -48,8 +51,9 @@ pub(crate) fn text_width(text: &str, size: f64, bold: bool) -> f64 {
     let font = &fonts[usize::from(bold)];
     let (glyphs, metrics) = (font.charmap(), font.glyph_metrics(Size::unscaled(), LocationRef::default()));
     let advance = |c: char| metrics.advance_width(glyphs.map(c).unwrap_or_default()).unwrap_or(0.0);
-    let visible = text.chars().filter(|c| !is_markup(*c) && !is_combining(*c));
-    visible.map(|c| f64::from(advance(c))).sum::<f64>() / UNITS_PER_EM * size
+    let visible = |c: &char| !is_markup(*c) && !is_combining(*c);
+    let width = |line: &str| line.chars().filter(visible).map(|c| f64::from(advance(c))).sum::<f64>();
+    text.split('\n').map(width).fold(0.0, f64::max) / UNITS_PER_EM * size
 }
 
 fn is_combining(c: char) -> bool {

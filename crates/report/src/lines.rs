@@ -5,19 +5,38 @@ use crate::fonts::text_width;
 /// Line spacing, in font sizes.
 pub(crate) const LEADING: f64 = 1.35;
 
+/// The lines of [`wrap`], as equal in length as they can be.
+pub(crate) fn balanced(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
+    let widest = wrap(text, size, bold, width);
+    let mut narrower = (5..20).map(|twentieths| wrap(text, size, bold, 0.05 * f64::from(twentieths) * width));
+    narrower.find(|lines| lines.len() == widest.len()).unwrap_or(widest)
+}
+
+/// The words of a text; a unit in brackets is one.
+fn words(text: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    // Not at every white space: a no-break space keeps a symbol and its value together.
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        match words.last_mut().filter(|last| last.starts_with('[') && !last.contains(']')) {
+            Some(unit) => *unit = format!("{unit} {word}"),
+            None => words.push(word.to_owned()),
+        }
+    }
+    words
+}
+
 /// Splits a text at (breaking) spaces into lines of at most `width` points; a unit in brackets and a per cent sign stay
 /// with the word before them. A longer word is broken, after a mark such as a dot where it has one.
 pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    // Not at every white space: a no-break space keeps a symbol and its value together.
-    let mut words = text.split(' ').filter(|word| !word.is_empty()).peekable();
+    let mut words = words(text).into_iter().peekable();
     while let Some(word) = words.next() {
         let unit = words.peek().filter(|next| next.starts_with(['[', '%']));
         let with_unit = unit.map(|unit| format!("{word} {unit}")).filter(|both| text_width(both, size, bold) <= width);
         if with_unit.is_some() {
             words.next();
         }
-        let word = with_unit.as_deref().unwrap_or(word);
+        let word = with_unit.as_deref().unwrap_or(&word);
         let longer = lines.last().map(|line| format!("{line} {word}"));
         match longer.filter(|line| text_width(line, size, bold) <= width) {
             Some(line) => *lines.last_mut().expect("a longer line extends one that is there") = line,
@@ -54,6 +73,9 @@ mod tests {
         assert_eq!(wrap("indivisible", 10.0, false, 1.0), ["indivisible"]);
         assert_eq!(wrap("a ship.first-order.T-s", 10.0, false, 60.0), ["a", "ship.first-", "order.T-s"]);
         assert_eq!(wrap("mmmmmm", 10.0, false, 30.0), ["mmm", "mmm"]);
-        assert!(wrap("  ", 10.0, false, 5.0).is_empty());
+        assert_eq!(wrap("moment [° rudder]", 10.0, false, 60.0), ["moment", "[° rudder]"]);
+        assert_eq!(wrap("one two three four", 10.0, false, 75.0), ["one two three", "four"]);
+        assert_eq!(balanced("one two three four", 10.0, false, 75.0), ["one two", "three four"]);
+        assert!(wrap("  ", 10.0, false, 5.0).is_empty() && balanced("", 10.0, false, 5.0).is_empty());
     }
 }

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::paint::Paint;
+pub use plotters::style::RGBColor;
 
 /// Whom a curve or a value comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -91,23 +91,23 @@ pub const SHORT_DASH: Dash = &[3.0, 1.6];
 const LONG_SHORT: Dash = &[12.0, 2.0, 3.0, 2.0];
 
 /// Text, frames and the truth.
-pub const INK: Paint = Paint(0x11, 0x11, 0x11);
+pub const INK: RGBColor = RGBColor(0x11, 0x11, 0x11);
 /// The record.
-pub const RECORD: Paint = Paint(0x77, 0x77, 0x77);
+pub const RECORD: RGBColor = RGBColor(0x77, 0x77, 0x77);
 /// What a figure shows and is not about.
-pub const QUIET: Paint = Paint(0xB0, 0xB0, 0xB0);
+pub const QUIET: RGBColor = RGBColor(0xB0, 0xB0, 0xB0);
 /// Grid lines.
-pub const GRID: Paint = Paint(0xE2, 0xE2, 0xE2);
+pub const GRID: RGBColor = RGBColor(0xE2, 0xE2, 0xE2);
 /// Background.
-pub const PAPER: Paint = Paint(0xFF, 0xFF, 0xFF);
+pub const PAPER: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
 /// The heading in a figure without methods.
-pub const HEADING: Paint = Paint(0x00, 0x72, 0xB2);
+pub const HEADING: RGBColor = RGBColor(0x00, 0x72, 0xB2);
 /// The rudder.
-pub const RUDDER: Paint = Paint(0xD5, 0x5E, 0x00);
+pub const RUDDER: RGBColor = RGBColor(0xD5, 0x5E, 0x00);
 /// A model before something was added to it.
-pub const BEFORE: Paint = Paint(0x88, 0x22, 0x55);
+pub const BEFORE: RGBColor = RGBColor(0x88, 0x22, 0x55);
 /// Dimension lines and their numbers.
-pub const DIMENSION: Paint = Paint(0x00, 0x7A, 0x5A);
+pub const DIMENSION: RGBColor = RGBColor(0x00, 0x7A, 0x5A);
 
 /// Shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -134,7 +134,7 @@ pub enum Marker {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
     /// Colour of line and marker.
-    pub colour: Paint,
+    pub colour: RGBColor,
     /// Shape at the data points.
     pub marker: Marker,
     /// Pattern of the line.
@@ -144,30 +144,30 @@ pub struct Look {
 }
 
 impl Look {
-    const fn new(colour: Paint, marker: Marker, dash: Dash) -> Self {
+    const fn new(colour: RGBColor, marker: Marker, dash: Dash) -> Self {
         Self { colour, marker, dash, hollow: false }
     }
 }
 
 const METHODS: [(&str, Look); 8] = [
-    ("fourier-published", Look::new(Paint(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
-    ("fourier-projected", Look::new(Paint(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
-    ("characteristic-points", Look::new(Paint(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
-    ("least-squares", Look::new(Paint(0x56, 0xB4, 0xE9), Marker::Square, LONG_DASH)),
-    ("integral-least-squares", Look::new(Paint(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
-    ("output-error", Look::new(Paint(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
-    ("srivc", Look::new(Paint(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
-    ("maximum-likelihood", Look::new(Paint(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
+    ("fourier-published", Look::new(RGBColor(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
+    ("fourier-projected", Look::new(RGBColor(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
+    ("characteristic-points", Look::new(RGBColor(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
+    ("least-squares", Look::new(RGBColor(0x56, 0xB4, 0xE9), Marker::Square, LONG_DASH)),
+    ("integral-least-squares", Look::new(RGBColor(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
+    ("output-error", Look::new(RGBColor(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
+    ("srivc", Look::new(RGBColor(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
+    ("maximum-likelihood", Look::new(RGBColor(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
 ];
 
 /// Colours of estimators outside, which no method has: olive, brown, magenta, grey, sand, teal (after Tol, 2021).
-const OUTSIDE: [Paint; 6] = [
-    Paint(0x99, 0x99, 0x33),
+const OUTSIDE: [RGBColor; 6] = [
+    RGBColor(0x99, 0x99, 0x33),
     BROWN,
-    Paint(0xAA, 0x44, 0x99),
-    Paint(0x5A, 0x5A, 0x5A),
-    Paint(0xDD, 0xCC, 0x77),
-    Paint(0x44, 0xAA, 0x99),
+    RGBColor(0xAA, 0x44, 0x99),
+    RGBColor(0x5A, 0x5A, 0x5A),
+    RGBColor(0xDD, 0xCC, 0x77),
+    RGBColor(0x44, 0xAA, 0x99),
 ];
 
 /// The id that estimators outside have in common.
@@ -175,7 +175,7 @@ const EXTERNAL: &str = "external";
 /// Looks after which they begin again: 6 colours, 5 markers, 4 dashes.
 const LOOKS: u64 = 60;
 
-const BROWN: Paint = Paint(0x66, 0x11, 0x00);
+const BROWN: RGBColor = RGBColor(0x66, 0x11, 0x00);
 
 /// The ids that have a look of their own, in the order figures list them.
 pub fn method_ids() -> impl Iterator<Item = &'static str> {
@@ -192,8 +192,8 @@ fn variant_look(method: &str, number: usize) -> Look {
     let colour = match method {
         EXTERNAL => OUTSIDE[number % OUTSIDE.len()],
         method => {
-            let Paint(red, green, blue) = method_look(method).colour;
-            Paint(shade(red), shade(green), shade(blue))
+            let RGBColor(red, green, blue) = method_look(method).colour;
+            RGBColor(shade(red), shade(green), shade(blue))
         }
     };
     Look { marker, dash, hollow: true, colour }
@@ -201,7 +201,7 @@ fn variant_look(method: &str, number: usize) -> Look {
 
 /// Series differ in shade, shape and dash, so that they never look like a method.
 fn series_look(number: usize) -> Look {
-    const SHADES: [Paint; 3] = [INK, Paint(0x5A, 0x5A, 0x5A), Paint(0x96, 0x96, 0x96)];
+    const SHADES: [RGBColor; 3] = [INK, RGBColor(0x5A, 0x5A, 0x5A), RGBColor(0x96, 0x96, 0x96)];
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [SOLID, SHORT_DASH, DOTTED, DASH_DOT];
     Look {
@@ -244,7 +244,7 @@ mod tests {
         let variant = |number| CurveOrigin::Variant { label: "other".into(), method: "srivc".into(), number }.look();
         let method = CurveOrigin::Method("srivc".into()).look();
         assert_eq!(variant(0).colour, method.colour);
-        assert_eq!(variant(1).colour, Paint(0x51, 0x14, 0x33));
+        assert_eq!(variant(1).colour, RGBColor(0x51, 0x14, 0x33));
         assert!(variant(0).marker != variant(1).marker && variant(0).dash != variant(1).dash);
     }
 

@@ -6,9 +6,9 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::changes::{COLOURS, Changes, colour};
-use crate::paint::Paint;
 use crate::palette::{BEFORE, CurveOrigin, DIMENSION, GRID, HEADING, INK, PAPER, RECORD, RUDDER, method_ids};
 use crate::theme::Theme;
+use plotters::style::RGBColor;
 
 /// Sizes of type that can be asked for, points.
 const FONT: [f64; 2] = [4.0, 30.0];
@@ -90,7 +90,7 @@ pub enum StyleError {
 }
 
 /// Everything that has a colour of its own.
-fn coloured() -> impl Iterator<Item = (&'static str, Paint)> {
+fn coloured() -> impl Iterator<Item = (&'static str, RGBColor)> {
     let parts = [
         ("ink", INK),
         ("paper", PAPER),
@@ -132,8 +132,8 @@ impl Style {
         })
     }
 
-    fn colours(&self) -> Result<[Option<(Paint, Paint)>; COLOURS], StyleError> {
-        let mut found: Vec<(&str, Paint, Paint)> = Vec::new();
+    fn colours(&self) -> Result<[Option<(RGBColor, RGBColor)>; COLOURS], StyleError> {
+        let mut found: Vec<(&str, RGBColor, RGBColor)> = Vec::new();
         for (name, text) in &self.colours {
             let Some((_, old)) = coloured().find(|(known, _)| known == name) else {
                 let known: Vec<&str> = coloured().map(|(known, _)| known).collect();

@@ -71,16 +71,6 @@ impl Theme {
         Ok(Self::printed(width_mm, dpi))
     }
 
-    /// For a key figure, which is read on a screen and in a column of a journal: as wide as the column, 300 dpi.
-    pub fn column() -> Self {
-        Self::printed(COLUMN_MM, 300.0)
-    }
-
-    /// The theme of the key figure among figures of this one: on a screen that of a column.
-    pub fn of_key_figure(self) -> Self {
-        if self.width == Self::screen().width { Self { changes: self.changes, ..Self::column() } } else { self }
-    }
-
     fn printed(width_mm: f64, dpi: f64) -> Self {
         let share = ((width_mm - COLUMN_MM) / (PAGE_MM - COLUMN_MM)).clamp(0.0, 1.0);
         Self {
@@ -125,8 +115,6 @@ mod tests {
         assert!(theme.tick_font >= 6.5 && theme.small_font >= 6.5);
         assert!((theme.width - 240.94).abs() < 0.01);
         assert!(theme.is_narrow() && !Theme::screen().is_narrow());
-        assert_eq!(Theme::screen().of_key_figure(), Theme::column());
-        assert_eq!(theme.of_key_figure(), theme);
     }
 
     #[test]

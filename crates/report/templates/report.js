@@ -179,7 +179,7 @@ for (const svg of document.querySelectorAll(".plot svg")) {
   const all = () => {
     if (points) return points;
     points = [];
-    for (const group of groups.filter(group => !group.classList.contains("hidden"))) {
+    for (const group of groups.filter(group => !group.matches(".hidden, [data-interval]"))) {
       for (const at of [...group.children].flatMap(corners)) {
         const panel = panels.find(panel => inside(panel, at));
         if (panel) points.push({ place: at, panel, name: group.dataset.series });

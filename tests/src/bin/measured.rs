@@ -66,7 +66,7 @@ fn run(results: &Path) -> Outcome<()> {
     let figures = [charts::before_after(&analyses), charts::amplitude(&tanker, scratch.path())?];
     let _ = writeln!(page, "{}\n{SETS_TOGETHER}\n", table.to_markdown());
     for (number, figure) in (1..).zip(&figures) {
-        fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::column()).png()?)?;
+        fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::screen()).png()?)?;
         let _ = writeln!(page, "![Figure {number}]({}.png)\n\n*Figure {number}. {}*\n", figure.stem, figure.caption);
     }
     page += &parts;

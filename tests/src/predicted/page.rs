@@ -195,7 +195,7 @@ pub fn write(forecasts: &Forecasts, results: &Path) -> Outcome<()> {
     page.say(COMMAND);
     fs::create_dir_all(results)?;
     for figure in page.drawings() {
-        fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::column()).png()?)?;
+        fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::screen()).png()?)?;
     }
     fs::write(results.join("README.md"), page.to_markdown())?;
     fs::write(results.join("predicted.csv"), rows(figures).to_csv())?;

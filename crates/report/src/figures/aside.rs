@@ -1,9 +1,9 @@
 //! Names right of the frame, in place of a key: as near to what they name as they can stand without touching.
 
 use super::panels::{Layer, Panels};
-use crate::clip::PagePoint;
-use crate::panel::Panel;
-use crate::scene::{Canvas, Layer as Height, Stroke, TextLine};
+use crate::backend::Drawn;
+use crate::canvas::{PagePoint, Stroke, TextLine};
+use crate::chart::Chart;
 use crate::theme::Theme;
 
 /// Free space between the frame and a name, in small-font sizes.
@@ -23,36 +23,35 @@ pub(super) fn room(data: &Panels, theme: &Theme) -> f64 {
 }
 
 /// Where a name points: the rightmost point of its layer in the frame; one without bound is at the edge.
-fn anchor(panel: &Panel, layer: &Layer) -> Option<PagePoint> {
+fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
     let place = |pair: (f64, f64)| match pair.1.is_infinite() {
-        true => Some((panel.across(pair.0)?, panel.rect.y)),
-        false => panel.inside(pair),
+        true => Some((chart.across(pair.0)?, chart.rect.y)),
+        false => chart.inside(pair),
     };
     layer.curve.pairs().filter_map(place).max_by(|one, other| one.0.total_cmp(&other.0))
 }
 
 /// Writes the names; returns the layers that have no point in the frame.
-pub(super) fn names<'a>(panel: &Panel, scene: &mut Canvas, theme: &Theme, layers: &'a [Layer]) -> Vec<&'a Layer> {
+pub(super) fn names<'a>(chart: &Chart, theme: &Theme, layers: &'a [Layer]) -> Drawn<Vec<&'a Layer>> {
     let (named, outside): (Vec<_>, Vec<_>) = layers
         .iter()
         .filter(|layer| layer.name.is_some())
-        .map(|layer| (layer, anchor(panel, layer)))
+        .map(|layer| (layer, anchor(chart, layer)))
         .partition(|(_, anchor)| anchor.is_some());
     let mut labels: Vec<(PagePoint, &Layer)> =
         named.into_iter().filter_map(|(layer, anchor)| Some((anchor?, layer))).collect();
     labels.sort_by(|one, other| one.0.1.total_cmp(&other.0.1));
     let line = 1.2 * theme.small_font;
     let wanted: Vec<f64> = labels.iter().map(|(at, _)| at.1).collect();
-    let middles = spread(&wanted, line, [panel.rect.y - 0.5 * line, panel.rect.bottom() + 0.5 * line]);
-    let right = panel.rect.right();
+    let middles = spread(&wanted, line, [chart.rect.y - 0.5 * line, chart.rect.bottom() + 0.5 * line]);
+    let right = chart.rect.right();
     for ((from, layer), middle) in labels.iter().zip(middles) {
         let knee = right + 0.4 * theme.small_font;
         let thin = Stroke { opacity: 0.6, ..Stroke::solid(layer.colour(), theme.thin) };
-        scene.line(Height::Grid, [*from, (right, middle), (knee, middle)], thin);
-        let text = text(layer, theme);
-        scene.text(Height::Note, (knee + 0.3 * theme.small_font, middle + text.centring()), text);
+        chart.canvas.line(&[*from, (right, middle), (knee, middle)], thin)?;
+        chart.canvas.text((knee + 0.3 * theme.small_font, middle), &text(layer, theme))?;
     }
-    outside.into_iter().map(|(layer, _)| layer).collect()
+    Ok(outside.into_iter().map(|(layer, _)| layer).collect())
 }
 
 /// Middles of labels of one height, clear of each other and as near as may be to the wanted ones, which are in order.

@@ -3,18 +3,20 @@
 //! common colour blindness.
 
 use super::panels::Division;
-use crate::axis::PlotAxis;
+use plotters::element::Rectangle;
+use plotters::style::{Color as _, RGBColor};
+
+use crate::axis::Axis;
+use crate::backend::Drawn;
+use crate::canvas::{Anchor, Rect, Stroke, TextLine};
+use crate::chart::Chart;
 use crate::figure::Drawing;
-use crate::layout::{AxisSide, Grid, NAMES, Sheet};
-use crate::legend::{KeyEntry, KeySample, outline_stroke};
+use crate::key::{KeyEntry, KeySample, outline_stroke};
 use crate::lines::wrap;
 use crate::number::{self, MISSING, significant};
-use crate::paint::Paint;
 use crate::palette::{DOTTED, GRID, HEADING, INK, PAPER, SOLID};
-use crate::panel::Panel;
-use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
+use crate::sheet::{AxisSide, Grid, NAMES, Sheet};
 use crate::theme::Theme;
-use crate::ticks::TickSteps;
 
 /// What stands in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -68,17 +70,21 @@ pub struct CellMap {
 /// Smallest type that can be read, points.
 const SMALLEST: f64 = 6.5;
 
+/// Height that the rows of a wide figure take, as a share of its width, by being higher, up to so many times as high.
+const LOWEST: f64 = 0.28;
+const SPREAD: f64 = 1.6;
+
 /// Colours of viridis at equal distances.
-const VIRIDIS: [Paint; 9] = [
-    Paint(68, 1, 84),
-    Paint(71, 44, 122),
-    Paint(59, 81, 139),
-    Paint(44, 113, 142),
-    Paint(33, 144, 141),
-    Paint(39, 173, 129),
-    Paint(92, 200, 99),
-    Paint(170, 220, 50),
-    Paint(253, 231, 37),
+const VIRIDIS: [RGBColor; 9] = [
+    RGBColor(68, 1, 84),
+    RGBColor(71, 44, 122),
+    RGBColor(59, 81, 139),
+    RGBColor(44, 113, 142),
+    RGBColor(33, 144, 141),
+    RGBColor(39, 173, 129),
+    RGBColor(92, 200, 99),
+    RGBColor(170, 220, 50),
+    RGBColor(253, 231, 37),
 ];
 
 impl CellMap {
@@ -92,11 +98,11 @@ impl CellMap {
 }
 
 /// Draws the panels in rows of as many as fit.
-pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
-    let mut sheet = Sheet::new(theme, data.title.as_deref());
+pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawn<Drawing> {
+    let mut sheet = Sheet::new(theme, data.title.as_deref())?;
     let outlines = [(Outline::Right, SOLID, "right"), (Outline::Alias, DOTTED, "mostly cannot be told from it")];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
-    sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(KeySample::Outline(dash), *name)).collect::<Vec<_>>());
+    sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(KeySample::Outline(dash), *name)).collect::<Vec<_>>())?;
     let count = data.panels.len().max(1);
     let two_lines = data.is_shares() && !theme.is_narrow() && data.all().any(|cell| bracket(cell).is_some());
     let pitch = match (data.is_shares(), theme.is_narrow()) {
@@ -107,60 +113,65 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawing {
     let lines = data.rows.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len()).max();
     let pitch = pitch.max((0.3 + 1.15 * lines.unwrap_or(1) as f64) * theme.tick_font);
     let count_of_rows = data.rows.len().max(1) as f64;
+    // Few rows are higher, where there is room.
+    let pitch =
+        if theme.is_narrow() { pitch } else { pitch.max((SPREAD * pitch).min(LOWEST * theme.width / count_of_rows)) };
     // The frame stands at the edges of the cells.
-    let rows = PlotAxis::names(data.rows.clone()).between(-0.5, count_of_rows - 0.5);
-    let column = AxisSide::new(PlotAxis::columns(data.columns.clone()), data.titles[0].clone());
+    let rows = Axis::rows(data.rows.clone(), 0.5);
+    let column = AxisSide::new(Axis::columns(data.columns.clone()), data.titles[0].clone());
     let row = (AxisSide::new(rows, data.titles[1].clone()), count_of_rows * pitch);
     let heads = data.panels.iter().map(|(head, _)| Some(KeyEntry::new(KeySample::Nothing, head.clone()?)));
     let heads = heads.collect();
     let range = Range::of(data);
-    let panels = sheet.grid(Grid { heads, ..Grid::alike(count, across(data, theme).min(count), column, row) });
-    for (panel, (_, rows)) in panels.iter().zip(&data.panels) {
-        for (y, cells) in rows.iter().enumerate() {
-            for (x, cell) in cells.iter().enumerate() {
-                draw(panel, &mut sheet.scene, theme, (x, y), (cell, &range));
-            }
-        }
+    let charts = sheet.grid(Grid { heads, ..Grid::alike(count, across(data, theme).min(count), column, row) })?;
+    for (mut chart, (_, rows)) in charts.into_iter().zip(&data.panels) {
+        let cells =
+            || rows.iter().enumerate().flat_map(|(y, row)| row.iter().enumerate().map(move |(x, own)| ((x, y), own)));
+        cells().try_for_each(|(place, cell)| shade(&mut chart, theme, place, (cell, &range)))?;
+        chart.frame(theme)?;
+        cells().try_for_each(|(place, cell)| label(&chart, theme, place, (cell, &range)))?;
     }
     if let Shades::Range(division, title) = &data.shades {
-        bar(&mut sheet, (*division, title), theme, &range);
+        bar(&mut sheet, (*division, title), theme, &range)?;
     }
     let undefined = data.all().any(|cell| cell.value.is_none()).then_some("– is not defined.");
     let small = two_lines.then_some("Small: 95 % intervals, where there is room.");
     let note: Vec<&str> = data.note.as_deref().into_iter().chain(small).chain(undefined).collect();
     if !note.is_empty() {
-        sheet.note(&note.join(" "));
+        sheet.note(&note.join(" "))?;
     }
-    sheet.finish()
+    Ok(sheet.finish())
 }
 
 /// Pieces of the bar of colours.
 const PIECES: usize = 64;
 
 /// The colours with their values, under the panels.
-fn bar(sheet: &mut Sheet, (division, title): (Division, &str), theme: &Theme, range: &Range) {
+fn bar(sheet: &mut Sheet, (division, title): (Division, &str), theme: &Theme, range: &Range) -> Drawn {
     // Also where there is no value at all.
     if range.high <= range.low {
-        return;
+        return Ok(());
     }
     let value = |along: f64| if range.is_log { 10f64.powf(along) } else { along };
+    let (low, high) = (value(range.low), value(range.high));
     let axis = match division {
-        Division::Factors => PlotAxis::log_between(value(range.low), value(range.high)),
-        _ => PlotAxis::linear(range.low, range.high, TickSteps::Decimal),
+        Division::Factors => Axis::log_covering([low, high]).between(low, high),
+        _ => Axis::linear(low, high, Division::Decimal),
     };
     let strip = (0.25 * theme.width, 0.5 * theme.width);
-    let row = (AxisSide::new(PlotAxis::names(Vec::new()), ""), 0.9 * theme.small_font);
-    let panels = sheet.grid_within(Grid::new(vec![AxisSide::new(axis, title)], vec![row]), strip);
-    let Some(panel) = panels.first() else { return };
-    let (top, bottom) = (panel.rect.y, panel.rect.bottom());
-    for piece in 0..PIECES {
-        let at = |share: f64| panel.rect.x + share * panel.rect.w;
+    let row = (AxisSide::new(Axis::rows(Vec::new(), 0.5), ""), 0.9 * theme.small_font);
+    let charts = sheet.grid_within(Grid::new(vec![AxisSide::new(axis, title)], vec![row]), strip)?;
+    let piece = |number: usize| {
+        let at = |share: f64| value(range.low + share / PIECES as f64 * (range.high - range.low));
         // Each lies over the end of the one before: edges side by side would let the paper through.
-        let (left, right) = (at(piece as f64 / PIECES as f64), panel.rect.right());
-        let along = range.low + (piece as f64 + 0.5) / PIECES as f64 * (range.high - range.low);
-        let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
-        sheet.scene.fill(Layer::Data, corners, range.colour(value(along)).0, 1.0);
+        let corners = [(at(number as f64), -0.5), (high, 0.5)];
+        Rectangle::new(corners, range.colour(at(number as f64 + 0.5)).0.filled())
+    };
+    for mut chart in charts {
+        chart.context.draw_series((0..PIECES).map(piece))?;
+        chart.frame(theme)?;
     }
+    Ok(())
 }
 
 /// Panels side by side: three, or as many as leave room for the numbers in the cells.
@@ -208,7 +219,7 @@ impl Range {
     }
 
     /// Colour of a value and how dense it is; the lowest for a zero on an axis of equal factors.
-    fn colour(&self, value: f64) -> (Paint, f64) {
+    fn colour(&self, value: f64) -> (RGBColor, f64) {
         if self.is_shares {
             let share = (value / 100.0).clamp(0.0, 1.0);
             return (HEADING, if share > 0.0 { 0.1 + 0.5 * share } else { 0.0 });
@@ -219,7 +230,7 @@ impl Range {
         let below = (place.floor() as usize).min(VIRIDIS.len() - 2);
         let (one, other) = (VIRIDIS[below], VIRIDIS[below + 1]);
         let mix = |a: u8, b: u8| (f64::from(a) + (place - below as f64) * (f64::from(b) - f64::from(a))).round() as u8;
-        (Paint(mix(one.0, other.0), mix(one.1, other.1), mix(one.2, other.2)), 1.0)
+        (RGBColor(mix(one.0, other.0), mix(one.1, other.1), mix(one.2, other.2)), 1.0)
     }
 }
 
@@ -229,29 +240,35 @@ fn bracket(cell: &MapCell) -> Option<String> {
     Some(format!("{low:.0}–{high:.0}"))
 }
 
-fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (x, y): (usize, usize), (cell, range): (&MapCell, &Range)) {
-    let corner = |dx: f64, dy: f64| panel.place((x as f64 + dx, y as f64 + dy));
-    let (Some((left, top)), Some((right, bottom))) = (corner(-0.5, -0.5), corner(0.5, 0.5)) else { return };
-    let corners =
-        |by: f64| [(left + by, top + by), (right - by, top + by), (right - by, bottom - by), (left + by, bottom - by)];
+/// Colour and outline of a cell.
+fn shade(chart: &mut Chart, theme: &Theme, (x, y): (usize, usize), (cell, range): (&MapCell, &Range)) -> Drawn {
+    let (x, y) = (x as f64, y as f64);
     let (colour, opacity) = cell.value.map_or((GRID, 1.0), |value| range.colour(value));
     if opacity > 0.0 {
-        scene.fill(Layer::Grid, corners(0.0), colour, opacity);
+        let corners = [(x - 0.5, y - 0.5), (x + 0.5, y + 0.5)];
+        chart.context.draw_series([Rectangle::new(corners, colour.mix(opacity).filled())])?;
     }
     if range.is_shares {
         let hair = Stroke::solid(GRID, theme.thin);
-        scene.line(Layer::Data, [(left, bottom), (right, bottom)], hair);
-        scene.line(Layer::Data, [(right, top), (right, bottom)], hair);
+        chart.line(None, [(x - 0.5, y + 0.5), (x + 0.5, y + 0.5), (x + 0.5, y - 0.5)], hair)?;
     }
+    Ok(())
+}
+
+/// The numbers in a cell, and its outline over the hairs of its neighbours.
+fn label(chart: &Chart, theme: &Theme, (x, y): (usize, usize), (cell, range): (&MapCell, &Range)) -> Drawn {
+    let corner = |side: f64| chart.place((x as f64 + side, y as f64 + side));
+    let (Some((left, top)), Some((right, bottom))) = (corner(-0.5), corner(0.5)) else { return Ok(()) };
     if let Some(outline) = cell.outline {
         let stroke = outline_stroke(if outline == Outline::Right { SOLID } else { DOTTED }, theme);
-        let [a, b, c, d] = corners(0.5 * stroke.width);
-        scene.line(Layer::Frame, [a, b, c, d, a, b], stroke);
+        let inset = 0.5 * stroke.width;
+        let [w, h] = [right - left, bottom - top].map(|side| side - stroke.width);
+        chart.canvas.outline(Rect { x: left + inset, y: top + inset, w, h }, stroke)?;
     }
+    let (RGBColor(r, g, b), opacity) = cell.value.map_or((GRID, 1.0), |value| range.colour(value));
     if range.is_shares && opacity == 0.0 {
-        return;
+        return Ok(());
     }
-    let Paint(r, g, b) = colour;
     // Relative luminance (ITU-R BT.709) over white paper decides whether black or white can be read.
     let luminance = (0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)) / 255.0;
     let ink = if 1.0 - opacity * (1.0 - luminance) > 0.5 { INK } else { PAPER };
@@ -265,15 +282,14 @@ fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (x, y): (usize, usize)
     let value = number(value, theme.small_font);
     let middle = (0.5 * (left + right), 0.5 * (top + bottom));
     if value.width() > (right - left).abs() - if range.is_shares { 2.8 * theme.line } else { 0.0 } {
-        return;
+        return Ok(());
     }
     let interval = bracket(cell).map(|text| number(text, (0.8 * theme.small_font).max(SMALLEST)));
-    let up = match interval.filter(|text| text.width() < 0.96 * (right - left) && !theme.is_narrow()) {
+    match interval.filter(|text| text.width() < 0.96 * (right - left) && !theme.is_narrow()) {
         Some(interval) => {
-            scene.text(Layer::Note, (middle.0, middle.1 + 0.9 * theme.small_font), interval);
-            -0.1 * theme.small_font
+            chart.canvas.text((middle.0, middle.1 - 0.46 * theme.small_font), &value)?;
+            chart.canvas.text((middle.0, middle.1 + 0.6 * theme.small_font), &interval)
         }
-        None => value.centring(),
-    };
-    scene.text(Layer::Note, (middle.0, middle.1 + up), value);
+        None => chart.canvas.text(middle, &value),
+    }
 }

@@ -1,9 +1,8 @@
 //! A panel in which a metre is as long on one axis as on the other: tracks seen from above.
 
 use super::panels::{Layer, Stack};
-use crate::axis::{self, PlotAxis};
-use crate::layout::{AxisSide, Grid, Sheet, fitting_step};
-use crate::ticks::TickSteps;
+use crate::axis::{self, Axis, Division};
+use crate::sheet::{AxisSide, Grid, Sheet, column_axis};
 
 /// Free space around the tracks, as a share of the longer side.
 const MARGIN: f64 = 0.05;
@@ -50,7 +49,7 @@ pub(super) fn fitted(sheet: &Sheet, stack: &Stack) -> (Grid, f64, bool) {
     let ([east, north], cut) = ranges(layers);
     let around = |(lo, hi): (f64, f64), length: f64| {
         let (middle, half) = ((lo + hi) / 2.0, length / 2.0);
-        PlotAxis::linear(middle - half, middle + half, TickSteps::Decimal)
+        Axis::linear(middle - half, middle + half, Division::Decimal)
     };
     let title = |ruler: Option<&super::Ruler>| ruler.map_or_else(String::new, |own| own.title.clone());
     let titles = [title(stack.x.first()), title(stack.rows.first().map(|row| &row.y))];
@@ -65,12 +64,12 @@ pub(super) fn fitted(sheet: &Sheet, stack: &Stack) -> (Grid, f64, bool) {
         let scale = (wide / width).max(high / height);
         let (across, up) = (around(east, scale * width), around(north, scale * height));
         // The grid is of squares.
-        let (across, up) = match fitting_step(&across, width, theme) {
+        let (across, up) = match column_axis(&across, width, theme).pitch() {
             Some(step) => (across.stepped(step), up.stepped(step)),
             None => (across, up),
         };
         let row = (AxisSide::new(up, titles[1].clone()), height);
-        (Grid::stack(AxisSide::new(across, titles[0].clone()), vec![row]), width)
+        (Grid::new(vec![AxisSide::new(across, titles[0].clone())], vec![row]), width)
     };
     // Longer labels of the vertical axis take from the width, which changes the axis and may change the labels.
     let mut left = 0.0;

@@ -2,19 +2,20 @@
 
 use super::panels::{Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Ruler, Stack};
 use super::reach::{Extents, INTERVALS, robust};
-use super::shared::{ACROSS_PAD, PAD, asides, record, shaded, zero_line, zero_upright};
+use super::shared::{ACROSS_PAD, PAD, asides, record, zero_stroke};
 use super::{aside, equal};
-use crate::clip::{self, PagePoint};
+use plotters::element::ErrorBar;
+use plotters::style::{Color as _, RGBColor};
+
+use crate::backend::{Drawn, Group, units};
+use crate::canvas::{Anchor, Stroke, TextLine, at, hull, marker};
+use crate::chart::Chart;
 use crate::curve::PlotCurve;
-use crate::dimension::Dimensions;
 use crate::figure::Drawing;
-use crate::layout::{AxisSide, Grid, Sheet};
-use crate::legend::{KeyEntry, KeySample};
+use crate::key::{KeyEntry, KeySample};
 use crate::number::significant;
-use crate::paint::Paint;
-use crate::palette::{DASHED, INK, Look, SHORT_DASH};
-use crate::panel::Panel;
-use crate::scene::{Anchor, Canvas, Layer as Height, Stroke, TextLine};
+use crate::palette::{DASHED, INK, SHORT_DASH};
+use crate::sheet::{AxisSide, Grid, Sheet};
 use crate::theme::Theme;
 
 /// What is said under a figure of what it does not show.
@@ -42,14 +43,35 @@ fn narrowed(data: &Panels) -> Panels {
     data
 }
 
-/// Draws the stacks below each other, half ones in two columns unless the figure is narrow.
-pub(super) fn panels(data: &Panels, theme: &Theme) -> Drawing {
-    if theme.is_narrow() { drawn(&narrowed(data), theme) } else { drawn(data, theme) }
+/// Largest height of all panels of a wide figure, as a share of its width, and the least share of its height that a
+/// panel keeps.
+const WIDE: [f64; 2] = [0.52, 0.62];
+
+/// The figure as it fits a screen: wider than high.
+fn lowered(data: &Panels) -> Panels {
+    let height = |stack: &Stack| {
+        let rows = stack.across.map_or(1, |across| stack.panels.len().div_ceil(across.max(1)));
+        stack.rows.iter().map(|row| row.height).sum::<f64>() * rows as f64
+    };
+    let rows = data.stacks.chunk_by(|one, other| one.is_half && other.is_half);
+    let all: f64 = rows
+        .flat_map(|row| row.chunks(if row[0].is_half { 2 } else { 1 }))
+        .map(|side_by_side| side_by_side.iter().filter(|stack| !stack.equal).map(height).fold(0.0, f64::max))
+        .sum();
+    let mut data = data.clone();
+    let share = (WIDE[0] / all).clamp(WIDE[1], 1.0);
+    data.stacks.iter_mut().flat_map(|stack| &mut stack.rows).for_each(|row| row.height *= share);
+    data
 }
 
-fn drawn(data: &Panels, theme: &Theme) -> Drawing {
-    let mut sheet = Sheet::new(theme, data.title.as_deref());
-    sheet.legend(&entries(data, theme));
+/// Draws the stacks below each other, half ones in two columns unless the figure is narrow.
+pub(super) fn panels(data: &Panels, theme: &Theme) -> Drawn<Drawing> {
+    if theme.is_narrow() { drawn(&narrowed(data), theme) } else { drawn(&lowered(data), theme) }
+}
+
+fn drawn(data: &Panels, theme: &Theme) -> Drawn<Drawing> {
+    let mut sheet = Sheet::new(theme, data.title.as_deref())?;
+    sheet.legend(&entries(data, theme))?;
     let mut outside = Unshown::default();
     // Panels of the whole width stand below each other to the point.
     let whole = data.stacks.iter().filter(|stack| !stack.is_half && !stack.equal);
@@ -64,7 +86,7 @@ fn drawn(data: &Panels, theme: &Theme) -> Drawing {
             for (column, stack) in side_by_side.iter().enumerate() {
                 sheet.rewind(top);
                 let margin = if stack.is_half { 0.0 } else { left };
-                draw(&mut sheet, data, stack, (column as f64 * (part + gap), part, margin), &mut outside);
+                draw(&mut sheet, data, stack, (column as f64 * (part + gap), part, margin), &mut outside)?;
                 lowest = lowest.max(sheet.height());
             }
             sheet.rewind(lowest);
@@ -72,9 +94,9 @@ fn drawn(data: &Panels, theme: &Theme) -> Drawing {
     }
     let remarks = remarks(data, &outside);
     if !remarks.is_empty() {
-        sheet.note(&remarks.join(" "));
+        sheet.note(&remarks.join(" "))?;
     }
-    sheet.finish()
+    Ok(sheet.finish())
 }
 
 fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
@@ -200,7 +222,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
 }
 
 /// Draws a stack into a strip of the page: its left edge, its width and its least left margin.
-fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64), outside: &mut Unshown) {
+fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64), outside: &mut Unshown) -> Drawn {
     let theme = sheet.theme;
     let (mut grid, mut cut) = grid(stack, &theme);
     let (mut from, mut width, margin) = strip;
@@ -220,25 +242,28 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     grid.left = Some(margin);
     let count = columns(stack, &theme);
     let mut dots = 0;
-    for (index, (place, panel)) in sheet.grid_within(grid, (from, width)).iter().zip(&stack.panels).enumerate() {
+    let mut charts = sheet.grid_within(grid, (from, width))?;
+    for (index, (chart, panel)) in charts.iter_mut().zip(&stack.panels).enumerate() {
         let row = &stack.rows[if stack.across.is_some() { 0 } else { index / count }];
-        background(place, &mut sheet.scene, &theme, stack, row);
-        stack
-            .marks
-            .iter()
-            .for_each(|mark| place.vertical(&mut sheet.scene, Height::Grid, mark.at, mark_stroke(&theme)));
-        for layer in &panel.layers {
-            dots += draw_layer(sheet, place, layer, &theme, outside);
+        background(chart, &theme, stack, row)?;
+        // What is an area lies under what is a line.
+        let is_band = |layer: &&Layer| matches!(layer.kind, LayerKind::Band(..));
+        let (bands, others): (Vec<&Layer>, Vec<&Layer>) = panel.layers.iter().partition(is_band);
+        for layer in bands.into_iter().chain(others) {
+            dots += draw_layer(chart, layer, &theme, outside)?;
         }
+        chart.frame(&theme)?;
+        panel.layers.iter().try_for_each(|layer| draw_words(chart, layer, &theme))?;
         if stack.across.is_some() {
-            corner(place, &mut sheet.scene, &theme, panel);
+            corner(chart, &theme, panel)?;
         }
         if data.names_aside && (index + 1).is_multiple_of(count) {
-            let names = aside::names(place, &mut sheet.scene, &theme, &panel.layers);
+            let names = aside::names(chart, &theme, &panel.layers)?;
             outside.names.extend(names.into_iter().map(|layer| named(layer, stack, row)));
         }
     }
     outside.dots = outside.dots.max(dots);
+    Ok(())
 }
 
 /// A name with the numbers of its point.
@@ -253,155 +278,183 @@ fn named(layer: &Layer, stack: &Stack, row: &PanelRow) -> String {
 }
 
 /// What lies under the layers.
-fn background(place: &Panel, scene: &mut Canvas, theme: &Theme, stack: &Stack, row: &PanelRow) {
+fn background(chart: &mut Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Drawn {
     if row.zero {
-        zero_line(place, scene, theme);
+        chart.horizontal(0.0, zero_stroke(theme))?;
     }
     if stack.zero {
-        zero_upright(place, scene, theme);
+        chart.vertical(None, 0.0, zero_stroke(theme))?;
     }
     for level in &row.levels {
-        place.horizontal(scene, Height::Grid, *level, Stroke::solid(INK, theme.thin).dashed(DASHED));
+        chart.horizontal(*level, Stroke::solid(INK, theme.thin).dashed(DASHED))?;
     }
     if let Some(reference) = &row.reference {
-        reference.horizontal(place, scene, theme);
+        reference.horizontal(chart, theme)?;
     }
+    stack.marks.iter().try_for_each(|mark| chart.vertical(None, mark.at, mark_stroke(theme)))
 }
 
 /// What a small multiple says of what it does not show: how many of its dots lie outside.
-fn corner(place: &Panel, scene: &mut Canvas, theme: &Theme, panel: &LayeredPanel) {
-    let Some(layer) = panel.layers.first() else { return };
-    let rect = place.rect;
-    let outside = || layer.curve.finite().filter(|pair| place.inside(*pair).is_none());
-    if matches!(layer.kind, LayerKind::Cloud(_)) {
-        let note = match (layer.curve.finite().count(), outside().count()) {
-            (0, _) => String::from("no estimate"),
-            (_, 0) => return,
-            (_, count) => format!("{count} beyond the axes"),
-        };
-        let text = TextLine::new(note, theme.small_font).anchor(Anchor::End);
-        let at = (rect.right() - 0.4 * theme.small_font, rect.bottom() - 0.5 * theme.small_font);
-        scene.text_on_ground(Height::Note, at, text);
-    }
+fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Drawn {
+    let Some(layer) = panel.layers.first().filter(|layer| matches!(layer.kind, LayerKind::Cloud(_))) else {
+        return Ok(());
+    };
+    let outside = layer.curve.finite().filter(|pair| chart.inside(*pair).is_none()).count();
+    let note = match (layer.curve.finite().count(), outside) {
+        (0, _) => String::from("no estimate"),
+        (_, 0) => return Ok(()),
+        (_, count) => format!("{count} beyond the axes"),
+    };
+    let text = TextLine::new(note, theme.small_font).anchor(Anchor::End);
+    let place = (chart.rect.right() - 0.4 * theme.small_font, chart.rect.bottom() - 0.9 * theme.small_font);
+    chart.canvas.text_on_ground(place, &text)
 }
 
-/// Draws a layer; tells how many dots lie beyond the panel.
-fn draw_layer(sheet: &mut Sheet, place: &Panel, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> usize {
-    let scene = &mut sheet.scene;
+/// Draws a layer; returns how many dots lie beyond the panel.
+fn draw_layer(chart: &mut Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> Drawn<usize> {
+    let name = layer.name.as_deref();
     match &layer.kind {
-        LayerKind::Line(pen) => place.line(scene, layer.curve.pairs(), pen.stroke(theme)),
-        LayerKind::Band(other, colour, opacity) => shaded(place, scene, [&layer.curve, other], *colour, *opacity),
-        LayerKind::Record => record(place, scene, theme, &layer.curve, 1.4 * theme.dot),
+        LayerKind::Line(pen) => chart.line(name, layer.curve.pairs(), pen.stroke(theme))?,
+        LayerKind::Band(other, colour, opacity) => chart.band(name, [&layer.curve, other], *colour, *opacity)?,
+        LayerKind::Record => record(chart, theme, name, &layer.curve)?,
         LayerKind::Dots(colour) => {
-            place.dots(scene, layer.curve.finite(), 0.75 * theme.dot, *colour);
-            return edges(place, &layer.curve, scene, 1.2 * theme.marker, *colour);
+            chart.dots(name, layer.curve.finite(), 0.75 * theme.dot, colour.mix(1.0))?;
+            return edges(chart, &layer.curve, 1.2 * theme.marker, *colour);
         }
-        LayerKind::Cloud(colour) => {
-            for at in layer.curve.finite().filter_map(|pair| place.inside(pair)) {
-                scene.disc(Height::Data, at, 0.75 * theme.dot, *colour, 0.45);
-            }
-        }
-        LayerKind::Marks(marks) => draw_marks(place, scene, theme, (&layer.curve, marks), outside),
-        LayerKind::Words(colour, is_above, words) => {
-            let right = 1.2 * theme.marker;
-            let (right, down, anchor) = match is_above {
-                true => (right, -theme.marker, Anchor::Start),
-                false => (-right, theme.marker + 0.7 * theme.small_font, Anchor::End),
-            };
-            for (pair, words) in layer.curve.pairs().zip(words) {
-                let Some((x, y)) = place.inside(pair) else { continue };
-                let text = TextLine::new(words.as_str(), theme.small_font).colour(*colour).anchor(anchor);
-                scene.text_on_ground(Height::Note, (x + right, y + down), text);
-            }
-        }
+        LayerKind::Cloud(colour) => chart.dots(name, layer.curve.finite(), 0.75 * theme.dot, colour.mix(0.45))?,
+        LayerKind::Marks(marks) => draw_marks(chart, theme, layer, marks, outside)?,
         LayerKind::Ships(colour, headings) => {
             for (pair, heading) in layer.curve.pairs().zip(headings) {
                 let (sine, cosine) = heading.to_radians().sin_cos();
-                if let Some(at) = place.inside(pair) {
-                    scene.hull(Height::Data, at, (sine, -cosine), 1.6 * theme.small_font, *colour);
+                if let Some(place) = chart.inside(pair).filter(|_| heading.is_finite()) {
+                    let ship = hull(at(place), (sine, -cosine), 1.6 * theme.small_font, *colour);
+                    chart.canvas.elements(ship)?;
                 }
             }
         }
+        LayerKind::Words(..) => {}
     }
-    0
+    Ok(0)
+}
+
+/// Writes the words of a layer beside its points.
+fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Drawn {
+    let LayerKind::Words(colour, is_above, words) = &layer.kind else { return Ok(()) };
+    let right = 1.2 * theme.marker;
+    let (right, down, anchor) = match is_above {
+        true => (right, -theme.marker - 0.36 * theme.small_font, Anchor::Start),
+        false => (-right, theme.marker + 0.34 * theme.small_font, Anchor::End),
+    };
+    for (pair, words) in layer.curve.pairs().zip(words) {
+        let Some((x, y)) = chart.inside(pair) else { continue };
+        let text = TextLine::new(words.as_str(), theme.small_font).colour(*colour).anchor(anchor);
+        chart.canvas.text_on_ground((x + right, y + down), &text)?;
+    }
+    Ok(())
 }
 
 /// Marks points above and below a panel by small arrows at its edge, and counts them.
-fn edges(place: &Panel, curve: &PlotCurve, scene: &mut Canvas, size: f64, colour: Paint) -> usize {
-    let (top, bottom) = (place.rect.y, place.rect.bottom());
+fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> Drawn<usize> {
+    let rect = chart.rect;
     let mut count = 0;
-    for (x, y) in curve.finite().filter_map(|pair| place.place(pair)) {
+    for (x, y) in curve.finite().filter_map(|pair| chart.place(pair)) {
         let (tip, back) = match y {
-            y if y < top => (top, top + size),
-            y if y > bottom => (bottom, bottom - size),
+            y if y < rect.y => (rect.y, rect.y + size),
+            y if y > rect.bottom() => (rect.bottom(), rect.bottom() - size),
             _ => continue,
         };
-        let x = x.clamp(place.rect.x, place.rect.right());
-        scene.fill(Height::Data, [(x, tip), (x - 0.5 * size, back), (x + 0.5 * size, back)], colour, 1.0);
+        let x = x.clamp(rect.x, rect.right());
+        chart.canvas.fill(&[(x, tip), (x - 0.5 * size, back), (x + 0.5 * size, back)], colour, 1.0)?;
         count += 1;
     }
-    count
+    Ok(count)
+}
+
+/// A mark of a layer.
+struct Mark {
+    /// Place across the page, which may stand beside that of its value.
+    x: f64,
+    /// Height on the page, at the edge where the value lies beyond.
+    y: f64,
+    is_beyond: bool,
+}
+
+/// The interval of a mark.
+struct Bar {
+    /// Place across the page.
+    x: f64,
+    ends: [f64; 2],
+    marked: f64,
 }
 
 /// Marks with their intervals, and the line that joins them.
-fn draw_marks(place: &Panel, scene: &mut Canvas, theme: &Theme, own: (&PlotCurve, &Marks), outside: &mut Unshown) {
-    let (curve, Marks { look, intervals, joined, apart }) = own;
-    let mut across: Vec<Option<f64>> = curve.x.iter().map(|x| place.across(*x)).collect();
+fn draw_marks(chart: &mut Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> Drawn {
+    let (name, curve) = (layer.name.as_deref(), &layer.curve);
+    let Marks { look, intervals, joined, apart } = marks;
+    let mut across: Vec<Option<f64>> = curve.x.iter().map(|x| chart.across(*x)).collect();
     if *apart {
         let moved = asides(&across, 2.0 * theme.marker);
         let is_far = |(own, moved): (&Option<f64>, &Option<f64>)| own.zip(*moved).is_some_and(|(a, b)| a != b);
         outside.apart |= across.iter().zip(&moved).any(is_far);
         across = moved;
     }
-    let (top, bottom) = (place.rect.y, place.rect.bottom());
+    let rect = chart.rect;
     let stroke = Stroke::solid(look.colour, joined.map_or(0.8, |pen| 0.7 * pen.width) * theme.line);
     let size = if joined.is_some() { 0.9 } else { 1.0 };
-    let mut line: Vec<Option<PagePoint>> = Vec::new();
-    let mut marks: Vec<(PagePoint, bool)> = Vec::new();
-    for (row, (x, &y)) in across.iter().zip(&curve.y).enumerate() {
+    let mut line: Vec<(f64, f64)> = Vec::new();
+    let mut drawn: Vec<Mark> = Vec::new();
+    let mut bars = Vec::new();
+    let gap = (f64::NAN, f64::NAN);
+    for (row, (x, &value)) in across.iter().zip(&curve.y).enumerate() {
         // A value without bound, or none at all.
-        let up = if y.is_infinite() { Some(y * -1e9) } else { place.up(y) };
-        let Some((x, up)) = x.zip(up).filter(|(x, _)| *x >= place.rect.x && *x <= place.rect.right()) else {
-            line.push(None);
+        let up = if value.is_infinite() { Some(value * -1e9) } else { chart.up(value) };
+        let Some((x, up)) = x.zip(up).filter(|(x, _)| *x >= rect.x - 0.1 && *x <= rect.right() + 0.1) else {
+            line.push(gap);
             continue;
         };
-        let is_beyond = up < top || up > bottom;
-        let at = (x, up.clamp(top, bottom));
+        let is_beyond = up < rect.y - 0.1 || up > rect.bottom() + 0.1;
         // The line does not run along the edge, nor from zero to the first positive value of a broken axis.
-        let was_beyond = marks.last().is_some_and(|(_, beyond)| *beyond);
-        line.extend((is_beyond && was_beyond).then_some(None));
-        line.push(Some(at));
-        line.extend((curve.x[row] == 0.0 && place.x.break_at().is_some()).then_some(None));
-        if let Some([low, high]) = intervals.get(row).copied().flatten().filter(|_| !is_beyond || *apart) {
-            interval(place, scene, x, [low, high], (0.7 * theme.marker, stroke));
+        let was_beyond = drawn.last().is_some_and(|mark| mark.is_beyond);
+        line.extend((is_beyond && was_beyond).then_some(gap));
+        line.push((curve.x[row], value.clamp(-f64::MAX, f64::MAX)));
+        line.extend((curve.x[row] == 0.0 && chart.x.break_at().is_some()).then_some(gap));
+        if let Some(ends) = intervals.get(row).copied().flatten().filter(|_| !is_beyond || *apart) {
+            bars.push(Bar { x, ends: [ends[0].min(ends[1]), ends[0].max(ends[1])], marked: value });
         }
-        marks.push((at, is_beyond));
+        drawn.push(Mark { x, y: up.clamp(rect.y, rect.bottom()), is_beyond });
     }
     if let Some(pen) = joined {
-        clip::clip(line, &place.rect).into_iter().for_each(|part| scene.line(Height::Data, part, pen.stroke(theme)));
+        chart.line(name, line, pen.stroke(theme))?;
     }
-    for (at, is_beyond) in marks {
-        if is_beyond {
-            let direction = if at.1 <= top { -1.0 } else { 1.0 };
-            Dimensions::head(scene, at, (0.0, direction), 0.7 * theme.small_font, look.colour);
-            outside.marks |= joined.is_none();
-        } else {
-            scene.marker(Height::Data, at, size * theme.marker, &Look { ..*look });
-        }
+    draw_bars(chart, name, &bars, stroke, theme)?;
+    chart.canvas.svg.begin(Group::named(name));
+    for Mark { x, y, .. } in drawn.iter().filter(|mark| !mark.is_beyond) {
+        chart.canvas.elements(marker(at((*x, *y)), size * theme.marker, look))?;
     }
+    chart.canvas.svg.end();
+    for Mark { x, y, .. } in drawn.iter().filter(|mark| mark.is_beyond) {
+        let direction = if *y <= rect.y { -1.0 } else { 1.0 };
+        chart.canvas.head((*x, *y), (0.0, direction), 0.7 * theme.small_font, look.colour)?;
+        outside.marks |= joined.is_none();
+    }
+    Ok(())
 }
 
-/// A vertical bar with caps; an end beyond the frame (or at zero on a logarithmic axis) is cut, without cap.
-fn interval(panel: &Panel, scene: &mut Canvas, across: f64, [lo, hi]: [f64; 2], (cap, stroke): (f64, Stroke)) {
-    let rect = panel.rect;
-    let high = panel.up(lo.max(hi)).unwrap_or(f64::NEG_INFINITY);
-    let low = panel.up(lo.min(hi)).unwrap_or(f64::INFINITY);
-    let (top, bottom) = (high.max(rect.y), low.min(rect.bottom()));
-    if top > bottom {
-        return;
-    }
-    scene.line(Height::Data, [(across, top), (across, bottom)], stroke);
-    for y in [low, high].into_iter().filter(|y| rect.contains((across, *y))) {
-        scene.line(Height::Data, [(across - cap, y), (across + cap, y)], stroke);
-    }
+/// Vertical intervals with caps at places across the page; an end beyond the frame is cut, without cap.
+fn draw_bars(chart: &mut Chart, name: Option<&str>, bars: &[Bar], stroke: Stroke, theme: &Theme) -> Drawn {
+    let cap = units(theme.marker).max(2) as u32;
+    let [_, top, _, bottom] = chart.bounds();
+    let far = bottom - top;
+    let place = |value: f64, beyond: i32| {
+        chart.up(value.clamp(-f64::MAX, f64::MAX)).map_or(beyond, |y| units(y).clamp(top - far, bottom + far))
+    };
+    let bar = |Bar { x, ends: [low, high], marked }: &Bar| {
+        let [low, marked, high] = [place(*low, bottom + far), place(*marked, top - far), place(*high, top - far)];
+        ErrorBar::new_vertical(units(*x), low, marked, high, stroke.style(), cap)
+    };
+    let bars: Vec<_> = bars.iter().filter(|bar| bar.ends.iter().all(|end| !end.is_nan())).map(bar).collect();
+    chart.canvas.svg.begin(Group { is_interval: true, clip: Some(chart.bounds()), ..Group::named(name) });
+    bars.iter().try_for_each(|bar| chart.canvas.area.draw(bar))?;
+    chart.canvas.svg.end();
+    Ok(())
 }

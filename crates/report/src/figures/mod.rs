@@ -43,12 +43,13 @@ pub enum Plot {
 impl Plot {
     /// Draws it.
     pub fn draw(&self, theme: &Theme) -> Drawing {
-        match self {
+        let drawn = match self {
             Self::Panels(data) => layers::panels(data, theme),
             Self::Rows(data) => rows::rows(data, theme),
             Self::Cells(data) => cells::cells(data, theme),
             Self::ZigZag(data) => zigzag_trial::zigzag_trial(data, theme),
-        }
+        };
+        drawn.expect("the backend writes into memory, which does not fail")
     }
 
     /// Titles of its axes of numbers, without italics: what a style gives limits by.

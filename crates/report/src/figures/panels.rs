@@ -4,31 +4,17 @@
 
 use super::reach::{AxisReach, Extents};
 use super::shared::{Reference95, record_sample};
-use crate::axis::PlotAxis;
-use crate::curve::PlotCurve;
-use crate::legend::KeySample;
-use crate::markup::symbol;
-use crate::paint::Paint;
-use crate::palette::{CurveOrigin, Dash, HEADING, Look, SOLID};
-use crate::scene::Stroke;
-use crate::theme::Theme;
-use crate::ticks::TickSteps;
+pub use crate::axis::Division;
 
-/// How an axis is divided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Division {
-    /// Equal steps of 1, 2, 2.5 or 5 times a power of ten.
-    #[default]
-    Decimal,
-    /// Degrees.
-    Angle,
-    /// Seconds and minutes, without free space at the ends.
-    Time,
-    /// Equal factors; a zero has a place of its own beyond a break, negative values are left out.
-    Factors,
-    /// From 0 to 100 %, whatever the data.
-    Percent,
-}
+use plotters::style::RGBColor;
+
+use crate::axis::Axis;
+use crate::canvas::Stroke;
+use crate::curve::PlotCurve;
+use crate::key::KeySample;
+use crate::markup::symbol;
+use crate::palette::{CurveOrigin, Dash, HEADING, Look, SOLID};
+use crate::theme::Theme;
 
 /// An axis: its title with the unit, how it is divided and how far it goes.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -83,17 +69,15 @@ impl Ruler {
     }
 
     /// The axis over some data with free space at the ends; and whether something is cut.
-    pub(super) fn axis(&self, data: &Extents, pad: f64) -> (PlotAxis, bool) {
-        let steps = match self.division {
-            Division::Factors => return (PlotAxis::log_covering(data.positive()), false),
-            Division::Percent => return (PlotAxis::linear(-3.0, 103.0, TickSteps::Decimal), false),
-            Division::Time => TickSteps::Time,
-            Division::Angle => TickSteps::Angle,
-            Division::Decimal => TickSteps::Decimal,
-        };
+    pub(super) fn axis(&self, data: &Extents, pad: f64) -> (Axis, bool) {
+        match self.division {
+            Division::Factors => return (Axis::log_covering(data.positive()), false),
+            Division::Percent => return (Axis::linear(-3.0, 103.0, Division::Percent), false),
+            _ => {}
+        }
         let pad = if self.division == Division::Time { 0.0 } else { pad };
         let (ends, is_cut) = data.ends(self.reach);
-        (PlotAxis::covering(ends.into_iter().flat_map(|(lo, hi)| [lo, hi]), pad, steps), is_cut)
+        (Axis::covering(ends.into_iter().flat_map(|(lo, hi)| [lo, hi]), pad, self.division), is_cut)
     }
 }
 
@@ -101,7 +85,7 @@ impl Ruler {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pen {
     /// Colour.
-    pub colour: Paint,
+    pub colour: RGBColor,
     /// In usual widths.
     pub width: f64,
     /// Dashes.
@@ -112,7 +96,7 @@ pub struct Pen {
 
 impl Pen {
     /// A solid line.
-    pub const fn new(colour: Paint) -> Self {
+    pub const fn new(colour: RGBColor) -> Self {
         Self { colour, width: 1.0, dash: SOLID, opacity: 1.0 }
     }
 
@@ -156,19 +140,19 @@ pub enum LayerKind {
     /// A line through them.
     Line(Pen),
     /// The area between them and another curve, in a colour and as dense as is said.
-    Band(PlotCurve, Paint, f64),
+    Band(PlotCurve, RGBColor, f64),
     /// A record: dots, or a wide line where it is dense.
     Record,
     /// Small dots. Single ones far from all others do not set the axis: an arrow at its edge stands for them.
-    Dots(Paint),
+    Dots(RGBColor),
     /// Pale dots that set no axis; those outside are counted in the corner of the panel.
-    Cloud(Paint),
+    Cloud(RGBColor),
     /// Marks with intervals. A value without bound is an arrow at the edge.
     Marks(Marks),
     /// Ships seen from above, with these headings in degrees.
-    Ships(Paint, Vec<f64>),
+    Ships(RGBColor, Vec<f64>),
     /// Words beside the points, above them at their right, or below them at their left.
-    Words(Paint, bool, Vec<String>),
+    Words(RGBColor, bool, Vec<String>),
 }
 
 /// One thing in a panel.
@@ -197,7 +181,7 @@ impl Layer {
     }
 
     /// The area between two curves.
-    pub fn band(name: impl Into<String>, [lower, upper]: [PlotCurve; 2], colour: Paint, opacity: f64) -> Self {
+    pub fn band(name: impl Into<String>, [lower, upper]: [PlotCurve; 2], colour: RGBColor, opacity: f64) -> Self {
         Self::new(name, lower, LayerKind::Band(upper, colour, opacity))
     }
 
@@ -234,7 +218,7 @@ impl Layer {
         [&self.curve].into_iter().chain(other)
     }
 
-    pub(super) fn colour(&self) -> Paint {
+    pub(super) fn colour(&self) -> RGBColor {
         match &self.kind {
             LayerKind::Line(pen) => pen.colour,
             LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,

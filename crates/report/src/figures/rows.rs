@@ -2,18 +2,17 @@
 
 use super::panels::{Pen, Ruler};
 use super::reach::{Extents, INTERVALS};
-use super::shared::{Reference95, zero_upright};
-use crate::axis::PlotAxis;
-use crate::clip::{PagePoint, Rect};
-use crate::dimension::Dimensions;
+use super::shared::{Reference95, zero_stroke};
+use crate::axis::{Axis, Division};
+use crate::backend::Drawn;
+use crate::canvas::{Anchor, Stroke, TextLine};
+use crate::chart::Chart;
 use crate::figure::Drawing;
-use crate::layout::{AxisSide, Grid, NAMES, Sheet};
-use crate::legend::{KeyEntry, KeySample};
+use crate::key::{KeyEntry, KeySample};
 use crate::lines::wrap;
 use crate::number::significant;
-use crate::palette::{GRID, HEADING, INK, Look, PAPER, RECORD};
-use crate::panel::Panel;
-use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
+use crate::palette::{CurveOrigin, GRID, HEADING, INK, Look, RECORD};
+use crate::sheet::{AxisSide, Grid, NAMES, Sheet};
 use crate::theme::Theme;
 
 /// What stands in a row.
@@ -188,19 +187,22 @@ fn thick_stroke(theme: &Theme) -> Stroke {
 /// Rows that may stand twice below each other.
 const FEW: usize = 8;
 
+/// Largest height of the rows of a wide figure, as a share of its width: more rows come nearer to each other, down to so
+/// many sizes of type.
+const HIGHEST: f64 = 0.6;
+const LEAST_PITCH: f64 = 1.5;
+/// Height that few rows take, as a share of the width, by standing farther apart, up to so many times as far.
+const LOWEST: f64 = 0.25;
+const SPREAD: f64 = 1.8;
+
 /// Draws the columns side by side, in a narrow figure above each other, or two by two where they have many rows. What
 /// reaches beyond an axis is cut and marked.
-pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
-    let mut sheet = Sheet::new(theme, data.title.as_deref());
-    sheet.legend(&entries(data, theme));
-    let items = || data.columns.iter().flat_map(|column| &column.rows);
-    let lines = data.names.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len());
-    let stacked = items().map(|row| row.iter().filter(|item| item.is_stacked()).count()).max().unwrap_or(0);
-    let is_wide = items().flatten().any(|item| matches!(item.kind, RowKind::Violin(..)));
-    let heights = [0.95 + 1.15 * lines.max().unwrap_or(1).max(1) as f64, 0.62 * stacked as f64 + 1.1];
-    let pitch = heights[0].max(heights[1]).max(if is_wide { 2.6 } else { 0.0 }) * theme.tick_font;
+pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawn<Drawing> {
+    let mut sheet = Sheet::new(theme, data.title.as_deref())?;
+    sheet.legend(&entries(data, theme))?;
+    let pitch = pitch(data, theme);
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
-    let row = (AxisSide::new(PlotAxis::names(data.names.clone()), data.of.clone()), height);
+    let row = (AxisSide::new(Axis::rows(data.names.clone(), 0.6), data.of.clone()), height);
     let sides: Vec<AxisSide> =
         data.columns.iter().map(|column| AxisSide::new(axis(column), column.x.title.clone())).collect();
     let across = match theme.is_narrow() {
@@ -208,19 +210,38 @@ pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawing {
         true => 2,
         false => sides.len().max(1),
     };
-    let panels: Vec<Panel> =
-        sides.chunks(across).flat_map(|part| sheet.grid(Grid::new(part.to_vec(), vec![row.clone()]))).collect();
+    let mut charts = Vec::new();
+    for part in sides.chunks(across) {
+        charts.extend(sheet.grid(Grid::new(part.to_vec(), vec![row.clone()]))?);
+    }
     let mut beyond = false;
-    for (panel, column) in panels.iter().zip(&data.columns) {
-        beyond |= draw(panel, &mut sheet.scene, theme, (column, pitch));
+    for (chart, column) in charts.iter_mut().zip(&data.columns) {
+        beyond |= draw(chart, theme, (column, pitch))?;
     }
     let is_said = data.note.as_ref().is_some_and(|note| note.contains("Arrows"));
     let arrows = (beyond && !is_said).then_some("Arrows: beyond the axis.");
     let note: Vec<&str> = data.note.as_deref().into_iter().chain(arrows).collect();
     if !note.is_empty() {
-        sheet.note(&note.join(" "));
+        sheet.note(&note.join(" "))?;
     }
-    sheet.finish()
+    Ok(sheet.finish())
+}
+
+/// Distance of the rows, points.
+fn pitch(data: &NamedRows, theme: &Theme) -> f64 {
+    let items = || data.columns.iter().flat_map(|column| &column.rows);
+    let lines = data.names.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len());
+    let lines = lines.max().unwrap_or(1).max(1);
+    let stacked = items().map(|row| row.iter().filter(|item| item.is_stacked()).count()).max().unwrap_or(0);
+    let is_high = items().flatten().any(|item| matches!(item.kind, RowKind::Violin(..)));
+    let stacked = 0.62 * stacked as f64 + 1.1;
+    let usual = (0.95 + 1.15 * lines as f64).max(stacked).max(if is_high { 2.6 } else { 0.0 }) * theme.tick_font;
+    let least = (0.35 + 1.15 * lines as f64).max(stacked - 0.3).max(LEAST_PITCH) * theme.tick_font;
+    let share = |height: f64| height * theme.width / data.names.len().max(1) as f64;
+    match theme.is_narrow() {
+        true => usual,
+        false => usual.min(share(HIGHEST)).max(least.min(usual)).max((SPREAD * usual).min(share(LOWEST))),
+    }
 }
 
 fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
@@ -237,7 +258,7 @@ fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
     entries
 }
 
-fn axis(column: &RowsColumn) -> PlotAxis {
+fn axis(column: &RowsColumn) -> Axis {
     let mut data = Extents::default();
     column.rows.iter().flatten().for_each(|item| item.enter(&mut data));
     data.fixed.extend(column.lines.iter().map(|(.., value)| *value).chain(column.reached.iter().copied()));
@@ -253,158 +274,144 @@ fn axis(column: &RowsColumn) -> PlotAxis {
     let (lo, hi) = data.ends(column.x.reach).0.map_or((0.0, 1.0), |(lo, hi)| (lo.min(0.0), hi.max(0.0)));
     let pad = 0.05 * (hi - lo);
     let (lo, hi) = (if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi });
-    let steps = crate::ticks::TickSteps::Decimal;
     if lo == hi {
-        return PlotAxis::linear(lo, 1.0, steps);
+        return Axis::linear(lo, 1.0, Division::Decimal);
     }
-    PlotAxis::linear(lo, hi + column.room * (hi - lo), steps).told_until(hi)
+    Axis::linear(lo, hi + column.room * (hi - lo), Division::Decimal).labelled_until(hi)
 }
 
-/// Draws the rows of a column; tells whether something lies beyond its axis.
-fn draw(panel: &Panel, scene: &mut Canvas, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> bool {
-    if column.zero {
-        zero_upright(panel, scene, theme);
-    }
-    for (_, pen, value) in &column.lines {
-        panel.vertical(scene, Layer::Data, *value, pen.stroke(theme));
-    }
-    let mut beyond = false;
+/// Draws the rows of a column; returns whether something lies beyond its axis.
+fn draw(chart: &mut Chart, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> Drawn<bool> {
     let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..) | RowKind::Heading);
     let is_estimated = column.rows.iter().flatten().all(is_estimate);
+    let stacked = |items: &[RowItem]| items.iter().filter(|item| item.is_stacked()).count();
+    // A ground under every other row keeps several marks of a row together.
+    let (left, right) = chart.x.ends();
+    let grounds = column.rows.iter().enumerate().filter(|(row, items)| stacked(items) > 1 && !row.is_multiple_of(2));
+    for (middle, _) in grounds.map(|(row, items)| (row as f64, items)) {
+        let corners = [(left, middle - 0.5), (right, middle - 0.5), (right, middle + 0.5), (left, middle + 0.5)];
+        chart.area(None, corners.to_vec(), GRID, 0.45)?;
+    }
+    if let Some(reference) = &column.reference {
+        reference.vertical(chart, theme)?;
+    }
+    if column.zero {
+        chart.vertical(None, 0.0, zero_stroke(theme))?;
+    }
+    for (name, pen, value) in &column.lines {
+        chart.vertical(Some(name), *value, pen.stroke(theme))?;
+    }
+    let mut beyond = false;
     for (row, items) in column.rows.iter().enumerate() {
-        let Some(middle) = panel.up(row as f64) else { continue };
-        let stacked = items.iter().filter(|item| item.is_stacked()).count();
-        // A ground under every other row keeps several marks of a row together.
-        if stacked > 1 && !row.is_multiple_of(2) {
-            let ([left, right], [top, bottom]) =
-                ([panel.rect.x, panel.rect.right()], [-0.5, 0.5].map(|s| middle + s * pitch));
-            scene.fill(Layer::Grid, [(left, top), (right, top), (right, bottom), (left, bottom)], GRID, 0.45);
-        }
+        let stacked = stacked(items);
         let mut line = -0.5 * (stacked + 1) as f64;
         for item in items {
             line += if item.is_stacked() { 1.0 } else { 0.0 };
             let aside = match item.place {
-                RowPlace::Aside(share) => share * pitch,
-                RowPlace::Below | RowPlace::Beside => line * 0.62 * theme.tick_font,
+                RowPlace::Aside(share) => share,
+                RowPlace::Below | RowPlace::Beside => line * 0.62 * theme.tick_font / pitch,
             };
-            beyond |= draw_item(panel, scene, theme, (item, middle + aside, pitch), stacked < 2);
+            beyond |= draw_item(chart, theme, (item, row as f64 + aside), stacked < 2)?;
+        }
+    }
+    chart.frame(theme)?;
+    for (row, items) in column.rows.iter().enumerate() {
+        let middle = chart.up(row as f64).unwrap_or(f64::NAN);
+        let end = chart.rect.right() - 0.4 * theme.small_font;
+        for words in items.iter().filter_map(|item| item.text.as_ref()) {
+            let text = TextLine::new(words.as_str(), theme.small_font).anchor(Anchor::End);
+            chart.canvas.text_on_ground((end, middle), &text)?;
         }
         if is_estimated && !items.iter().any(RowItem::is_value) {
             let text = TextLine::new("no estimate", theme.small_font).anchor(Anchor::Middle).colour(RECORD);
-            let place = (panel.rect.x + panel.rect.w / 2.0, middle + text.centring());
-            scene.text_on_ground(Layer::Note, place, text);
+            chart.canvas.text_on_ground((chart.rect.x + chart.rect.w / 2.0, middle), &text)?;
         }
     }
-    // Over the ground of the rows.
-    if let Some(reference) = &column.reference {
-        reference.vertical(panel, scene, theme);
-    }
-    beyond
+    Ok(beyond)
 }
 
-/// Draws an item at its height; tells whether it lies beyond the axis.
-fn draw_item(
-    panel: &Panel,
-    scene: &mut Canvas,
-    theme: &Theme,
-    (item, y, pitch): (&RowItem, f64, f64),
-    is_alone: bool,
-) -> bool {
-    let head = 0.6 * theme.small_font;
-    if let Some(words) = &item.text {
-        let text = TextLine::new(words.as_str(), theme.small_font).anchor(Anchor::End);
-        let place = (panel.rect.right() - 0.4 * theme.small_font, y + text.centring());
-        scene.text_on_ground(Layer::Note, place, text);
-    }
+/// Draws an item at its height, in rows; returns whether it lies beyond the axis.
+fn draw_item(chart: &mut Chart, theme: &Theme, (item, y): (&RowItem, f64), is_alone: bool) -> Drawn<bool> {
+    let sizes = (theme.marker, 0.6 * theme.small_font);
+    let name = item.name.as_deref();
     match &item.kind {
         RowKind::Mark(look, value, interval) => {
             let stroke = Stroke::solid(look.colour, theme.line);
-            let mut beyond = false;
-            if let Some(ends) = interval {
-                let cap = 0.9 * theme.marker;
-                // Ends behind the mark itself would give it another shape.
-                let middle = panel.across(*value);
-                let is_apart = |x: &f64| middle.is_none_or(|middle| (x - middle).abs() > 1.1 * theme.marker);
-                let inside = |x: &f64| panel.rect.contains((*x, y)) && is_apart(x);
-                for x in ends.iter().filter_map(|end| panel.across(*end)).filter(inside).filter(|_| is_alone) {
-                    scene.line(Layer::Data, [(x, y - cap), (x, y + cap)], stroke);
-                }
-                beyond = panel.bar(scene, y, *ends, stroke, head);
-            }
-            mark(panel, scene, theme, (look, *value, y), is_alone) || beyond
+            let capped = is_alone.then_some(*value);
+            let beyond = match interval {
+                Some(ends) => chart.bar(name, (y, *ends, capped), stroke, sizes)?,
+                None => false,
+            };
+            Ok(mark(chart, theme, (name, look, *value, y), is_alone)? || beyond)
         }
-        RowKind::Thin(ends) => panel.bar(scene, y, *ends, Stroke::solid(HEADING, theme.line), head),
-        RowKind::Thick(ends) => panel.bar(scene, y, *ends, thick_stroke(theme), head),
-        RowKind::Bar(look, value) => panel.bar(scene, y, [0.0, *value], bar_stroke(look, theme), head),
+        RowKind::Thin(ends) => chart.bar(name, (y, *ends, None), Stroke::solid(HEADING, theme.line), sizes),
+        RowKind::Thick(ends) => chart.bar(name, (y, *ends, None), thick_stroke(theme), sizes),
+        RowKind::Bar(look, value) => chart.bar(name, (y, [0.0, *value], None), bar_stroke(look, theme), sizes),
         RowKind::Limit(value) => {
-            if let Some(x) = panel.across(*value).filter(|x| panel.rect.contains((*x, y))) {
-                let half = 0.42 * pitch;
-                scene.line(Layer::Data, [(x, y - half), (x, y + half)], limit_stroke(theme));
-            }
-            false
+            chart.line(name, [(*value, y - 0.42), (*value, y + 0.42)], limit_stroke(theme))?;
+            Ok(false)
         }
-        RowKind::Heading => false,
-        RowKind::Violin(look, density, quantiles) => {
-            violin(panel, scene, theme, (look, density, quantiles), (y, pitch))
-        }
+        RowKind::Heading => Ok(false),
+        RowKind::Violin(look, density, quantiles) => violin(chart, theme, (name, look, y), density, quantiles),
     }
 }
 
-/// A mark, or an arrow with its number where it lies beyond the axis; tells whether it does.
-fn mark(panel: &Panel, scene: &mut Canvas, theme: &Theme, (look, value, y): (&Look, f64, f64), is_alone: bool) -> bool {
-    let Rect { x: left, .. } = panel.rect;
-    let x = panel.across(value.clamp(-f64::MAX, f64::MAX)).filter(|x| !x.is_nan());
-    let Some(x) = x else { return false };
-    if panel.rect.contains((x, y)) {
-        scene.marker(Layer::Data, (x, y), theme.marker, look);
-        return false;
+/// A mark, or an arrow with its number where it lies beyond the axis; returns whether it does.
+fn mark(
+    chart: &mut Chart,
+    theme: &Theme,
+    (name, look, value, y): (Option<&str>, &Look, f64, f64),
+    is_alone: bool,
+) -> Drawn<bool> {
+    let bounded = value.clamp(-f64::MAX, f64::MAX);
+    let Some((x, height)) = chart.place((bounded, y)) else { return Ok(false) };
+    if chart.rect.contains((x, height)) {
+        chart.markers(name, &[(value, y)], theme.marker, look)?;
+        return Ok(false);
     }
-    let (edge, direction) = if x > left { (panel.rect.right(), 1.0) } else { (left, -1.0) };
+    let (edge, direction) = if x > chart.rect.x { (chart.rect.right(), 1.0) } else { (chart.rect.x, -1.0) };
     let size = 0.65 * theme.small_font;
     let tip = edge - direction * 0.2 * theme.small_font;
-    Dimensions::head(scene, (tip, y), (direction, 0.0), size, look.colour);
+    chart.canvas.head((tip, height), (direction, 0.0), size, look.colour)?;
     if is_alone && value.abs() < f64::MAX {
-        let label = TextLine::new(significant(value, 3), theme.small_font);
-        let place = (tip - direction * 1.3 * size, y + label.centring());
         let anchor = if direction > 0.0 { Anchor::End } else { Anchor::Start };
-        scene.text_on_ground(Layer::Note, place, label.anchor(anchor));
+        let label = TextLine::new(significant(value, 3), theme.small_font).anchor(anchor);
+        chart.canvas.text_on_ground((tip - direction * 1.3 * size, height), &label)?;
     }
-    true
+    Ok(true)
 }
 
-/// Half the height of a violin, as a share of its row.
+/// Half the height of a violin, in rows.
 const HALF: f64 = 0.42;
 
 /// Density, box of the quartiles, whiskers and median, the ends of the whiskers as numbers beside what is too narrow to
-/// be seen; tells whether it reaches beyond the axis.
+/// be seen; returns whether it reaches beyond the axis.
 fn violin(
-    panel: &Panel,
-    scene: &mut Canvas,
+    chart: &mut Chart,
     theme: &Theme,
-    (look, density, q): (&Look, &[(f64, f64)], &[f64; 5]),
-    (y, pitch): (f64, f64),
-) -> bool {
-    let rect = panel.rect;
-    let places: Option<Vec<f64>> = q.iter().map(|value| panel.across(*value)).collect();
-    let Some(places) = places else { return false };
-    let inside = |x: f64| x.clamp(rect.x, rect.right());
+    (name, look, y): (Option<&str>, &Look, f64),
+    density: &[(f64, f64)],
+    q: &[f64; 5],
+) -> Drawn<bool> {
+    let rect = chart.rect;
+    let places: Option<Vec<f64>> = q.iter().map(|value| chart.across(*value)).collect();
+    let Some(places) = places else { return Ok(false) };
     let highest = density.iter().map(|(_, height)| *height).fold(0.0, f64::max);
-    let edge = |side: f64| -> Vec<PagePoint> {
-        let place = |&(value, height): &(f64, f64)| {
-            let x = panel.across(value).filter(|x| *x >= rect.x && *x <= rect.right())?;
-            Some((x, y + side * HALF * pitch * height / highest))
-        };
-        density.iter().filter_map(place).collect()
+    let edge = |side: f64| -> Vec<(f64, f64)> {
+        let drawn = density.iter().filter(|(value, height)| chart.x.has_place(*value) && height.is_finite());
+        drawn.map(|(value, height)| (*value, y + side * HALF * height / highest)).collect()
     };
     if highest > 0.0 {
         let outline = [edge(-1.0), edge(1.0).into_iter().rev().collect()].concat();
-        scene.fill(Layer::Data, outline, look.colour, 0.28);
+        chart.area(name, outline, look.colour, 0.28)?;
     }
-    let beyond = panel.bar(scene, y, [q[0], q[4]], Stroke::solid(look.colour, theme.line), 0.6 * theme.small_font);
-    let (left, right, half) = (inside(places[1]), inside(places[3]), 0.13 * pitch);
-    let corners = [(left, y - half), (right, y - half), (right, y + half), (left, y + half)];
-    scene.fill(Layer::Data, corners, look.colour, 0.85);
-    if rect.contains((places[2], y)) {
+    let sizes = (theme.marker, 0.6 * theme.small_font);
+    let beyond = chart.bar(name, (y, [q[0], q[4]], None), Stroke::solid(look.colour, theme.line), sizes)?;
+    let half = 0.13;
+    let corners = [(q[1], y - half), (q[3], y - half), (q[3], y + half), (q[1], y + half)];
+    chart.area(name, corners.to_vec(), look.colour, 0.85)?;
+    let height = chart.up(y).unwrap_or(f64::NAN);
+    if rect.contains((places[2], height)) {
         if places[4] - places[0] < 2.0 * theme.marker {
             let ends = format!("{} to {}", significant(q[0], 2), significant(q[4], 2));
             let text = TextLine::new(ends, theme.small_font);
@@ -413,11 +420,10 @@ fn violin(
                 true => (Anchor::Start, places[2] + apart),
                 false => (Anchor::End, places[2] - apart),
             };
-            let place = (x, y + text.centring());
-            scene.text_on_ground(Layer::Note, place, text.anchor(anchor));
+            chart.canvas.text_on_ground((x, height), &text.anchor(anchor))?;
         }
-        scene.disc(Layer::Data, (places[2], y), 0.55 * theme.marker + 0.4 * theme.thin, INK, 1.0);
-        scene.disc(Layer::Data, (places[2], y), 0.55 * theme.marker, PAPER, 1.0);
+        let median = Look { colour: INK, hollow: true, ..CurveOrigin::Truth.look() };
+        chart.markers(None, &[(q[2], y)], 0.6 * theme.marker, &median)?;
     }
-    beyond
+    Ok(beyond)
 }

@@ -2,13 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::clip::Rect;
+use plotters::style::Color as _;
+
+use crate::backend::Drawn;
+use crate::canvas::Stroke;
+use crate::chart::Chart;
 use crate::curve::PlotCurve;
-use crate::legend::KeySample;
-use crate::paint::Paint;
+use crate::key::KeySample;
 use crate::palette::{INK, RECORD};
-use crate::panel::Panel;
-use crate::scene::{Canvas, Layer, Stroke};
 use crate::theme::Theme;
 
 /// Free space above and below the data, as a share of its range.
@@ -27,27 +28,16 @@ fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
 }
 
 /// A recorded heading: dots, or a wide line under the fits where the record is dense.
-pub(super) fn record(panel: &Panel, scene: &mut Canvas, theme: &Theme, heading: &PlotCurve, size: f64) {
+pub(super) fn record(chart: &mut Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> Drawn {
     match dense(heading, theme) {
-        Some(stroke) => panel.line(scene, heading.pairs(), stroke),
-        None => panel.dots(scene, heading.finite(), size, RECORD),
+        Some(stroke) => chart.line(name, heading.pairs(), stroke),
+        None => chart.dots(name, heading.finite(), 1.4 * theme.dot, RECORD.mix(1.0)),
     }
 }
 
 /// How [`record`] looks in a legend.
 pub(super) fn record_sample(theme: &Theme, heading: &PlotCurve) -> KeySample {
     dense(heading, theme).map_or(KeySample::Dots(RECORD), KeySample::Line)
-}
-
-/// The area between two curves, as far as it lies in the frame.
-pub(super) fn shaded(panel: &Panel, scene: &mut Canvas, [lower, upper]: [&PlotCurve; 2], colour: Paint, opacity: f64) {
-    let Rect { x, y, .. } = panel.rect;
-    let inside = |(across, up): (f64, f64)| (across.clamp(x, panel.rect.right()), up.clamp(y, panel.rect.bottom()));
-    let edge = |curve: &PlotCurve| -> Vec<(f64, f64)> {
-        curve.finite().filter_map(|pair| panel.place(pair)).map(inside).collect()
-    };
-    let outline = edge(lower).into_iter().chain(edge(upper).into_iter().rev());
-    scene.fill(Layer::Grid, outline.collect::<Vec<_>>(), colour, opacity);
 }
 
 /// Places with those that are nearer to each other than `gap` moved aside, as far as they need about their middle:
@@ -86,37 +76,33 @@ impl Reference95 {
         Stroke::solid(INK, 0.8 * theme.line)
     }
 
+    /// The corners of its band, from one end of the other axis to the other.
+    fn corners(&self, (low, high): (f64, f64)) -> [(f64, f64); 4] {
+        let [one, other] = self.band;
+        [(one, low), (other, low), (other, high), (one, high)]
+    }
+
     /// Across a panel whose horizontal axis it belongs to.
-    pub(super) fn vertical(&self, panel: &Panel, scene: &mut Canvas, theme: &Theme) {
-        let Rect { x, y, .. } = panel.rect;
-        let inside = |value: f64| panel.across(value).map(|place| place.clamp(x, panel.rect.right()));
-        if let (Some(left), Some(right)) = (inside(self.band[0]), inside(self.band[1])) {
-            let bottom = panel.rect.bottom();
-            scene.fill(Layer::Grid, [(left, y), (right, y), (right, bottom), (left, bottom)], RECORD, 0.22);
-        }
-        panel.vertical(scene, Layer::Grid, self.value, Self::stroke(theme));
+    pub(super) fn vertical(&self, chart: &mut Chart, theme: &Theme) -> Drawn {
+        let corners = self.corners(chart.y.ends());
+        chart.area(None, corners.to_vec(), RECORD, BAND)?;
+        chart.vertical(None, self.value, Self::stroke(theme))
     }
 
     /// Across a panel whose vertical axis it belongs to.
-    pub(super) fn horizontal(&self, panel: &Panel, scene: &mut Canvas, theme: &Theme) {
-        let Rect { x, y, .. } = panel.rect;
-        let inside = |value: f64| panel.up(value).map(|place| place.clamp(y, panel.rect.bottom()));
-        if let (Some(low), Some(high)) = (inside(self.band[0]), inside(self.band[1])) {
-            let right = panel.rect.right();
-            scene.fill(Layer::Grid, [(x, low), (right, low), (right, high), (x, high)], RECORD, 0.22);
-        }
-        panel.horizontal(scene, Layer::Grid, self.value, Self::stroke(theme));
+    pub(super) fn horizontal(&self, chart: &mut Chart, theme: &Theme) -> Drawn {
+        let corners = self.corners(chart.x.ends()).map(|(up, across)| (across, up));
+        chart.area(None, corners.to_vec(), RECORD, BAND)?;
+        chart.horizontal(self.value, Self::stroke(theme))
     }
 }
 
-/// The line errors scatter about where they run across.
-pub(super) fn zero_upright(panel: &Panel, scene: &mut Canvas, theme: &Theme) {
-    panel.vertical(scene, Layer::Grid, 0.0, Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) });
-}
+/// How dense the band of a reference is.
+const BAND: f64 = 0.22;
 
-/// The line a residual scatters about.
-pub(super) fn zero_line(panel: &Panel, scene: &mut Canvas, theme: &Theme) {
-    panel.horizontal(scene, Layer::Grid, 0.0, Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) });
+/// The line of zero, about which errors and residuals scatter.
+pub(super) fn zero_stroke(theme: &Theme) -> Stroke {
+    Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) }
 }
 
 #[cfg(test)]

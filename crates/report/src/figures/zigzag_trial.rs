@@ -5,20 +5,21 @@
 use serde::{Deserialize, Serialize};
 
 use super::panels::Ruler;
-use crate::axis::{self, PlotAxis};
-use crate::clip::Rect;
+use plotters::style::Color as _;
+
+use crate::axis::{self, Axis, Division};
+use crate::backend::Drawn;
+use crate::canvas::{Anchor, Rect, Stroke, TextLine, at, marker};
+use crate::chart::Chart;
 use crate::curve::PlotCurve;
 use crate::dimension::Dimensions;
 use crate::figure::Drawing;
-use crate::layout::{AxisSide, Grid, Sheet};
-use crate::legend::{KeyEntry, KeySample, stroke_of};
+use crate::key::{KeyEntry, KeySample, stroke_of};
 use crate::markup::symbol;
 use crate::number;
 use crate::palette::{CurveOrigin, DIMENSION, DOTTED, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
-use crate::panel::Panel;
-use crate::scene::{Anchor, Canvas, Layer, Stroke, TextLine};
+use crate::sheet::{AxisSide, Grid, Sheet};
 use crate::theme::Theme;
-use crate::ticks::TickSteps;
 
 /// A point of the heading curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -88,7 +89,7 @@ const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: S
 
 /// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn
 /// without its characteristic quantities, and a note says so.
-pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Drawing {
+pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Drawn<Drawing> {
     if data.executes.len() > MOST_MARKED {
         let curves = ZigzagTrial {
             title: data.title.clone(),
@@ -103,44 +104,46 @@ pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Drawing {
     with_note(data, None, theme)
 }
 
-fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Drawing {
-    let mut sheet = Sheet::new(theme, data.title.as_deref());
-    sheet.legend(&entries(data, theme));
+fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Drawn<Drawing> {
+    let mut sheet = Sheet::new(theme, data.title.as_deref())?;
+    sheet.legend(&entries(data, theme))?;
     let height = theme.tall(0.36);
     let curves = [&data.heading, &data.rudder].into_iter().chain(&data.truth);
-    let rudder = PlotAxis::covering(data.rudder.finite().map(|(_, y)| y), 0.12, TickSteps::Angle);
+    let rudder = Axis::covering(data.rudder.finite().map(|(_, y)| y), 0.12, Division::Angle);
     let rows = vec![
         (heading_side(data, height, theme), height),
         (AxisSide::new(rudder, Ruler::rudder().title), theme.tall(0.13)),
     ];
     let times = curves.flat_map(|curve| curve.finite().map(|(t, _)| t));
-    let time = AxisSide::new(PlotAxis::covering(times, 0.0, TickSteps::Time), Ruler::time().title);
-    let panels = sheet.grid(Grid::stack(time, rows));
-    let [upper, lower] = &panels[..] else { return sheet.finish() };
+    let time = AxisSide::new(Axis::covering(times, 0.0, Division::Time), Ruler::time().title);
+    let mut charts = sheet.grid(Grid::new(vec![time], rows))?;
+    let [upper, lower] = &mut charts[..] else { return Ok(sheet.finish()) };
 
-    for panel in &panels {
+    for chart in [&mut *upper, &mut *lower] {
         let stroke = Stroke::solid(RECORD, theme.thin).dashed(DOTTED);
-        for execute in &data.executes {
-            panel.vertical(&mut sheet.scene, Layer::Grid, execute.t_s, stroke);
-        }
+        data.executes.iter().try_for_each(|execute| chart.vertical(None, execute.t_s, stroke))?;
     }
+    let entries = entries(data, theme);
+    let name = |number: usize| entries.get(number).map(|entry| entry.label.as_str());
     if data.heading_as_points {
-        upper.dots(&mut sheet.scene, data.heading.finite(), theme.dot, RECORD);
+        upper.dots(name(0), data.heading.finite(), theme.dot, RECORD.mix(1.0))?;
     } else {
-        upper.line(&mut sheet.scene, data.heading.pairs(), Stroke::solid(HEADING, theme.line));
+        upper.line(name(0), data.heading.pairs(), Stroke::solid(HEADING, theme.line))?;
     }
     if let Some(truth) = &data.truth {
-        upper.line(&mut sheet.scene, truth.pairs(), stroke_of(&CurveOrigin::Truth, theme));
+        upper.line(name(1), truth.pairs(), stroke_of(&CurveOrigin::Truth, theme))?;
     }
-    lower.line(&mut sheet.scene, data.rudder.pairs(), Stroke::solid(RUDDER, theme.line));
-    let values = annotate(data, upper, &mut sheet.scene, theme);
-    for execute in &data.executes {
-        upper.marker(&mut sheet.scene, (execute.t_s, execute.heading_deg), theme.marker, &EXECUTE);
-    }
+    let rudder = name(1 + usize::from(data.truth.is_some()));
+    lower.line(rudder, data.rudder.pairs(), Stroke::solid(RUDDER, theme.line))?;
+    upper.frame(theme)?;
+    lower.frame(theme)?;
+    let values = annotate(data, upper, theme)?;
+    let executes: Vec<(f64, f64)> = data.executes.iter().map(|mark| (mark.t_s, mark.heading_deg)).collect();
+    upper.markers(Some("execute"), &executes, theme.marker, &EXECUTE)?;
     if let Some(text) = note.or_else(|| explanation(data, values)) {
-        sheet.note(&text);
+        sheet.note(&text)?;
     }
-    sheet.finish()
+    Ok(sheet.finish())
 }
 
 fn entries(data: &ZigzagTrial, theme: &Theme) -> Vec<KeyEntry> {
@@ -181,89 +184,86 @@ fn heading_side(data: &ZigzagTrial, height: f64, theme: &Theme) -> AxisSide {
     let above = label + if data.period.is_some() { strip(theme) } else { 0.0 };
     let below = label + if has_times(data) { strip(theme) } else { 0.0 };
     let per_point = (hi - lo) / (height - above - below).max(0.3 * height);
-    AxisSide::new(
-        PlotAxis::linear(lo - below * per_point, hi + above * per_point, TickSteps::Angle),
-        Ruler::heading().title,
-    )
+    AxisSide::new(Axis::linear(lo - below * per_point, hi + above * per_point, Division::Angle), Ruler::heading().title)
 }
 
 /// Draws overshoots, times and period. Returns the times in words when they did not fit at their lines.
-fn annotate(data: &ZigzagTrial, panel: &Panel, scene: &mut Canvas, theme: &Theme) -> Option<String> {
+fn annotate(data: &ZigzagTrial, chart: &Chart, theme: &Theme) -> Drawn<Option<String>> {
     let size = theme.small_font;
-    let mut draw = Dimensions { scene, theme: *theme };
+    let draw = Dimensions { canvas: &chart.canvas, theme: *theme };
     for (i, overshoot) in data.overshoots.iter().enumerate() {
-        overshoot_angle(&mut draw, panel, i + 1, overshoot);
+        overshoot_angle(&draw, chart, i + 1, overshoot)?;
     }
     if let Some(period) = &data.period {
-        let y = panel.rect.y + 0.75 * strip(theme);
-        if let Some((from, to)) = time_line(&mut draw, panel, data, period, y) {
+        let y = chart.rect.y + 0.75 * strip(theme);
+        if let Some((from, to)) = time_line(&draw, chart, data, period, y)? {
             let text = format!("period {}", period.text());
-            draw.label(((from + to) / 2.0, y - 0.35 * size), Anchor::Middle, &text);
+            draw.label(((from + to) / 2.0, y - 0.71 * size), &text)?;
         }
     }
-    let y = panel.rect.bottom() - 0.45 * size;
+    let y = chart.rect.bottom() - 0.45 * size;
     let mut labels = Vec::new();
     let initial = data.initial_turning.iter().map(|span| (symbol("tₐ"), span));
     let checks = data.check_yaw.iter().enumerate().map(|(i, span)| (symbol(&format!("tₛ{}", subscript(i + 1))), span));
     for (name, span) in initial.chain(checks) {
-        if let Some((from, to)) = time_line(&mut draw, panel, data, span, y) {
+        if let Some((from, to)) = time_line(&draw, chart, data, span, y)? {
             labels.push(((from + to) / 2.0, name, span.text()));
         }
     }
     labels.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let base = y - 0.4 * size;
+    let base = y - 0.76 * size;
     let full = |(x, name, value): &(f64, String, String)| {
         TextLine::new(format!("{name} = {value}"), size).anchor(Anchor::Middle).bounds((*x, base))
     };
     let boxes: Vec<Rect> = labels.iter().map(full).collect();
     let fits = boxes.windows(2).all(|b| b[0].right() + 0.3 * size < b[1].x)
-        && boxes.iter().all(|b| b.x > panel.rect.x && b.right() < panel.rect.right());
+        && boxes.iter().all(|b| b.x > chart.rect.x && b.right() < chart.rect.right());
     for (x, name, value) in &labels {
         let text = if fits { format!("{name} = {value}") } else { name.clone() };
-        draw.label((*x, base), Anchor::Middle, &text);
+        draw.label((*x, base), &text)?;
     }
     let listed: Vec<String> = labels.iter().map(|(_, name, value)| format!("{name} = {value}")).collect();
     // No-break spaces, so that the note is never broken between a symbol and its value.
     let listed: Vec<String> = listed.iter().map(|text| text.replace(' ', "\u{a0}")).collect();
-    (!fits).then(|| listed.join(", "))
+    Ok((!fits).then(|| listed.join(", ")))
 }
 
 /// Vertical dimension line from the heading of the execute to the extremum, with its angle beyond the curve.
-fn overshoot_angle(draw: &mut Dimensions<'_>, panel: &Panel, number: usize, overshoot: &OvershootMark) {
+fn overshoot_angle(draw: &Dimensions<'_>, chart: &Chart, number: usize, overshoot: &OvershootMark) -> Drawn {
     let (execute, extremum) = (overshoot.execute, overshoot.extremum);
-    let Some(peak) = panel.inside((extremum.t_s, extremum.heading_deg)) else { return };
-    let Some(start) = panel.inside((execute.t_s, execute.heading_deg)) else { return };
+    let Some(peak) = chart.inside((extremum.t_s, extremum.heading_deg)) else { return Ok(()) };
+    let Some(start) = chart.inside((execute.t_s, execute.heading_deg)) else { return Ok(()) };
     let foot = (peak.0, start.1);
-    draw.extension(start, (foot.0 + 0.4 * draw.theme.small_font, foot.1));
-    draw.between(foot, peak);
-    draw.scene.marker(Layer::Data, peak, 0.85 * draw.theme.marker, &EXTREMUM);
+    draw.extension(start, (foot.0 + 0.4 * draw.theme.small_font, foot.1))?;
+    draw.between(foot, peak)?;
+    draw.canvas.elements(marker(at(peak), 0.85 * draw.theme.marker, &EXTREMUM))?;
     let name = format!("{}OS{}", symbol("ψ"), subscript(number));
     let text = format!("{name} = {}°", number::fixed(overshoot.angle_deg, 1));
     let size = draw.theme.small_font;
-    let beyond = if peak.1 <= foot.1 { -0.65 * size } else { 1.4 * size };
+    let beyond = if peak.1 <= foot.1 { -1.01 * size } else { 1.04 * size };
     let half = TextLine::new(text.as_str(), size).width() / 2.0 + 0.3 * size;
-    let x = peak.0.clamp(panel.rect.x + half, (panel.rect.right() - half).max(panel.rect.x + half));
-    draw.label((x, peak.1 + beyond), Anchor::Middle, &text);
+    let x = peak.0.clamp(chart.rect.x + half, (chart.rect.right() - half).max(chart.rect.x + half));
+    draw.label((x, peak.1 + beyond), &text)
 }
 
 /// Horizontal dimension line of a span, with lines to the curve where one of the marked points stands at its end.
 fn time_line(
-    draw: &mut Dimensions<'_>,
-    panel: &Panel,
+    draw: &Dimensions<'_>,
+    chart: &Chart,
     data: &ZigzagTrial,
     span: &TimeSpan,
     y: f64,
-) -> Option<(f64, f64)> {
-    let inside = |t: f64| panel.across(t).filter(|x| panel.rect.contains((*x, y)));
-    let (from, to) = (inside(span.from_s)?, inside(span.to_s)?);
+) -> Drawn<Option<(f64, f64)>> {
+    let inside = |t: f64| chart.across(t).filter(|x| chart.rect.contains((*x, y)));
+    let (Some(from), Some(to)) = (inside(span.from_s), inside(span.to_s)) else { return Ok(None) };
     let marks = data.executes.iter().chain(data.overshoots.iter().flat_map(|o| [&o.execute, &o.extremum]));
     for (t, x) in [(span.from_s, from), (span.to_s, to)] {
         let at_mark = marks.clone().find(|m| (m.t_s - t).abs() < 1e-9 * t.abs().max(1.0));
-        let foot = at_mark.and_then(|m| panel.up(m.heading_deg)).unwrap_or(y);
-        draw.extension((x, foot), (x, y));
+        let foot = at_mark.and_then(|m| chart.up(m.heading_deg)).unwrap_or(y);
+        draw.extension((x, foot), (x, y))?;
     }
-    draw.between((from, y), (to, y));
-    Some((from, to))
+    draw.between((from, y), (to, y))?;
+    Ok(Some((from, to)))
 }
 
 fn explanation(data: &ZigzagTrial, values: Option<String>) -> Option<String> {

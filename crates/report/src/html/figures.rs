@@ -84,6 +84,9 @@ fn inline(svg: &str, caption: &str) -> Option<String> {
     let (head, shapes) = svg.split_once('>')?;
     let attribute = |name: &str| Some(head.split_once(&format!(" {name}=\""))?.1.split_once('"')?.0);
     let (view, width) = (attribute("viewBox")?, attribute("width")?);
+    // What cuts a panel is found in its own figure, also where another one has such a panel.
+    let shapes = shapes.replace("id=\"clip-", &format!("id=\"{caption}-clip-"));
+    let shapes = shapes.replace("url(#clip-", &format!("url(#{caption}-clip-"));
     Some(format!(
         "<svg viewBox=\"{view}\" style=\"max-width:{width}\" role=\"img\" aria-labelledby=\"{caption}\">{}",
         shapes.trim_start()

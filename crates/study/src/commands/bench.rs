@@ -199,5 +199,5 @@ fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Res
     for method in &results.methods {
         pages.write(&format!("{method}.md"), bench_page::of_method(results, method).to_markdown())?;
     }
-    write_page(folder, bench_page::page(results), Some(&theme.of_key_figure()))
+    write_page(folder, bench_page::page(results), Some(theme))
 }

@@ -80,7 +80,7 @@ fn keep_t(stack: &mut Stack) {
     stack.panels.retain(|_| row.next().is_some_and(|panel| is_kept[panel / across]));
     stack.rows.retain(|row| !is_of_k(&row.y.title));
     stack.panels.iter_mut().zip(heads).for_each(|(panel, head)| panel.head = head);
-    stack.rows.iter_mut().for_each(|row| row.height = 0.26);
+    stack.rows.iter_mut().for_each(|row| row.height = 0.34);
 }
 
 fn of_rows(data: &mut NamedRows, about: &[String]) {

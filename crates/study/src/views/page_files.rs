@@ -63,8 +63,7 @@ fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure
         )));
     }
     first_failure(figures.par_iter().map(|PageFigure { stem, plot, .. }| {
-        let theme = if stem == KEY_FIGURE { theme.of_key_figure() } else { *theme };
-        let figure = plot.draw(&theme);
+        let figure = plot.draw(theme);
         folder.write(&format!("{stem}.svg"), figure.svg())?;
         folder.write(&format!("{stem}.png"), figure.png().on("draw the figure", &folder.path().join(stem))?)
     }))

@@ -6,8 +6,9 @@ use report::figures::{
     CellMap, Division, Layer, LayerKind, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind,
     RowsColumn, Ruler, Shades, Stack,
 };
-use report::paint::Paint;
-use report::palette::{BEFORE, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
+use report::palette::{
+    BEFORE, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID,
+};
 use report::{CurveOrigin, PlotCurve};
 use scenario::{HULL, TRACE};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
@@ -155,7 +156,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
 
 /// Rules as points: a line for what stands before the comma of their labels, and what stands behind it beside them.
 fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
-    const COLOURS: [Paint; 3] = [HEADING, RUDDER, DIMENSION];
+    const COLOURS: [RGBColor; 3] = [HEADING, RUDDER, DIMENSION];
     const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Diamond];
     let parts: Vec<(&str, &str)> =
         rules.iter().map(|(label, ..)| label.split_once(", ").unwrap_or((label, ""))).collect();
@@ -208,14 +209,14 @@ fn shares(
     theory: Vec<(String, PlotCurve)>,
 ) -> Panels {
     const DASHES: [Dash; 3] = [SOLID, DASHED, DOTTED];
-    const COLOURS: [Paint; FEW] = [HEADING, BEFORE, RUDDER, DIMENSION, RECORD, INK];
+    const COLOURS: [RGBColor; FEW] = [HEADING, BEFORE, RUDDER, DIMENSION, RECORD, INK];
     const MARKERS: [Marker; FEW] =
         [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down, Marker::Star];
     let looks = COLOURS.into_iter().zip(MARKERS);
     let line = |((name, curve), dash): ((String, PlotCurve), Dash)| {
         Layer::line(name, curve, Pen { width: 0.9, dash, ..Pen::new(INK) })
     };
-    let marks = |((name, points), (colour, marker)): ((String, Vec<MeasuredShare>), (Paint, Marker))| {
+    let marks = |((name, points), (colour, marker)): ((String, Vec<MeasuredShare>), (RGBColor, Marker))| {
         Layer::marks(name, Look { colour, marker, dash: SOLID, hollow: false }, points)
     };
     let layers = theory.into_iter().zip(DASHES).map(line).chain(series.into_iter().zip(looks).map(marks)).collect();

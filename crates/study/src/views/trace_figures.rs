@@ -12,8 +12,7 @@ use report::figures::{
     Ruler, Stack,
 };
 use report::number::{MISSING, fixed, significant};
-use report::paint::Paint;
-use report::palette::{HEADING, Look, Marker, RUDDER, SOLID};
+use report::palette::{HEADING, Look, Marker, RGBColor, RUDDER, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
@@ -174,8 +173,8 @@ fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
     let (name, colour) = match outcome {
         Outcome::Added => ("named", HEADING),
         Outcome::Alias => ("not told from one that is named", RUDDER),
-        Outcome::Rejected => ("rejected", Paint(0x8A, 0x8A, 0x8A)),
-        Outcome::NotObservable => ("not observable", Paint(0xC4, 0xC4, 0xC4)),
+        Outcome::Rejected => ("rejected", RGBColor(0x8A, 0x8A, 0x8A)),
+        Outcome::NotObservable => ("not observable", RGBColor(0xC4, 0xC4, 0xC4)),
     };
     let hollow = outcome == Outcome::NotObservable;
     (name, Look { colour, marker: Marker::Square, dash: SOLID, hollow })

@@ -1,10 +1,11 @@
 //! The key of a figure: samples with their names in aligned columns, always outside the data.
 
-use crate::clip::PagePoint;
-use crate::lines::{self, LEADING};
-use crate::paint::Paint;
+use plotters::style::RGBColor;
+
+use crate::backend::Drawn;
+use crate::canvas::{Anchor, Canvas, PagePoint, Rect, Stroke, TextLine, at, hull, marker};
+use crate::lines::{LEADING, wrap};
 use crate::palette::{CurveOrigin, Dash, INK, Look};
-use crate::scene::{Canvas, Ink, Layer, Stroke, TextLine};
 use crate::theme::Theme;
 
 /// What stands before a name.
@@ -14,7 +15,7 @@ pub(crate) enum KeySample {
     Line(Stroke),
     /// An area, as a piece of it.
     Area(Stroke),
-    Dots(Paint),
+    Dots(RGBColor),
     Marker(Look),
     LineAndMarker(Stroke, Look),
     /// A short line from bottom to top.
@@ -22,7 +23,7 @@ pub(crate) enum KeySample {
     /// An outlined cell.
     Outline(Dash),
     /// A ship seen from above.
-    Hull(Paint),
+    Hull(RGBColor),
 }
 
 /// How cells are outlined.
@@ -47,18 +48,6 @@ impl KeyEntry {
         Self::new(KeySample::Line(stroke_of(origin, theme)), origin.label())
     }
 
-    /// What is drawn in the figure like the sample.
-    pub(crate) fn ink(&self) -> Option<Ink> {
-        match self.sample {
-            KeySample::Line(stroke) => Some(Ink { colour: stroke.colour, dash: Some(stroke.dash) }),
-            KeySample::LineAndMarker(stroke, look) => Some(Ink { colour: look.colour, dash: Some(stroke.dash) }),
-            KeySample::Area(stroke) => Some(Ink::of(stroke.colour)),
-            KeySample::Dots(colour) => Some(Ink::of(colour)),
-            KeySample::Marker(look) => Some(Ink::of(look.colour)),
-            KeySample::Nothing | KeySample::Upright(_) | KeySample::Outline(_) | KeySample::Hull(_) => None,
-        }
-    }
-
     fn sample_width(&self, theme: &Theme) -> f64 {
         match self.sample {
             KeySample::Nothing => 0.0,
@@ -78,48 +67,44 @@ impl KeyEntry {
 
     /// The lines of its name in a place this wide, sample and all.
     pub(crate) fn lines(&self, room: f64, theme: &Theme) -> Vec<String> {
-        lines::wrap(&self.label, theme.small_font, false, room - self.sample_width(theme))
+        wrap(&self.label, theme.small_font, false, room - self.sample_width(theme))
     }
 
-    /// Draws the entry in a place this wide, with the base line of its first line at `place`; returns how many lines
-    /// its name takes.
-    pub(crate) fn draw(&self, scene: &mut Canvas, (x, y): PagePoint, room: f64, theme: &Theme) -> usize {
-        let text = TextLine::new(self.label.as_str(), theme.small_font);
-        let middle = y - text.centring();
+    /// Draws the entry in a place this wide, with the middle of its first line at `place`; returns how many lines its
+    /// name takes.
+    pub(crate) fn draw(&self, canvas: &Canvas, (x, y): PagePoint, room: f64, theme: &Theme) -> Drawn<usize> {
         let width = self.sample_width(theme);
         let end = x + width - 0.5 * theme.small_font;
-        let centre = ((x + end) / 2.0, middle);
+        let centre = ((x + end) / 2.0, y);
+        let half = 0.5 * theme.small_font;
         match self.sample {
             KeySample::Nothing => {}
-            KeySample::Line(stroke) | KeySample::Area(stroke) => {
-                scene.line(Layer::Note, [(x, middle), (end, middle)], stroke);
+            KeySample::Line(stroke) | KeySample::Area(stroke) => canvas.line(&[(x, y), (end, y)], stroke)?,
+            KeySample::Dots(colour) => {
+                let dot = Look { colour, ..CurveOrigin::Record.look() };
+                canvas.elements(marker(at(centre), 1.2 * theme.dot, &dot))?;
             }
-            KeySample::Dots(colour) => scene.disc(Layer::Note, centre, theme.dot * 1.2, colour, 1.0),
-            KeySample::Marker(look) => scene.marker(Layer::Note, centre, theme.marker, &look),
+            KeySample::Marker(look) => canvas.elements(marker(at(centre), theme.marker, &look))?,
             KeySample::LineAndMarker(stroke, look) => {
-                scene.line(Layer::Note, [(x, middle), (end, middle)], stroke);
-                scene.marker(Layer::Note, centre, theme.marker, &look);
+                canvas.line(&[(x, y), (end, y)], stroke)?;
+                canvas.elements(marker(at(centre), theme.marker, &look))?;
             }
-            KeySample::Upright(stroke) => {
-                let half = 0.5 * theme.small_font;
-                scene.line(Layer::Note, [(centre.0, middle - half), (centre.0, middle + half)], stroke);
-            }
+            KeySample::Upright(stroke) => canvas.line(&[(centre.0, y - half), (centre.0, y + half)], stroke)?,
             KeySample::Outline(dash) => {
-                let half = 0.45 * theme.small_font;
-                let [left, right] = [centre.0 - half, centre.0 + half];
-                let [top, bottom] = [middle - half, middle + half];
-                let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-                scene.line(Layer::Note, corners, outline_stroke(dash, theme));
+                let cell = Rect { x: centre.0 - half, y: y - half, w: 2.0 * half, h: 2.0 * half };
+                canvas.outline(cell, outline_stroke(dash, theme))?;
             }
-            KeySample::Hull(colour) => scene.hull(Layer::Note, centre, (1.0, 0.0), 1.6 * theme.small_font, colour),
+            KeySample::Hull(colour) => {
+                canvas.elements(hull(at(centre), (1.0, 0.0), 1.6 * theme.small_font, colour))?;
+            }
         }
         let lines = self.lines(room, theme);
-        let count = lines.len();
-        for (index, line) in lines.into_iter().enumerate() {
+        for (index, line) in lines.iter().enumerate() {
             let down = LEADING * theme.small_font * index as f64;
-            scene.text(Layer::Note, (x + width, y + down), TextLine::new(line, theme.small_font));
+            let text = TextLine::new(line.as_str(), theme.small_font).anchor(Anchor::Start);
+            canvas.text((x + width, y + down), &text)?;
         }
-        count
+        Ok(lines.len())
     }
 }
 

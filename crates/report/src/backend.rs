@@ -1,0 +1,456 @@
+//! The drawing backend of plotters that writes SVG: coordinates in twentieths of a point, text measured with the
+//! embedded font. It alone knows the elements of SVG. Lines of one stroke that follow each other are one path, and so
+//! are filled circles of one size: a browser is slow with many elements. Text stays text, which can be searched.
+
+use std::cell::RefCell;
+use std::convert::Infallible;
+use std::fmt::Write as _;
+use std::rc::Rc;
+
+use plotters::drawing::DrawingAreaErrorKind;
+use plotters::style::RGBColor;
+use plotters_backend::text_anchor::{HPos, VPos};
+use plotters_backend::{
+    BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontStyle,
+    FontTransform,
+};
+
+use crate::changes::Changes;
+use crate::fonts::{FAMILY_WITH_FALLBACK, LINE, text_width};
+use crate::markup::{is_markup, runs};
+use crate::palette::Dash;
+use crate::printable::is_printable;
+
+/// Units to one point on the page: 2.4 to a dot at 600 dpi, so rounding to whole units is never seen.
+pub(crate) const UNITS: f64 = 20.0;
+
+/// Height of the sheet that is drawn on, units; the page ends where the figure does.
+const TALLEST: u32 = 2_000_000;
+
+/// Largest number of repetitions of a dash pattern. A longer line goes to and fro until it is a band without visible
+/// dashes.
+const MAX_REPEATS: f64 = 5000.0;
+
+/// What drawing returns; memory does not fail.
+pub(crate) type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<Infallible>>;
+
+type Written = Result<(), DrawingErrorKind<Infallible>>;
+
+/// Length in units.
+pub(crate) fn units(points: f64) -> i32 {
+    (points * UNITS).round() as i32
+}
+
+/// A rectangle in units: left, top, right and bottom.
+pub(crate) type Bounds = [i32; 4];
+
+/// What elements drawn together share.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Group {
+    /// Name that the key of the figure gives them; a page in a browser finds them by it.
+    pub series: Option<String>,
+    /// Whether they are intervals of the values of that series, which are no values themselves.
+    pub is_interval: bool,
+    /// Pattern of their lines in widths of the line, and that width in points.
+    pub dash: Option<(Dash, f64)>,
+    /// Rectangle beyond which they are cut off.
+    pub clip: Option<Bounds>,
+}
+
+impl Group {
+    /// What belongs to a series of the key, where it has a name there.
+    pub(crate) fn named(series: Option<&str>) -> Self {
+        Self { series: series.map(str::to_owned), ..Self::default() }
+    }
+}
+
+/// A group that is being filled.
+struct OpenGroup {
+    group: Group,
+    /// Where its elements begin in the document.
+    start: usize,
+    /// Rectangle around its elements.
+    bounds: Bounds,
+}
+
+/// A document that is being written.
+struct Document {
+    elements: String,
+    /// Style and data of the path that is being lengthened.
+    path: Option<(String, String)>,
+    group: Option<OpenGroup>,
+    changes: Changes,
+}
+
+/// The backend. Clones write into the same document.
+#[derive(Clone)]
+pub(crate) struct Svg {
+    width: u32,
+    document: Rc<RefCell<Document>>,
+}
+
+impl Svg {
+    /// An empty sheet of this width in points.
+    pub(crate) fn new(width: f64, changes: Changes) -> Self {
+        let document = Document { elements: String::new(), path: None, group: None, changes };
+        Self { width: units(width).max(1) as u32, document: Rc::new(RefCell::new(document)) }
+    }
+
+    /// Begins a group, which ends with [`Self::end`]; groups do not nest.
+    pub(crate) fn begin(&self, group: Group) {
+        let mut document = self.document.borrow_mut();
+        document.close_path();
+        let (start, bounds) = (document.elements.len(), [i32::MAX, i32::MAX, i32::MIN, i32::MIN]);
+        document.group = Some(OpenGroup { group, start, bounds });
+    }
+
+    /// Ends the group.
+    pub(crate) fn end(&self) {
+        self.document.borrow_mut().close_group();
+    }
+
+    /// Enters an empty group that says where a panel is and what its axes are: kind, ends and title of either.
+    pub(crate) fn panel(&self, [left, top, right, bottom]: Bounds, axes: [(String, &str); 2]) {
+        let [(x, x_title), (y, y_title)] = axes.map(|(axis, title)| (escaped(&axis), escaped(title)));
+        let (width, height) = (right - left, bottom - top);
+        self.document.borrow_mut().put(&format!(
+            "<g data-panel=\"{left} {top} {width} {height}\" data-x=\"{x}\" data-y=\"{y}\" \
+             data-x-title=\"{x_title}\" data-y-title=\"{y_title}\"/>\n"
+        ));
+    }
+
+    /// The SVG document, `height` points high.
+    pub(crate) fn finish(&self, height: f64) -> String {
+        let mut document = self.document.borrow_mut();
+        document.close_group();
+        let (across, down) = (self.width, units(height).max(1));
+        let paper = document.colour((255, 255, 255));
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.3}pt\" height=\"{height:.3}pt\" \
+             viewBox=\"0 0 {across} {down}\">\n<g font-family=\"{FAMILY_WITH_FALLBACK}\" stroke-linejoin=\"bevel\">\n\
+             <polygon fill=\"{paper}\" points=\"0,0 {across},0 {across},{down} 0,{down}\"/>\n{}</g>\n</svg>\n",
+            f64::from(across) / UNITS,
+            document.elements
+        )
+    }
+}
+
+impl Document {
+    fn close_path(&mut self) {
+        if let Some((style, data)) = self.path.take() {
+            let _ = writeln!(self.elements, "<path {style} d=\"{data}\"/>");
+        }
+    }
+
+    /// Writes an element, after the path that was open.
+    fn put(&mut self, element: &str) {
+        self.close_path();
+        self.elements.push_str(element);
+    }
+
+    /// Lengthens the open path, or begins another. Where ink adds up (`alone`), lines stay apart.
+    fn lengthen(&mut self, style: String, data: &str, alone: bool) {
+        match &mut self.path {
+            Some((open, longer)) if *open == style && !alone => longer.push_str(data),
+            _ => {
+                self.close_path();
+                self.path = Some((style, data.to_owned()));
+            }
+        }
+    }
+
+    fn close_group(&mut self) {
+        self.close_path();
+        let Some(OpenGroup { group, start, bounds }) = self.group.take() else { return };
+        let elements = self.elements.split_off(start);
+        if elements.is_empty() {
+            return;
+        }
+        let mut attributes = String::new();
+        if let Some(name) = &group.series {
+            let _ = write!(attributes, " data-series=\"{}\"", escaped(name));
+            attributes += if group.is_interval { " data-interval=\"\"" } else { "" };
+        }
+        if let Some((dash, width)) = group.dash.filter(|(dash, _)| !dash.is_empty()) {
+            let parts: Vec<String> = dash.iter().map(|part| units(part * width).to_string()).collect();
+            let _ = write!(attributes, " stroke-dasharray=\"{}\"", parts.join(" "));
+        }
+        // To cut costs the rasteriser a layer, so only what reaches beyond is cut.
+        let is_beyond = |[left, top, right, bottom]: &Bounds| {
+            bounds[0] < *left || bounds[1] < *top || bounds[2] > *right || bounds[3] > *bottom
+        };
+        if let Some([left, top, right, bottom]) = group.clip.filter(is_beyond) {
+            let (width, height) = (right - left, bottom - top);
+            // Groups of one name cut the same rectangle.
+            let name = format!("clip-{left}-{top}-{width}-{height}");
+            let _ = write!(attributes, " clip-path=\"url(#{name})\"");
+            let path = format!(
+                "<clipPath id=\"{name}\"><rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n"
+            );
+            if !self.elements.contains(&path) {
+                self.elements.push_str(&path);
+            }
+        }
+        let _ = match attributes.is_empty() {
+            true => write!(self.elements, "{elements}"),
+            false => write!(self.elements, "<g{attributes}>\n{elements}</g>\n"),
+        };
+    }
+
+    fn colour(&self, (red, green, blue): (u8, u8, u8)) -> String {
+        let RGBColor(red, green, blue) = self.changes.of(RGBColor(red, green, blue));
+        format!("#{red:02X}{green:02X}{blue:02X}")
+    }
+
+    /// Widens the bounds of the group by an element.
+    fn reach(&mut self, (x, y): BackendCoord, radius: i32) {
+        if let Some(OpenGroup { bounds: [left, top, right, bottom], .. }) = &mut self.group {
+            (*left, *top) = ((*left).min(x - radius), (*top).min(y - radius));
+            (*right, *bottom) = ((*right).max(x + radius), (*bottom).max(y + radius));
+        }
+    }
+
+    fn line(&mut self, points: &[BackendCoord], style: &impl BackendStyle) {
+        let (BackendColor { alpha, rgb }, width) = (style.color(), style.stroke_width());
+        if alpha == 0.0 || points.len() < 2 {
+            return;
+        }
+        let mut attributes = format!("fill=\"none\" stroke=\"{}\"{}", self.colour(rgb), opacity("stroke", alpha));
+        let _ = write!(attributes, " stroke-width=\"{width}\"");
+        let mut data = format!("M{} {}", points[0].0, points[0].1);
+        let mut length = 0.0;
+        let mut command = 'l';
+        for ends in points.windows(2) {
+            let (dx, dy) = (ends[1].0 - ends[0].0, ends[1].1 - ends[0].1);
+            let _ = write!(data, "{command}{dx} {dy}");
+            length += f64::from(dx).hypot(f64::from(dy));
+            command = ' ';
+        }
+        let dash = self.group.as_ref().and_then(|open| open.group.dash);
+        let pattern = dash.map_or(0.0, |(dash, width)| dash.iter().sum::<f64>() * width * UNITS);
+        if pattern > 0.0 && length > MAX_REPEATS * pattern {
+            attributes += " stroke-dasharray=\"none\"";
+        }
+        self.lengthen(attributes, &data, alpha < 1.0);
+    }
+}
+
+impl DrawingBackend for Svg {
+    type ErrorType = Infallible;
+
+    fn get_size(&self) -> (u32, u32) {
+        (self.width, TALLEST)
+    }
+
+    fn ensure_prepared(&mut self) -> Written {
+        Ok(())
+    }
+
+    fn present(&mut self) -> Written {
+        Ok(())
+    }
+
+    fn draw_pixel(&mut self, (x, y): BackendCoord, colour: BackendColor) -> Written {
+        self.draw_rect((x, y), (x + 1, y + 1), &colour, true)
+    }
+
+    fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Written {
+        self.draw_path([from, to], style)
+    }
+
+    fn draw_rect<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S, fill: bool) -> Written {
+        let corners = [from, (to.0, from.1), to, (from.0, to.1)];
+        match fill {
+            true => self.fill_polygon(corners, style),
+            // The first corner is repeated and passed, so that it gets a join like the others.
+            false => self.draw_path(corners.into_iter().chain([from, corners[1]]), style),
+        }
+    }
+
+    fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Written {
+        let mut points: Vec<BackendCoord> = path.into_iter().collect();
+        points.dedup();
+        let mut document = self.document.borrow_mut();
+        points.iter().for_each(|point| document.reach(*point, 0));
+        document.line(&points, style);
+        Ok(())
+    }
+
+    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Written {
+        let BackendColor { alpha, rgb } = style.color();
+        let points: Vec<BackendCoord> = path.into_iter().collect();
+        if alpha == 0.0 || points.len() < 3 {
+            return Ok(());
+        }
+        let mut document = self.document.borrow_mut();
+        points.iter().for_each(|point| document.reach(*point, 0));
+        let corners: Vec<String> = points.iter().map(|(x, y)| format!("{x},{y}")).collect();
+        let (colour, faint) = (document.colour(rgb), opacity("fill", alpha));
+        document.put(&format!("<polygon fill=\"{colour}\"{faint} points=\"{}\"/>\n", corners.join(" ")));
+        Ok(())
+    }
+
+    fn draw_circle<S: BackendStyle>(&mut self, at: BackendCoord, radius: u32, style: &S, fill: bool) -> Written {
+        let BackendColor { alpha, rgb } = style.color();
+        let mut document = self.document.borrow_mut();
+        document.reach(at, radius as i32);
+        let (colour, faint) = (document.colour(rgb), opacity("stroke", alpha));
+        if fill {
+            let attributes =
+                format!("stroke=\"{colour}\"{faint} stroke-width=\"{}\" stroke-linecap=\"round\"", 2 * radius.max(1));
+            document.lengthen(attributes, &format!("M{} {}h0", at.0, at.1), alpha < 1.0);
+        } else {
+            let width = style.stroke_width();
+            document.put(&format!(
+                "<circle cx=\"{}\" cy=\"{}\" r=\"{radius}\" fill=\"none\" stroke=\"{colour}\"{faint} stroke-width=\"{width}\"/>\n",
+                at.0, at.1
+            ));
+        }
+        Ok(())
+    }
+
+    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> Written {
+        let lines: Vec<&str> = text.split('\n').collect();
+        if text.trim().is_empty() {
+            return Ok(());
+        }
+        let size = style.size();
+        let anchor = match style.anchor().h_pos {
+            HPos::Left => "",
+            HPos::Center => " text-anchor=\"middle\"",
+            HPos::Right => " text-anchor=\"end\"",
+        };
+        let bold = if matches!(style.style(), FontStyle::Bold) { " font-weight=\"bold\"" } else { "" };
+        let turn = match style.transform() {
+            FontTransform::None => String::new(),
+            FontTransform::Rotate90 => format!(" transform=\"rotate(90, {x}, {y})\""),
+            FontTransform::Rotate180 => format!(" transform=\"rotate(180, {x}, {y})\""),
+            FontTransform::Rotate270 => format!(" transform=\"rotate(270, {x}, {y})\""),
+        };
+        let below = LINE * size * (lines.len() - 1) as f64;
+        // From the anchor to the base line of the first line.
+        let first = match style.anchor().v_pos {
+            VPos::Top => 0.8 * size,
+            VPos::Center => 0.36 * size - 0.5 * below,
+            VPos::Bottom => -0.22 * size - below,
+        };
+        let mut document = self.document.borrow_mut();
+        let fill = document.colour(style.color().rgb);
+        for (number, line) in lines.iter().enumerate() {
+            let base = f64::from(y) + first + LINE * size * number as f64;
+            let mut element = format!(
+                "<text x=\"{x}\" y=\"{base:.0}\" font-size=\"{}\" fill=\"{fill}\"{anchor}{bold}{turn}>\n",
+                (10.0 * size).round() / 10.0
+            );
+            for (italic, run) in runs(line) {
+                let run = escaped(run);
+                let _ = match italic {
+                    true => write!(element, "<tspan font-style=\"italic\">{run}</tspan>"),
+                    false => write!(element, "{run}"),
+                };
+            }
+            document.put(&(element + "\n</text>\n"));
+        }
+        Ok(())
+    }
+
+    fn estimate_text_size<S: BackendTextStyle>(
+        &self,
+        text: &str,
+        style: &S,
+    ) -> Result<(u32, u32), DrawingErrorKind<Infallible>> {
+        let (size, bold) = (style.size(), matches!(style.style(), FontStyle::Bold));
+        let widest = text.split('\n').map(|line| text_width(line, size, bold)).fold(0.0, f64::max);
+        Ok((widest.ceil() as u32, (LINE * size * text.split('\n').count() as f64).ceil() as u32))
+    }
+}
+
+/// An attribute for ink that is not opaque: that of an element would be a layer of its own, slow to draw.
+fn opacity(ink: &str, alpha: f64) -> String {
+    if alpha < 1.0 { format!(" {ink}-opacity=\"{alpha}\"") } else { String::new() }
+}
+
+/// A text for an element or for the value of an attribute. XML allows neither control characters nor some others, not
+/// even escaped.
+fn escaped(text: &str) -> String {
+    let clean: String = text.chars().filter(|&c| !is_markup(c) && is_printable(c)).collect();
+    crate::html::escaped(&clean)
+}
+
+#[cfg(test)]
+mod tests {
+    use plotters::drawing::IntoDrawingArea as _;
+    use plotters::element::{Circle, PathElement, Polygon};
+    use plotters::style::Color as _;
+
+    use super::*;
+    use crate::canvas::{Area, Stroke, TextLine};
+    use crate::markup::symbol;
+    use crate::palette::{DASHED, INK};
+
+    fn drawn(fill: impl FnOnce(&Area, &Svg) -> Drawn) -> String {
+        let svg = Svg::new(100.0, Changes::default());
+        fill(&svg.clone().into_drawing_area(), &svg).unwrap();
+        svg.finish(30.0)
+    }
+
+    fn line(points: &[BackendCoord]) -> PathElement<BackendCoord> {
+        PathElement::new(points.to_vec(), Stroke::solid(INK, 0.5).style())
+    }
+
+    #[test]
+    fn what_follows_each_other_in_one_style_is_one_path() {
+        let svg = drawn(|area, _| {
+            area.draw(&line(&[(20, 40), (80, 120), (80, 120), (60, 120)]))?;
+            area.draw(&line(&[(180, 180), (180, 0)]))?;
+            let faint = Stroke { opacity: 0.55, ..Stroke::solid(INK, 1.0) }.style();
+            area.draw(&PathElement::new(vec![(0, 0), (9, 9)], faint))?;
+            area.draw(&PathElement::new(vec![(0, 0), (9, 9)], faint))?;
+            area.draw(&Circle::new((60, 80), 5, INK.filled()))?;
+            area.draw(&Circle::new((60, 100), 5, INK.filled()))?;
+            area.draw(&Polygon::new(vec![(0, 0), (1, 0), (1, 1)], INK.mix(0.85)))
+        });
+        assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100.000pt\" height=\"30.000pt\""));
+        assert!(svg.contains("viewBox=\"0 0 2000 600\"") && svg.ends_with("</g>\n</svg>\n"));
+        assert!(svg.contains("stroke-width=\"10\" d=\"M20 40l60 80 -20 0M180 180l0 -180\"/>"), "{svg}");
+        assert_eq!(svg.matches(" stroke-opacity=\"0.55\"").count(), 2, "where ink adds up, lines stay apart: {svg}");
+        assert!(svg.contains("stroke-width=\"10\" stroke-linecap=\"round\" d=\"M60 80h0M60 100h0\"/>"), "{svg}");
+        assert!(svg.contains("<polygon fill=\"#111111\" fill-opacity=\"0.85\" points=\"0,0 1,0 1,1\""), "{svg}");
+    }
+
+    #[test]
+    fn a_group_has_its_name_its_dashes_and_is_cut_where_it_reaches_beyond() {
+        let grouped = |points: &[BackendCoord]| {
+            let group = Group { dash: Some((DASHED, 0.5)), clip: Some([0, 0, 100, 50]), ..Group::named(Some("a < b")) };
+            drawn(|area, svg| {
+                svg.begin(group);
+                area.draw(&line(points))?;
+                svg.end();
+                svg.begin(Group::named(Some("empty")));
+                svg.end();
+                Ok(())
+            })
+        };
+        let (inside, beyond) = (grouped(&[(0, 0), (100, 50)]), grouped(&[(0, 0), (101, 50)]));
+        assert!(inside.contains("<g data-series=\"a &lt; b\" stroke-dasharray=\"50 25\">\n<path"), "{inside}");
+        assert!(!inside.contains("clip") && !inside.contains("empty"));
+        assert!(
+            beyond.contains("<clipPath id=\"clip-0-0-100-50\"><rect x=\"0\" y=\"0\" width=\"100\" height=\"50\"/>")
+        );
+        assert!(beyond.contains(" clip-path=\"url(#clip-0-0-100-50)\">"), "{beyond}");
+        // A dashed line that fills an area is solid.
+        let band: Vec<BackendCoord> = (0..4000).map(|i| (i / 4, i % 2 * 500)).collect();
+        assert!(grouped(&band).contains("stroke-dasharray=\"none\""));
+    }
+
+    #[test]
+    fn text_is_escaped_and_stands_where_its_anchor_is() {
+        let text = TextLine::new(format!("a < b & {}\u{7}\u{fffe}\nsecond", symbol("ψ")), 8.0);
+        let svg =
+            drawn(|area, _| area.draw(&plotters::element::Text::new(text.text.clone(), (200, 400), text.style())));
+        assert!(svg.contains("\na &lt; b &amp; <tspan font-style=\"italic\">ψ</tspan>\n"), "{svg}");
+        assert!(!svg.contains(['\u{7}', '\u{fffe}', '\u{e000}']) && svg.contains("font-size=\"160\""));
+        // Centred on the middle of its two lines, which are 1.15 sizes apart.
+        assert!(svg.contains("x=\"200\" y=\"366\"") && svg.contains("x=\"200\" y=\"550\""), "{svg}");
+    }
+}
