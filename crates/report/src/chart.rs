@@ -3,23 +3,28 @@
 
 use plotters::chart::ChartContext;
 use plotters::coord::cartesian::Cartesian2d;
-use plotters::element::{Circle, ErrorBar, PathElement, Polygon};
+use plotters::drawing::DrawingArea;
+use plotters::element::{Circle, ErrorBar, IntoDynElement as _, PathElement, Polygon};
 use plotters::series::LineSeries;
 use plotters::style::{Color as _, RGBAColor, RGBColor};
 
 use crate::axis::Axis;
-use crate::backend::{Bounds, Drawn, Group, UNITS, units};
-use crate::canvas::{Canvas, PagePoint, Rect, Stroke, marker};
+use crate::backend::{Bounds, Drawn, Group, Svg, UNITS, units};
+use crate::canvas::{Canvas, Element, PagePoint, Rect, Stroke, marker};
 use crate::curve::PlotCurve;
 use crate::palette::{INK, Look, PAPER};
 use crate::theme::Theme;
 
-/// What plotters draws into.
-pub(crate) type Context = ChartContext<'static, crate::backend::Svg, Cartesian2d<Axis, Axis>>;
+/// A chart of plotters.
+pub(crate) type Context = ChartContext<'static, Svg, Cartesian2d<Axis, Axis>>;
+
+/// Distance beyond the frame, units, from which on plotters moves what is drawn to the edge; all beyond the frame is
+/// cut, so lines leave it where they do.
+const BEYOND: i32 = 1_000_000;
 
 /// A rectangle with two axes.
 pub(crate) struct Chart {
-    pub context: Context,
+    data: DrawingArea<Svg, Cartesian2d<Axis, Axis>>,
     pub canvas: Canvas,
     pub rect: Rect,
     pub x: Axis,
@@ -28,12 +33,13 @@ pub(crate) struct Chart {
 
 impl Chart {
     /// The chart on the page.
-    pub(crate) fn new(context: Context, canvas: Canvas, [x, y]: [Axis; 2]) -> Self {
+    pub(crate) fn new(context: &Context, canvas: Canvas, [x, y]: [Axis; 2]) -> Self {
         let (across, down) = context.plotting_area().get_pixel_range();
         let [left, right, top, bottom] =
             [across.start, across.end - 1, down.start, down.end - 1].map(|place| f64::from(place) / UNITS);
         let rect = Rect { x: left, y: top, w: right - left, h: bottom - top };
-        Self { context, canvas, rect, x, y }
+        let wide = context.plotting_area().strip_coord_spec().margin(-BEYOND, -BEYOND, -BEYOND, -BEYOND);
+        Self { data: wide.apply_coord_spec(context.as_coord_spec().clone()), canvas, rect, x, y }
     }
 
     /// The frame in units.
@@ -43,13 +49,13 @@ impl Chart {
 
     /// Horizontal place of a value.
     pub(crate) fn across(&self, x: f64) -> Option<f64> {
-        let at = || f64::from(self.context.backend_coord(&(x, self.y.middle())).0) / UNITS;
+        let at = || f64::from(self.data.map_coordinate(&(x, self.y.middle())).0) / UNITS;
         self.x.has_place(x).then(at)
     }
 
     /// Vertical place of a value.
     pub(crate) fn up(&self, y: f64) -> Option<f64> {
-        let at = || f64::from(self.context.backend_coord(&(self.x.middle(), y)).1) / UNITS;
+        let at = || f64::from(self.data.map_coordinate(&(self.x.middle(), y)).1) / UNITS;
         self.y.has_place(y).then(at)
     }
 
@@ -63,23 +69,22 @@ impl Chart {
         self.place(pair).filter(|place| self.rect.contains(*place))
     }
 
-    /// Draws a series under its name in the key: with its dashes, cut at the frame.
-    pub(crate) fn series(
-        &mut self,
-        name: Option<&str>,
-        stroke: Option<Stroke>,
-        draw: impl FnOnce(&mut Context) -> Drawn,
-    ) -> Drawn {
-        let dash = stroke.map(|stroke| (stroke.dash, stroke.width));
-        self.canvas.svg.begin(Group { dash, clip: Some(self.bounds()), ..Group::named(name) });
-        draw(&mut self.context)?;
+    /// Draws elements at values, all that belong to a group.
+    pub(crate) fn draw(&self, group: Group, elements: impl IntoIterator<Item = Element<(f64, f64)>>) -> Drawn {
+        self.canvas.svg.begin(group);
+        elements.into_iter().try_for_each(|element| self.data.draw(&element))?;
         self.canvas.svg.end();
         Ok(())
     }
 
+    /// The group of a series of the key, cut at the frame.
+    fn cut(&self, name: Option<&str>) -> Group {
+        Group { clip: Some(self.bounds()), ..Group::named(name) }
+    }
+
     /// A line through pairs, broken at gaps.
     pub(crate) fn line(
-        &mut self,
+        &self,
         name: Option<&str>,
         pairs: impl IntoIterator<Item = (f64, f64)>,
         stroke: Stroke,
@@ -91,18 +96,14 @@ impl Chart {
             start += run.len();
             (run[0], start - run.len()..start)
         });
-        let parts: Vec<_> = runs.filter(|(is_drawn, _)| *is_drawn).map(|(_, rows)| pairs[rows].to_vec()).collect();
-        self.series(name, Some(stroke), |context| {
-            for part in parts {
-                context.draw_series(LineSeries::new(part, stroke.style()))?;
-            }
-            Ok(())
-        })
+        let parts = runs.filter(|(is_drawn, _)| *is_drawn).map(|(_, rows)| pairs[rows].to_vec());
+        let lines = parts.flat_map(|part| LineSeries::new(part, stroke.style()));
+        self.draw(Group { dash: Some((stroke.dash, stroke.width)), ..self.cut(name) }, lines)
     }
 
     /// The area between two curves.
     pub(crate) fn band(
-        &mut self,
+        &self,
         name: Option<&str>,
         [lower, upper]: [&PlotCurve; 2],
         colour: RGBColor,
@@ -115,64 +116,46 @@ impl Chart {
     }
 
     /// An area with these corners.
-    pub(crate) fn area(
-        &mut self,
-        name: Option<&str>,
-        corners: Vec<(f64, f64)>,
-        colour: RGBColor,
-        opacity: f64,
-    ) -> Drawn {
-        self.series(name, None, |context| {
-            context.draw_series([Polygon::new(corners, colour.mix(opacity).filled())])?;
-            Ok(())
-        })
+    pub(crate) fn area(&self, name: Option<&str>, corners: Vec<(f64, f64)>, colour: RGBColor, opacity: f64) -> Drawn {
+        self.draw(self.cut(name), [Polygon::new(corners, colour.mix(opacity).filled()).into_dyn()])
     }
 
     /// Dots at pairs inside the frame.
     pub(crate) fn dots(
-        &mut self,
+        &self,
         name: Option<&str>,
         pairs: impl IntoIterator<Item = (f64, f64)>,
         radius: f64,
         colour: RGBAColor,
     ) -> Drawn {
-        let dot = |pair| Circle::new(pair, units(radius).max(1) as u32, colour.filled());
-        let dots: Vec<_> = pairs.into_iter().filter(|pair| self.inside(*pair).is_some()).map(dot).collect();
-        self.canvas.svg.begin(Group::named(name));
-        self.context.draw_series(dots)?;
-        self.canvas.svg.end();
-        Ok(())
+        let dot = |pair| Circle::new(pair, units(radius).max(1) as u32, colour.filled()).into_dyn();
+        self.draw(Group::named(name), pairs.into_iter().filter(|pair| self.inside(*pair).is_some()).map(dot))
     }
 
     /// Markers at pairs inside the frame, whole where they stand on it.
-    pub(crate) fn markers(&mut self, name: Option<&str>, pairs: &[(f64, f64)], radius: f64, look: &Look) -> Drawn {
+    pub(crate) fn markers(&self, name: Option<&str>, pairs: &[(f64, f64)], radius: f64, look: &Look) -> Drawn {
         let markers = pairs.iter().filter(|pair| self.inside(**pair).is_some());
-        let markers: Vec<_> = markers.flat_map(|pair| marker(*pair, radius, look)).collect();
-        self.canvas.svg.begin(Group::named(name));
-        self.context.draw_series(markers)?;
-        self.canvas.svg.end();
-        Ok(())
+        self.draw(Group::named(name), markers.flat_map(|pair| marker(*pair, radius, look)))
     }
 
     /// An interval from left to right at height `y` about a marked value, with an arrow head of `head` points at an end
     /// that lies beyond the frame; returns whether one does. An end without bound lies beyond every frame. Without a
     /// mark there are no caps.
     pub(crate) fn bar(
-        &mut self,
+        &self,
         name: Option<&str>,
         (y, ends, marked): (f64, [f64; 2], Option<f64>),
         stroke: Stroke,
         (cap, head): (f64, f64),
     ) -> Drawn<bool> {
         let [lo, hi] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-f64::MAX, f64::MAX));
-        let bar = PathElement::new(vec![(lo, y), (hi, y)], stroke.style());
+        let line = || PathElement::new(vec![(lo, y), (hi, y)], stroke.style()).into_dyn();
         // The ring that plotters draws at the value lies below the mark.
-        let capped = |value| ErrorBar::new_horizontal(y, lo, value, hi, stroke.style(), units(cap).max(2) as u32);
+        let width = units(cap).max(2) as u32;
+        let capped = |value| ErrorBar::new_horizontal(y, lo, value, hi, stroke.style(), width).into_dyn();
         let (Some(left), Some(right)) = (self.across(lo), self.across(hi)) else { return Ok(false) };
-        self.series(name, Some(stroke), |context| match marked.filter(|value| value.is_finite()).map(capped) {
-            Some(capped) => context.draw_series([capped]).map(drop),
-            None => context.draw_series([bar]).map(drop),
-        })?;
+        let bar = marked.filter(|value| value.is_finite()).map_or_else(line, capped);
+        self.draw(Group { is_interval: true, ..self.cut(name) }, [bar])?;
         let height = self.up(y).unwrap_or(f64::NAN);
         let Rect { x, .. } = self.rect;
         let slack = 0.1;
@@ -184,7 +167,7 @@ impl Chart {
     }
 
     /// A line from bottom to top.
-    pub(crate) fn vertical(&mut self, name: Option<&str>, x: f64, stroke: Stroke) -> Drawn {
+    pub(crate) fn vertical(&self, name: Option<&str>, x: f64, stroke: Stroke) -> Drawn {
         let (low, high) = self.y.ends();
         if !self.across(x).is_some_and(|place| self.rect.contains((place, self.rect.y))) {
             return Ok(());
@@ -193,7 +176,7 @@ impl Chart {
     }
 
     /// A line from left to right.
-    pub(crate) fn horizontal(&mut self, y: f64, stroke: Stroke) -> Drawn {
+    pub(crate) fn horizontal(&self, y: f64, stroke: Stroke) -> Drawn {
         let (low, high) = self.x.ends();
         self.line(None, [(low, y), (high, y)], stroke)
     }

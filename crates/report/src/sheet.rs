@@ -320,7 +320,7 @@ impl Sheet {
             mesh.x_desc(self.column_title(x, plan.margins[1]).join("\n"));
         }
         mesh.draw()?;
-        let chart = Chart::new(context, self.canvas.clone(), [x.axis.clone(), y.axis.clone()]);
+        let chart = Chart::new(&context, self.canvas.clone(), [x.axis.clone(), y.axis.clone()]);
         if lower_labels && plan.is_turned {
             // Names with words too long to stand side by side are turned and end at their tick.
             let top = chart.rect.bottom() + 2.0 * self.tick_length();

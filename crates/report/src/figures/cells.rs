@@ -3,11 +3,11 @@
 //! common colour blindness.
 
 use super::panels::Division;
-use plotters::element::Rectangle;
+use plotters::element::{IntoDynElement as _, Rectangle};
 use plotters::style::{Color as _, RGBColor};
 
 use crate::axis::Axis;
-use crate::backend::Drawn;
+use crate::backend::{Drawn, Group};
 use crate::canvas::{Anchor, Rect, Stroke, TextLine};
 use crate::chart::Chart;
 use crate::figure::Drawing;
@@ -124,12 +124,12 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawn<Drawing> {
     let heads = heads.collect();
     let range = Range::of(data);
     let charts = sheet.grid(Grid { heads, ..Grid::alike(count, across(data, theme).min(count), column, row) })?;
-    for (mut chart, (_, rows)) in charts.into_iter().zip(&data.panels) {
+    for (chart, (_, rows)) in charts.iter().zip(&data.panels) {
         let cells =
             || rows.iter().enumerate().flat_map(|(y, row)| row.iter().enumerate().map(move |(x, own)| ((x, y), own)));
-        cells().try_for_each(|(place, cell)| shade(&mut chart, theme, place, (cell, &range)))?;
+        cells().try_for_each(|(place, cell)| shade(chart, theme, place, (cell, &range)))?;
         chart.frame(theme)?;
-        cells().try_for_each(|(place, cell)| label(&chart, theme, place, (cell, &range)))?;
+        cells().try_for_each(|(place, cell)| label(chart, theme, place, (cell, &range)))?;
     }
     if let Shades::Range(division, title) = &data.shades {
         bar(&mut sheet, (*division, title), theme, &range)?;
@@ -165,10 +165,10 @@ fn bar(sheet: &mut Sheet, (division, title): (Division, &str), theme: &Theme, ra
         let at = |share: f64| value(range.low + share / PIECES as f64 * (range.high - range.low));
         // Each lies over the end of the one before: edges side by side would let the paper through.
         let corners = [(at(number as f64), -0.5), (high, 0.5)];
-        Rectangle::new(corners, range.colour(at(number as f64 + 0.5)).0.filled())
+        Rectangle::new(corners, range.colour(at(number as f64 + 0.5)).0.filled()).into_dyn()
     };
-    for mut chart in charts {
-        chart.context.draw_series((0..PIECES).map(piece))?;
+    for chart in charts {
+        chart.draw(Group::default(), (0..PIECES).map(piece))?;
         chart.frame(theme)?;
     }
     Ok(())
@@ -241,12 +241,12 @@ fn bracket(cell: &MapCell) -> Option<String> {
 }
 
 /// Colour and outline of a cell.
-fn shade(chart: &mut Chart, theme: &Theme, (x, y): (usize, usize), (cell, range): (&MapCell, &Range)) -> Drawn {
+fn shade(chart: &Chart, theme: &Theme, (x, y): (usize, usize), (cell, range): (&MapCell, &Range)) -> Drawn {
     let (x, y) = (x as f64, y as f64);
     let (colour, opacity) = cell.value.map_or((GRID, 1.0), |value| range.colour(value));
     if opacity > 0.0 {
         let corners = [(x - 0.5, y - 0.5), (x + 0.5, y + 0.5)];
-        chart.context.draw_series([Rectangle::new(corners, colour.mix(opacity).filled())])?;
+        chart.draw(Group::default(), [Rectangle::new(corners, colour.mix(opacity).filled()).into_dyn()])?;
     }
     if range.is_shares {
         let hair = Stroke::solid(GRID, theme.thin);

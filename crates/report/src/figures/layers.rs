@@ -242,8 +242,8 @@ fn draw(sheet: &mut Sheet, data: &Panels, stack: &Stack, strip: (f64, f64, f64),
     grid.left = Some(margin);
     let count = columns(stack, &theme);
     let mut dots = 0;
-    let mut charts = sheet.grid_within(grid, (from, width))?;
-    for (index, (chart, panel)) in charts.iter_mut().zip(&stack.panels).enumerate() {
+    let charts = sheet.grid_within(grid, (from, width))?;
+    for (index, (chart, panel)) in charts.iter().zip(&stack.panels).enumerate() {
         let row = &stack.rows[if stack.across.is_some() { 0 } else { index / count }];
         background(chart, &theme, stack, row)?;
         // What is an area lies under what is a line.
@@ -278,7 +278,7 @@ fn named(layer: &Layer, stack: &Stack, row: &PanelRow) -> String {
 }
 
 /// What lies under the layers.
-fn background(chart: &mut Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Drawn {
+fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Drawn {
     if row.zero {
         chart.horizontal(0.0, zero_stroke(theme))?;
     }
@@ -311,7 +311,7 @@ fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Drawn {
 }
 
 /// Draws a layer; returns how many dots lie beyond the panel.
-fn draw_layer(chart: &mut Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> Drawn<usize> {
+fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> Drawn<usize> {
     let name = layer.name.as_deref();
     match &layer.kind {
         LayerKind::Line(pen) => chart.line(name, layer.curve.pairs(), pen.stroke(theme))?,
@@ -388,7 +388,7 @@ struct Bar {
 }
 
 /// Marks with their intervals, and the line that joins them.
-fn draw_marks(chart: &mut Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> Drawn {
+fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> Drawn {
     let (name, curve) = (layer.name.as_deref(), &layer.curve);
     let Marks { look, intervals, joined, apart } = marks;
     let mut across: Vec<Option<f64>> = curve.x.iter().map(|x| chart.across(*x)).collect();
@@ -441,7 +441,7 @@ fn draw_marks(chart: &mut Chart, theme: &Theme, layer: &Layer, marks: &Marks, ou
 }
 
 /// Vertical intervals with caps at places across the page; an end beyond the frame is cut, without cap.
-fn draw_bars(chart: &mut Chart, name: Option<&str>, bars: &[Bar], stroke: Stroke, theme: &Theme) -> Drawn {
+fn draw_bars(chart: &Chart, name: Option<&str>, bars: &[Bar], stroke: Stroke, theme: &Theme) -> Drawn {
     let cap = units(theme.marker).max(2) as u32;
     let [_, top, _, bottom] = chart.bounds();
     let far = bottom - top;

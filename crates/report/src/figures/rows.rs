@@ -215,7 +215,7 @@ pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawn<Drawing> {
         charts.extend(sheet.grid(Grid::new(part.to_vec(), vec![row.clone()]))?);
     }
     let mut beyond = false;
-    for (chart, column) in charts.iter_mut().zip(&data.columns) {
+    for (chart, column) in charts.iter().zip(&data.columns) {
         beyond |= draw(chart, theme, (column, pitch))?;
     }
     let is_said = data.note.as_ref().is_some_and(|note| note.contains("Arrows"));
@@ -281,7 +281,7 @@ fn axis(column: &RowsColumn) -> Axis {
 }
 
 /// Draws the rows of a column; returns whether something lies beyond its axis.
-fn draw(chart: &mut Chart, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> Drawn<bool> {
+fn draw(chart: &Chart, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> Drawn<bool> {
     let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..) | RowKind::Heading);
     let is_estimated = column.rows.iter().flatten().all(is_estimate);
     let stacked = |items: &[RowItem]| items.iter().filter(|item| item.is_stacked()).count();
@@ -331,7 +331,7 @@ fn draw(chart: &mut Chart, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -
 }
 
 /// Draws an item at its height, in rows; returns whether it lies beyond the axis.
-fn draw_item(chart: &mut Chart, theme: &Theme, (item, y): (&RowItem, f64), is_alone: bool) -> Drawn<bool> {
+fn draw_item(chart: &Chart, theme: &Theme, (item, y): (&RowItem, f64), is_alone: bool) -> Drawn<bool> {
     let sizes = (theme.marker, 0.6 * theme.small_font);
     let name = item.name.as_deref();
     match &item.kind {
@@ -358,7 +358,7 @@ fn draw_item(chart: &mut Chart, theme: &Theme, (item, y): (&RowItem, f64), is_al
 
 /// A mark, or an arrow with its number where it lies beyond the axis; returns whether it does.
 fn mark(
-    chart: &mut Chart,
+    chart: &Chart,
     theme: &Theme,
     (name, look, value, y): (Option<&str>, &Look, f64, f64),
     is_alone: bool,
@@ -387,7 +387,7 @@ const HALF: f64 = 0.42;
 /// Density, box of the quartiles, whiskers and median, the ends of the whiskers as numbers beside what is too narrow to
 /// be seen; returns whether it reaches beyond the axis.
 fn violin(
-    chart: &mut Chart,
+    chart: &Chart,
     theme: &Theme,
     (name, look, y): (Option<&str>, &Look, f64),
     density: &[(f64, f64)],

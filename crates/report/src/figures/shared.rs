@@ -28,7 +28,7 @@ fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
 }
 
 /// A recorded heading: dots, or a wide line under the fits where the record is dense.
-pub(super) fn record(chart: &mut Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> Drawn {
+pub(super) fn record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> Drawn {
     match dense(heading, theme) {
         Some(stroke) => chart.line(name, heading.pairs(), stroke),
         None => chart.dots(name, heading.finite(), 1.4 * theme.dot, RECORD.mix(1.0)),
@@ -83,14 +83,14 @@ impl Reference95 {
     }
 
     /// Across a panel whose horizontal axis it belongs to.
-    pub(super) fn vertical(&self, chart: &mut Chart, theme: &Theme) -> Drawn {
+    pub(super) fn vertical(&self, chart: &Chart, theme: &Theme) -> Drawn {
         let corners = self.corners(chart.y.ends());
         chart.area(None, corners.to_vec(), RECORD, BAND)?;
         chart.vertical(None, self.value, Self::stroke(theme))
     }
 
     /// Across a panel whose vertical axis it belongs to.
-    pub(super) fn horizontal(&self, chart: &mut Chart, theme: &Theme) -> Drawn {
+    pub(super) fn horizontal(&self, chart: &Chart, theme: &Theme) -> Drawn {
         let corners = self.corners(chart.x.ends()).map(|(up, across)| (across, up));
         chart.area(None, corners.to_vec(), RECORD, BAND)?;
         chart.horizontal(self.value, Self::stroke(theme))

@@ -393,6 +393,23 @@ fn what_runs_off_is_cut_and_says_so() {
 }
 
 #[test]
+fn a_line_leaves_its_panel_where_it_does() {
+    let line = |end: f64, pen| Layer::line("", PlotCurve::new([0.0, 1.0], [0.0, end]), pen);
+    let layers = vec![line(1.0, Pen::new(INK)), line(10.0, Pen::new(palette::RUDDER)).within(0.0)];
+    let data = Panels::over_time(vec![(PanelRow::new(Ruler::decimal("y"), 0.2), layers)]);
+    let svg = Plot::from(data).draw(&Theme::screen()).svg().to_owned();
+    let rise = |colour: &str| -> f64 {
+        let path = svg.split(&format!("stroke=\"{colour}\" stroke-width=\"27\" d=\"")).nth(1).expect("a line");
+        let steps = path.split(['l', '"']).nth(1).expect("its step");
+        let [across, up] = [0, 1].map(|part| steps.split(' ').nth(part).unwrap().parse::<f64>().unwrap());
+        up / across
+    };
+    let ratio = rise("#D55E00") / rise("#111111");
+    assert!((ratio - 10.0).abs() < 0.05, "{ratio}");
+    assert_eq!(svg.matches(" clip-path=\"url(#").count(), 1);
+}
+
+#[test]
 fn what_sets_no_axis_is_an_arrow_at_its_edge() {
     let marks = |name: &str, far: f64| {
         let points = vec![(1.0, 0.1, None), (2.0, far, None)];

@@ -116,10 +116,10 @@ fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Drawn<D
     ];
     let times = curves.flat_map(|curve| curve.finite().map(|(t, _)| t));
     let time = AxisSide::new(Axis::covering(times, 0.0, Division::Time), Ruler::time().title);
-    let mut charts = sheet.grid(Grid::new(vec![time], rows))?;
-    let [upper, lower] = &mut charts[..] else { return Ok(sheet.finish()) };
+    let charts = sheet.grid(Grid::new(vec![time], rows))?;
+    let [upper, lower] = &charts[..] else { return Ok(sheet.finish()) };
 
-    for chart in [&mut *upper, &mut *lower] {
+    for chart in &charts {
         let stroke = Stroke::solid(RECORD, theme.thin).dashed(DOTTED);
         data.executes.iter().try_for_each(|execute| chart.vertical(None, execute.t_s, stroke))?;
     }
