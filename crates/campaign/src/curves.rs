@@ -2,7 +2,7 @@
 
 use identify::Estimate;
 use identify::replay::replay;
-use report::figures::{OvershootMark, ReplayCurves, TimeSpan, ZigZagMark, ZigzagTrial};
+use report::figures::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
 use report::{CurveOrigin, PlotCurve};
 use scenario::MethodName;
 use ship::angle::to_deg;
@@ -11,6 +11,7 @@ use trial::zigzag::{Execute, Overshoot};
 use trial::{Quantity, Trial, ZigZag};
 
 use crate::answer::MethodEntry;
+use crate::stored_figures::ReplayCurves;
 
 /// How a method of a scenario is drawn: as itself when it goes by its id, else as a variant of it.
 pub fn origin(names: &[MethodName], label: &str) -> CurveOrigin {

@@ -11,7 +11,7 @@
 //! | what is stored | [`design`], [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`], [`unfinished`] |
 //! | how it gets to the disk | [`files`], [`folder`], [`disk`] |
 //! | what is said about it | [`summary`], [`statistics`] |
-//! | records and answers for figures and other programs | [`curves`], [`answer`] |
+//! | records and answers for figures and other programs | [`curves`], [`stored_figures`], [`answer`] |
 //! | what is known of a ship, for a prediction | [`known`] |
 //! | methods against each other on measured and simulated records | [`benchmark`] |
 
@@ -41,6 +41,7 @@ pub mod sources;
 pub mod statistics;
 pub mod stopping;
 pub mod store;
+pub mod stored_figures;
 pub mod summary;
 pub mod task;
 #[cfg(test)]

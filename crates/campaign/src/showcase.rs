@@ -2,9 +2,7 @@
 //! for figures. Made once when a study runs, stored, and drawn from the store.
 
 use identify::{Estimate, IdentifierSettings};
-use report::figures::{
-    CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replays, ZigzagTrial,
-};
+use report::figures::ZigzagTrial;
 use report::{CurveOrigin, PlotCurve};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
@@ -14,6 +12,9 @@ use trial::{Quantity, Trial, ZigZag};
 use crate::answer::{MethodEntry, entry};
 use crate::curves::{curve, origin, replay_curves, zigzag_figure};
 use crate::engine;
+use crate::stored_figures::{
+    CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replays,
+};
 use crate::task::Task;
 use scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};
 

@@ -212,26 +212,20 @@ impl Document {
 
     fn line(&mut self, points: &[BackendCoord], style: &impl BackendStyle) {
         let (BackendColor { alpha, rgb }, width) = (style.color(), style.stroke_width());
-        if alpha == 0.0 || points.len() < 2 {
+        if points.len() < 2 {
             return;
         }
-        let mut attributes = format!("fill=\"none\" stroke=\"{}\"{}", self.colour(rgb), opacity("stroke", alpha));
-        let _ = write!(attributes, " stroke-width=\"{width}\"");
-        let mut data = format!("M{} {}", points[0].0, points[0].1);
-        let mut length = 0.0;
-        let mut command = 'l';
-        for ends in points.windows(2) {
-            let (dx, dy) = (ends[1].0 - ends[0].0, ends[1].1 - ends[0].1);
-            let _ = write!(data, "{command}{dx} {dy}");
-            length += f64::from(dx).hypot(f64::from(dy));
-            command = ' ';
-        }
+        points.iter().for_each(|point| self.reach(*point, 0));
+        let steps = || points.windows(2).map(|ends| (ends[1].0 - ends[0].0, ends[1].1 - ends[0].1));
+        let length: f64 = steps().map(|(dx, dy)| f64::from(dx).hypot(f64::from(dy))).sum();
         let dash = self.group.as_ref().and_then(|open| open.group.dash);
         let pattern = dash.map_or(0.0, |(dash, width)| dash.iter().sum::<f64>() * width * UNITS);
-        if pattern > 0.0 && length > MAX_REPEATS * pattern {
-            attributes += " stroke-dasharray=\"none\"";
-        }
-        self.lengthen(attributes, &data, alpha < 1.0);
+        let solid = pattern > 0.0 && length > MAX_REPEATS * pattern;
+        let (colour, faint) = (self.colour(rgb), opacity("stroke", alpha));
+        let solid = if solid { " stroke-dasharray=\"none\"" } else { "" };
+        let attributes = format!("fill=\"none\" stroke=\"{colour}\"{faint} stroke-width=\"{width}\"{solid}");
+        let steps: Vec<String> = steps().map(|(dx, dy)| format!("{dx} {dy}")).collect();
+        self.lengthen(attributes, &format!("M{} {}l{}", points[0].0, points[0].1, steps.join(" ")), alpha < 1.0);
     }
 }
 
@@ -250,8 +244,8 @@ impl DrawingBackend for Svg {
         Ok(())
     }
 
-    fn draw_pixel(&mut self, (x, y): BackendCoord, colour: BackendColor) -> Written {
-        self.draw_rect((x, y), (x + 1, y + 1), &colour, true)
+    fn draw_pixel(&mut self, at: BackendCoord, colour: BackendColor) -> Written {
+        self.draw_circle(at, 1, &colour, true)
     }
 
     fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Written {
@@ -270,9 +264,7 @@ impl DrawingBackend for Svg {
     fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Written {
         let mut points: Vec<BackendCoord> = path.into_iter().collect();
         points.dedup();
-        let mut document = self.document.borrow_mut();
-        points.iter().for_each(|point| document.reach(*point, 0));
-        document.line(&points, style);
+        self.document.borrow_mut().line(&points, style);
         Ok(())
     }
 
@@ -290,66 +282,52 @@ impl DrawingBackend for Svg {
         Ok(())
     }
 
+    /// A disc; a ring, which plotters draws at the value of an error bar, would lie below its mark and is left out.
     fn draw_circle<S: BackendStyle>(&mut self, at: BackendCoord, radius: u32, style: &S, fill: bool) -> Written {
         let BackendColor { alpha, rgb } = style.color();
         let mut document = self.document.borrow_mut();
-        document.reach(at, radius as i32);
-        let (colour, faint) = (document.colour(rgb), opacity("stroke", alpha));
         if fill {
-            let attributes =
-                format!("stroke=\"{colour}\"{faint} stroke-width=\"{}\" stroke-linecap=\"round\"", 2 * radius.max(1));
+            document.reach(at, radius as i32);
+            let (colour, faint, width) = (document.colour(rgb), opacity("stroke", alpha), 2 * radius.max(1));
+            let attributes = format!("stroke=\"{colour}\"{faint} stroke-width=\"{width}\" stroke-linecap=\"round\"");
             document.lengthen(attributes, &format!("M{} {}h0", at.0, at.1), alpha < 1.0);
-        } else {
-            let width = style.stroke_width();
-            document.put(&format!(
-                "<circle cx=\"{}\" cy=\"{}\" r=\"{radius}\" fill=\"none\" stroke=\"{colour}\"{faint} stroke-width=\"{width}\"/>\n",
-                at.0, at.1
-            ));
         }
         Ok(())
     }
 
     fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> Written {
-        let lines: Vec<&str> = text.split('\n').collect();
-        if text.trim().is_empty() {
-            return Ok(());
-        }
-        let size = style.size();
-        let anchor = match style.anchor().h_pos {
-            HPos::Left => "",
-            HPos::Center => " text-anchor=\"middle\"",
-            HPos::Right => " text-anchor=\"end\"",
-        };
-        let bold = if matches!(style.style(), FontStyle::Bold) { " font-weight=\"bold\"" } else { "" };
-        let turn = match style.transform() {
-            FontTransform::None => String::new(),
-            FontTransform::Rotate90 => format!(" transform=\"rotate(90, {x}, {y})\""),
-            FontTransform::Rotate180 => format!(" transform=\"rotate(180, {x}, {y})\""),
-            FontTransform::Rotate270 => format!(" transform=\"rotate(270, {x}, {y})\""),
-        };
-        let below = LINE * size * (lines.len() - 1) as f64;
+        let mut document = self.document.borrow_mut();
+        let (size, count) = (style.size(), text.split('\n').count());
+        let below = LINE * size * (count - 1) as f64;
         // From the anchor to the base line of the first line.
         let first = match style.anchor().v_pos {
             VPos::Top => 0.8 * size,
             VPos::Center => 0.36 * size - 0.5 * below,
             VPos::Bottom => -0.22 * size - below,
         };
-        let mut document = self.document.borrow_mut();
-        let fill = document.colour(style.color().rgb);
-        for (number, line) in lines.iter().enumerate() {
-            let base = f64::from(y) + first + LINE * size * number as f64;
-            let mut element = format!(
-                "<text x=\"{x}\" y=\"{base:.0}\" font-size=\"{}\" fill=\"{fill}\"{anchor}{bold}{turn}>\n",
-                (10.0 * size).round() / 10.0
-            );
-            for (italic, run) in runs(line) {
-                let run = escaped(run);
-                let _ = match italic {
-                    true => write!(element, "<tspan font-style=\"italic\">{run}</tspan>"),
-                    false => write!(element, "{run}"),
-                };
-            }
-            document.put(&(element + "\n</text>\n"));
+        let anchor = match style.anchor().h_pos {
+            HPos::Left => "",
+            HPos::Center => " text-anchor=\"middle\"",
+            HPos::Right => " text-anchor=\"end\"",
+        };
+        let bold = if matches!(style.style(), FontStyle::Bold) { " font-weight=\"bold\"" } else { "" };
+        let turned = |degrees: u32| format!(" transform=\"rotate({degrees}, {x}, {y})\"");
+        let turn = match style.transform() {
+            FontTransform::None => String::new(),
+            FontTransform::Rotate90 => turned(90),
+            FontTransform::Rotate180 => turned(180),
+            FontTransform::Rotate270 => turned(270),
+        };
+        let (fill, font) = (document.colour(style.color().rgb), (10.0 * size).round() / 10.0);
+        for (number, line) in text.split('\n').enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+            let base = (f64::from(y) + first + LINE * size * number as f64).round();
+            let run = |(is_italic, run): (bool, &str)| match is_italic {
+                true => format!("<tspan font-style=\"italic\">{}</tspan>", escaped(run)),
+                false => escaped(run),
+            };
+            let words: String = runs(line).into_iter().map(run).collect();
+            let attributes = format!("x=\"{x}\" y=\"{base}\" font-size=\"{font}\" fill=\"{fill}\"{anchor}{bold}{turn}");
+            document.put(&format!("<text {attributes}>\n{words}\n</text>\n"));
         }
         Ok(())
     }
@@ -379,16 +357,18 @@ fn escaped(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use plotters::drawing::IntoDrawingArea as _;
+    use plotters::coord::Shift;
+    use plotters::drawing::{DrawingArea, IntoDrawingArea as _};
     use plotters::element::{Circle, PathElement, Polygon};
     use plotters::style::Color as _;
+    use plotters::style::text_anchor::HPos;
 
     use super::*;
-    use crate::canvas::{Area, Stroke, TextLine};
+    use crate::canvas::{Stroke, TextLine};
     use crate::markup::symbol;
     use crate::palette::{DASHED, INK};
 
-    fn drawn(fill: impl FnOnce(&Area, &Svg) -> Drawn) -> String {
+    fn drawn(fill: impl FnOnce(&DrawingArea<Svg, Shift>, &Svg) -> Drawn) -> String {
         let svg = Svg::new(100.0, Changes::default());
         fill(&svg.clone().into_drawing_area(), &svg).unwrap();
         svg.finish(30.0)
@@ -445,7 +425,7 @@ mod tests {
 
     #[test]
     fn text_is_escaped_and_stands_where_its_anchor_is() {
-        let text = TextLine::new(format!("a < b & {}\u{7}\u{fffe}\nsecond", symbol("ψ")), 8.0);
+        let text = TextLine::new(format!("a < b & {}\u{7}\u{fffe}\nsecond", symbol("ψ")), 8.0, HPos::Left);
         let svg =
             drawn(|area, _| area.draw(&plotters::element::Text::new(text.text.clone(), (200, 400), text.style())));
         assert!(svg.contains("\na &lt; b &amp; <tspan font-style=\"italic\">ψ</tspan>\n"), "{svg}");

@@ -32,7 +32,7 @@ impl Changes {
     pub(crate) fn limit(&self, axis: &mut Axis, title: &str) {
         let is_titled = |wanted: &str| wanted.chars().eq(title.chars().filter(|&c| !is_markup(c)));
         let Some((_, [lo, hi])) = self.limits.iter().find(|(wanted, _)| is_titled(wanted)) else { return };
-        if axis.is_numeric() && (*lo > 0.0 || !axis.is_logarithmic()) {
+        if !axis.is_names() && (*lo > 0.0 || !axis.is_logarithmic()) {
             *axis = axis.clone().between(*lo, *hi);
         }
     }

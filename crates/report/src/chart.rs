@@ -6,7 +6,7 @@ use plotters::coord::cartesian::Cartesian2d;
 use plotters::drawing::DrawingArea;
 use plotters::element::{Circle, ErrorBar, IntoDynElement as _, PathElement, Polygon};
 use plotters::series::LineSeries;
-use plotters::style::{Color as _, RGBAColor, RGBColor};
+use plotters::style::{Color as _, RGBAColor};
 
 use crate::axis::Axis;
 use crate::backend::{Bounds, Drawn, Group, Svg, UNITS, units};
@@ -31,6 +31,16 @@ pub(crate) struct Chart {
     pub y: Axis,
 }
 
+/// An interval from left to right.
+pub(crate) struct Bar {
+    /// Its height, a value of the vertical axis.
+    pub y: f64,
+    pub ends: [f64; 2],
+    /// Whether it has caps.
+    pub is_capped: bool,
+    pub stroke: Stroke,
+}
+
 impl Chart {
     /// The chart on the page.
     pub(crate) fn new(context: &Context, canvas: Canvas, [x, y]: [Axis; 2]) -> Self {
@@ -49,13 +59,13 @@ impl Chart {
 
     /// Horizontal place of a value.
     pub(crate) fn across(&self, x: f64) -> Option<f64> {
-        let at = || f64::from(self.data.map_coordinate(&(x, self.y.middle())).0) / UNITS;
+        let at = || f64::from(self.data.map_coordinate(&(x, self.y.ends().0)).0) / UNITS;
         self.x.has_place(x).then(at)
     }
 
     /// Vertical place of a value.
     pub(crate) fn up(&self, y: f64) -> Option<f64> {
-        let at = || f64::from(self.data.map_coordinate(&(self.x.middle(), y)).1) / UNITS;
+        let at = || f64::from(self.data.map_coordinate(&(self.x.ends().0, y)).1) / UNITS;
         self.y.has_place(y).then(at)
     }
 
@@ -82,6 +92,10 @@ impl Chart {
         Group { clip: Some(self.bounds()), ..Group::named(name) }
     }
 
+    fn has_place(&self, (x, y): &(f64, f64)) -> bool {
+        self.x.has_place(*x) && self.y.has_place(*y)
+    }
+
     /// A line through pairs, broken at gaps.
     pub(crate) fn line(
         &self,
@@ -90,34 +104,31 @@ impl Chart {
         stroke: Stroke,
     ) -> Drawn {
         let pairs: Vec<(f64, f64)> = pairs.into_iter().collect();
-        let has_place: Vec<bool> = pairs.iter().map(|(x, y)| self.x.has_place(*x) && self.y.has_place(*y)).collect();
-        let mut start = 0;
-        let runs = has_place.chunk_by(|one, next| one == next).map(|run| {
-            start += run.len();
-            (run[0], start - run.len()..start)
-        });
-        let parts = runs.filter(|(is_drawn, _)| *is_drawn).map(|(_, rows)| pairs[rows].to_vec());
-        let lines = parts.flat_map(|part| LineSeries::new(part, stroke.style()));
+        let parts = pairs.split(|pair| !self.has_place(pair)).filter(|part| part.len() > 1);
+        let lines = parts.flat_map(|part| LineSeries::new(part.to_vec(), stroke.style()));
         self.draw(Group { dash: Some((stroke.dash, stroke.width)), ..self.cut(name) }, lines)
     }
 
     /// The area between two curves.
-    pub(crate) fn band(
-        &self,
-        name: Option<&str>,
-        [lower, upper]: [&PlotCurve; 2],
-        colour: RGBColor,
-        opacity: f64,
-    ) -> Drawn {
-        let has_place = |(x, y): &(f64, f64)| self.x.has_place(*x) && self.y.has_place(*y);
-        let edge = |curve: &PlotCurve| curve.finite().filter(has_place).collect::<Vec<_>>();
-        let outline: Vec<(f64, f64)> = edge(lower).into_iter().chain(edge(upper).into_iter().rev()).collect();
-        self.area(name, outline, colour, opacity)
+    pub(crate) fn band(&self, name: Option<&str>, [lower, upper]: [&PlotCurve; 2], colour: RGBAColor) -> Drawn {
+        let edge = |curve: &PlotCurve| curve.finite().filter(|pair| self.has_place(pair)).collect::<Vec<_>>();
+        self.area(name, edge(lower).into_iter().chain(edge(upper).into_iter().rev()), colour)
     }
 
     /// An area with these corners.
-    pub(crate) fn area(&self, name: Option<&str>, corners: Vec<(f64, f64)>, colour: RGBColor, opacity: f64) -> Drawn {
-        self.draw(self.cut(name), [Polygon::new(corners, colour.mix(opacity).filled()).into_dyn()])
+    pub(crate) fn area(
+        &self,
+        name: Option<&str>,
+        corners: impl IntoIterator<Item = (f64, f64)>,
+        colour: RGBAColor,
+    ) -> Drawn {
+        let area = Polygon::new(corners.into_iter().collect::<Vec<_>>(), colour.filled());
+        self.draw(self.cut(name), [area.into_dyn()])
+    }
+
+    /// A rectangle between two pairs of opposite corners.
+    pub(crate) fn rectangle(&self, [left, right]: [f64; 2], [low, high]: [f64; 2], colour: RGBAColor) -> Drawn {
+        self.area(None, [(left, low), (right, low), (right, high), (left, high)], colour)
     }
 
     /// Dots at pairs inside the frame.
@@ -132,47 +143,40 @@ impl Chart {
         self.draw(Group::named(name), pairs.into_iter().filter(|pair| self.inside(*pair).is_some()).map(dot))
     }
 
-    /// Markers at pairs inside the frame, whole where they stand on it.
-    pub(crate) fn markers(&self, name: Option<&str>, pairs: &[(f64, f64)], radius: f64, look: &Look) -> Drawn {
-        let markers = pairs.iter().filter(|pair| self.inside(**pair).is_some());
-        self.draw(Group::named(name), markers.flat_map(|pair| marker(*pair, radius, look)))
+    /// A marker at a pair inside the frame, whole where it stands on it.
+    pub(crate) fn marker(&self, name: Option<&str>, pair: (f64, f64), radius: f64, look: &Look) -> Drawn {
+        let is_inside = self.inside(pair).is_some();
+        self.draw(Group::named(name), marker(pair, radius, look).into_iter().filter(|_| is_inside))
     }
 
-    /// An interval from left to right at height `y` about a marked value, with an arrow head of `head` points at an end
-    /// that lies beyond the frame; returns whether one does. An end without bound lies beyond every frame. Without a
-    /// mark there are no caps.
-    pub(crate) fn bar(
-        &self,
-        name: Option<&str>,
-        (y, ends, marked): (f64, [f64; 2], Option<f64>),
-        stroke: Stroke,
-        (cap, head): (f64, f64),
-    ) -> Drawn<bool> {
+    /// An interval, with an arrow head at an end that lies beyond the frame; returns whether one does. An end without
+    /// bound lies beyond every frame.
+    pub(crate) fn bar(&self, name: Option<&str>, bar: &Bar, theme: &Theme) -> Drawn<bool> {
+        let Bar { y, ends, is_capped, stroke } = *bar;
         let [lo, hi] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-f64::MAX, f64::MAX));
-        let line = || PathElement::new(vec![(lo, y), (hi, y)], stroke.style()).into_dyn();
-        // The ring that plotters draws at the value lies below the mark.
-        let width = units(cap).max(2) as u32;
-        let capped = |value| ErrorBar::new_horizontal(y, lo, value, hi, stroke.style(), width).into_dyn();
-        let (Some(left), Some(right)) = (self.across(lo), self.across(hi)) else { return Ok(false) };
-        let bar = marked.filter(|value| value.is_finite()).map_or_else(line, capped);
-        self.draw(Group { is_interval: true, ..self.cut(name) }, [bar])?;
-        let height = self.up(y).unwrap_or(f64::NAN);
-        let Rect { x, .. } = self.rect;
+        let (Some(left), Some(right), Some(height)) = (self.across(lo), self.across(hi), self.up(y)) else {
+            return Ok(false);
+        };
+        let width = units(theme.marker).max(2) as u32;
+        let element = match is_capped {
+            true => ErrorBar::new_horizontal(y, lo, lo, hi, stroke.style(), width).into_dyn(),
+            false => PathElement::new(vec![(lo, y), (hi, y)], stroke.style()).into_dyn(),
+        };
+        self.draw(Group { is_interval: true, ..self.cut(name) }, [element])?;
         let slack = 0.1;
-        let beyond = [(left < x - slack, x, -1.0), (right > self.rect.right() + slack, self.rect.right(), 1.0)];
+        let edges = [self.rect.x, self.rect.right()];
+        let beyond = [(left < edges[0] - slack, edges[0], -1.0), (right > edges[1] + slack, edges[1], 1.0)];
         for (_, edge, direction) in beyond.into_iter().filter(|end| end.0) {
-            self.canvas.head((edge, height), (direction, 0.0), head, stroke.colour)?;
+            self.canvas.head((edge, height), (direction, 0.0), 0.6 * theme.small_font, stroke.colour)?;
         }
         Ok(beyond.iter().any(|end| end.0))
     }
 
-    /// A line from bottom to top.
+    /// A line from bottom to top, where its value lies in the frame.
     pub(crate) fn vertical(&self, name: Option<&str>, x: f64, stroke: Stroke) -> Drawn {
+        let is_inside = self.across(x).is_some_and(|place| self.rect.contains((place, self.rect.y)));
         let (low, high) = self.y.ends();
-        if !self.across(x).is_some_and(|place| self.rect.contains((place, self.rect.y))) {
-            return Ok(());
-        }
-        self.line(name, [(x, low), (x, high)], stroke)
+        self.line(name, [(x, low), (x, high)].into_iter().filter(|_| is_inside), stroke)
     }
 
     /// A line from left to right.
@@ -183,24 +187,23 @@ impl Chart {
 
     /// The frame over the data, with two short slanted lines where a logarithmic axis jumps to zero.
     pub(crate) fn frame(&self, theme: &Theme) -> Drawn {
-        self.canvas.outline(self.rect, Stroke::solid(INK, theme.thin))?;
+        let stroke = Stroke::solid(INK, theme.thin);
+        self.canvas.outline(self.rect, stroke)?;
+        let Rect { x, y: _, w, h } = self.rect;
+        let breaks = [
+            self.x.break_at().map(|share| ((x + share * w, self.rect.bottom()), (1.0, 0.0))),
+            self.y.break_at().map(|share| ((x, self.rect.bottom() - share * h), (0.0, 1.0))),
+        ];
         let size = 0.45 * theme.tick_font;
-        let mark = |centre: PagePoint, along: PagePoint| {
+        for (centre, along) in breaks.into_iter().flatten() {
             // Perpendicular to the axis, leaning along it.
-            let (dx, dy) = (along.1 + 0.4 * along.0, along.0 + 0.4 * along.1);
-            let slant = |side: f64| {
+            let (dx, dy) = (size * (along.1 + 0.4 * along.0), size * (along.0 + 0.4 * along.1));
+            let [one, other] = [-0.35, 0.35].map(|side| {
                 let (x, y) = (centre.0 + side * size * along.0, centre.1 + side * size * along.1);
-                [(x - size * dx, y + size * dy), (x + size * dx, y - size * dy)]
-            };
-            let [one, other] = [slant(-0.35), slant(0.35)];
+                [(x - dx, y + dy), (x + dx, y - dy)]
+            });
             self.canvas.fill(&[one[0], one[1], other[1], other[0]], PAPER, 1.0)?;
-            [one, other].iter().try_for_each(|ends| self.canvas.line(ends, Stroke::solid(INK, theme.thin)))
-        };
-        if let Some(fraction) = self.x.break_at() {
-            mark((self.rect.x + fraction * self.rect.w, self.rect.bottom()), (1.0, 0.0))?;
-        }
-        if let Some(fraction) = self.y.break_at() {
-            mark((self.rect.x, self.rect.bottom() - fraction * self.rect.h), (0.0, 1.0))?;
+            [one, other].iter().try_for_each(|ends| self.canvas.line(ends, stroke))?;
         }
         Ok(())
     }

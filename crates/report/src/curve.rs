@@ -85,7 +85,7 @@ impl PlotCurve {
     }
 
     /// The pairs that can be drawn.
-    pub(crate) fn finite(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+    pub fn finite(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.pairs().filter(|(x, y)| x.is_finite() && y.is_finite())
     }
 }

@@ -105,13 +105,15 @@ impl Drawing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use plotters::style::text_anchor::HPos;
+
     use crate::canvas::TextLine;
     use crate::sheet::Sheet;
     use crate::theme::Theme;
 
     fn sample() -> Drawing {
         let sheet = Sheet::new(&Theme::screen(), None).unwrap();
-        sheet.canvas.text((10.0, 22.0), &TextLine::new("ψ", 24.0)).unwrap();
+        sheet.canvas.text((10.0, 22.0), &TextLine::new("ψ", 24.0, HPos::Left)).unwrap();
         let svg = sheet.canvas.svg.finish(36.0).replace("width=\"675.000pt\"", "width=\"72.000pt\"");
         Drawing::new(svg.replace("0 0 13500 720", "0 0 1440 720"), 72.0, 36.0, 300.0)
     }

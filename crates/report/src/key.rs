@@ -1,10 +1,12 @@
-//! The key of a figure: samples with their names in aligned columns, always outside the data.
+//! The key of a figure: samples with their names, always outside the data.
 
 use plotters::style::RGBColor;
+use plotters::style::text_anchor::HPos;
 
 use crate::backend::Drawn;
-use crate::canvas::{Anchor, Canvas, PagePoint, Rect, Stroke, TextLine, at, hull, marker};
-use crate::lines::{LEADING, wrap};
+use crate::canvas::{Canvas, PagePoint, Rect, Stroke, TextLine, at, hull, marker};
+use crate::fonts::{LINE, text_width};
+use crate::lines::wrap;
 use crate::palette::{CurveOrigin, Dash, INK, Look};
 use crate::theme::Theme;
 
@@ -12,9 +14,8 @@ use crate::theme::Theme;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum KeySample {
     Nothing,
+    /// A line, or an area as a thick one.
     Line(Stroke),
-    /// An area, as a piece of it.
-    Area(Stroke),
     Dots(RGBColor),
     Marker(Look),
     LineAndMarker(Stroke, Look),
@@ -28,7 +29,7 @@ pub(crate) enum KeySample {
 
 /// How cells are outlined.
 pub(crate) fn outline_stroke(dash: Dash, theme: &Theme) -> Stroke {
-    Stroke::solid(INK, 1.4 * theme.line).dashed(dash)
+    Stroke { dash, ..Stroke::solid(INK, 1.4 * theme.line) }
 }
 
 /// A sample and its name.
@@ -43,26 +44,18 @@ impl KeyEntry {
         Self { sample, label: label.into() }
     }
 
-    /// The line of an origin under its own name.
-    pub(crate) fn line_of(origin: &CurveOrigin, theme: &Theme) -> Self {
-        Self::new(KeySample::Line(stroke_of(origin, theme)), origin.label())
-    }
-
     fn sample_width(&self, theme: &Theme) -> f64 {
-        match self.sample {
-            KeySample::Nothing => 0.0,
-            KeySample::Dots(_) | KeySample::Marker(_) | KeySample::Upright(_) | KeySample::Outline(_) => {
-                1.6 * theme.small_font
+        theme.small_font
+            * match self.sample {
+                KeySample::Nothing => 0.0,
+                KeySample::Dots(_) | KeySample::Marker(_) | KeySample::Upright(_) | KeySample::Outline(_) => 1.6,
+                KeySample::Line(_) | KeySample::LineAndMarker(..) | KeySample::Hull(_) => 2.9,
             }
-            KeySample::Line(_) | KeySample::Area(_) | KeySample::LineAndMarker(..) | KeySample::Hull(_) => {
-                2.9 * theme.small_font
-            }
-        }
     }
 
     /// Width of sample and name, points.
     pub(crate) fn width(&self, theme: &Theme) -> f64 {
-        self.sample_width(theme) + TextLine::new(self.label.as_str(), theme.small_font).width()
+        self.sample_width(theme) + text_width(&self.label, theme.small_font, false)
     }
 
     /// The lines of its name in a place this wide, sample and all.
@@ -77,16 +70,16 @@ impl KeyEntry {
         let end = x + width - 0.5 * theme.small_font;
         let centre = ((x + end) / 2.0, y);
         let half = 0.5 * theme.small_font;
+        if let KeySample::Line(stroke) | KeySample::LineAndMarker(stroke, _) = self.sample {
+            canvas.line(&[(x, y), (end, y)], stroke)?;
+        }
         match self.sample {
-            KeySample::Nothing => {}
-            KeySample::Line(stroke) | KeySample::Area(stroke) => canvas.line(&[(x, y), (end, y)], stroke)?,
+            KeySample::Nothing | KeySample::Line(_) => {}
             KeySample::Dots(colour) => {
                 let dot = Look { colour, ..CurveOrigin::Record.look() };
                 canvas.elements(marker(at(centre), 1.2 * theme.dot, &dot))?;
             }
-            KeySample::Marker(look) => canvas.elements(marker(at(centre), theme.marker, &look))?,
-            KeySample::LineAndMarker(stroke, look) => {
-                canvas.line(&[(x, y), (end, y)], stroke)?;
+            KeySample::Marker(look) | KeySample::LineAndMarker(_, look) => {
                 canvas.elements(marker(at(centre), theme.marker, &look))?;
             }
             KeySample::Upright(stroke) => canvas.line(&[(centre.0, y - half), (centre.0, y + half)], stroke)?,
@@ -99,39 +92,36 @@ impl KeyEntry {
             }
         }
         let lines = self.lines(room, theme);
-        for (index, line) in lines.iter().enumerate() {
-            let down = LEADING * theme.small_font * index as f64;
-            let text = TextLine::new(line.as_str(), theme.small_font).anchor(Anchor::Start);
-            canvas.text((x + width, y + down), &text)?;
-        }
+        let name = TextLine::new(lines.join("\n"), theme.small_font, HPos::Left);
+        // A text of several lines stands with its middle at its place.
+        let down = 0.5 * LINE * theme.small_font * (lines.len().max(1) - 1) as f64;
+        canvas.text((x + width, y + down), &name)?;
         Ok(lines.len())
     }
 }
 
-/// The line an origin is drawn with.
-pub(crate) fn stroke_of(origin: &CurveOrigin, theme: &Theme) -> Stroke {
-    let look = origin.look();
-    Stroke::solid(look.colour, theme.line).dashed(look.dash)
+/// Entries in rows of a width, points, as many in each as fit.
+pub(crate) fn rows<'a>(entries: &'a [KeyEntry], width: f64, theme: &Theme) -> Vec<&'a [KeyEntry]> {
+    let mut rows: Vec<&[KeyEntry]> = Vec::new();
+    let mut start = 0;
+    for end in 1..=entries.len() {
+        if end - start > 1 && row_width(&entries[start..end], theme) > width {
+            rows.push(&entries[start..end - 1]);
+            start = end - 1;
+        }
+    }
+    rows.extend((start < entries.len()).then(|| &entries[start..]));
+    rows
 }
 
-/// Where each entry goes in `width` points: column offsets, and the number of columns is their count.
-pub(crate) fn columns(entries: &[KeyEntry], width: f64, theme: &Theme) -> Vec<f64> {
-    let gap = 1.6 * theme.small_font;
-    let offsets = |count: usize| {
-        let mut x = 0.0;
-        let mut starts = Vec::with_capacity(count);
-        for column in 0..count {
-            starts.push(x);
-            let widest = entries.iter().skip(column).step_by(count).map(|e| e.width(theme)).fold(0.0, f64::max);
-            x += widest + gap;
-        }
-        (starts, x - gap)
-    };
-    let fitting = |count: usize| Some(offsets(count)).filter(|(_, used)| *used <= width).map(|(starts, _)| starts);
-    let Some(most) = (1..=entries.len()).rev().find(|count| fitting(*count).is_some()) else { return vec![0.0] };
-    // Rows of equal length look better than a full row and a rest.
-    let even = entries.len().div_ceil(entries.len().div_ceil(most));
-    fitting(even).or_else(|| fitting(most)).unwrap_or_else(|| vec![0.0])
+/// Width of a row of entries with the gaps between them, points.
+pub(crate) fn row_width(row: &[KeyEntry], theme: &Theme) -> f64 {
+    row.iter().map(|entry| entry.width(theme) + gap(theme)).sum::<f64>() - gap(theme)
+}
+
+/// Free space between entries, points.
+pub(crate) fn gap(theme: &Theme) -> f64 {
+    1.6 * theme.small_font
 }
 
 #[cfg(test)]
@@ -139,13 +129,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_fit_the_width() {
+    fn rows_fit_the_width() {
         let theme = Theme::screen();
         let entries: Vec<KeyEntry> = (0..7).map(|i| KeyEntry::new(KeySample::Nothing, "m".repeat(4 + i))).collect();
-        assert_eq!(columns(&entries, 1e4, &theme).len(), 7);
-        assert_eq!(columns(&entries, 10.0, &theme), [0.0]);
-        let starts = columns(&entries, 300.0, &theme);
-        assert!(starts.len() > 1 && starts.len() < 7 && starts.windows(2).all(|w| w[1] > w[0]));
-        assert_eq!(columns(&[], 10.0, &theme), [0.0]);
+        assert_eq!(rows(&entries, 1e4, &theme).len(), 1);
+        assert_eq!(rows(&entries, 10.0, &theme).len(), 7);
+        let fitted = rows(&entries, 300.0, &theme);
+        assert!(fitted.len() > 1 && fitted.len() < 7 && fitted.concat() == entries);
+        assert!(fitted.iter().all(|row| row_width(row, &theme) <= 300.0));
+        assert!(rows(&[], 10.0, &theme).is_empty());
     }
 }

@@ -47,7 +47,6 @@ mod backend;
 mod canvas;
 mod changes;
 mod chart;
-mod dimension;
 mod fonts;
 mod indexed;
 mod key;

@@ -4,13 +4,14 @@
 
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::drawing::IntoDrawingArea as _;
+use plotters::style::text_anchor::HPos;
 
 use crate::axis::Axis;
 use crate::backend::{Drawn, Svg, units};
-use crate::canvas::{Anchor, Area, Canvas, Stroke, TextLine};
+use crate::canvas::{Canvas, Stroke, TextLine};
 use crate::chart::Chart;
 use crate::figure::Drawing;
-use crate::fonts::{LINE, text_width};
+use crate::fonts::LINE;
 use crate::key::{self, KeyEntry};
 use crate::lines::{LEADING, balanced, wrap};
 use crate::palette::{GRID, INK};
@@ -21,6 +22,9 @@ pub(crate) const NAMES: f64 = 0.42;
 
 /// Density of the lines between ticks on a logarithmic axis.
 const LIGHT: f64 = 0.45;
+
+/// From the middle of a line of text to its base line, in font sizes.
+const MIDDLE: f64 = 0.36;
 
 /// One side of a grid of panels: a column with its horizontal axis or a row with its vertical one.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +40,7 @@ impl AxisSide {
 }
 
 /// Panels in rows and columns.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Grid {
     pub columns: Vec<AxisSide>,
     /// Rows with their heights in points.
@@ -52,38 +56,31 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Full rows without heads.
-    pub(crate) fn new(columns: Vec<AxisSide>, rows: Vec<(AxisSide, f64)>) -> Self {
-        Self { columns, rows, heads: Vec::new(), panels: None, shared_title: None, left: None }
-    }
-
     /// So many panels with the same axes, in rows of `across`; the last row may not be full.
     pub(crate) fn alike(count: usize, across: usize, column: AxisSide, row: (AxisSide, f64)) -> Self {
         let rows = vec![row; count.div_ceil(across)];
-        Self { panels: Some(count), ..Self::new(vec![column; across], rows) }
-    }
-
-    fn panel_count(&self) -> usize {
-        let all = self.rows.len() * self.columns.len();
-        self.panels.map_or(all, |n| n.min(all))
+        Self { panels: Some(count), columns: vec![column; across], rows, ..Self::default() }
     }
 }
 
-/// What of a panel is labelled, and where it stands in its area.
-struct PanelPlan {
-    /// Room left and right of the frame, and above and below it, points.
-    margins: [f64; 4],
-    /// Whether labels and title stand at the left, and below.
-    labelled: [bool; 2],
-    /// Whether the names below are turned.
+/// A column of panels as it is drawn.
+struct Column {
+    side: AxisSide,
+    /// Left edge and width of the panels, points.
+    left: f64,
+    width: f64,
+    /// Whether its names are turned, because their words are too long to stand side by side.
     is_turned: bool,
+    /// Room below the last panel for labels and title, points.
+    below: f64,
 }
 
 /// A figure in the making, filled from top to bottom.
 pub(crate) struct Sheet {
     pub theme: Theme,
     pub canvas: Canvas,
-    y: f64,
+    /// How far down the page the sheet is filled, points.
+    pub y: f64,
     /// Left edge of the strip that is being filled, points.
     edge: f64,
 }
@@ -94,77 +91,83 @@ impl Sheet {
         let canvas = Canvas { area: svg.clone().into_drawing_area(), svg };
         let mut sheet = Self { theme: *theme, canvas, y: 0.5 * theme.small_font, edge: 0.0 };
         if let Some(title) = title {
-            let size = theme.title_font;
-            for line in balanced(title, size, true, theme.width - 2.0 * theme.small_font) {
-                sheet.y += 1.2 * size;
-                let text = TextLine { bold: true, ..TextLine::new(line, size).anchor(Anchor::Middle) };
-                sheet.canvas.text((theme.width / 2.0, sheet.y - 0.36 * size), &text)?;
-            }
-            sheet.y += 0.7 * size;
+            let text = TextLine { bold: true, ..TextLine::new("", theme.title_font, HPos::Center) };
+            let lines = balanced(title, theme.title_font, true, theme.width - 2.0 * theme.small_font);
+            sheet.lines(lines, theme.width / 2.0, text, 1.2)?;
+            sheet.y += 0.7 * theme.title_font;
         }
         Ok(sheet)
     }
 
-    /// The key, centred above what follows.
-    pub(crate) fn legend(&mut self, entries: &[KeyEntry]) -> Drawn {
-        if entries.is_empty() {
-            return Ok(());
+    /// Lines of a text at `x`, so many font sizes apart.
+    fn lines(&mut self, lines: Vec<String>, x: f64, text: TextLine, leading: f64) -> Drawn {
+        for line in lines {
+            self.y += leading * text.size;
+            self.canvas.text((x, self.y - MIDDLE * text.size), &TextLine { text: line, ..text.clone() })?;
         }
-        let theme = self.theme;
-        let margin = theme.small_font;
-        let starts = key::columns(entries, theme.width - 2.0 * margin, &theme);
-        let last = starts.len() - 1;
-        let used =
-            entries.chunks(starts.len()).filter_map(|row| row.get(last)).map(|e| e.width(&theme)).fold(0.0, f64::max)
-                + starts[last];
-        let left = ((theme.width - used) / 2.0).max(margin);
-        let room = theme.width - left - margin;
-        for row in entries.chunks(starts.len()) {
-            self.y += LEADING * theme.small_font;
-            let mut most = 1;
-            for (entry, start) in row.iter().zip(&starts) {
-                let place = (left + start, self.y - 0.36 * theme.small_font);
-                most = most.max(entry.draw(&self.canvas, place, room - start, &theme)?);
-            }
-            self.y += LEADING * theme.small_font * (most - 1) as f64;
-        }
-        self.y += 0.7 * theme.small_font;
         Ok(())
     }
 
-    /// A remark under what was drawn so far, wrapped to the width of the page.
-    pub(crate) fn note(&mut self, text: &str) -> Drawn {
+    /// The key, centred above what follows.
+    pub(crate) fn legend(&mut self, entries: &[KeyEntry]) -> Drawn {
         let theme = self.theme;
-        let margin = theme.small_font;
-        for line in wrap(text, theme.small_font, false, theme.width - 2.0 * margin) {
+        let room = theme.width - 2.0 * theme.small_font;
+        let fewest = key::rows(entries, room, &theme).len();
+        // Rows of equal length look better than full rows and a rest.
+        let narrower = (8..=20).map(|share| key::rows(entries, 0.05 * f64::from(share) * room, &theme));
+        for row in narrower.into_iter().find(|rows| rows.len() == fewest).unwrap_or_default() {
+            let mut x = ((theme.width - key::row_width(row, &theme)) / 2.0).max(theme.small_font);
             self.y += LEADING * theme.small_font;
-            let text = TextLine::new(line, theme.small_font);
-            self.canvas.text((margin, self.y - 0.36 * theme.small_font), &text)?;
+            let mut most = 1;
+            for entry in row {
+                let place = (x, self.y - MIDDLE * theme.small_font);
+                most = most.max(entry.draw(&self.canvas, place, room + theme.small_font - x, &theme)?);
+                x += entry.width(&theme) + key::gap(&theme);
+            }
+            self.y += LINE * theme.small_font * (most - 1) as f64;
         }
-        self.y += 0.2 * theme.small_font;
+        self.y += if entries.is_empty() { 0.0 } else { 0.7 * theme.small_font };
         Ok(())
+    }
+
+    /// Remarks under what was drawn so far, wrapped to the width of the page.
+    pub(crate) fn note(&mut self, remarks: &[impl AsRef<str>]) -> Drawn {
+        let (margin, width) = (self.theme.small_font, self.theme.width);
+        let text = remarks.iter().map(AsRef::as_ref).collect::<Vec<_>>().join(" ");
+        let lines = wrap(&text, margin, false, width - 2.0 * margin);
+        self.y += if lines.is_empty() { 0.0 } else { 0.2 * margin };
+        self.lines(lines, margin, TextLine::new("", margin, HPos::Left), LEADING)
     }
 
     /// Margin that the labels and titles of the rows need, points.
     pub(crate) fn left_margin(&self, grid: &Grid) -> f64 {
         let theme = &self.theme;
-        let sides = grid.rows.iter().map(|(side, height)| self.row_axis(side, *height));
-        let widths = sides.map(|axis| widest(&axis, theme)).fold(0.0, f64::max);
-        let lines = grid.rows.iter().map(|(side, height)| self.row_title(side, *height).len()).max().unwrap_or(0);
-        let lines = lines.max(usize::from(grid.shared_title.is_some()));
-        let titles = if lines == 0 { 0.0 } else { (lines as f64 * LINE + 0.5) * theme.label_font };
-        0.5 * theme.small_font + titles + widths + 2.0 * self.tick_length()
+        let labels = grid.rows.iter().map(|(side, height)| self.row(side, *height).axis.widest(theme.tick_font));
+        let titles = grid.rows.iter().map(|(side, height)| self.row(side, *height).title.lines().count());
+        let lines = titles.max().unwrap_or(0).max(usize::from(grid.shared_title.is_some())) as f64;
+        let titles = if lines == 0.0 { 0.0 } else { (lines * LINE + 0.5) * theme.label_font };
+        0.5 * theme.small_font + titles + labels.fold(0.0, f64::max) + 2.0 * self.tick_length()
     }
 
-    /// The axis of a row with its ticks and labels.
-    fn row_axis(&self, side: &AxisSide, height: f64) -> Axis {
+    /// A row with its ticks, and with labels and title in lines.
+    fn row(&self, side: &AxisSide, height: f64) -> AxisSide {
         let theme = &self.theme;
         let count = ((height / (1.7 * theme.tick_font)) as usize).max(2);
-        side.axis.clone().ticked(count).wrapped(theme.tick_font, NAMES * theme.width)
+        let axis = side.axis.clone().ticked(count).wrapped(theme.tick_font, NAMES * theme.width);
+        AxisSide::new(axis, wrap(&side.title, theme.label_font, false, height).join("\n"))
     }
 
-    fn row_title(&self, side: &AxisSide, height: f64) -> Vec<String> {
-        wrap(&side.title, self.theme.label_font, false, height)
+    /// The same of a column.
+    fn column(&self, side: &AxisSide, left: f64, width: f64) -> Column {
+        let theme = &self.theme;
+        let axis = side.axis.clone().fitted(width, theme.tick_font);
+        let title = wrap(&side.title, theme.label_font, false, width + theme.label_font);
+        let is_turned = axis.is_names() && !axis.fits(width, theme.tick_font);
+        let lines = axis.labels().map(|label| label.lines().count()).max().unwrap_or(0);
+        let labels = if is_turned { axis.widest(theme.tick_font) } else { LINE * theme.tick_font * lines as f64 };
+        let titles = if title.is_empty() { 0.0 } else { (0.45 + LINE * title.len() as f64) * theme.label_font };
+        let below = 2.0 * self.tick_length() + labels + titles;
+        Column { side: AxisSide::new(axis, title.join("\n")), left, width, is_turned, below }
     }
 
     fn tick_length(&self) -> f64 {
@@ -181,24 +184,13 @@ impl Sheet {
         1.6 * theme.tick_font
     }
 
-    /// How far down the page the sheet is filled, points.
-    pub(crate) fn height(&self) -> f64 {
-        self.y
-    }
-
-    /// Goes on at another height, for what stands beside what was drawn.
-    pub(crate) fn rewind(&mut self, y: f64) {
-        self.y = y;
-    }
-
     /// Draws a grid into a strip of the page: its left edge and its width, points. The left margin of the grid is the
     /// least one.
     pub(crate) fn grid_within(&mut self, grid: Grid, (left, width): (f64, f64)) -> Drawn<Vec<Chart>> {
         let page = self.theme;
         let margin = self.left_margin(&grid).max(grid.left.unwrap_or(0.0));
         // The strip is laid out like a page that ends where it ends.
-        self.theme.width = left + width;
-        self.edge = left;
+        (self.theme.width, self.edge) = (left + width, left);
         let charts = self.grid(Grid { left: Some(left + margin), ..grid });
         (self.theme, self.edge) = (page, 0.0);
         charts
@@ -209,60 +201,39 @@ impl Sheet {
         let theme = self.theme;
         let sides = grid.columns.iter_mut().chain(grid.rows.iter_mut().map(|(side, _)| side));
         sides.for_each(|side| theme.changes.limit(&mut side.axis, &side.title));
-        let count = grid.columns.len().max(1);
+        let (count, gap) = (grid.columns.len().max(1), Self::gap(&theme));
         let left = grid.left.unwrap_or_else(|| self.left_margin(&grid));
-        let gap = Self::gap(&theme);
         let inner = theme.width - left - Self::right_margin(&theme) - gap * (count - 1) as f64;
         let width = (inner / count as f64).max(theme.tick_font);
-        let columns: Vec<AxisSide> = grid
-            .columns
-            .iter()
-            .map(|side| AxisSide::new(column_axis(&side.axis, width, &theme), &*side.title))
-            .collect();
-        let total = grid.panel_count();
-        let mut charts = Vec::with_capacity(total);
-        let mut lowest = self.y;
+        let placed = |number: usize| left + number as f64 * (width + gap);
+        let columns: Vec<Column> =
+            grid.columns.iter().enumerate().map(|(number, side)| self.column(side, placed(number), width)).collect();
+        let total = grid.panels.unwrap_or(usize::MAX).min(grid.rows.len() * grid.columns.len());
+        let (mut charts, mut lowest) = (Vec::with_capacity(total), self.y);
         for (row, (side, height)) in grid.rows.iter().enumerate() {
             let room = width + gap - theme.small_font;
             let heads: Vec<Option<&KeyEntry>> =
                 (0..count).map(|column| grid.heads.get(row * count + column)?.as_ref()).collect();
             let lines = heads.iter().flatten().map(|head| head.lines(room, &theme).len()).max().unwrap_or(0) as f64;
-            if lines > 0.0 {
-                self.y += (0.15 + LEADING * lines) * theme.small_font;
-            }
-            let up = AxisSide::new(self.row_axis(side, *height), &*side.title);
-            let below: Vec<f64> = columns.iter().map(|column| self.room_below(column, width)).collect();
-            let deepest = below.iter().copied().fold(0.0, f64::max);
-            let areas = self.areas(count, (left, width + gap), height + deepest);
-            for (column, area) in areas.iter().enumerate().take(total - (row * count).min(total)) {
-                let start = left + column as f64 * (width + gap);
-                if let Some(head) = heads[column] {
-                    let above = 0.45 + LEADING * (lines - 1.0) + 0.36;
-                    head.draw(&self.canvas, (start, self.y - above * theme.small_font), room, &theme)?;
+            self.y += if lines > 0.0 { (0.15 + LEADING * lines) * theme.small_font } else { 0.0 };
+            let up = self.row(side, *height);
+            let title = if side.title.is_empty() { grid.shared_title.as_deref().unwrap_or("") } else { &side.title };
+            for (number, column) in columns.iter().enumerate().take(total - (row * count).min(total)) {
+                if let Some(head) = heads[number] {
+                    let above = 0.45 + LEADING * (lines - 1.0) + MIDDLE;
+                    head.draw(&self.canvas, (column.left, self.y - above * theme.small_font), room, &theme)?;
                 }
-                let is_last = row * count + column + count >= total;
-                let beside = if column == 0 { left - self.edge } else { self.tick_length() };
-                let under = if is_last { below[column] } else { self.tick_length() };
-                let across = &columns[column];
-                let plan = PanelPlan {
-                    margins: [beside, width, *height, under],
-                    labelled: [column == 0, is_last],
-                    is_turned: across.axis.is_names() && !across.axis.fits(width, theme.tick_font),
-                };
-                let chart = self.chart(area, (across, &up), &plan)?;
-                let title = if side.title.is_empty() { grid.shared_title.as_deref() } else { Some(&*side.title) };
-                let axes =
-                    [(across.axis.described(), &*across.title), (up.axis.described(), title.unwrap_or_default())];
+                let is_last = row * count + number + count >= total;
+                let chart = self.chart(column, (&up, *height), [number == 0, is_last])?;
+                let axes = [(column.side.axis.described(), &*grid.columns[number].title), (up.axis.described(), title)];
                 self.canvas.svg.panel(chart.bounds(), axes);
-                if is_last {
-                    lowest = lowest.max(self.y + height + below[column]);
-                }
+                lowest = lowest.max(if is_last { self.y + height + column.below } else { 0.0 });
                 charts.push(chart);
             }
             self.y += height + 0.75 * theme.tick_font;
         }
         if let (Some(title), Some(first), Some(last)) = (&grid.shared_title, charts.first(), charts.last()) {
-            let text = TextLine::new(title.as_str(), theme.label_font).anchor(Anchor::Middle);
+            let text = TextLine::new(title.as_str(), theme.label_font, HPos::Center);
             let x = self.edge + 0.5 * (theme.small_font + theme.label_font);
             let middle = (first.rect.y + last.rect.bottom()) / 2.0;
             self.canvas.text((x, middle), &TextLine { turned: true, ..text })?;
@@ -271,109 +242,56 @@ impl Sheet {
         Ok(charts)
     }
 
-    /// The drawing areas of a row of panels, each with what stands beside and below it.
-    fn areas(&self, count: usize, (left, pitch): (f64, f64), height: f64) -> Vec<Area> {
-        let (_, below) = self.canvas.area.split_vertically(units(self.y));
-        let (strip, _) = below.split_vertically(units(height));
-        let (_, strip) = strip.split_horizontally(units(self.edge));
-        let start = |column: usize| left + column as f64 * pitch - self.tick_length() - self.edge;
-        let breaks: Vec<i32> = (1..count).map(|column| units(start(column))).collect();
-        strip.split_by_breakpoints(&breaks, &[] as &[i32])
-    }
-
-    /// A chart of plotters with its mesh, axes, ticks, labels and titles.
-    fn chart(&self, area: &Area, (x, y): (&AxisSide, &AxisSide), plan: &PanelPlan) -> Drawn<Chart> {
+    /// A chart of plotters with its mesh, axes, ticks, labels and titles, the last ones where they are asked for: at the
+    /// left, and below.
+    fn chart(&self, x: &Column, (y, height): (&AxisSide, f64), labelled: [bool; 2]) -> Drawn<Chart> {
         let theme = &self.theme;
-        let [beside, width, height, under] = plan.margins.map(units);
-        let (whole, tall) = area.dim_in_pixel();
-        let pad = if plan.labelled[0] { units(0.5 * theme.small_font) } else { 0 };
-        let mut context = ChartBuilder::on(area)
-            .margin_left(pad)
-            .margin_right((whole as i32 - beside - width).max(0))
-            .margin_bottom((tall as i32 - height - under).max(0))
-            .y_label_area_size(beside - pad)
-            .x_label_area_size(under)
-            .build_cartesian_2d(x.axis.clone(), y.axis.clone())?;
-        let text = |size: f64| TextLine::new("", size).style();
+        let tick = self.tick_length();
+        let beside = if labelled[0] { x.left - self.edge - 0.5 * theme.small_font } else { tick };
+        let below = if labelled[1] { x.below } else { tick };
+        let (_, page) = self.canvas.area.split_vertically(units(self.y));
+        let (strip, _) = page.split_vertically(units(height + below));
+        let (_, strip) = strip.split_horizontally(units(x.left - beside));
+        let (area, _) = strip.split_horizontally(units(beside + x.width));
+        let mut context = ChartBuilder::on(&area)
+            .y_label_area_size(units(beside))
+            .x_label_area_size(units(below))
+            .build_cartesian_2d(x.side.axis.clone(), y.axis.clone())?;
+        let text = |size: f64| TextLine::new("", size, HPos::Left).style();
         let grid = Stroke::solid(GRID, 0.8 * theme.thin);
-        let [left_labels, lower_labels] = plan.labelled;
-        let across = |value: &f64| if lower_labels && !plan.is_turned { x.axis.label(*value) } else { String::new() };
-        let up = |value: &f64| if left_labels { y.axis.label(*value) } else { String::new() };
+        let is_named = labelled[1] && !x.is_turned;
+        let across = |value: &f64| if is_named { x.side.axis.label(*value) } else { String::new() };
+        let up = |value: &f64| if labelled[0] { y.axis.label(*value) } else { String::new() };
         let mut mesh = context.configure_mesh();
         mesh.bold_line_style(grid.style())
             .light_line_style(Stroke { opacity: LIGHT, ..grid }.style())
             .axis_style(Stroke::solid(INK, theme.thin).style())
             .label_style(text(theme.tick_font))
             .axis_desc_style(text(theme.label_font))
-            .set_tick_mark_size(LabelAreaPosition::Left, units(self.tick_length()))
-            .set_tick_mark_size(LabelAreaPosition::Bottom, units(self.tick_length()))
+            .set_tick_mark_size(LabelAreaPosition::Left, units(tick))
+            .set_tick_mark_size(LabelAreaPosition::Bottom, units(tick))
             .x_label_formatter(&across)
-            .y_label_formatter(&up);
-        if x.axis.is_names() {
+            .y_label_formatter(&up)
+            .x_desc(if labelled[1] { &x.side.title } else { "" })
+            .y_desc(if labelled[0] { &y.title } else { "" });
+        if x.side.axis.is_names() {
             // The cells of a map have lines of their own.
             mesh.disable_mesh();
         }
-        if left_labels {
-            mesh.y_desc(self.row_title(y, plan.margins[2]).join("\n"));
-        }
-        if lower_labels {
-            mesh.x_desc(self.column_title(x, plan.margins[1]).join("\n"));
-        }
         mesh.draw()?;
-        let chart = Chart::new(&context, self.canvas.clone(), [x.axis.clone(), y.axis.clone()]);
-        if lower_labels && plan.is_turned {
-            // Names with words too long to stand side by side are turned and end at their tick.
-            let top = chart.rect.bottom() + 2.0 * self.tick_length();
-            for (value, label) in x.axis.ticks() {
-                let text = TextLine::new(label.as_str(), theme.tick_font).anchor(Anchor::End);
-                let place = (chart.across(*value).unwrap_or(f64::NAN), top);
-                self.canvas.text(place, &TextLine { turned: true, ..text })?;
-            }
+        let chart = Chart::new(&context, self.canvas.clone(), [x.side.axis.clone(), y.axis.clone()]);
+        for (value, label) in x.side.axis.ticks.iter().filter(|_| labelled[1] && x.is_turned) {
+            let text = TextLine { turned: true, ..TextLine::new(label.as_str(), theme.tick_font, HPos::Right) };
+            self.canvas.text((chart.across(*value).unwrap_or(f64::NAN), chart.rect.bottom() + 2.0 * tick), &text)?;
         }
         Ok(chart)
     }
 
-    fn column_title(&self, side: &AxisSide, width: f64) -> Vec<String> {
-        wrap(&side.title, self.theme.label_font, false, width + self.theme.label_font)
-    }
-
-    /// Room that labels and title below a panel need, points.
-    fn room_below(&self, side: &AxisSide, width: f64) -> f64 {
-        let theme = &self.theme;
-        let labels = match side.axis.is_names() && !side.axis.fits(width, theme.tick_font) {
-            true => widest(&side.axis, theme),
-            false => {
-                let lines = side.axis.labels().map(|label| label.split('\n').count()).max().unwrap_or(0);
-                LINE * theme.tick_font * lines as f64
-            }
-        };
-        let title = self.column_title(side, width).len() as f64;
-        let title = if title > 0.0 { (0.45 + LINE * title) * theme.label_font } else { 0.0 };
-        2.0 * self.tick_length() + labels + title
-    }
-
     /// The finished figure.
     pub(crate) fn finish(self) -> Drawing {
-        let height = self.y + 0.3 * self.theme.small_font;
+        let height = self.y + 0.5 * self.theme.small_font;
         Drawing::new(self.canvas.svg.finish(height), self.theme.width, height, self.theme.dpi)
     }
-}
-
-/// The axis under a panel with as many ticks as fit, its names broken into lines where their words leave room for that.
-pub(crate) fn column_axis(axis: &Axis, width: f64, theme: &Theme) -> Axis {
-    let fitted = axis.clone().fitted(width, theme.tick_font);
-    if !fitted.is_names() || fitted.fits(width, theme.tick_font) {
-        return fitted;
-    }
-    let pitch = width / fitted.labels().count().max(1) as f64 - 0.4 * theme.tick_font;
-    let has_room = |label: &str| label.split(' ').all(|word| text_width(word, theme.tick_font, false) <= pitch);
-    let is_wrapped = fitted.labels().all(has_room);
-    if is_wrapped { fitted.wrapped(theme.tick_font, pitch) } else { fitted }
-}
-
-/// Width of the widest label, points.
-fn widest(axis: &Axis, theme: &Theme) -> f64 {
-    axis.labels().map(|label| text_width(label, theme.tick_font, false)).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -388,7 +306,8 @@ mod tests {
         let mut sheet = Sheet::new(&theme, Some("title")).unwrap();
         let side = |hi: f64| AxisSide::new(Axis::linear(0.0, hi, Division::Decimal), "quantity [unit]");
         let rows = vec![(side(1e5), 60.0), (side(0.001), 40.0)];
-        let charts = sheet.grid(Grid { panels: Some(3), ..Grid::new(vec![side(1.0), side(2.0)], rows) }).unwrap();
+        let charts =
+            sheet.grid(Grid { panels: Some(3), columns: vec![side(1.0), side(2.0)], rows, ..Grid::default() }).unwrap();
         let rects: Vec<_> = charts.iter().map(|chart| chart.rect).collect();
         assert_eq!(rects.len(), 3);
         assert_eq!((rects[0].x, rects[0].y), (rects[2].x, rects[1].y));
@@ -405,13 +324,14 @@ mod tests {
     #[test]
     fn heads_and_keys_that_are_too_long_go_on_below() {
         let theme = Theme::paper(85.0, 300.0).unwrap();
-        let side = || AxisSide::new(Axis::linear(0.0, 1.0, Division::Decimal), "x");
+        let side = AxisSide::new(Axis::linear(0.0, 1.0, Division::Decimal), "x");
         let head = |text: &str| Some(KeyEntry::new(KeySample::Nothing, text));
         let drawn = |text: &str| {
             let mut sheet = Sheet::new(&theme, None).unwrap();
             sheet.legend(&[KeyEntry::new(KeySample::Nothing, text.repeat(4))]).unwrap();
             let heads = vec![head(text), head("b"), head("c")];
-            let grid = Grid { heads, ..Grid::new(vec![side(), side(), side()], vec![(side(), 40.0)]) };
+            let grid =
+                Grid { heads, columns: vec![side.clone(); 3], rows: vec![(side.clone(), 40.0)], ..Grid::default() };
             sheet.grid(grid).unwrap()[0].rect.y
         };
         assert!(drawn("heading noise of the compass = 0.01 ") > drawn("a") + 3.0 * theme.small_font);

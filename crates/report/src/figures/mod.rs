@@ -1,15 +1,12 @@
 //! Few kinds of figure: panels of layers, named rows, maps of cells, and the zig-zag with its dimension lines. A figure
 //! is a specification, plain data in display units; [`Plot::draw`] draws it.
 
-mod aside;
 mod cells;
-mod equal;
 mod layers;
 mod panels;
 mod reach;
 mod rows;
 mod shared;
-mod stored;
 mod zigzag_trial;
 
 pub use cells::{CellMap, MapCell, Outline, Shades};
@@ -17,10 +14,6 @@ pub use panels::{AxisLine, Division, Layer, LayerKind, LayeredPanel, Marks, Pane
 pub use reach::AxisReach;
 pub use rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 pub use shared::Reference95;
-pub use stored::{
-    CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, ReplayCurves,
-    Replays,
-};
 pub use zigzag_trial::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
 
 use crate::figure::Drawing;

@@ -71,7 +71,7 @@ impl Ruler {
     /// The axis over some data with free space at the ends; and whether something is cut.
     pub(super) fn axis(&self, data: &Extents, pad: f64) -> (Axis, bool) {
         match self.division {
-            Division::Factors => return (Axis::log_covering(data.positive()), false),
+            Division::Factors => return (Axis::log_covering(&data.positive()), false),
             Division::Percent => return (Axis::linear(-3.0, 103.0, Division::Percent), false),
             _ => {}
         }
@@ -218,22 +218,12 @@ impl Layer {
         [&self.curve].into_iter().chain(other)
     }
 
-    pub(super) fn colour(&self) -> RGBColor {
-        match &self.kind {
-            LayerKind::Line(pen) => pen.colour,
-            LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
-            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour,
-            LayerKind::Marks(marks) => marks.look.colour,
-            LayerKind::Record => crate::palette::RECORD,
-        }
-    }
-
     /// How it looks in the key; a band where others lie under it as dense as `shade`.
     pub(super) fn sample(&self, theme: &Theme, shade: f64) -> Option<KeySample> {
         Some(match &self.kind {
             LayerKind::Line(pen) => KeySample::Line(pen.stroke(theme)),
             LayerKind::Band(_, colour, _) => {
-                KeySample::Area(Stroke { opacity: shade, ..Stroke::solid(*colour, 0.8 * theme.small_font) })
+                KeySample::Line(Stroke { opacity: shade, ..Stroke::solid(*colour, 0.8 * theme.small_font) })
             }
             LayerKind::Record if self.curve.finite().next().is_none() => return None,
             LayerKind::Record => record_sample(theme, &self.curve),
@@ -262,6 +252,8 @@ pub struct PanelRow {
     pub levels: Vec<f64>,
     /// A value to compare with.
     pub reference: Option<Reference95>,
+    /// Shares of the height that are left free below and above the data.
+    pub room: [f64; 2],
 }
 
 impl PanelRow {
@@ -285,12 +277,12 @@ pub struct LayeredPanel {
     pub layers: Vec<Layer>,
 }
 
-/// A value of the horizontal axis with a name of its own, such as a limit of a rule.
+/// A value of the horizontal axis, such as a limit of a rule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisLine {
     /// The value.
     pub at: f64,
-    /// Its name.
+    /// Its name in the key; nothing where it has none.
     pub label: String,
 }
 
@@ -336,8 +328,6 @@ pub struct Panels {
     pub title: Option<String>,
     /// The stacks, in reading order.
     pub stacks: Vec<Stack>,
-    /// Whether names stand right of the frame, in place of a key.
-    pub names_aside: bool,
     /// Numbers that stand in the key.
     pub said: Vec<String>,
     /// A remark under the figure.

@@ -1,12 +1,15 @@
 //! Named rows below each other over one or several axes: marks with intervals, bars from zero, limits, distributions.
 
+use plotters::style::Color as _;
+use plotters::style::text_anchor::HPos;
+
 use super::panels::{Pen, Ruler};
 use super::reach::{Extents, INTERVALS};
 use super::shared::{Reference95, zero_stroke};
 use crate::axis::{Axis, Division};
 use crate::backend::Drawn;
-use crate::canvas::{Anchor, Stroke, TextLine};
-use crate::chart::Chart;
+use crate::canvas::{Stroke, TextLine};
+use crate::chart::{Bar, Chart};
 use crate::figure::Drawing;
 use crate::key::{KeyEntry, KeySample};
 use crate::lines::wrap;
@@ -91,14 +94,10 @@ impl RowItem {
         }
     }
 
-    fn is_stacked(&self) -> bool {
-        self.place == RowPlace::Below
-    }
-
     fn sample(&self, theme: &Theme) -> KeySample {
         match &self.kind {
             RowKind::Mark(look, ..) | RowKind::Violin(look, ..) => KeySample::Marker(*look),
-            RowKind::Bar(look, _) => KeySample::Area(bar_stroke(look, theme)),
+            RowKind::Bar(look, _) => KeySample::Line(bar_stroke(look, theme)),
             RowKind::Thin(_) => KeySample::Line(Stroke::solid(HEADING, theme.line)),
             RowKind::Thick(_) => KeySample::Line(thick_stroke(theme)),
             RowKind::Limit(_) => KeySample::Upright(limit_stroke(theme)),
@@ -187,12 +186,9 @@ fn thick_stroke(theme: &Theme) -> Stroke {
 /// Rows that may stand twice below each other.
 const FEW: usize = 8;
 
-/// Largest height of the rows of a wide figure, as a share of its width: more rows come nearer to each other, down to so
-/// many sizes of type.
-const HIGHEST: f64 = 0.6;
-const LEAST_PITCH: f64 = 1.5;
-/// Height that few rows take, as a share of the width, by standing farther apart, up to so many times as far.
-const LOWEST: f64 = 0.25;
+/// Height of the rows of a wide figure, as a share of its width, at least and at most: few rows stand farther apart, up
+/// to so many times as far, many rows nearer to each other.
+const HEIGHT: [f64; 2] = [0.25, 0.6];
 const SPREAD: f64 = 1.8;
 
 /// Draws the columns side by side, in a narrow figure above each other, or two by two where they have many rows. What
@@ -202,28 +198,23 @@ pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawn<Drawing> {
     sheet.legend(&entries(data, theme))?;
     let pitch = pitch(data, theme);
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
-    let row = (AxisSide::new(Axis::rows(data.names.clone(), 0.6), data.of.clone()), height);
-    let sides: Vec<AxisSide> =
-        data.columns.iter().map(|column| AxisSide::new(axis(column), column.x.title.clone())).collect();
+    let row = (AxisSide::new(Axis::rows(&data.names, 0.6), data.of.as_str()), height);
     let across = match theme.is_narrow() {
         true if data.names.len() <= FEW => 1,
         true => 2,
-        false => sides.len().max(1),
+        false => data.columns.len().max(1),
     };
-    let mut charts = Vec::new();
-    for part in sides.chunks(across) {
-        charts.extend(sheet.grid(Grid::new(part.to_vec(), vec![row.clone()]))?);
-    }
     let mut beyond = false;
-    for (chart, column) in charts.iter().zip(&data.columns) {
-        beyond |= draw(chart, theme, (column, pitch))?;
+    for part in data.columns.chunks(across) {
+        let columns = part.iter().map(|column| AxisSide::new(axis(column), column.x.title.as_str())).collect();
+        let charts = sheet.grid(Grid { columns, rows: vec![row.clone()], ..Grid::default() })?;
+        for (chart, column) in charts.iter().zip(part) {
+            beyond |= draw(chart, theme, column, pitch)?;
+        }
     }
     let is_said = data.note.as_ref().is_some_and(|note| note.contains("Arrows"));
     let arrows = (beyond && !is_said).then_some("Arrows: beyond the axis.");
-    let note: Vec<&str> = data.note.as_deref().into_iter().chain(arrows).collect();
-    if !note.is_empty() {
-        sheet.note(&note.join(" "))?;
-    }
+    sheet.note(&data.note.as_deref().into_iter().chain(arrows).collect::<Vec<_>>())?;
     Ok(sheet.finish())
 }
 
@@ -231,24 +222,28 @@ pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawn<Drawing> {
 fn pitch(data: &NamedRows, theme: &Theme) -> f64 {
     let items = || data.columns.iter().flat_map(|column| &column.rows);
     let lines = data.names.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len());
-    let lines = lines.max().unwrap_or(1).max(1);
-    let stacked = items().map(|row| row.iter().filter(|item| item.is_stacked()).count()).max().unwrap_or(0);
+    let lines = 1.15 * lines.max().unwrap_or(1).max(1) as f64;
+    let stacked = 0.62 * items().map(|row| stacked(row)).max().unwrap_or(0) as f64 + 1.1;
     let is_high = items().flatten().any(|item| matches!(item.kind, RowKind::Violin(..)));
-    let stacked = 0.62 * stacked as f64 + 1.1;
-    let usual = (0.95 + 1.15 * lines as f64).max(stacked).max(if is_high { 2.6 } else { 0.0 }) * theme.tick_font;
-    let least = (0.35 + 1.15 * lines as f64).max(stacked - 0.3).max(LEAST_PITCH) * theme.tick_font;
-    let share = |height: f64| height * theme.width / data.names.len().max(1) as f64;
+    let usual = (lines + 0.95).max(stacked).max(if is_high { 2.6 } else { 0.0 }) * theme.tick_font;
+    let least = (lines + 0.35).max(stacked - 0.3) * theme.tick_font;
+    let [lowest, highest] = HEIGHT.map(|share| share * theme.width / data.names.len().max(1) as f64);
     match theme.is_narrow() {
         true => usual,
-        false => usual.min(share(HIGHEST)).max(least.min(usual)).max((SPREAD * usual).min(share(LOWEST))),
+        false => usual.min(highest).max(least.min(usual)).max(lowest.min(SPREAD * usual)),
     }
+}
+
+/// Items that stand below each other.
+fn stacked(items: &[RowItem]) -> usize {
+    items.iter().filter(|item| item.place == RowPlace::Below).count()
 }
 
 fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
     let lines = data.columns.iter().flat_map(|column| &column.lines);
-    let lines = lines.map(|(name, pen, _)| KeyEntry::new(KeySample::Line(pen.stroke(theme)), name.clone()));
+    let lines = lines.map(|(name, pen, _)| KeyEntry::new(KeySample::Line(pen.stroke(theme)), name));
     let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
-    let items = items.filter_map(|item| Some(KeyEntry::new(item.sample(theme), item.name.clone()?)));
+    let items = items.filter_map(|item| Some(KeyEntry::new(item.sample(theme), item.name.as_ref()?)));
     let mut entries: Vec<KeyEntry> = Vec::new();
     for entry in lines.chain(items) {
         if entries.iter().all(|known| known.label != entry.label) {
@@ -265,32 +260,24 @@ fn axis(column: &RowsColumn) -> Axis {
     // Numbers stand beyond all that is drawn.
     let kept = if column.room > 0.0 { std::mem::take(&mut data.soft) } else { Vec::new() };
     data.fixed.extend(kept.iter().map(|(value, _)| *value));
-    data.fixed.extend(column.reference.iter().flat_map(|own| [own.value, own.band[0], own.band[1]]));
-    let (axis, _) = column.x.axis(&data, 0.06);
+    data.fixed.extend(column.reference.iter().flat_map(Reference95::values));
     if !column.zero {
-        return axis;
+        return column.x.axis(&data, 0.06).0;
     }
     // The axis ends at zero where everything lies on one side of it.
     let (lo, hi) = data.ends(column.x.reach).0.map_or((0.0, 1.0), |(lo, hi)| (lo.min(0.0), hi.max(0.0)));
     let pad = 0.05 * (hi - lo);
     let (lo, hi) = (if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi });
-    if lo == hi {
-        return Axis::linear(lo, 1.0, Division::Decimal);
-    }
+    let hi = if lo == hi { 1.0 } else { hi };
     Axis::linear(lo, hi + column.room * (hi - lo), Division::Decimal).labelled_until(hi)
 }
 
 /// Draws the rows of a column; returns whether something lies beyond its axis.
-fn draw(chart: &Chart, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> Drawn<bool> {
-    let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..) | RowKind::Heading);
-    let is_estimated = column.rows.iter().flatten().all(is_estimate);
-    let stacked = |items: &[RowItem]| items.iter().filter(|item| item.is_stacked()).count();
-    // A ground under every other row keeps several marks of a row together.
+fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Drawn<bool> {
     let (left, right) = chart.x.ends();
-    let grounds = column.rows.iter().enumerate().filter(|(row, items)| stacked(items) > 1 && !row.is_multiple_of(2));
-    for (middle, _) in grounds.map(|(row, items)| (row as f64, items)) {
-        let corners = [(left, middle - 0.5), (right, middle - 0.5), (right, middle + 0.5), (left, middle + 0.5)];
-        chart.area(None, corners.to_vec(), GRID, 0.45)?;
+    // A ground under every other row keeps several marks of a row together.
+    for (row, _) in column.rows.iter().enumerate().filter(|(row, items)| stacked(items) > 1 && row % 2 == 1) {
+        chart.rectangle([left, right], [row as f64 - 0.5, row as f64 + 0.5], GRID.mix(0.45))?;
     }
     if let Some(reference) = &column.reference {
         reference.vertical(chart, theme)?;
@@ -303,27 +290,27 @@ fn draw(chart: &Chart, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> Dr
     }
     let mut beyond = false;
     for (row, items) in column.rows.iter().enumerate() {
-        let stacked = stacked(items);
-        let mut line = -0.5 * (stacked + 1) as f64;
+        let mut line = -0.5 * (stacked(items) + 1) as f64;
         for item in items {
-            line += if item.is_stacked() { 1.0 } else { 0.0 };
+            line += if item.place == RowPlace::Below { 1.0 } else { 0.0 };
             let aside = match item.place {
                 RowPlace::Aside(share) => share,
                 RowPlace::Below | RowPlace::Beside => line * 0.62 * theme.tick_font / pitch,
             };
-            beyond |= draw_item(chart, theme, (item, row as f64 + aside), stacked < 2)?;
+            beyond |= draw_item(chart, theme, item, row as f64 + aside, stacked(items) < 2)?;
         }
     }
     chart.frame(theme)?;
+    let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..) | RowKind::Heading);
+    let is_estimated = column.rows.iter().flatten().all(is_estimate);
     for (row, items) in column.rows.iter().enumerate() {
         let middle = chart.up(row as f64).unwrap_or(f64::NAN);
-        let end = chart.rect.right() - 0.4 * theme.small_font;
         for words in items.iter().filter_map(|item| item.text.as_ref()) {
-            let text = TextLine::new(words.as_str(), theme.small_font).anchor(Anchor::End);
-            chart.canvas.text_on_ground((end, middle), &text)?;
+            let place = (chart.rect.right() - 0.4 * theme.small_font, middle);
+            chart.canvas.text_on_ground(place, &TextLine::new(words, theme.small_font, HPos::Right))?;
         }
         if is_estimated && !items.iter().any(RowItem::is_value) {
-            let text = TextLine::new("no estimate", theme.small_font).anchor(Anchor::Middle).colour(RECORD);
+            let text = TextLine { colour: RECORD, ..TextLine::new("no estimate", theme.small_font, HPos::Center) };
             chart.canvas.text_on_ground((chart.rect.x + chart.rect.w / 2.0, middle), &text)?;
         }
     }
@@ -331,99 +318,74 @@ fn draw(chart: &Chart, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> Dr
 }
 
 /// Draws an item at its height, in rows; returns whether it lies beyond the axis.
-fn draw_item(chart: &Chart, theme: &Theme, (item, y): (&RowItem, f64), is_alone: bool) -> Drawn<bool> {
-    let sizes = (theme.marker, 0.6 * theme.small_font);
+fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: bool) -> Drawn<bool> {
     let name = item.name.as_deref();
+    let bar =
+        |ends: [f64; 2], is_capped: bool, stroke: Stroke| chart.bar(name, &Bar { y, ends, is_capped, stroke }, theme);
     match &item.kind {
         RowKind::Mark(look, value, interval) => {
-            let stroke = Stroke::solid(look.colour, theme.line);
-            let capped = is_alone.then_some(*value);
-            let beyond = match interval {
-                Some(ends) => chart.bar(name, (y, *ends, capped), stroke, sizes)?,
-                None => false,
-            };
-            Ok(mark(chart, theme, (name, look, *value, y), is_alone)? || beyond)
+            let of_interval = interval.map(|ends| bar(ends, is_alone, Stroke::solid(look.colour, theme.line)));
+            let beyond = of_interval.transpose()?.unwrap_or(false);
+            Ok(mark(chart, theme, item, (*value, y), is_alone)? || beyond)
         }
-        RowKind::Thin(ends) => chart.bar(name, (y, *ends, None), Stroke::solid(HEADING, theme.line), sizes),
-        RowKind::Thick(ends) => chart.bar(name, (y, *ends, None), thick_stroke(theme), sizes),
-        RowKind::Bar(look, value) => chart.bar(name, (y, [0.0, *value], None), bar_stroke(look, theme), sizes),
+        RowKind::Thin(ends) => bar(*ends, false, Stroke::solid(HEADING, theme.line)),
+        RowKind::Thick(ends) => bar(*ends, false, thick_stroke(theme)),
+        RowKind::Bar(look, value) => bar([0.0, *value], false, bar_stroke(look, theme)),
         RowKind::Limit(value) => {
-            chart.line(name, [(*value, y - 0.42), (*value, y + 0.42)], limit_stroke(theme))?;
-            Ok(false)
+            chart.line(name, [(*value, y - HALF), (*value, y + HALF)], limit_stroke(theme)).map(|()| false)
         }
         RowKind::Heading => Ok(false),
-        RowKind::Violin(look, density, quantiles) => violin(chart, theme, (name, look, y), density, quantiles),
+        RowKind::Violin(look, density, quantiles) => {
+            let beyond = bar([quantiles[0], quantiles[4]], false, Stroke::solid(look.colour, theme.line))?;
+            violin(chart, theme, item, y, density, quantiles).map(|()| beyond)
+        }
     }
 }
 
-/// A mark, or an arrow with its number where it lies beyond the axis; returns whether it does.
-fn mark(
-    chart: &Chart,
-    theme: &Theme,
-    (name, look, value, y): (Option<&str>, &Look, f64, f64),
-    is_alone: bool,
-) -> Drawn<bool> {
-    let bounded = value.clamp(-f64::MAX, f64::MAX);
-    let Some((x, height)) = chart.place((bounded, y)) else { return Ok(false) };
-    if chart.rect.contains((x, height)) {
-        chart.markers(name, &[(value, y)], theme.marker, look)?;
-        return Ok(false);
-    }
-    let (edge, direction) = if x > chart.rect.x { (chart.rect.right(), 1.0) } else { (chart.rect.x, -1.0) };
+/// A mark at a value and a height, or an arrow with its number where it lies beyond the axis; returns whether it does.
+fn mark(chart: &Chart, theme: &Theme, item: &RowItem, (value, y): (f64, f64), is_alone: bool) -> Drawn<bool> {
+    let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
+    let place = chart.place((value.clamp(-f64::MAX, f64::MAX), y));
+    let Some((x, height)) = place.filter(|place| !chart.rect.contains(*place)) else {
+        return chart.marker(item.name.as_deref(), (value, y), theme.marker, look).map(|()| false);
+    };
+    let (edge, side) = if x > chart.rect.x { (chart.rect.right(), 1.0) } else { (chart.rect.x, -1.0) };
     let size = 0.65 * theme.small_font;
-    let tip = edge - direction * 0.2 * theme.small_font;
-    chart.canvas.head((tip, height), (direction, 0.0), size, look.colour)?;
+    let tip = edge - side * 0.2 * theme.small_font;
+    chart.canvas.head((tip, height), (side, 0.0), size, look.colour)?;
     if is_alone && value.abs() < f64::MAX {
-        let anchor = if direction > 0.0 { Anchor::End } else { Anchor::Start };
-        let label = TextLine::new(significant(value, 3), theme.small_font).anchor(anchor);
-        chart.canvas.text_on_ground((tip - direction * 1.3 * size, height), &label)?;
+        let anchor = if side > 0.0 { HPos::Right } else { HPos::Left };
+        let label = TextLine::new(significant(value, 3), theme.small_font, anchor);
+        chart.canvas.text_on_ground((tip - side * 1.3 * size, height), &label)?;
     }
     Ok(true)
 }
 
-/// Half the height of a violin, in rows.
+/// Half the height of a violin and of a limit, in rows.
 const HALF: f64 = 0.42;
 
-/// Density, box of the quartiles, whiskers and median, the ends of the whiskers as numbers beside what is too narrow to
-/// be seen; returns whether it reaches beyond the axis.
-fn violin(
-    chart: &Chart,
-    theme: &Theme,
-    (name, look, y): (Option<&str>, &Look, f64),
-    density: &[(f64, f64)],
-    q: &[f64; 5],
-) -> Drawn<bool> {
-    let rect = chart.rect;
-    let places: Option<Vec<f64>> = q.iter().map(|value| chart.across(*value)).collect();
-    let Some(places) = places else { return Ok(false) };
+/// Density, box of the quartiles and median, with the ends of the interval of 95 % as numbers beside what is too narrow to
+/// be seen.
+fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64, f64)], q: &[f64; 5]) -> Drawn {
+    let RowKind::Violin(look, ..) = &item.kind else { return Ok(()) };
+    let name = item.name.as_deref();
     let highest = density.iter().map(|(_, height)| *height).fold(0.0, f64::max);
-    let edge = |side: f64| -> Vec<(f64, f64)> {
-        let drawn = density.iter().filter(|(value, height)| chart.x.has_place(*value) && height.is_finite());
-        drawn.map(|(value, height)| (*value, y + side * HALF * height / highest)).collect()
-    };
+    let drawn = || density.iter().filter(|(value, height)| chart.x.has_place(*value) && height.is_finite());
+    let edge = |side: f64| drawn().map(move |(value, height)| (*value, y + side * HALF * height / highest));
     if highest > 0.0 {
-        let outline = [edge(-1.0), edge(1.0).into_iter().rev().collect()].concat();
-        chart.area(name, outline, look.colour, 0.28)?;
+        let outline: Vec<(f64, f64)> = edge(-1.0).chain(edge(1.0).collect::<Vec<_>>().into_iter().rev()).collect();
+        chart.area(name, outline, look.colour.mix(0.28))?;
     }
-    let sizes = (theme.marker, 0.6 * theme.small_font);
-    let beyond = chart.bar(name, (y, [q[0], q[4]], None), Stroke::solid(look.colour, theme.line), sizes)?;
-    let half = 0.13;
-    let corners = [(q[1], y - half), (q[3], y - half), (q[3], y + half), (q[1], y + half)];
-    chart.area(name, corners.to_vec(), look.colour, 0.85)?;
-    let height = chart.up(y).unwrap_or(f64::NAN);
-    if rect.contains((places[2], height)) {
-        if places[4] - places[0] < 2.0 * theme.marker {
-            let ends = format!("{} to {}", significant(q[0], 2), significant(q[4], 2));
-            let text = TextLine::new(ends, theme.small_font);
-            let apart = 1.6 * theme.marker;
-            let (anchor, x) = match places[2] + apart + text.width() < rect.right() {
-                true => (Anchor::Start, places[2] + apart),
-                false => (Anchor::End, places[2] - apart),
-            };
-            chart.canvas.text_on_ground((x, height), &text.anchor(anchor))?;
-        }
-        let median = Look { colour: INK, hollow: true, ..CurveOrigin::Truth.look() };
-        chart.markers(None, &[(q[2], y)], 0.6 * theme.marker, &median)?;
+    chart.rectangle([q[1], q[3]], [y - 0.13, y + 0.13], look.colour.mix(0.85))?;
+    let Some((middle, height)) = chart.inside((q[2], y)) else { return Ok(()) };
+    let apart = 1.6 * theme.marker;
+    if chart.across(q[4]).zip(chart.across(q[0])).is_some_and(|(hi, lo)| hi - lo < 2.0 * theme.marker) {
+        let ends = format!("{} to {}", significant(q[0], 2), significant(q[4], 2));
+        let text = TextLine::new(ends, theme.small_font, HPos::Left);
+        let is_right = middle + apart + text.width() < chart.rect.right();
+        let (anchor, x) = if is_right { (HPos::Left, middle + apart) } else { (HPos::Right, middle - apart) };
+        chart.canvas.text_on_ground((x, height), &TextLine { anchor, ..text })?;
     }
-    Ok(beyond)
+    let median = Look { hollow: true, ..CurveOrigin::Truth.look() };
+    chart.marker(None, (q[2], y), 0.6 * theme.marker, &median)
 }

@@ -72,28 +72,23 @@ impl Reference95 {
         Self { value, band: [value; 2] }
     }
 
-    fn stroke(theme: &Theme) -> Stroke {
-        Stroke::solid(INK, 0.8 * theme.line)
-    }
-
-    /// The corners of its band, from one end of the other axis to the other.
-    fn corners(&self, (low, high): (f64, f64)) -> [(f64, f64); 4] {
-        let [one, other] = self.band;
-        [(one, low), (other, low), (other, high), (one, high)]
+    /// The value and the ends of the band.
+    pub(super) fn values(&self) -> [f64; 3] {
+        [self.value, self.band[0], self.band[1]]
     }
 
     /// Across a panel whose horizontal axis it belongs to.
     pub(super) fn vertical(&self, chart: &Chart, theme: &Theme) -> Drawn {
-        let corners = self.corners(chart.y.ends());
-        chart.area(None, corners.to_vec(), RECORD, BAND)?;
-        chart.vertical(None, self.value, Self::stroke(theme))
+        let (low, high) = chart.y.ends();
+        chart.rectangle(self.band, [low, high], RECORD.mix(BAND))?;
+        chart.vertical(None, self.value, Stroke::solid(INK, 0.8 * theme.line))
     }
 
     /// Across a panel whose vertical axis it belongs to.
     pub(super) fn horizontal(&self, chart: &Chart, theme: &Theme) -> Drawn {
-        let corners = self.corners(chart.x.ends()).map(|(up, across)| (across, up));
-        chart.area(None, corners.to_vec(), RECORD, BAND)?;
-        chart.horizontal(self.value, Self::stroke(theme))
+        let (left, right) = chart.x.ends();
+        chart.rectangle([left, right], self.band, RECORD.mix(BAND))?;
+        chart.horizontal(self.value, Stroke::solid(INK, 0.8 * theme.line))
     }
 }
 

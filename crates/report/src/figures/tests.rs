@@ -41,48 +41,6 @@ fn zigzag(n: usize, wild: f64) -> ZigzagTrial {
     }
 }
 
-/// What a study stores of a first trial.
-fn stored(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
-    let curve = wave(n, wild, 25.0);
-    let fit = CurveFit {
-        measured: curve.clone(),
-        fitted: curve.clone(),
-        residual: curve.clone(),
-        r_squared: Some(wild),
-        fundamental_rad_s: Some(0.05),
-        ..CurveFit::default()
-    };
-    let motion = MotionCurves {
-        origin: CurveOrigin::Truth,
-        name: None,
-        heading: curve.clone(),
-        yaw_rate: curve.clone(),
-        yaw_acceleration: curve.clone(),
-    };
-    let replay = |origin| ReplayCurves { origin, heading: curve.clone(), residual: curve.clone(), rms_deg: Some(wild) };
-    let point = |value: f64| Some(PointEstimate { value, interval: Some([value - 0.01, value + 0.01 * wild]) });
-    let estimate = |(number, origin)| MethodEstimate {
-        origin,
-        k_per_s: point(if number == 7 { 0.4 } else { 0.1 + 0.001 * number as f64 }),
-        t_s: None,
-    };
-    let count = n.min(8);
-    let truth = Some(Reference { k_per_s: 0.1, t_s: 16.0 });
-    let intervals = Intervals {
-        estimates: methods().enumerate().take(count).map(estimate).collect(),
-        truth,
-        ..Intervals::default()
-    };
-    let replays = methods().take(count).map(replay).collect();
-    vec![
-        ("zigzag", zigzag(n, wild).into()),
-        ("curve fit", fit.panels().into()),
-        ("derivatives", DerivativeCurves { title: None, curves: vec![motion] }.panels().into()),
-        ("replays", Replays { record: curve.clone(), replays, ..Replays::default() }.panels().into()),
-        ("intervals", intervals.rows().into()),
-    ]
-}
-
 /// Panels of every layer, small multiples, and a figure whose names stand aside.
 fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let look = CurveOrigin::After.look();
@@ -139,7 +97,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         let marks = Layer::marks(origin.label(), origin.look(), points(1.0 + number as f64));
         if number % 2 == 0 { marks.joined(Pen::of(&origin)) } else { marks.apart() }
     };
-    let aside = Stack::over(
+    let marks = Stack::over(
         ruler("noise [°]"),
         vec![(PanelRow { height: 0.3, ..row(Division::Factors) }, methods().enumerate().map(named).collect())],
     );
@@ -153,7 +111,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     vec![
         ("layers", layered.into()),
         ("clouds", Panels::of(clouds).into()),
-        ("aside", Panels { names_aside: true, ..Panels::of(aside) }.into()),
+        ("marks", Panels::of(marks).into()),
         ("track", Panels::of(Stack { equal: true, ..track }).into()),
     ]
 }
@@ -229,7 +187,8 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
 }
 
 fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Drawing)> {
-    let plots = [stored(n, wild), panels(n, wild), rows_and_maps(n, wild)].concat();
+    let zigzag = vec![("zigzag", Plot::from(zigzag(n, wild)))];
+    let plots = [zigzag, panels(n, wild), rows_and_maps(n, wild)].concat();
     plots.into_iter().map(|(name, plot)| (name, plot.draw(theme))).collect()
 }
 
@@ -329,7 +288,6 @@ fn labels_carry_symbol_and_unit() {
         ("zigzag", format!("rudder {} [°]", italic("δ"))),
         ("zigzag", format!("time {} [s]", italic("t"))),
         ("zigzag", format!("{}OS₁ = 13.0°", italic("ψ"))),
-        ("intervals", format!("{} [1/s]", italic("K"))),
     ];
     for (name, text) in symbols {
         assert!(svg(name).contains(&text), "{text}");
@@ -337,43 +295,24 @@ fn labels_carry_symbol_and_unit() {
     for (name, text) in [
         ("zigzag", "a &lt; b"),
         ("zigzag", "period 85.0 s"),
-        ("curve fit", "0.05000 rad/s"),
-        ("derivatives", " [°/s²]"),
-        ("intervals", "no estimate"),
-        ("intervals", "Arrows: beyond the axis."),
         ("clouds", "no estimate"),
         ("map", "– is not defined."),
         ("shares", "mostly cannot be told from it"),
         ("track", "drawn ships"),
-        ("aside", "maximum-likelihood"),
+        ("marks", "maximum-likelihood"),
     ] {
         assert!(svg(name).contains(text), "{text} in {name}");
     }
     for id in palette::method_ids() {
-        assert!(svg("replays").contains(&format!("\n{id}, rms 1.5°, up to 25°\n")), "{id}");
-        assert_eq!(svg("aside").matches(&format!("\n{id}\n")).count(), 1, "{id}");
+        assert_eq!(svg("marks").matches(&format!("\n{id}\n")).count(), 1, "{id}");
     }
-    for name in ["replays", "intervals", "clouds", "aside", "rows"] {
+    for name in ["clouds", "marks", "rows"] {
         assert!(svg(name).contains("#009E73"), "output-error in {name}");
     }
 }
 
 #[test]
 fn what_runs_off_is_cut_and_says_so() {
-    let replay = |method: &str, size: f64| ReplayCurves {
-        origin: CurveOrigin::Method(method.into()),
-        heading: wave(200, 0.0, 25.0),
-        residual: wave(200, 0.0, 25.0 * size),
-        rms_deg: Some(size),
-    };
-    let data = Replays {
-        record: wave(200, 0.0, 25.0),
-        replays: vec![replay("srivc", 0.01), replay("output-error", 0.02), replay("least-squares", 40.0)],
-        ..Replays::default()
-    };
-    let svg = Plot::from(data.panels()).draw(&Theme::screen()).svg().to_owned();
-    // 25 degrees times 40, reached at the top of the sine.
-    assert!(svg.contains("least-squares, rms 40°, up to 1000°") && svg.contains("is cut"));
     let drawn = |layers: Vec<Layer>, cut: &str| {
         let data =
             Panels { cut: Some(cut.into()), ..Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.2), layers)]) };
@@ -424,37 +363,8 @@ fn what_sets_no_axis_is_an_arrow_at_its_edge() {
     let answers = vec![far("output-error", 0.1), far("srivc", 0.101), far("least-squares", 0.099), far("x", 9.0)];
     let axis = |title: &str| Ruler::decimal(title).within(4.0, None);
     let stack = Stack::over(axis("K [1/s]"), vec![(PanelRow::new(axis("T [s]"), 0.5), answers)]);
-    let figure = Plot::from(Panels { names_aside: true, ..Panels::of(stack) }).draw(&Theme::screen());
-    assert!(figure.svg().contains("Outside the axes: x (K = 9.00, T = 1440)."), "{}", figure.svg());
-}
-
-#[test]
-fn a_metre_is_as_long_on_both_axes_of_a_track() {
-    let turn = |east: f64, north: f64| {
-        let angles = || (0..100).map(|k| 0.1 * f64::from(k));
-        let x: Vec<f64> = angles().map(|a| east * (1.0 - a.cos())).collect();
-        PlotCurve::new(x, angles().map(|a| north * a.sin()).collect::<Vec<_>>())
-    };
-    let still = PlotCurve::new([1e9; 3], [-3.0; 3]);
-    for theme in [Theme::screen(), Theme::paper(85.0, 300.0).unwrap(), Theme::paper(60.0, 300.0).unwrap()] {
-        for curve in [turn(700.0, 800.0), turn(5.0, 900.0), turn(9e4, 1.0), turn(2e-3, 1e-3), still.clone()] {
-            let drawn = Layer::line("drawn ships", turn(1e3, 1e3), Pen::pale()).within(0.35);
-            let layers = vec![drawn, Layer::line("ship", curve.clone(), Pen::new(INK))];
-            let rows = vec![(PanelRow::new(Ruler::decimal("north [m]"), 0.7), layers)];
-            let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [m]"), rows) };
-            let sheet = crate::sheet::Sheet::new(&theme, None).unwrap();
-            let (grid, width, _) = equal::fitted(&sheet, &stack);
-            let (across, (up, height)) = (&grid.columns[0].axis, &grid.rows[0]);
-            let point = |axis: &crate::axis::Axis, side: f64| side / axis.worth(1.0);
-            let ratio = point(across, width) / point(&up.axis, *height);
-            assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
-            let is_inside = |axis: &crate::axis::Axis, value: f64| {
-                (0..=1_000_000).contains(&plotters::coord::ranged1d::Ranged::map(axis, &value, (0, 1_000_000)))
-            };
-            assert!(curve.finite().all(|(x, y)| is_inside(across, x) && is_inside(&up.axis, y)));
-            assert!(sheet.left_margin(&grid) + width < theme.width);
-        }
-    }
+    let figure = Plot::from(Panels::of(stack)).draw(&Theme::screen());
+    assert!(figure.svg().contains("Arrows: beyond the axis."), "{}", figure.svg());
 }
 
 /// A run of days has thousands of executes; marks on top of each other once made a file that could not be drawn.

@@ -2,23 +2,19 @@
 //! executes, overshoot angles, initial turning time, times to check yaw and the period. All quantities are handed in;
 //! nothing is searched for in the curves.
 
+use plotters::style::text_anchor::HPos;
 use serde::{Deserialize, Serialize};
 
-use super::panels::Ruler;
-use plotters::style::Color as _;
-
-use crate::axis::{self, Axis, Division};
+use super::layers;
+use super::panels::{AxisLine, Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use crate::backend::Drawn;
-use crate::canvas::{Anchor, Rect, Stroke, TextLine, at, marker};
+use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
-use crate::dimension::Dimensions;
 use crate::figure::Drawing;
-use crate::key::{KeyEntry, KeySample, stroke_of};
 use crate::markup::symbol;
 use crate::number;
-use crate::palette::{CurveOrigin, DIMENSION, DOTTED, HEADING, INK, Look, Marker, RECORD, RUDDER, SOLID};
-use crate::sheet::{AxisSide, Grid, Sheet};
+use crate::palette::{CurveOrigin, DIMENSION, HEADING, INK, Look, Marker, RUDDER, SOLID};
 use crate::theme::Theme;
 
 /// A point of the heading curve.
@@ -87,183 +83,165 @@ const MOST_MARKED: usize = 60;
 const EXECUTE: Look = Look { colour: INK, marker: Marker::Diamond, dash: SOLID, hollow: false };
 const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: SOLID, hollow: true };
 
+/// Height of the panel of the heading, as a share of the width.
+const HEIGHT: f64 = 0.36;
+
 /// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn
 /// without its characteristic quantities, and a note says so.
 pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Drawn<Drawing> {
-    if data.executes.len() > MOST_MARKED {
-        let curves = ZigzagTrial {
-            title: data.title.clone(),
-            heading: data.heading.clone(),
-            heading_as_points: data.heading_as_points,
-            rudder: data.rudder.clone(),
-            truth: data.truth.clone(),
-            ..ZigzagTrial::default()
-        };
-        return with_note(&curves, Some(format!("{} executes: too many to be marked.", data.executes.len())), theme);
+    let count = data.executes.len();
+    if count <= MOST_MARKED {
+        return layers::annotated(&data.panels(theme), theme, &|chart| data.annotate(chart, theme));
     }
-    with_note(data, None, theme)
-}
-
-fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Drawn<Drawing> {
-    let mut sheet = Sheet::new(theme, data.title.as_deref())?;
-    sheet.legend(&entries(data, theme))?;
-    let height = theme.tall(0.36);
-    let curves = [&data.heading, &data.rudder].into_iter().chain(&data.truth);
-    let rudder = Axis::covering(data.rudder.finite().map(|(_, y)| y), 0.12, Division::Angle);
-    let rows = vec![
-        (heading_side(data, height, theme), height),
-        (AxisSide::new(rudder, Ruler::rudder().title), theme.tall(0.13)),
-    ];
-    let times = curves.flat_map(|curve| curve.finite().map(|(t, _)| t));
-    let time = AxisSide::new(Axis::covering(times, 0.0, Division::Time), Ruler::time().title);
-    let charts = sheet.grid(Grid::new(vec![time], rows))?;
-    let [upper, lower] = &charts[..] else { return Ok(sheet.finish()) };
-
-    for chart in &charts {
-        let stroke = Stroke::solid(RECORD, theme.thin).dashed(DOTTED);
-        data.executes.iter().try_for_each(|execute| chart.vertical(None, execute.t_s, stroke))?;
-    }
-    let entries = entries(data, theme);
-    let name = |number: usize| entries.get(number).map(|entry| entry.label.as_str());
-    if data.heading_as_points {
-        upper.dots(name(0), data.heading.finite(), theme.dot, RECORD.mix(1.0))?;
-    } else {
-        upper.line(name(0), data.heading.pairs(), Stroke::solid(HEADING, theme.line))?;
-    }
-    if let Some(truth) = &data.truth {
-        upper.line(name(1), truth.pairs(), stroke_of(&CurveOrigin::Truth, theme))?;
-    }
-    let rudder = name(1 + usize::from(data.truth.is_some()));
-    lower.line(rudder, data.rudder.pairs(), Stroke::solid(RUDDER, theme.line))?;
-    upper.frame(theme)?;
-    lower.frame(theme)?;
-    let values = annotate(data, upper, theme)?;
-    let executes: Vec<(f64, f64)> = data.executes.iter().map(|mark| (mark.t_s, mark.heading_deg)).collect();
-    upper.markers(Some("execute"), &executes, theme.marker, &EXECUTE)?;
-    if let Some(text) = note.or_else(|| explanation(data, values)) {
-        sheet.note(&text)?;
-    }
-    Ok(sheet.finish())
-}
-
-fn entries(data: &ZigzagTrial, theme: &Theme) -> Vec<KeyEntry> {
-    let mut entries = vec![if data.heading_as_points {
-        KeyEntry::new(KeySample::Dots(RECORD), format!("recorded heading {}", symbol("ψ")))
-    } else {
-        KeyEntry::new(KeySample::Line(Stroke::solid(HEADING, theme.line)), format!("heading {}", symbol("ψ")))
-    }];
-    if data.truth.is_some() {
-        entries.push(KeyEntry::line_of(&CurveOrigin::Truth, theme));
-    }
-    entries.push(KeyEntry::new(KeySample::Line(Stroke::solid(RUDDER, theme.line)), format!("rudder {}", symbol("δ"))));
-    if !data.executes.is_empty() {
-        entries.push(KeyEntry::new(KeySample::Marker(EXECUTE), "execute"));
-    }
-    if !data.overshoots.is_empty() {
-        entries.push(KeyEntry::new(KeySample::Marker(EXTREMUM), "heading extremum"));
-    }
-    entries
-}
-
-/// Height of the strip that holds a row of dimension lines, points.
-fn strip(theme: &Theme) -> f64 {
-    2.3 * theme.small_font
-}
-
-fn has_times(data: &ZigzagTrial) -> bool {
-    data.initial_turning.is_some() || !data.check_yaw.is_empty()
-}
-
-/// The heading axis, with room above and below the curve for overshoot angles and dimension lines.
-fn heading_side(data: &ZigzagTrial, height: f64, theme: &Theme) -> AxisSide {
-    let marks = data.overshoots.iter().flat_map(|o| [o.extremum.heading_deg, o.execute.heading_deg]);
-    let curves = [&data.heading].into_iter().chain(&data.truth).flat_map(|c| c.finite().map(|(_, y)| y));
-    let (lo, hi) = axis::range(curves.chain(marks)).unwrap_or((-1.0, 1.0));
-    let (lo, hi) = if hi > lo { (lo, hi) } else { (lo - 1.0, hi + 1.0) };
-    let label = if data.overshoots.is_empty() { 0.6 } else { 2.0 } * theme.small_font;
-    let above = label + if data.period.is_some() { strip(theme) } else { 0.0 };
-    let below = label + if has_times(data) { strip(theme) } else { 0.0 };
-    let per_point = (hi - lo) / (height - above - below).max(0.3 * height);
-    AxisSide::new(Axis::linear(lo - below * per_point, hi + above * per_point, Division::Angle), Ruler::heading().title)
-}
-
-/// Draws overshoots, times and period. Returns the times in words when they did not fit at their lines.
-fn annotate(data: &ZigzagTrial, chart: &Chart, theme: &Theme) -> Drawn<Option<String>> {
-    let size = theme.small_font;
-    let draw = Dimensions { canvas: &chart.canvas, theme: *theme };
-    for (i, overshoot) in data.overshoots.iter().enumerate() {
-        overshoot_angle(&draw, chart, i + 1, overshoot)?;
-    }
-    if let Some(period) = &data.period {
-        let y = chart.rect.y + 0.75 * strip(theme);
-        if let Some((from, to)) = time_line(&draw, chart, data, period, y)? {
-            let text = format!("period {}", period.text());
-            draw.label(((from + to) / 2.0, y - 0.71 * size), &text)?;
-        }
-    }
-    let y = chart.rect.bottom() - 0.45 * size;
-    let mut labels = Vec::new();
-    let initial = data.initial_turning.iter().map(|span| (symbol("tₐ"), span));
-    let checks = data.check_yaw.iter().enumerate().map(|(i, span)| (symbol(&format!("tₛ{}", subscript(i + 1))), span));
-    for (name, span) in initial.chain(checks) {
-        if let Some((from, to)) = time_line(&draw, chart, data, span, y)? {
-            labels.push(((from + to) / 2.0, name, span.text()));
-        }
-    }
-    labels.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let base = y - 0.76 * size;
-    let full = |(x, name, value): &(f64, String, String)| {
-        TextLine::new(format!("{name} = {value}"), size).anchor(Anchor::Middle).bounds((*x, base))
+    let curves = ZigzagTrial {
+        executes: Vec::new(),
+        overshoots: Vec::new(),
+        initial_turning: None,
+        check_yaw: Vec::new(),
+        period: None,
+        ..data.clone()
     };
-    let boxes: Vec<Rect> = labels.iter().map(full).collect();
-    let fits = boxes.windows(2).all(|b| b[0].right() + 0.3 * size < b[1].x)
-        && boxes.iter().all(|b| b.x > chart.rect.x && b.right() < chart.rect.right());
-    for (x, name, value) in &labels {
-        let text = if fits { format!("{name} = {value}") } else { name.clone() };
-        draw.label((*x, base), &text)?;
-    }
-    let listed: Vec<String> = labels.iter().map(|(_, name, value)| format!("{name} = {value}")).collect();
-    // No-break spaces, so that the note is never broken between a symbol and its value.
-    let listed: Vec<String> = listed.iter().map(|text| text.replace(' ', "\u{a0}")).collect();
-    Ok((!fits).then(|| listed.join(", ")))
+    let note = Some(format!("{count} executes: too many to be marked."));
+    layers::panels(&Panels { note, ..curves.panels(theme) }, theme)
 }
 
-/// Vertical dimension line from the heading of the execute to the extremum, with its angle beyond the curve.
-fn overshoot_angle(draw: &Dimensions<'_>, chart: &Chart, number: usize, overshoot: &OvershootMark) -> Drawn {
-    let (execute, extremum) = (overshoot.execute, overshoot.extremum);
-    let Some(peak) = chart.inside((extremum.t_s, extremum.heading_deg)) else { return Ok(()) };
-    let Some(start) = chart.inside((execute.t_s, execute.heading_deg)) else { return Ok(()) };
-    let foot = (peak.0, start.1);
-    draw.extension(start, (foot.0 + 0.4 * draw.theme.small_font, foot.1))?;
-    draw.between(foot, peak)?;
-    draw.canvas.elements(marker(at(peak), 0.85 * draw.theme.marker, &EXTREMUM))?;
-    let name = format!("{}OS{}", symbol("ψ"), subscript(number));
-    let text = format!("{name} = {}°", number::fixed(overshoot.angle_deg, 1));
-    let size = draw.theme.small_font;
-    let beyond = if peak.1 <= foot.1 { -1.01 * size } else { 1.04 * size };
-    let half = TextLine::new(text.as_str(), size).width() / 2.0 + 0.3 * size;
-    let x = peak.0.clamp(chart.rect.x + half, (chart.rect.right() - half).max(chart.rect.x + half));
-    draw.label((x, peak.1 + beyond), &text)
+impl ZigzagTrial {
+    /// The curves and the marked points, with room above and below the heading for overshoot angles and times.
+    fn panels(&self, theme: &Theme) -> Panels {
+        let name = format!("heading {}", symbol("ψ"));
+        let heading = match self.heading_as_points {
+            true => Layer::new(format!("recorded {name}"), self.heading.clone(), LayerKind::Record),
+            false => Layer::line(name, self.heading.clone(), Pen::new(HEADING)),
+        };
+        let truth = |curve: &PlotCurve| Layer::line("truth", curve.clone(), Pen::of(&CurveOrigin::Truth));
+        let marks = |name: &str, look: Look, marks: Vec<&ZigZagMark>| {
+            let points = marks.iter().map(|mark| (mark.t_s, mark.heading_deg, None)).collect();
+            Some(Layer::marks(name, look, points)).filter(|_| !marks.is_empty())
+        };
+        let extrema = self.overshoots.iter().map(|overshoot| &overshoot.extremum).collect();
+        let extrema = marks("heading extremum", EXTREMUM, extrema);
+        let executes = marks("execute", EXECUTE, self.executes.iter().collect());
+        let heading =
+            [Some(heading), self.truth.as_ref().map(truth), executes, extrema].into_iter().flatten().collect();
+        let rudder = Layer::line(format!("rudder {}", symbol("δ")), self.rudder.clone(), Pen::new(RUDDER));
+        let label = if self.overshoots.is_empty() { 0.0 } else { 1.4 };
+        let strip = |is_drawn: bool| (label + if is_drawn { STRIP } else { 0.0 }) * theme.small_font;
+        let has_times = self.initial_turning.is_some() || !self.check_yaw.is_empty();
+        let room = [strip(has_times), strip(self.period.is_some())].map(|points| points / theme.tall(HEIGHT));
+        let rows = vec![
+            (PanelRow { room, ..PanelRow::new(Ruler::heading(), HEIGHT) }, heading),
+            (PanelRow::new(Ruler::rudder(), 0.13), vec![rudder]),
+        ];
+        let at = |mark: &ZigZagMark| AxisLine { at: mark.t_s, label: String::new() };
+        let marks = self.executes.iter().filter(|mark| mark.t_s.is_finite()).map(at).collect();
+        Panels { title: self.title.clone(), ..Panels::of(Stack { marks, ..Stack::over(Ruler::time(), rows) }) }
+    }
+
+    /// Draws overshoots, times and period; returns what they mean, with the times where they do not fit at their lines.
+    fn annotate(&self, chart: &Chart, theme: &Theme) -> Drawn<Option<String>> {
+        let size = theme.small_font;
+        let draw = Dimensions { chart, theme };
+        for (i, overshoot) in self.overshoots.iter().enumerate() {
+            draw.overshoot(i + 1, overshoot)?;
+        }
+        if let Some(period) = &self.period {
+            let y = chart.rect.y + 0.75 * STRIP * size;
+            if let Some(middle) = draw.span(self, period, y)? {
+                draw.label((middle, y - 0.71 * size), &format!("period {}", period.text()))?;
+            }
+        }
+        let y = chart.rect.bottom() - 0.45 * size;
+        let mut labels = Vec::new();
+        let initial = self.initial_turning.iter().map(|span| (symbol("tₐ"), span));
+        let check = |(i, span)| (symbol(&format!("tₛ{}", subscript(i + 1))), span);
+        for (name, span) in initial.chain(self.check_yaw.iter().enumerate().map(check)) {
+            let middle = draw.span(self, span, y)?;
+            labels.extend(middle.map(|x| (x, name.clone(), format!("{name} = {}", span.text()))));
+        }
+        labels.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let ends = |(x, _, text): &(f64, String, String)| TextLine::new(text, size, HPos::Center).ends(*x);
+        let boxes: Vec<[f64; 2]> = labels.iter().map(ends).collect();
+        let fits = boxes.windows(2).all(|pair| pair[0][1] + 0.3 * size < pair[1][0])
+            && boxes.iter().all(|[left, right]| *left > chart.rect.x && *right < chart.rect.right());
+        for (x, name, text) in &labels {
+            draw.label((*x, y - 0.76 * size), if fits { text } else { name })?;
+        }
+        // No-break spaces, so that the note is never broken between a symbol and its value.
+        let listed: Vec<String> = labels.iter().map(|(.., text)| text.replace(' ', "\u{a0}")).collect();
+        Ok(explanation(self, (!fits).then(|| listed.join(", "))))
+    }
 }
 
-/// Horizontal dimension line of a span, with lines to the curve where one of the marked points stands at its end.
-fn time_line(
-    draw: &Dimensions<'_>,
-    chart: &Chart,
-    data: &ZigzagTrial,
-    span: &TimeSpan,
-    y: f64,
-) -> Drawn<Option<(f64, f64)>> {
-    let inside = |t: f64| chart.across(t).filter(|x| chart.rect.contains((*x, y)));
-    let (Some(from), Some(to)) = (inside(span.from_s), inside(span.to_s)) else { return Ok(None) };
-    let marks = data.executes.iter().chain(data.overshoots.iter().flat_map(|o| [&o.execute, &o.extremum]));
-    for (t, x) in [(span.from_s, from), (span.to_s, to)] {
-        let at_mark = marks.clone().find(|m| (m.t_s - t).abs() < 1e-9 * t.abs().max(1.0));
-        let foot = at_mark.and_then(|m| chart.up(m.heading_deg)).unwrap_or(y);
-        draw.extension((x, foot), (x, y))?;
+/// Height of the strip that holds a row of dimension lines, in small-font sizes.
+const STRIP: f64 = 2.3;
+/// Length of an arrow head, in small-font sizes.
+const HEAD: f64 = 0.5;
+
+/// Draws dimension lines as on a technical drawing: a line with an arrow at either end and the quantity beside it.
+struct Dimensions<'a> {
+    chart: &'a Chart,
+    theme: &'a Theme,
+}
+
+impl Dimensions<'_> {
+    /// The line between two places; when they are too close for two heads, the heads point at them from outside.
+    fn between(&self, from: PagePoint, to: PagePoint) -> Drawn {
+        let length = (to.0 - from.0).hypot(to.1 - from.1);
+        if length == 0.0 || !length.is_finite() {
+            return Ok(());
+        }
+        let along = ((to.0 - from.0) / length, (to.1 - from.1) / length);
+        let size = HEAD * self.theme.small_font;
+        let (beyond, side) = if length > 2.6 * size { (0.0, 1.0) } else { (2.2 * size, -1.0) };
+        let end = |(x, y): PagePoint, by: f64| (x + by * along.0, y + by * along.1);
+        let canvas = &self.chart.canvas;
+        canvas.line(&[end(from, -beyond), end(to, beyond)], Stroke::solid(DIMENSION, self.theme.thin))?;
+        canvas.head(from, (-side * along.0, -side * along.1), size, DIMENSION)?;
+        canvas.head(to, (side * along.0, side * along.1), size, DIMENSION)
     }
-    draw.between((from, y), (to, y))?;
-    Ok(Some((from, to)))
+
+    /// A thin line from a point of the data to its dimension line.
+    fn extension(&self, from: PagePoint, to: PagePoint) -> Drawn {
+        let stroke = Stroke { opacity: 0.75, ..Stroke::solid(DIMENSION, 0.8 * self.theme.thin) };
+        self.chart.canvas.line(&[from, to], stroke)
+    }
+
+    /// The quantity at a dimension line.
+    fn label(&self, place: PagePoint, text: &str) -> Drawn {
+        let text = TextLine { colour: DIMENSION, ..TextLine::new(text, self.theme.small_font, HPos::Center) };
+        self.chart.canvas.text_on_ground(place, &text)
+    }
+
+    /// Vertical dimension line from the heading of the execute to the extremum, with its angle beyond the curve.
+    fn overshoot(&self, number: usize, overshoot: &OvershootMark) -> Drawn {
+        let place = |mark: &ZigZagMark| self.chart.inside((mark.t_s, mark.heading_deg));
+        let (Some(peak), Some(start)) = (place(&overshoot.extremum), place(&overshoot.execute)) else { return Ok(()) };
+        let size = self.theme.small_font;
+        let foot = (peak.0, start.1);
+        self.extension(start, (foot.0 + 0.4 * size, foot.1))?;
+        self.between(foot, peak)?;
+        let angle = number::fixed(overshoot.angle_deg, 1);
+        let text = format!("{}OS{} = {angle}°", symbol("ψ"), subscript(number));
+        let half = TextLine::new(&*text, size, HPos::Center).width() / 2.0 + 0.3 * size;
+        let rect = self.chart.rect;
+        let x = peak.0.clamp(rect.x + half, (rect.right() - half).max(rect.x + half));
+        let beyond = if peak.1 <= foot.1 { -1.1 * size } else { 1.1 * size };
+        self.label((x, peak.1 + beyond), &text)
+    }
+
+    /// Horizontal dimension line of a span, with lines to the curve where one of the marked points stands at its end;
+    /// returns its middle where it lies in the frame.
+    fn span(&self, data: &ZigzagTrial, span: &TimeSpan, y: f64) -> Drawn<Option<f64>> {
+        let inside = |t: f64| self.chart.across(t).filter(|x| self.chart.rect.contains((*x, y)));
+        let (Some(from), Some(to)) = (inside(span.from_s), inside(span.to_s)) else { return Ok(None) };
+        let marks = data.executes.iter().chain(data.overshoots.iter().flat_map(|o| [&o.execute, &o.extremum]));
+        for (t, x) in [(span.from_s, from), (span.to_s, to)] {
+            let at_mark = marks.clone().find(|mark| (mark.t_s - t).abs() < 1e-9 * t.abs().max(1.0));
+            self.extension((x, at_mark.and_then(|mark| self.chart.up(mark.heading_deg)).unwrap_or(y)), (x, y))?;
+        }
+        self.between((from, y), (to, y))?;
+        Ok(Some(0.5 * (from + to)))
+    }
 }
 
 fn explanation(data: &ZigzagTrial, values: Option<String>) -> Option<String> {

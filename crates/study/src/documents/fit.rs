@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use campaign::answer::MethodEntry;
+use campaign::stored_figures::Replays;
 use predict::IdentifiedShip;
 use report::PlotCurve;
-use report::figures::{Replays, ZigzagTrial};
+use report::figures::ZigzagTrial;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 use ship::angle::to_deg;

@@ -3,7 +3,7 @@
 
 use campaign::folder::ResultFolder;
 use campaign::store::StoredStudy;
-use report::figures::Replays;
+use campaign::stored_figures::Replays;
 use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
 use scenario::name::slug;

@@ -1,6 +1,6 @@
 //! Tables of what was found, for the screen, `report.md` and other programs.
 
-use report::figures::Reference;
+use campaign::stored_figures::Reference;
 use report::number::{self, MISSING};
 use report::{Table, TableColumn};
 

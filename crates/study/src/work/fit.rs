@@ -1,6 +1,7 @@
 //! An identification: all methods asked for on the records together, its answer held against other records, and what is
 //! known of the ship.
 
+use campaign::stored_figures::Replays;
 use identify::estimate::Uncertainty;
 use identify::recommended::Recommendation;
 use identify::replay::{pooled, replay};
@@ -8,7 +9,7 @@ use identify::suspicion::suspicion;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
-use report::figures::{Replays, ZigzagTrial};
+use report::figures::ZigzagTrial;
 use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
 use ship::FirstOrder;

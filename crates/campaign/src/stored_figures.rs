@@ -1,13 +1,13 @@
 //! What a study stores of the first trial of a cell, besides the trial itself, and the figures of it.
 
+use report::figures::{
+    Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
+    Stack,
+};
+use report::number::{self, MISSING};
+use report::palette::{HEADING, INK, RECORD};
+use report::{CurveOrigin, PlotCurve, symbol};
 use serde::{Deserialize, Serialize};
-
-use super::panels::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Ruler, Stack};
-use super::rows::{NamedRows, RowItem, RowKind, RowsColumn};
-use crate::curve::PlotCurve;
-use crate::markup::symbol;
-use crate::number::{self, MISSING};
-use crate::palette::{CurveOrigin, HEADING, INK, RECORD};
 
 /// A curve fitted to a heading: how well a Fourier series (or any other) carries the record.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -254,5 +254,76 @@ impl Intervals {
             note: (!note.is_empty()).then(|| note.join(" ")),
             ..NamedRows::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use report::Theme;
+    use report::figures::Plot;
+    use report::palette::method_ids;
+
+    use super::*;
+
+    fn svg(plot: impl Into<Plot>) -> String {
+        plot.into().draw(&Theme::screen()).svg().to_owned()
+    }
+
+    fn wave(size: f64) -> PlotCurve {
+        let x: Vec<f64> = (0..200).map(|k| 0.5 * f64::from(k)).collect();
+        let y: Vec<f64> = x.iter().map(|x| size * (x / 20.0).sin()).collect();
+        PlotCurve::new(x, y)
+    }
+
+    #[test]
+    fn a_fit_and_its_derivatives_have_symbols_and_units() {
+        let fit = CurveFit {
+            measured: wave(25.0),
+            fitted: wave(25.0),
+            residual: wave(0.1),
+            r_squared: Some(f64::NAN),
+            fundamental_rad_s: Some(0.05),
+            ..CurveFit::default()
+        };
+        let drawn = svg(fit.panels());
+        assert!(drawn.contains("0.05000 rad/s") && drawn.contains("fitted curve") && !drawn.contains("NaN"));
+        let origin = CurveOrigin::Truth;
+        let [heading, yaw_rate, yaw_acceleration] = [25.0, 1.0, 0.1].map(wave);
+        let motion = MotionCurves { origin, name: None, heading, yaw_rate, yaw_acceleration };
+        assert!(svg(DerivativeCurves { title: None, curves: vec![motion] }.panels()).contains(" [°/s²]"));
+    }
+
+    #[test]
+    fn every_replay_says_how_far_it_is_off_and_what_runs_off_is_cut() {
+        let replay = |method: &str, size: f64| ReplayCurves {
+            origin: CurveOrigin::Method(method.into()),
+            heading: wave(25.0),
+            residual: wave(25.0 * size),
+            rms_deg: Some(size),
+        };
+        let mut replays: Vec<ReplayCurves> = method_ids().map(|id| replay(id, 0.02)).collect();
+        replays[3].residual = wave(1000.0);
+        let drawn = svg(Replays { record: wave(25.0), replays, ..Replays::default() }.panels());
+        for (number, id) in method_ids().enumerate() {
+            let size = if number == 3 { "1000" } else { "0.50" };
+            assert!(drawn.contains(&format!("\n{id}, rms 0.020°, up to {size}°\n")), "{id}: {drawn}");
+        }
+        assert!(drawn.contains("What leaves its panel is cut.") && drawn.contains(" clip-path=\"url(#"));
+        svg(Replays::default().panels());
+    }
+
+    #[test]
+    fn what_lies_beyond_an_axis_and_what_is_missing_is_said() {
+        let point = |value: f64| Some(PointEstimate { value, interval: Some([value - 0.01, value + 0.01]) });
+        let estimate = |(number, id): (usize, &str)| MethodEstimate {
+            origin: CurveOrigin::Method(id.to_owned()),
+            k_per_s: point(if number == 7 { 0.4 } else { 0.1 + 0.001 * number as f64 }),
+            t_s: None,
+        };
+        let truth = Some(Reference { k_per_s: 0.1, t_s: 16.0 });
+        let estimates = method_ids().enumerate().map(estimate).collect();
+        let drawn = svg(Intervals { estimates, truth, ..Intervals::default() }.rows());
+        assert!(drawn.contains("<tspan font-style=\"italic\">K</tspan> [1/s]") && drawn.contains("no estimate"));
+        assert!(drawn.contains("Bars: 95 % intervals") && drawn.contains("Arrows: beyond the axis."));
     }
 }
