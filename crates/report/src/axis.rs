@@ -23,7 +23,7 @@ const LARGEST: f64 = 1e100;
 /// numbers would overflow.
 const FAR: f64 = 20.0;
 /// Largest number of ticks that an axis asks for.
-const MAX_TICKS: usize = 10;
+pub(crate) const MAX_TICKS: usize = 10;
 /// Decades of a logarithmic axis, up to which it has lines between them.
 const MOST_DECADES: i32 = 6;
 

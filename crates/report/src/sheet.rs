@@ -6,7 +6,7 @@ use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::drawing::IntoDrawingArea as _;
 use plotters::style::text_anchor::HPos;
 
-use crate::axis::Axis;
+use crate::axis::{Axis, MAX_TICKS};
 use crate::backend::{Drawn, Svg, units};
 use crate::canvas::{Canvas, Stroke, TextLine};
 use crate::chart::Chart;
@@ -152,7 +152,7 @@ impl Sheet {
     /// A row with its ticks, and with labels and title in lines.
     fn row(&self, side: &AxisSide, height: f64) -> AxisSide {
         let theme = &self.theme;
-        let count = ((height / (1.7 * theme.tick_font)) as usize).max(2);
+        let count = ((height / (1.7 * theme.tick_font)) as usize).clamp(2, MAX_TICKS);
         let axis = side.axis.clone().ticked(count).wrapped(theme.tick_font, NAMES * theme.width);
         AxisSide::new(axis, wrap(&side.title, theme.label_font, false, height).join("\n"))
     }

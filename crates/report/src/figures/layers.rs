@@ -7,7 +7,7 @@ use plotters::style::{Color as _, RGBColor};
 use super::panels::{Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Ruler, Stack};
 use super::reach::{Extents, INTERVALS, robust};
 use super::shared::{ACROSS_PAD, PAD, asides, record, zero_stroke};
-use crate::axis::Division;
+use crate::axis::{Axis, Division};
 use crate::backend::{Drawn, Group, units};
 use crate::canvas::{PagePoint, Stroke, TextLine, at, hull, marker};
 use crate::chart::Chart;
@@ -91,12 +91,19 @@ pub(super) fn annotated(
         let (top, mut lowest) = (sheet.y, sheet.y);
         for (column, stack) in stacks.iter().enumerate() {
             sheet.y = top;
-            let (mut grid, is_cut) = grid(stack, theme);
-            outside.is_cut |= is_cut;
+            let (mut grid, mut is_cut) = grid(stack, theme);
             grid.left = Some(if stack.is_half { 0.0 } else { left });
             if stack.equal {
-                equalise(&mut grid, theme.width - left - Sheet::right_margin(theme));
+                // Longer labels of the vertical axis take from the width, which changes the axis.
+                let mut margin = left;
+                for _ in 0..3 {
+                    equalise(&mut grid, theme.width - margin - Sheet::right_margin(theme));
+                    margin = margin.max(sheet.left_margin(&grid));
+                }
+                grid.left = Some(margin);
+                is_cut = is_beyond(&grid, stack);
             }
+            outside.is_cut |= is_cut;
             let drawn = sheet.grid_within(grid, (column as f64 * (part + gap), part))?;
             draw(&drawn, stack, theme, &mut outside)?;
             charts.extend(drawn);
@@ -232,8 +239,17 @@ fn equalise(grid: &mut Grid, width: f64) {
     for (axis, points) in sides {
         let middle = 0.5 * (axis.ends().0 + axis.ends().1);
         let half = 0.5 * scale * points;
-        *axis = crate::axis::Axis::linear(middle - half, middle + half, Division::Decimal);
+        *axis = Axis::linear(middle - half, middle + half, Division::Decimal);
     }
+}
+
+/// Whether a layer goes beyond the axes of the one panel.
+fn is_beyond(grid: &Grid, stack: &Stack) -> bool {
+    let (Some(column), Some((row, _))) = (grid.columns.first(), grid.rows.first()) else { return false };
+    let holds = |axis: &Axis, value: f64| value >= axis.ends().0 && value <= axis.ends().1;
+    let curves = stack.panels.iter().flat_map(|panel| &panel.layers).flat_map(Layer::curves);
+    let mut pairs = curves.flat_map(PlotCurve::finite);
+    pairs.any(|(x, y)| !holds(&column.axis, x) || !holds(&row.axis, y))
 }
 
 /// Draws the panels of a stack.

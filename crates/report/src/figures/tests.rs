@@ -367,6 +367,30 @@ fn what_sets_no_axis_is_an_arrow_at_its_edge() {
     assert!(figure.svg().contains("Arrows: beyond the axis."), "{}", figure.svg());
 }
 
+#[test]
+fn a_metre_is_as_long_on_both_axes_of_a_track() {
+    for theme in [Theme::screen(), Theme::paper(85.0, 300.0).unwrap(), Theme::paper(60.0, 300.0).unwrap()] {
+        for (east, north) in [(700.0, 800.0), (5.0, 900.0), (9e4, 1.0), (2e-3, 1e-3)] {
+            let angles = || (0..100).map(|k| 0.1 * f64::from(k));
+            let x: Vec<f64> = angles().map(|a| east * (1.0 - a.cos())).collect();
+            let curve = PlotCurve::new(x, angles().map(|a| north * a.sin()).collect::<Vec<_>>());
+            let layers = vec![Layer::line("ship", curve, Pen::new(INK))];
+            let rows = vec![(PanelRow::new(Ruler::decimal("north [m]"), 0.7), layers)];
+            let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [m]"), rows) };
+            let figure = Plot::from(Panels { cut: Some("Cut.".into()), ..Panels::of(stack) }).draw(&theme);
+            let panel = numbers(figure.svg(), "data-panel")[0].split(' ').map(|side| side.parse::<f64>().unwrap());
+            let sides: Vec<f64> = panel.skip(2).collect();
+            let lengths = ["data-x", "data-y"].map(|axis| {
+                let ends: Vec<f64> =
+                    numbers(figure.svg(), axis)[0].split('|').skip(1).map(|end| end.parse().unwrap()).collect();
+                ends[1] - ends[0]
+            });
+            let ratio = sides[0] / lengths[0] / (sides[1] / lengths[1]);
+            assert!((ratio - 1.0).abs() < 2e-3 && !figure.svg().contains("Cut."), "{ratio}");
+        }
+    }
+}
+
 /// A run of days has thousands of executes; marks on top of each other once made a file that could not be drawn.
 #[test]
 fn a_zig_zag_of_very_many_executes_says_that_it_does_not_mark_them() {
