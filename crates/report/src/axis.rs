@@ -367,7 +367,7 @@ mod tests {
         }
     }
 
-    /// Ranges over twenty decades: never more ticks than allowed, two at least, inside the range, with different labels.
+    /// Ranges over twenty decades: no more ticks than allowed, two at least, inside the range, with different labels.
     #[test]
     fn ticks_fit_every_range() {
         for division in [Division::Decimal, Division::Time, Division::Angle] {

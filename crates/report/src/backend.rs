@@ -32,9 +32,9 @@ const TALLEST: u32 = 2_000_000;
 const MAX_REPEATS: f64 = 5000.0;
 
 /// What drawing returns; memory does not fail.
-pub(crate) type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<Infallible>>;
+pub(crate) type Plotted<T = ()> = Result<T, DrawingAreaErrorKind<Infallible>>;
 
-type Written = Result<(), DrawingErrorKind<Infallible>>;
+type BackendResult = Result<(), DrawingErrorKind<Infallible>>;
 
 /// Length in units.
 pub(crate) fn units(points: f64) -> i32 {
@@ -46,7 +46,7 @@ pub(crate) type Bounds = [i32; 4];
 
 /// What elements drawn together share.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Group {
+pub(crate) struct SvgGroup {
     /// Name that the key of the figure gives them; a page in a browser finds them by it.
     pub series: Option<String>,
     /// Whether they are intervals of the values of that series, which are no values themselves.
@@ -57,7 +57,7 @@ pub(crate) struct Group {
     pub clip: Option<Bounds>,
 }
 
-impl Group {
+impl SvgGroup {
     /// What belongs to a series of the key, where it has a name there.
     pub(crate) fn named(series: Option<&str>) -> Self {
         Self { series: series.map(str::to_owned), ..Self::default() }
@@ -66,15 +66,15 @@ impl Group {
 
 /// A group that is being filled.
 struct OpenGroup {
-    group: Group,
+    group: SvgGroup,
     /// Where its elements begin in the document.
     start: usize,
-    /// Rectangle around its elements.
-    bounds: Bounds,
+    /// Whether one of them reaches beyond the rectangle that cuts them.
+    is_beyond: bool,
 }
 
 /// A document that is being written.
-struct Document {
+struct SvgDocument {
     elements: String,
     /// Style and data of the path that is being lengthened.
     path: Option<(String, String)>,
@@ -86,22 +86,22 @@ struct Document {
 #[derive(Clone)]
 pub(crate) struct Svg {
     width: u32,
-    document: Rc<RefCell<Document>>,
+    document: Rc<RefCell<SvgDocument>>,
 }
 
 impl Svg {
     /// An empty sheet of this width in points.
     pub(crate) fn new(width: f64, changes: Changes) -> Self {
-        let document = Document { elements: String::new(), path: None, group: None, changes };
+        let document = SvgDocument { elements: String::new(), path: None, group: None, changes };
         Self { width: units(width).max(1) as u32, document: Rc::new(RefCell::new(document)) }
     }
 
     /// Begins a group, which ends with [`Self::end`]; groups do not nest.
-    pub(crate) fn begin(&self, group: Group) {
+    pub(crate) fn begin(&self, group: SvgGroup) {
         let mut document = self.document.borrow_mut();
         document.close_path();
-        let (start, bounds) = (document.elements.len(), [i32::MAX, i32::MAX, i32::MIN, i32::MIN]);
-        document.group = Some(OpenGroup { group, start, bounds });
+        let start = document.elements.len();
+        document.group = Some(OpenGroup { group, start, is_beyond: false });
     }
 
     /// Ends the group.
@@ -135,7 +135,7 @@ impl Svg {
     }
 }
 
-impl Document {
+impl SvgDocument {
     fn close_path(&mut self) {
         if let Some((style, data)) = self.path.take() {
             let _ = writeln!(self.elements, "<path {style} d=\"{data}\"/>");
@@ -161,7 +161,7 @@ impl Document {
 
     fn close_group(&mut self) {
         self.close_path();
-        let Some(OpenGroup { group, start, bounds }) = self.group.take() else { return };
+        let Some(OpenGroup { group, start, is_beyond }) = self.group.take() else { return };
         let elements = self.elements.split_off(start);
         if elements.is_empty() {
             return;
@@ -176,10 +176,7 @@ impl Document {
             let _ = write!(attributes, " stroke-dasharray=\"{}\"", parts.join(" "));
         }
         // To cut costs the rasteriser a layer, so only what reaches beyond is cut.
-        let is_beyond = |[left, top, right, bottom]: &Bounds| {
-            bounds[0] < *left || bounds[1] < *top || bounds[2] > *right || bounds[3] > *bottom
-        };
-        if let Some([left, top, right, bottom]) = group.clip.filter(is_beyond) {
+        if let Some([left, top, right, bottom]) = group.clip.filter(|_| is_beyond) {
             let (width, height) = (right - left, bottom - top);
             // Groups of one name cut the same rectangle.
             let name = format!("clip-{left}-{top}-{width}-{height}");
@@ -202,11 +199,11 @@ impl Document {
         format!("#{red:02X}{green:02X}{blue:02X}")
     }
 
-    /// Widens the bounds of the group by an element.
+    /// Notes whether an element reaches beyond what cuts its group.
     fn reach(&mut self, (x, y): BackendCoord, radius: i32) {
-        if let Some(OpenGroup { bounds: [left, top, right, bottom], .. }) = &mut self.group {
-            (*left, *top) = ((*left).min(x - radius), (*top).min(y - radius));
-            (*right, *bottom) = ((*right).max(x + radius), (*bottom).max(y + radius));
+        if let Some(OpenGroup { group: SvgGroup { clip: Some(clip), .. }, is_beyond, .. }) = &mut self.group {
+            let [left, top, right, bottom] = *clip;
+            *is_beyond |= x - radius < left || y - radius < top || x + radius > right || y + radius > bottom;
         }
     }
 
@@ -236,23 +233,29 @@ impl DrawingBackend for Svg {
         (self.width, TALLEST)
     }
 
-    fn ensure_prepared(&mut self) -> Written {
+    fn ensure_prepared(&mut self) -> BackendResult {
         Ok(())
     }
 
-    fn present(&mut self) -> Written {
+    fn present(&mut self) -> BackendResult {
         Ok(())
     }
 
-    fn draw_pixel(&mut self, at: BackendCoord, colour: BackendColor) -> Written {
+    fn draw_pixel(&mut self, at: BackendCoord, colour: BackendColor) -> BackendResult {
         self.draw_circle(at, 1, &colour, true)
     }
 
-    fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Written {
+    fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> BackendResult {
         self.draw_path([from, to], style)
     }
 
-    fn draw_rect<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S, fill: bool) -> Written {
+    fn draw_rect<S: BackendStyle>(
+        &mut self,
+        from: BackendCoord,
+        to: BackendCoord,
+        style: &S,
+        fill: bool,
+    ) -> BackendResult {
         let corners = [from, (to.0, from.1), to, (from.0, to.1)];
         match fill {
             true => self.fill_polygon(corners, style),
@@ -261,14 +264,22 @@ impl DrawingBackend for Svg {
         }
     }
 
-    fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Written {
+    fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
+        &mut self,
+        path: I,
+        style: &S,
+    ) -> BackendResult {
         let mut points: Vec<BackendCoord> = path.into_iter().collect();
         points.dedup();
         self.document.borrow_mut().line(&points, style);
         Ok(())
     }
 
-    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Written {
+    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
+        &mut self,
+        path: I,
+        style: &S,
+    ) -> BackendResult {
         let BackendColor { alpha, rgb } = style.color();
         let points: Vec<BackendCoord> = path.into_iter().collect();
         if alpha == 0.0 || points.len() < 3 {
@@ -283,7 +294,7 @@ impl DrawingBackend for Svg {
     }
 
     /// A disc; a ring, which plotters draws at the value of an error bar, would lie below its mark and is left out.
-    fn draw_circle<S: BackendStyle>(&mut self, at: BackendCoord, radius: u32, style: &S, fill: bool) -> Written {
+    fn draw_circle<S: BackendStyle>(&mut self, at: BackendCoord, radius: u32, style: &S, fill: bool) -> BackendResult {
         let BackendColor { alpha, rgb } = style.color();
         let mut document = self.document.borrow_mut();
         if fill {
@@ -295,7 +306,7 @@ impl DrawingBackend for Svg {
         Ok(())
     }
 
-    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> Written {
+    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> BackendResult {
         let mut document = self.document.borrow_mut();
         let (size, count) = (style.size(), text.split('\n').count());
         let below = LINE * size * (count - 1) as f64;
@@ -368,7 +379,7 @@ mod tests {
     use crate::markup::symbol;
     use crate::palette::{DASHED, INK};
 
-    fn drawn(fill: impl FnOnce(&DrawingArea<Svg, Shift>, &Svg) -> Drawn) -> String {
+    fn drawn(fill: impl FnOnce(&DrawingArea<Svg, Shift>, &Svg) -> Plotted) -> String {
         let svg = Svg::new(100.0, Changes::default());
         fill(&svg.clone().into_drawing_area(), &svg).unwrap();
         svg.finish(30.0)
@@ -401,12 +412,13 @@ mod tests {
     #[test]
     fn a_group_has_its_name_its_dashes_and_is_cut_where_it_reaches_beyond() {
         let grouped = |points: &[BackendCoord]| {
-            let group = Group { dash: Some((DASHED, 0.5)), clip: Some([0, 0, 100, 50]), ..Group::named(Some("a < b")) };
+            let group =
+                SvgGroup { dash: Some((DASHED, 0.5)), clip: Some([0, 0, 100, 50]), ..SvgGroup::named(Some("a < b")) };
             drawn(|area, svg| {
                 svg.begin(group);
                 area.draw(&line(points))?;
                 svg.end();
-                svg.begin(Group::named(Some("empty")));
+                svg.begin(SvgGroup::named(Some("empty")));
                 svg.end();
                 Ok(())
             })

@@ -7,7 +7,7 @@ use plotters::element::{Circle, DynElement, EmptyElement, IntoDynElement as _, P
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle};
 
-use crate::backend::{Drawn, Group, Svg, UNITS, units};
+use crate::backend::{Plotted, Svg, SvgGroup, UNITS, units};
 use crate::fonts::{FAMILY, text_width};
 use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
 
@@ -117,35 +117,35 @@ pub(crate) struct Canvas {
 }
 
 impl Canvas {
-    pub(crate) fn line(&self, points: &[PagePoint], stroke: Stroke) -> Drawn {
+    pub(crate) fn line(&self, points: &[PagePoint], stroke: Stroke) -> Plotted {
         let Some(points) = placed(points) else { return Ok(()) };
-        self.svg.begin(Group { dash: Some((stroke.dash, stroke.width)), ..Group::default() });
+        self.svg.begin(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..SvgGroup::default() });
         self.area.draw(&PathElement::new(points, stroke.style()))?;
         self.svg.end();
         Ok(())
     }
 
-    pub(crate) fn fill(&self, points: &[PagePoint], colour: RGBColor, opacity: f64) -> Drawn {
+    pub(crate) fn fill(&self, points: &[PagePoint], colour: RGBColor, opacity: f64) -> Plotted {
         let Some(points) = placed(points) else { return Ok(()) };
         self.area.draw(&Polygon::new(points, colour.mix(opacity).filled()))
     }
 
     /// The outline of a rectangle.
-    pub(crate) fn outline(&self, rect: Rect, stroke: Stroke) -> Drawn {
+    pub(crate) fn outline(&self, rect: Rect, stroke: Stroke) -> Plotted {
         let corners = [at((rect.x, rect.y)), at((rect.right(), rect.bottom()))];
-        self.svg.begin(Group { dash: Some((stroke.dash, stroke.width)), ..Group::default() });
+        self.svg.begin(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..SvgGroup::default() });
         self.area.draw(&Rectangle::new(corners, stroke.style()))?;
         self.svg.end();
         Ok(())
     }
 
-    pub(crate) fn text(&self, place: PagePoint, text: &TextLine) -> Drawn {
+    pub(crate) fn text(&self, place: PagePoint, text: &TextLine) -> Plotted {
         let Some(places) = placed(&[place]) else { return Ok(()) };
         self.area.draw(&Text::new(text.text.clone(), places[0], text.style()))
     }
 
     /// A text on a white ground, for places where lines run underneath.
-    pub(crate) fn text_on_ground(&self, (x, y): PagePoint, text: &TextLine) -> Drawn {
+    pub(crate) fn text_on_ground(&self, (x, y): PagePoint, text: &TextLine) -> Plotted {
         let [left, right] = text.ends(x);
         let (left, right, half) = (left - 0.12 * text.size, right + 0.12 * text.size, 0.5 * text.size);
         self.fill(&[(left, y - half), (right, y - half), (right, y + half), (left, y + half)], PAPER, 0.85)?;
@@ -153,12 +153,12 @@ impl Canvas {
     }
 
     /// A marker or a ship.
-    pub(crate) fn elements(&self, elements: Vec<Element<(i32, i32)>>) -> Drawn {
+    pub(crate) fn elements(&self, elements: Vec<Element<(i32, i32)>>) -> Plotted {
         elements.iter().try_for_each(|element| self.area.draw(element))
     }
 
     /// An arrow head with its tip at `tip`, pointing along the unit vector `(dx, dy)`.
-    pub(crate) fn head(&self, (x, y): PagePoint, (dx, dy): PagePoint, size: f64, colour: RGBColor) -> Drawn {
+    pub(crate) fn head(&self, (x, y): PagePoint, (dx, dy): PagePoint, size: f64, colour: RGBColor) -> Plotted {
         let (bx, by) = (x - size * dx, y - size * dy);
         let half = 0.36 * size;
         self.fill(&[(x, y), (bx - half * dy, by + half * dx), (bx + half * dy, by - half * dx)], colour, 1.0)

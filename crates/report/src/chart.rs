@@ -9,7 +9,7 @@ use plotters::series::LineSeries;
 use plotters::style::{Color as _, RGBAColor};
 
 use crate::axis::Axis;
-use crate::backend::{Bounds, Drawn, Group, Svg, UNITS, units};
+use crate::backend::{Bounds, Plotted, Svg, SvgGroup, UNITS, units};
 use crate::canvas::{Canvas, Element, PagePoint, Rect, Stroke, marker};
 use crate::curve::PlotCurve;
 use crate::palette::{INK, Look, PAPER};
@@ -80,7 +80,7 @@ impl Chart {
     }
 
     /// Draws elements at values, all that belong to a group.
-    pub(crate) fn draw(&self, group: Group, elements: impl IntoIterator<Item = Element<(f64, f64)>>) -> Drawn {
+    pub(crate) fn draw(&self, group: SvgGroup, elements: impl IntoIterator<Item = Element<(f64, f64)>>) -> Plotted {
         self.canvas.svg.begin(group);
         elements.into_iter().try_for_each(|element| self.data.draw(&element))?;
         self.canvas.svg.end();
@@ -88,8 +88,8 @@ impl Chart {
     }
 
     /// The group of a series of the key, cut at the frame.
-    fn cut(&self, name: Option<&str>) -> Group {
-        Group { clip: Some(self.bounds()), ..Group::named(name) }
+    fn cut(&self, name: Option<&str>) -> SvgGroup {
+        SvgGroup { clip: Some(self.bounds()), ..SvgGroup::named(name) }
     }
 
     fn has_place(&self, (x, y): &(f64, f64)) -> bool {
@@ -102,15 +102,15 @@ impl Chart {
         name: Option<&str>,
         pairs: impl IntoIterator<Item = (f64, f64)>,
         stroke: Stroke,
-    ) -> Drawn {
+    ) -> Plotted {
         let pairs: Vec<(f64, f64)> = pairs.into_iter().collect();
         let parts = pairs.split(|pair| !self.has_place(pair)).filter(|part| part.len() > 1);
         let lines = parts.flat_map(|part| LineSeries::new(part.to_vec(), stroke.style()));
-        self.draw(Group { dash: Some((stroke.dash, stroke.width)), ..self.cut(name) }, lines)
+        self.draw(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..self.cut(name) }, lines)
     }
 
     /// The area between two curves.
-    pub(crate) fn band(&self, name: Option<&str>, [lower, upper]: [&PlotCurve; 2], colour: RGBAColor) -> Drawn {
+    pub(crate) fn band(&self, name: Option<&str>, [lower, upper]: [&PlotCurve; 2], colour: RGBAColor) -> Plotted {
         let edge = |curve: &PlotCurve| curve.finite().filter(|pair| self.has_place(pair)).collect::<Vec<_>>();
         self.area(name, edge(lower).into_iter().chain(edge(upper).into_iter().rev()), colour)
     }
@@ -121,13 +121,13 @@ impl Chart {
         name: Option<&str>,
         corners: impl IntoIterator<Item = (f64, f64)>,
         colour: RGBAColor,
-    ) -> Drawn {
+    ) -> Plotted {
         let area = Polygon::new(corners.into_iter().collect::<Vec<_>>(), colour.filled());
         self.draw(self.cut(name), [area.into_dyn()])
     }
 
     /// A rectangle between two pairs of opposite corners.
-    pub(crate) fn rectangle(&self, [left, right]: [f64; 2], [low, high]: [f64; 2], colour: RGBAColor) -> Drawn {
+    pub(crate) fn rectangle(&self, [left, right]: [f64; 2], [low, high]: [f64; 2], colour: RGBAColor) -> Plotted {
         self.area(None, [(left, low), (right, low), (right, high), (left, high)], colour)
     }
 
@@ -138,20 +138,20 @@ impl Chart {
         pairs: impl IntoIterator<Item = (f64, f64)>,
         radius: f64,
         colour: RGBAColor,
-    ) -> Drawn {
+    ) -> Plotted {
         let dot = |pair| Circle::new(pair, units(radius).max(1) as u32, colour.filled()).into_dyn();
-        self.draw(Group::named(name), pairs.into_iter().filter(|pair| self.inside(*pair).is_some()).map(dot))
+        self.draw(SvgGroup::named(name), pairs.into_iter().filter(|pair| self.inside(*pair).is_some()).map(dot))
     }
 
     /// A marker at a pair inside the frame, whole where it stands on it.
-    pub(crate) fn marker(&self, name: Option<&str>, pair: (f64, f64), radius: f64, look: &Look) -> Drawn {
+    pub(crate) fn marker(&self, name: Option<&str>, pair: (f64, f64), radius: f64, look: &Look) -> Plotted {
         let is_inside = self.inside(pair).is_some();
-        self.draw(Group::named(name), marker(pair, radius, look).into_iter().filter(|_| is_inside))
+        self.draw(SvgGroup::named(name), marker(pair, radius, look).into_iter().filter(|_| is_inside))
     }
 
     /// An interval, with an arrow head at an end that lies beyond the frame; returns whether one does. An end without
     /// bound lies beyond every frame.
-    pub(crate) fn bar(&self, name: Option<&str>, bar: &Bar, theme: &Theme) -> Drawn<bool> {
+    pub(crate) fn bar(&self, name: Option<&str>, bar: &Bar, theme: &Theme) -> Plotted<bool> {
         let Bar { y, ends, is_capped, stroke } = *bar;
         let [lo, hi] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-f64::MAX, f64::MAX));
         let (Some(left), Some(right), Some(height)) = (self.across(lo), self.across(hi), self.up(y)) else {
@@ -162,7 +162,7 @@ impl Chart {
             true => ErrorBar::new_horizontal(y, lo, lo, hi, stroke.style(), width).into_dyn(),
             false => PathElement::new(vec![(lo, y), (hi, y)], stroke.style()).into_dyn(),
         };
-        self.draw(Group { is_interval: true, ..self.cut(name) }, [element])?;
+        self.draw(SvgGroup { is_interval: true, ..self.cut(name) }, [element])?;
         let slack = 0.1;
         let edges = [self.rect.x, self.rect.right()];
         let beyond = [(left < edges[0] - slack, edges[0], -1.0), (right > edges[1] + slack, edges[1], 1.0)];
@@ -173,20 +173,20 @@ impl Chart {
     }
 
     /// A line from bottom to top, where its value lies in the frame.
-    pub(crate) fn vertical(&self, name: Option<&str>, x: f64, stroke: Stroke) -> Drawn {
+    pub(crate) fn vertical(&self, name: Option<&str>, x: f64, stroke: Stroke) -> Plotted {
         let is_inside = self.across(x).is_some_and(|place| self.rect.contains((place, self.rect.y)));
         let (low, high) = self.y.ends();
         self.line(name, [(x, low), (x, high)].into_iter().filter(|_| is_inside), stroke)
     }
 
     /// A line from left to right.
-    pub(crate) fn horizontal(&self, y: f64, stroke: Stroke) -> Drawn {
+    pub(crate) fn horizontal(&self, y: f64, stroke: Stroke) -> Plotted {
         let (low, high) = self.x.ends();
         self.line(None, [(low, y), (high, y)], stroke)
     }
 
     /// The frame over the data, with two short slanted lines where a logarithmic axis jumps to zero.
-    pub(crate) fn frame(&self, theme: &Theme) -> Drawn {
+    pub(crate) fn frame(&self, theme: &Theme) -> Plotted {
         let stroke = Stroke::solid(INK, theme.thin);
         self.canvas.outline(self.rect, stroke)?;
         let Rect { x, y: _, w, h } = self.rect;

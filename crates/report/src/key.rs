@@ -3,7 +3,7 @@
 use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
 
-use crate::backend::Drawn;
+use crate::backend::Plotted;
 use crate::canvas::{Canvas, PagePoint, Rect, Stroke, TextLine, at, hull, marker};
 use crate::fonts::{LINE, text_width};
 use crate::lines::wrap;
@@ -65,7 +65,7 @@ impl KeyEntry {
 
     /// Draws the entry in a place this wide, with the middle of its first line at `place`; returns how many lines its
     /// name takes.
-    pub(crate) fn draw(&self, canvas: &Canvas, (x, y): PagePoint, room: f64, theme: &Theme) -> Drawn<usize> {
+    pub(crate) fn draw(&self, canvas: &Canvas, (x, y): PagePoint, room: f64, theme: &Theme) -> Plotted<usize> {
         let width = self.sample_width(theme);
         let end = x + width - 0.5 * theme.small_font;
         let centre = ((x + end) / 2.0, y);

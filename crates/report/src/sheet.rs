@@ -7,7 +7,7 @@ use plotters::drawing::IntoDrawingArea as _;
 use plotters::style::text_anchor::HPos;
 
 use crate::axis::{Axis, MAX_TICKS};
-use crate::backend::{Drawn, Svg, units};
+use crate::backend::{Plotted, Svg, units};
 use crate::canvas::{Canvas, Stroke, TextLine};
 use crate::chart::Chart;
 use crate::figure::Drawing;
@@ -64,7 +64,7 @@ impl Grid {
 }
 
 /// A column of panels as it is drawn.
-struct Column {
+struct GridColumn {
     side: AxisSide,
     /// Left edge and width of the panels, points.
     left: f64,
@@ -86,7 +86,7 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    pub(crate) fn new(theme: &Theme, title: Option<&str>) -> Drawn<Self> {
+    pub(crate) fn new(theme: &Theme, title: Option<&str>) -> Plotted<Self> {
         let svg = Svg::new(theme.width, theme.changes);
         let canvas = Canvas { area: svg.clone().into_drawing_area(), svg };
         let mut sheet = Self { theme: *theme, canvas, y: 0.5 * theme.small_font, edge: 0.0 };
@@ -100,7 +100,7 @@ impl Sheet {
     }
 
     /// Lines of a text at `x`, so many font sizes apart.
-    fn lines(&mut self, lines: Vec<String>, x: f64, text: TextLine, leading: f64) -> Drawn {
+    fn lines(&mut self, lines: Vec<String>, x: f64, text: TextLine, leading: f64) -> Plotted {
         for line in lines {
             self.y += leading * text.size;
             self.canvas.text((x, self.y - MIDDLE * text.size), &TextLine { text: line, ..text.clone() })?;
@@ -109,7 +109,7 @@ impl Sheet {
     }
 
     /// The key, centred above what follows.
-    pub(crate) fn legend(&mut self, entries: &[KeyEntry]) -> Drawn {
+    pub(crate) fn legend(&mut self, entries: &[KeyEntry]) -> Plotted {
         let theme = self.theme;
         let room = theme.width - 2.0 * theme.small_font;
         let fewest = key::rows(entries, room, &theme).len();
@@ -131,7 +131,7 @@ impl Sheet {
     }
 
     /// Remarks under what was drawn so far, wrapped to the width of the page.
-    pub(crate) fn note(&mut self, remarks: &[impl AsRef<str>]) -> Drawn {
+    pub(crate) fn note(&mut self, remarks: &[impl AsRef<str>]) -> Plotted {
         let (margin, width) = (self.theme.small_font, self.theme.width);
         let text = remarks.iter().map(AsRef::as_ref).collect::<Vec<_>>().join(" ");
         let lines = wrap(&text, margin, false, width - 2.0 * margin);
@@ -158,7 +158,7 @@ impl Sheet {
     }
 
     /// The same of a column.
-    fn column(&self, side: &AxisSide, left: f64, width: f64) -> Column {
+    fn column(&self, side: &AxisSide, left: f64, width: f64) -> GridColumn {
         let theme = &self.theme;
         let axis = side.axis.clone().fitted(width, theme.tick_font);
         let title = wrap(&side.title, theme.label_font, false, width + theme.label_font);
@@ -167,7 +167,7 @@ impl Sheet {
         let labels = if is_turned { axis.widest(theme.tick_font) } else { LINE * theme.tick_font * lines as f64 };
         let titles = if title.is_empty() { 0.0 } else { (0.45 + LINE * title.len() as f64) * theme.label_font };
         let below = 2.0 * self.tick_length() + labels + titles;
-        Column { side: AxisSide::new(axis, title.join("\n")), left, width, is_turned, below }
+        GridColumn { side: AxisSide::new(axis, title.join("\n")), left, width, is_turned, below }
     }
 
     fn tick_length(&self) -> f64 {
@@ -186,7 +186,7 @@ impl Sheet {
 
     /// Draws a grid into a strip of the page: its left edge and its width, points. The left margin of the grid is the
     /// least one.
-    pub(crate) fn grid_within(&mut self, grid: Grid, (left, width): (f64, f64)) -> Drawn<Vec<Chart>> {
+    pub(crate) fn grid_within(&mut self, grid: Grid, (left, width): (f64, f64)) -> Plotted<Vec<Chart>> {
         let page = self.theme;
         let margin = self.left_margin(&grid).max(grid.left.unwrap_or(0.0));
         // The strip is laid out like a page that ends where it ends.
@@ -197,7 +197,7 @@ impl Sheet {
     }
 
     /// Draws mesh, axes and labels of the panels and returns their charts, row by row.
-    pub(crate) fn grid(&mut self, mut grid: Grid) -> Drawn<Vec<Chart>> {
+    pub(crate) fn grid(&mut self, mut grid: Grid) -> Plotted<Vec<Chart>> {
         let theme = self.theme;
         let sides = grid.columns.iter_mut().chain(grid.rows.iter_mut().map(|(side, _)| side));
         sides.for_each(|side| theme.changes.limit(&mut side.axis, &side.title));
@@ -206,7 +206,7 @@ impl Sheet {
         let inner = theme.width - left - Self::right_margin(&theme) - gap * (count - 1) as f64;
         let width = (inner / count as f64).max(theme.tick_font);
         let placed = |number: usize| left + number as f64 * (width + gap);
-        let columns: Vec<Column> =
+        let columns: Vec<GridColumn> =
             grid.columns.iter().enumerate().map(|(number, side)| self.column(side, placed(number), width)).collect();
         let total = grid.panels.unwrap_or(usize::MAX).min(grid.rows.len() * grid.columns.len());
         let (mut charts, mut lowest) = (Vec::with_capacity(total), self.y);
@@ -242,9 +242,9 @@ impl Sheet {
         Ok(charts)
     }
 
-    /// A chart of plotters with its mesh, axes, ticks, labels and titles, the last ones where they are asked for: at the
+    /// A chart of plotters with its mesh, axes, ticks, labels and titles, the last two where they are asked for: at the
     /// left, and below.
-    fn chart(&self, x: &Column, (y, height): (&AxisSide, f64), labelled: [bool; 2]) -> Drawn<Chart> {
+    fn chart(&self, x: &GridColumn, (y, height): (&AxisSide, f64), labelled: [bool; 2]) -> Plotted<Chart> {
         let theme = &self.theme;
         let tick = self.tick_length();
         let beside = if labelled[0] { x.left - self.edge - 0.5 * theme.small_font } else { tick };

@@ -8,7 +8,7 @@ use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
 use crate::axis::{self, Axis, Division};
-use crate::backend::{Drawn, Group};
+use crate::backend::{Plotted, SvgGroup};
 use crate::canvas::{Rect, Stroke, TextLine};
 use crate::chart::Chart;
 use crate::figure::Drawing;
@@ -123,7 +123,7 @@ impl CellMap {
 }
 
 /// Draws the panels in rows of as many as fit.
-pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawn<Drawing> {
+pub(super) fn cells(data: &CellMap, theme: &Theme) -> Plotted<Drawing> {
     let mut sheet = Sheet::new(theme, data.title.as_deref())?;
     let outlines = [(Outline::Right, SOLID, "right"), (Outline::Alias, DOTTED, "mostly cannot be told from it")];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
@@ -137,8 +137,8 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawn<Drawing> {
     let grid = Grid { heads, ..Grid::alike(data.panels.len().max(1), data.across(theme), column, row) };
     for (chart, (_, rows)) in sheet.grid(grid)?.iter().zip(&data.panels) {
         let places = rows.iter().enumerate().flat_map(|(y, row)| (0..row.len()).map(move |x| (x, y)));
-        let cells: Vec<Cell> = places
-            .map(|(x, y)| Cell { cell: rows[y][x], x: x as f64, y: y as f64, shading: &shading, theme })
+        let cells: Vec<PlacedCell> = places
+            .map(|(x, y)| PlacedCell { cell: rows[y][x], x: x as f64, y: y as f64, shading: &shading, theme })
             .collect();
         cells.iter().try_for_each(|cell| cell.shade(chart))?;
         chart.frame(theme)?;
@@ -157,7 +157,7 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Drawn<Drawing> {
 const PIECES: usize = 64;
 
 /// The colours with their values, under the panels; nothing where there is one value, or none.
-fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) -> Drawn {
+fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) -> Plotted {
     if shading.high <= shading.low {
         return Ok(());
     }
@@ -177,7 +177,7 @@ fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) ->
         Rectangle::new(corners, shading.colour(at(number as f64 + 0.5)).0.filled()).into_dyn()
     };
     for chart in sheet.grid_within(grid, (0.25 * theme.width, 0.5 * theme.width))? {
-        chart.draw(Group::default(), (0..PIECES).map(piece))?;
+        chart.draw(SvgGroup::default(), (0..PIECES).map(piece))?;
         chart.frame(&theme)?;
     }
     Ok(())
@@ -225,7 +225,7 @@ fn bracket(cell: &MapCell) -> Option<String> {
 }
 
 /// A cell at its column and row.
-struct Cell<'a> {
+struct PlacedCell<'a> {
     cell: MapCell,
     x: f64,
     y: f64,
@@ -233,24 +233,24 @@ struct Cell<'a> {
     theme: &'a Theme,
 }
 
-impl Cell<'_> {
+impl PlacedCell<'_> {
     fn colour(&self) -> (RGBColor, f64) {
         self.cell.value.map_or((GRID, 1.0), |value| self.shading.colour(value))
     }
 
     /// Its colour, and hairs between it and its neighbours where most cells are white.
-    fn shade(&self, chart: &Chart) -> Drawn {
+    fn shade(&self, chart: &Chart) -> Plotted {
         let (colour, opacity) = self.colour();
         let [left, right, top, bottom] = [self.x - 0.5, self.x + 0.5, self.y - 0.5, self.y + 0.5];
         let cell = Rectangle::new([(left, top), (right, bottom)], colour.mix(opacity).filled());
-        chart.draw(Group::default(), [cell.into_dyn()])?;
+        chart.draw(SvgGroup::default(), [cell.into_dyn()])?;
         let hair = Stroke::solid(GRID, self.theme.thin);
         let hairs = [(left, bottom), (right, bottom), (right, top)];
         if self.shading.is_shares { chart.line(None, hairs, hair) } else { Ok(()) }
     }
 
     /// Its numbers, and its outline over the hairs of its neighbours.
-    fn label(&self, chart: &Chart) -> Drawn {
+    fn label(&self, chart: &Chart) -> Plotted {
         let (theme, is_shares) = (self.theme, self.shading.is_shares);
         let corner = |side: f64| chart.place((self.x + side, self.y + side));
         let (Some((left, top)), Some((right, bottom))) = (corner(-0.5), corner(0.5)) else { return Ok(()) };

@@ -8,7 +8,7 @@ use super::panels::{Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Rul
 use super::reach::{Extents, INTERVALS, robust};
 use super::shared::{ACROSS_PAD, PAD, asides, record, zero_stroke};
 use crate::axis::{Axis, Division};
-use crate::backend::{Drawn, Group, units};
+use crate::backend::{Plotted, SvgGroup, units};
 use crate::canvas::{PagePoint, Stroke, TextLine, at, hull, marker};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
@@ -38,8 +38,8 @@ const WIDE: [f64; 2] = [0.52, 0.62];
 /// Panels side by side in a narrow figure.
 const NARROW: usize = 3;
 
-/// The figure as it fits its page: on a narrow one many panels side by side are small multiples, a wide one is wider than
-/// high.
+/// The figure as it fits its page: on a narrow one many panels side by side are small multiples, a wide one is wider
+/// than high.
 fn fitted(data: &Panels, theme: &Theme) -> Panels {
     let mut data = data.clone();
     if theme.is_narrow() {
@@ -66,7 +66,7 @@ fn side_by_side<'a>(data: &'a Panels, theme: &Theme) -> impl Iterator<Item = &'a
 }
 
 /// Draws the stacks below each other.
-pub(super) fn panels(data: &Panels, theme: &Theme) -> Drawn<Drawing> {
+pub(super) fn panels(data: &Panels, theme: &Theme) -> Plotted<Drawing> {
     annotated(data, theme, &|_| Ok(None))
 }
 
@@ -74,8 +74,8 @@ pub(super) fn panels(data: &Panels, theme: &Theme) -> Drawn<Drawing> {
 pub(super) fn annotated(
     data: &Panels,
     theme: &Theme,
-    annotate: &dyn Fn(&Chart) -> Drawn<Option<String>>,
-) -> Drawn<Drawing> {
+    annotate: &dyn Fn(&Chart) -> Plotted<Option<String>>,
+) -> Plotted<Drawing> {
     let data = &fitted(data, theme);
     let mut sheet = Sheet::new(theme, data.title.as_deref())?;
     sheet.legend(&entries(data, theme))?;
@@ -253,7 +253,7 @@ fn is_beyond(grid: &Grid, stack: &Stack) -> bool {
 }
 
 /// Draws the panels of a stack.
-fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -> Drawn {
+fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -> Plotted {
     let count = columns(stack, theme);
     let mut dots = 0;
     for (index, (chart, panel)) in charts.iter().zip(&stack.panels).enumerate() {
@@ -275,7 +275,7 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
 }
 
 /// What lies under the layers.
-fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Drawn {
+fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Plotted {
     if row.zero {
         chart.horizontal(0.0, zero_stroke(theme))?;
     }
@@ -292,7 +292,7 @@ fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Dr
 }
 
 /// What a small multiple says of what it does not show: how many of its dots lie outside.
-fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Drawn {
+fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Plotted {
     let is_cloud = |layer: &&Layer| matches!(layer.kind, LayerKind::Cloud(_));
     let Some(layer) = panel.layers.first().filter(is_cloud) else { return Ok(()) };
     let outside = layer.curve.finite().filter(|pair| chart.inside(*pair).is_none()).count();
@@ -306,7 +306,7 @@ fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Drawn {
 }
 
 /// Draws a layer; returns how many dots lie beyond the panel.
-fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> Drawn<usize> {
+fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> Plotted<usize> {
     let name = layer.name.as_deref();
     match &layer.kind {
         LayerKind::Line(pen) => chart.line(name, layer.curve.pairs(), pen.stroke(theme))?,
@@ -331,7 +331,7 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
 }
 
 /// Writes the words of a layer beside its points.
-fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Drawn {
+fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Plotted {
     let LayerKind::Words(colour, is_above, words) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
     let (right, down, anchor) = if *is_above { (right, -down, HPos::Left) } else { (-right, down, HPos::Right) };
@@ -344,7 +344,7 @@ fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Drawn {
 }
 
 /// Marks points above and below a panel by small arrows at its edge, and counts them.
-fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> Drawn<usize> {
+fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> Plotted<usize> {
     let rect = chart.rect;
     let mut count = 0;
     for (x, y) in curve.finite().filter_map(|pair| chart.place(pair)) {
@@ -359,7 +359,7 @@ fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> Drawn
 }
 
 /// Marks with their intervals, and the line that joins them. A mark beyond the panel is an arrow at its edge.
-fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> Drawn {
+fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> Plotted {
     let Marks { look, intervals, joined, apart } = marks;
     let (name, curve, rect) = (layer.name.as_deref(), &layer.curve, chart.rect);
     let own: Vec<Option<f64>> = curve.x.iter().map(|x| chart.across(*x)).collect();
@@ -381,7 +381,7 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
         chart.line(name, line, pen.stroke(theme))?;
     }
     let stroke = Stroke::solid(look.colour, joined.map_or(0.8, |pen| 0.7 * pen.width) * theme.line);
-    chart.canvas.svg.begin(Group { is_interval: true, clip: Some(chart.bounds()), ..Group::named(name) });
+    chart.canvas.svg.begin(SvgGroup { is_interval: true, clip: Some(chart.bounds()), ..SvgGroup::named(name) });
     for (row, place) in places.iter().enumerate().filter(|(_, place)| is_inside(place) || *apart) {
         let ends = intervals.get(row).copied().flatten().filter(|ends| ends.iter().all(|end| !end.is_nan()));
         if let (Some((x, _)), Some(ends)) = (place, ends) {
@@ -390,7 +390,7 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
     }
     chart.canvas.svg.end();
     let size = theme.marker * if joined.is_some() { 0.9 } else { 1.0 };
-    chart.canvas.svg.begin(Group::named(name));
+    chart.canvas.svg.begin(SvgGroup::named(name));
     for place in places.iter().filter(|place| is_inside(place)).flatten() {
         chart.canvas.elements(marker(at(*place), size, look))?;
     }
@@ -405,7 +405,7 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
 }
 
 /// A vertical interval with caps at a place across the page; an end beyond the frame is cut, without cap.
-fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme) -> Drawn {
+fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme) -> Plotted {
     let [_, top, _, bottom] = chart.bounds();
     let far = bottom - top;
     let place = |value: f64, beyond: i32| {

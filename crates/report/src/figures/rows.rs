@@ -7,7 +7,7 @@ use super::panels::{Pen, Ruler};
 use super::reach::{Extents, INTERVALS};
 use super::shared::{Reference95, zero_stroke};
 use crate::axis::{Axis, Division};
-use crate::backend::Drawn;
+use crate::backend::Plotted;
 use crate::canvas::{Stroke, TextLine};
 use crate::chart::{Bar, Chart};
 use crate::figure::Drawing;
@@ -193,7 +193,7 @@ const SPREAD: f64 = 1.8;
 
 /// Draws the columns side by side, in a narrow figure above each other, or two by two where they have many rows. What
 /// reaches beyond an axis is cut and marked.
-pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Drawn<Drawing> {
+pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Plotted<Drawing> {
     let mut sheet = Sheet::new(theme, data.title.as_deref())?;
     sheet.legend(&entries(data, theme))?;
     let pitch = pitch(data, theme);
@@ -273,7 +273,7 @@ fn axis(column: &RowsColumn) -> Axis {
 }
 
 /// Draws the rows of a column; returns whether something lies beyond its axis.
-fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Drawn<bool> {
+fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotted<bool> {
     let (left, right) = chart.x.ends();
     // A ground under every other row keeps several marks of a row together.
     for (row, _) in column.rows.iter().enumerate().filter(|(row, items)| stacked(items) > 1 && row % 2 == 1) {
@@ -318,7 +318,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Drawn<
 }
 
 /// Draws an item at its height, in rows; returns whether it lies beyond the axis.
-fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: bool) -> Drawn<bool> {
+fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: bool) -> Plotted<bool> {
     let name = item.name.as_deref();
     let bar =
         |ends: [f64; 2], is_capped: bool, stroke: Stroke| chart.bar(name, &Bar { y, ends, is_capped, stroke }, theme);
@@ -343,7 +343,7 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
 }
 
 /// A mark at a value and a height, or an arrow with its number where it lies beyond the axis; returns whether it does.
-fn mark(chart: &Chart, theme: &Theme, item: &RowItem, (value, y): (f64, f64), is_alone: bool) -> Drawn<bool> {
+fn mark(chart: &Chart, theme: &Theme, item: &RowItem, (value, y): (f64, f64), is_alone: bool) -> Plotted<bool> {
     let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
     let place = chart.place((value.clamp(-f64::MAX, f64::MAX), y));
     let Some((x, height)) = place.filter(|place| !chart.rect.contains(*place)) else {
@@ -364,9 +364,9 @@ fn mark(chart: &Chart, theme: &Theme, item: &RowItem, (value, y): (f64, f64), is
 /// Half the height of a violin and of a limit, in rows.
 const HALF: f64 = 0.42;
 
-/// Density, box of the quartiles and median, with the ends of the interval of 95 % as numbers beside what is too narrow to
-/// be seen.
-fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64, f64)], q: &[f64; 5]) -> Drawn {
+/// Density, box of the quartiles and median, with the ends of the interval of 95 % as numbers beside what is too narrow
+/// to be seen.
+fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64, f64)], q: &[f64; 5]) -> Plotted {
     let RowKind::Violin(look, ..) = &item.kind else { return Ok(()) };
     let name = item.name.as_deref();
     let highest = density.iter().map(|(_, height)| *height).fold(0.0, f64::max);

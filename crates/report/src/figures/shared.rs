@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use plotters::style::Color as _;
 
-use crate::backend::Drawn;
+use crate::backend::Plotted;
 use crate::canvas::Stroke;
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
@@ -28,7 +28,7 @@ fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
 }
 
 /// A recorded heading: dots, or a wide line under the fits where the record is dense.
-pub(super) fn record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> Drawn {
+pub(super) fn record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> Plotted {
     match dense(heading, theme) {
         Some(stroke) => chart.line(name, heading.pairs(), stroke),
         None => chart.dots(name, heading.finite(), 1.4 * theme.dot, RECORD.mix(1.0)),
@@ -78,14 +78,14 @@ impl Reference95 {
     }
 
     /// Across a panel whose horizontal axis it belongs to.
-    pub(super) fn vertical(&self, chart: &Chart, theme: &Theme) -> Drawn {
+    pub(super) fn vertical(&self, chart: &Chart, theme: &Theme) -> Plotted {
         let (low, high) = chart.y.ends();
         chart.rectangle(self.band, [low, high], RECORD.mix(BAND))?;
         chart.vertical(None, self.value, Stroke::solid(INK, 0.8 * theme.line))
     }
 
     /// Across a panel whose vertical axis it belongs to.
-    pub(super) fn horizontal(&self, chart: &Chart, theme: &Theme) -> Drawn {
+    pub(super) fn horizontal(&self, chart: &Chart, theme: &Theme) -> Plotted {
         let (left, right) = chart.x.ends();
         chart.rectangle([left, right], self.band, RECORD.mix(BAND))?;
         chart.horizontal(self.value, Stroke::solid(INK, 0.8 * theme.line))

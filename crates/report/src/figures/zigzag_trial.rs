@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::layers;
 use super::panels::{AxisLine, Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
-use crate::backend::Drawn;
+use crate::backend::Plotted;
 use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
@@ -88,7 +88,7 @@ const HEIGHT: f64 = 0.36;
 
 /// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn
 /// without its characteristic quantities, and a note says so.
-pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Drawn<Drawing> {
+pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Plotted<Drawing> {
     let count = data.executes.len();
     if count <= MOST_MARKED {
         return layers::annotated(&data.panels(theme), theme, &|chart| data.annotate(chart, theme));
@@ -138,7 +138,7 @@ impl ZigzagTrial {
     }
 
     /// Draws overshoots, times and period; returns what they mean, with the times where they do not fit at their lines.
-    fn annotate(&self, chart: &Chart, theme: &Theme) -> Drawn<Option<String>> {
+    fn annotate(&self, chart: &Chart, theme: &Theme) -> Plotted<Option<String>> {
         let size = theme.small_font;
         let draw = Dimensions { chart, theme };
         for (i, overshoot) in self.overshoots.iter().enumerate() {
@@ -185,7 +185,7 @@ struct Dimensions<'a> {
 
 impl Dimensions<'_> {
     /// The line between two places; when they are too close for two heads, the heads point at them from outside.
-    fn between(&self, from: PagePoint, to: PagePoint) -> Drawn {
+    fn between(&self, from: PagePoint, to: PagePoint) -> Plotted {
         let length = (to.0 - from.0).hypot(to.1 - from.1);
         if length == 0.0 || !length.is_finite() {
             return Ok(());
@@ -201,19 +201,19 @@ impl Dimensions<'_> {
     }
 
     /// A thin line from a point of the data to its dimension line.
-    fn extension(&self, from: PagePoint, to: PagePoint) -> Drawn {
+    fn extension(&self, from: PagePoint, to: PagePoint) -> Plotted {
         let stroke = Stroke { opacity: 0.75, ..Stroke::solid(DIMENSION, 0.8 * self.theme.thin) };
         self.chart.canvas.line(&[from, to], stroke)
     }
 
     /// The quantity at a dimension line.
-    fn label(&self, place: PagePoint, text: &str) -> Drawn {
+    fn label(&self, place: PagePoint, text: &str) -> Plotted {
         let text = TextLine { colour: DIMENSION, ..TextLine::new(text, self.theme.small_font, HPos::Center) };
         self.chart.canvas.text_on_ground(place, &text)
     }
 
     /// Vertical dimension line from the heading of the execute to the extremum, with its angle beyond the curve.
-    fn overshoot(&self, number: usize, overshoot: &OvershootMark) -> Drawn {
+    fn overshoot(&self, number: usize, overshoot: &OvershootMark) -> Plotted {
         let place = |mark: &ZigZagMark| self.chart.inside((mark.t_s, mark.heading_deg));
         let (Some(peak), Some(start)) = (place(&overshoot.extremum), place(&overshoot.execute)) else { return Ok(()) };
         let size = self.theme.small_font;
@@ -231,7 +231,7 @@ impl Dimensions<'_> {
 
     /// Horizontal dimension line of a span, with lines to the curve where one of the marked points stands at its end;
     /// returns its middle where it lies in the frame.
-    fn span(&self, data: &ZigzagTrial, span: &TimeSpan, y: f64) -> Drawn<Option<f64>> {
+    fn span(&self, data: &ZigzagTrial, span: &TimeSpan, y: f64) -> Plotted<Option<f64>> {
         let inside = |t: f64| self.chart.across(t).filter(|x| self.chart.rect.contains((*x, y)));
         let (Some(from), Some(to)) = (inside(span.from_s), inside(span.to_s)) else { return Ok(None) };
         let marks = data.executes.iter().chain(data.overshoots.iter().flat_map(|o| [&o.execute, &o.extremum]));
