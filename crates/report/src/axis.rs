@@ -16,14 +16,15 @@ use crate::number;
 const ZERO_SLOT: f64 = 0.21;
 const ZERO_AT: f64 = 0.08;
 const BREAK_AT: f64 = 0.155;
-
 /// Largest magnitude on a linear axis.
 const LARGEST: f64 = 1e100;
 /// Lengths of the axis beyond its ends where all that lies farther off is drawn: lines run the same way, and whole
 /// numbers would overflow.
 const FAR: f64 = 20.0;
-/// Largest number of ticks that an axis asks for.
+/// Largest number of intervals between ticks that an axis asks for.
 pub(crate) const MAX_TICKS: usize = 10;
+/// Room for labels right of an axis, in font sizes.
+const MARGIN: f64 = 1.3;
 /// Decades of a logarithmic axis, up to which it has lines between them.
 const MOST_DECADES: i32 = 6;
 
@@ -155,11 +156,6 @@ impl Axis {
         (self.lo, self.hi)
     }
 
-    /// How much one step of `fraction` of the axis is worth on a linear scale.
-    fn worth(&self, fraction: f64) -> f64 {
-        fraction * (self.hi - self.lo)
-    }
-
     /// Whether it is logarithmic.
     pub(crate) fn is_logarithmic(&self) -> bool {
         matches!(self.scale, AxisScale::Log { .. })
@@ -205,7 +201,7 @@ impl Axis {
         self
     }
 
-    /// The same axis with as many ticks as wanted, no more; names are always all shown.
+    /// The same axis with about so many intervals between its ticks, and two ticks at least; names are all shown.
     pub(crate) fn ticked(mut self, count: usize) -> Self {
         match self.scale {
             AxisScale::Linear(division) => self.ticks = self.linear_ticks(count.max(1), division),
@@ -225,15 +221,22 @@ impl Axis {
             return if is_wrapped { self.wrapped(font, pitch) } else { self };
         }
         let fitting = (2..=MAX_TICKS).rev().map(|count| self.clone().ticked(count)).find(|axis| axis.fits(width, font));
-        fitting.unwrap_or_else(|| self.ticked(1))
+        let mut fewest = fitting.unwrap_or_else(|| self.ticked(1));
+        if !fewest.fits(width, font) && fewest.ticks.len() > 2 {
+            // The ends alone tell the scale.
+            fewest.ticks.drain(1..fewest.ticks.len() - 1);
+        }
+        fewest
     }
 
-    /// Whether the labels under an axis of this width stand clear of each other.
+    /// Whether the labels under an axis of this width stand clear of each other, and of what is beside it.
     pub(crate) fn fits(&self, width: f64, font: f64) -> bool {
         let place = |value: f64| f64::from(self.map(&value, (0, 1_000_000))) * 1e-6 * width;
         let half = |label: &str| text_width(label, font, false) / 2.0;
         let clear = |pair: &[(f64, String)]| half(&pair[0].1) + half(&pair[1].1) + font;
-        self.ticks.windows(2).all(|pair| (place(pair[1].0) - place(pair[0].0)).abs() >= clear(pair))
+        let is_clear = |pair: &[(f64, String)]| (place(pair[1].0) - place(pair[0].0)).abs() >= clear(pair);
+        let end = self.ticks.last().map_or(0.0, |(value, label)| place(*value) + half(label));
+        self.ticks.windows(2).all(is_clear) && end <= width + MARGIN * font
     }
 
     fn linear_ticks(&self, count: usize, division: Division) -> Vec<(f64, String)> {
@@ -248,23 +251,32 @@ impl Axis {
         values.into_iter().zip(labels).collect()
     }
 
+    /// Powers of ten; where they are few, the digits between them that are needed to read the scale; equal steps where
+    /// not even those give two labels.
     fn log_ticks(&self, count: usize, zero: bool) -> Vec<(f64, String)> {
+        const LEADING: [&[i32]; 4] = [&[1], &[1, 2, 5], &[1, 2, 3, 5], &[1, 2, 3, 4, 5, 6, 7, 8, 9]];
         let (first, last) = ((self.lo.log10() - 1e-9).ceil() as i32, (self.hi.log10() + 1e-9).floor() as i32);
         let decades = (last - first + 1).max(0) as usize;
-        // Few whole decades inside the range need the 2 and the 5 between them to be read.
-        let leading: &[i32] = if decades < 2 || decades == 2 && count >= 5 { &[1, 2, 5] } else { &[1] };
-        let every = decades.div_ceil(count).max(1) as i32;
         let is_plain = self.lo >= 1e-3 && self.hi <= 1e4 && decades <= 4;
         let label = |exponent: i32, digit: i32| match (is_plain, digit) {
             (true, _) => number::fixed(f64::from(digit) * 10f64.powi(exponent), (-exponent).max(0) as usize),
             (false, 1) => number::power_of_ten(exponent),
             (false, _) => format!("{digit}×{}", number::power_of_ten(exponent)),
         };
-        let shown = (first - 1..=last).filter(|exponent| exponent.rem_euclid(every) == 0);
-        let ticks = shown.flat_map(|exponent| leading.iter().map(move |digit| (exponent, *digit)));
-        let ticks = ticks.map(|(exponent, digit)| (f64::from(digit) * 10f64.powi(exponent), label(exponent, digit)));
-        let inside = ticks.filter(|(value, _)| (self.lo * (1.0 - 1e-9)..=self.hi * (1.0 + 1e-9)).contains(value));
-        zero.then(|| (0.0, String::from("0"))).into_iter().chain(inside).collect()
+        let is_inside = |value: f64| value >= self.lo * (1.0 - 1e-9) && value <= self.hi * (1.0 + 1e-9);
+        let ticks = |(every, leading): (i32, &[i32])| -> Vec<(f64, String)> {
+            let shown = (first - 1..=last).filter(|exponent| exponent.rem_euclid(every) == 0);
+            let digits = shown.flat_map(|exponent| leading.iter().map(move |digit| (exponent, *digit)));
+            let ticks = digits.map(|(power, digit)| (f64::from(digit) * 10f64.powi(power), label(power, digit)));
+            ticks.filter(|(value, _)| is_inside(*value)).collect()
+        };
+        let every = decades.div_ceil(count).max(1) as i32;
+        let fewest = usize::from(decades < 2 || decades == 2 && count >= 5);
+        let sparse = (1..=every).rev().map(|every| (every, LEADING[fewest]));
+        let dense = LEADING.iter().skip(fewest + 1).map(|leading| (1, *leading));
+        let found = sparse.chain(dense).map(ticks).find(|ticks| ticks.len() > 1);
+        let found = found.unwrap_or_else(|| self.linear_ticks(count, Division::Decimal));
+        zero.then(|| (0.0, String::from("0"))).into_iter().chain(found).collect()
     }
 }
 
@@ -275,7 +287,7 @@ impl Ranged for Axis {
     /// Place of a value; one without a place is far beyond the lower end.
     fn map(&self, value: &f64, (start, end): (i32, i32)) -> i32 {
         let AxisScale::Log { zero } = self.scale else {
-            let ends = [-FAR, 1.0 + FAR].map(|share| self.lo + self.worth(share));
+            let ends = [-FAR, 1.0 + FAR].map(|share| self.lo + share * (self.hi - self.lo));
             let value = value.clamp(ends[0].min(ends[1]), ends[0].max(ends[1]));
             return RangedCoordf64::from(self.lo..self.hi).map(&value, (start, end));
         };
@@ -316,9 +328,11 @@ fn linear_labels(ticks: &[f64]) -> Vec<String> {
         (scaled - scaled.round()).abs() < 1e-6 * scaled.max(1.0)
     };
     let decimals = (0..9).find(is_whole).unwrap_or(9) as usize;
+    // As many as tell a tick from the next.
+    let digits = (largest / step).log10().clamp(1.0, 12.0).ceil() as usize + 1;
     let label = |tick: &f64| match (step < 1e-5 || largest >= 1e6, tick.abs() < step / 2.0) {
         (true, true) => String::from("0"),
-        (true, false) => number::significant(*tick, 3),
+        (true, false) => number::significant(*tick, digits.max(3)),
         (false, _) => number::fixed(*tick, decimals),
     };
     ticks.iter().map(label).collect()
@@ -370,6 +384,14 @@ mod tests {
     /// Ranges over twenty decades: no more ticks than allowed, two at least, inside the range, with different labels.
     #[test]
     fn ticks_fit_every_range() {
+        for (lo, hi) in [(2.05, 4.95), (5.1, 9.9), (0.015, 0.045), (3.1, 3.9), (1e-9, 1e9), (0.5, 2e3)] {
+            for count in [1, 2, 3, 5, 8] {
+                let axis = Axis::log_covering(&[lo, hi]).between(lo, hi).ticked(count);
+                assert!(axis.ticks.len() > 1 && axis.ticks.len() < 12, "{count}: {:?}", axis.ticks);
+            }
+        }
+        let large = labels(&Axis::linear(1.7e9, 1.7e9 + 100.0, Division::Decimal), 4);
+        assert!(large[0] != large[1], "{large:?}");
         for division in [Division::Decimal, Division::Time, Division::Angle] {
             for (exponent, leading) in (-10..10).flat_map(|e| [1.0, 1.3, 2.7, 4.9, 9.99].map(|leading| (e, leading))) {
                 for count in [3_usize, 5, 8] {
@@ -401,7 +423,7 @@ mod tests {
     fn logarithmic_places_and_labels() {
         let axis = Axis::log_covering(&[1e-6, 1.0]).between(1e-6, 1.0);
         assert!((place(&axis, 1e-3) - 0.5).abs() < 1e-4);
-        assert!(!axis.has_place(0.0) && !axis.has_place(-1.0) && place(&axis, -1.0) < -10.0);
+        assert!(!axis.has_place(0.0) && place(&axis, -1.0) < -10.0);
         assert_eq!(labels(&axis, 8), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
         assert_eq!(labels(&axis, 3), ["10⁻⁶", "10⁻³", "10⁰"]);
         assert_eq!(labels(&Axis::log_covering(&[0.05, 0.5, 3.0]), 4), ["0.1", "1"]);

@@ -27,13 +27,13 @@ impl Changes {
         self.colours.iter().flatten().find(|(old, _)| *old == own).map_or(own, |(_, new)| *new)
     }
 
-    /// Ends of the axis with a title, where they are given. A list of names stays, as does a logarithmic axis that
+    /// The axis of a title with the ends that are given for it. A list of names stays, as does a logarithmic axis that
     /// should begin at zero or below.
-    pub(crate) fn limit(&self, axis: &mut Axis, title: &str) {
+    pub(crate) fn limited(&self, axis: Axis, title: &str) -> Axis {
         let is_titled = |wanted: &str| wanted.chars().eq(title.chars().filter(|&c| !is_markup(c)));
-        let Some((_, [lo, hi])) = self.limits.iter().find(|(wanted, _)| is_titled(wanted)) else { return };
-        if !axis.is_names() && (*lo > 0.0 || !axis.is_logarithmic()) {
-            *axis = axis.clone().between(*lo, *hi);
+        match self.limits.iter().find(|(wanted, _)| is_titled(wanted)) {
+            Some((_, [lo, hi])) if !axis.is_names() && (*lo > 0.0 || !axis.is_logarithmic()) => axis.between(*lo, *hi),
+            _ => axis,
         }
     }
 }

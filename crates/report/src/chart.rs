@@ -74,6 +74,12 @@ impl Chart {
         Some((self.across(x)?, self.up(y)?))
     }
 
+    /// The same of values that are numbers; what has no place on a logarithmic axis lies far beyond its lower end.
+    pub(crate) fn reach(&self, (x, y): (f64, f64)) -> Option<PagePoint> {
+        let (across, up) = self.data.map_coordinate(&(x, y));
+        (!x.is_nan() && !y.is_nan()).then_some((f64::from(across) / UNITS, f64::from(up) / UNITS))
+    }
+
     /// Place of a pair of values inside the frame.
     pub(crate) fn inside(&self, pair: (f64, f64)) -> Option<PagePoint> {
         self.place(pair).filter(|place| self.rect.contains(*place))
@@ -154,7 +160,7 @@ impl Chart {
     pub(crate) fn bar(&self, name: Option<&str>, bar: &Bar, theme: &Theme) -> Plotted<bool> {
         let Bar { y, ends, is_capped, stroke } = *bar;
         let [lo, hi] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-f64::MAX, f64::MAX));
-        let (Some(left), Some(right), Some(height)) = (self.across(lo), self.across(hi), self.up(y)) else {
+        let [Some((left, height)), Some((right, _))] = [lo, hi].map(|end| self.reach((end, y))) else {
             return Ok(false);
         };
         let width = units(theme.marker).max(2) as u32;

@@ -1,6 +1,6 @@
 //! The typeface of every figure: a subset of DejaVu Sans compiled into the program, so that a figure looks the same on
 //! a machine without any font. The subset holds Latin, Greek, combining accents, sub- and superscripts, arrows and the
-//! common mathematical operators; a character outside it is drawn as an empty box.
+//! common mathematical operators; a character outside it is not drawn.
 
 use std::sync::{Arc, OnceLock};
 

@@ -115,11 +115,15 @@ impl Sheet {
         let fewest = key::rows(entries, room, &theme).len();
         // Rows of equal length look better than full rows and a rest.
         let narrower = (8..=20).map(|share| key::rows(entries, 0.05 * f64::from(share) * room, &theme));
-        for row in narrower.into_iter().find(|rows| rows.len() == fewest).unwrap_or_default() {
-            let mut x = ((theme.width - key::row_width(row, &theme)) / 2.0).max(theme.small_font);
+        let rows = narrower.into_iter().find(|rows| rows.len() == fewest).unwrap_or_default();
+        let widest = rows.iter().map(|row| key::row_width(row, &theme)).fold(0.0, f64::max);
+        for row in &rows {
+            // Single entries stand below each other.
+            let width = if rows.len() == entries.len() { widest } else { key::row_width(row, &theme) };
+            let mut x = ((theme.width - width) / 2.0).max(theme.small_font);
             self.y += LEADING * theme.small_font;
             let mut most = 1;
-            for entry in row {
+            for entry in *row {
                 let place = (x, self.y - MIDDLE * theme.small_font);
                 most = most.max(entry.draw(&self.canvas, place, room + theme.small_font - x, &theme)?);
                 x += entry.width(&theme) + key::gap(&theme);
@@ -153,14 +157,18 @@ impl Sheet {
     fn row(&self, side: &AxisSide, height: f64) -> AxisSide {
         let theme = &self.theme;
         let count = ((height / (1.7 * theme.tick_font)) as usize).clamp(2, MAX_TICKS);
-        let axis = side.axis.clone().ticked(count).wrapped(theme.tick_font, NAMES * theme.width);
-        AxisSide::new(axis, wrap(&side.title, theme.label_font, false, height).join("\n"))
+        let axis = theme
+            .changes
+            .limited(side.axis.clone(), &side.title)
+            .ticked(count)
+            .wrapped(theme.tick_font, NAMES * theme.width);
+        AxisSide::new(axis, balanced(&side.title, theme.label_font, false, height).join("\n"))
     }
 
     /// The same of a column.
     fn column(&self, side: &AxisSide, left: f64, width: f64) -> GridColumn {
         let theme = &self.theme;
-        let axis = side.axis.clone().fitted(width, theme.tick_font);
+        let axis = theme.changes.limited(side.axis.clone(), &side.title).fitted(width, theme.tick_font);
         let title = wrap(&side.title, theme.label_font, false, width + theme.label_font);
         let is_turned = axis.is_names() && !axis.fits(width, theme.tick_font);
         let lines = axis.labels().map(|label| label.lines().count()).max().unwrap_or(0);
@@ -197,10 +205,8 @@ impl Sheet {
     }
 
     /// Draws mesh, axes and labels of the panels and returns their charts, row by row.
-    pub(crate) fn grid(&mut self, mut grid: Grid) -> Plotted<Vec<Chart>> {
+    pub(crate) fn grid(&mut self, grid: Grid) -> Plotted<Vec<Chart>> {
         let theme = self.theme;
-        let sides = grid.columns.iter_mut().chain(grid.rows.iter_mut().map(|(side, _)| side));
-        sides.for_each(|side| theme.changes.limit(&mut side.axis, &side.title));
         let (count, gap) = (grid.columns.len().max(1), Self::gap(&theme));
         let left = grid.left.unwrap_or_else(|| self.left_margin(&grid));
         let inner = theme.width - left - Self::right_margin(&theme) - gap * (count - 1) as f64;
@@ -215,12 +221,13 @@ impl Sheet {
             let heads: Vec<Option<&KeyEntry>> =
                 (0..count).map(|column| grid.heads.get(row * count + column)?.as_ref()).collect();
             let lines = heads.iter().flatten().map(|head| head.lines(room, &theme).len()).max().unwrap_or(0) as f64;
-            self.y += if lines > 0.0 { (0.15 + LEADING * lines) * theme.small_font } else { 0.0 };
+            let further = LINE * (lines - 1.0);
+            self.y += if lines > 0.0 { (0.15 + LEADING + further) * theme.small_font } else { 0.0 };
             let up = self.row(side, *height);
             let title = if side.title.is_empty() { grid.shared_title.as_deref().unwrap_or("") } else { &side.title };
             for (number, column) in columns.iter().enumerate().take(total - (row * count).min(total)) {
                 if let Some(head) = heads[number] {
-                    let above = 0.45 + LEADING * (lines - 1.0) + MIDDLE;
+                    let above = 0.45 + further + MIDDLE;
                     head.draw(&self.canvas, (column.left, self.y - above * theme.small_font), room, &theme)?;
                 }
                 let is_last = row * count + number + count >= total;

@@ -12,7 +12,7 @@ use crate::backend::{Plotted, SvgGroup};
 use crate::canvas::{Rect, Stroke, TextLine};
 use crate::chart::Chart;
 use crate::figure::Drawing;
-use crate::fonts::text_width;
+use crate::fonts::{LINE, text_width};
 use crate::key::{KeyEntry, KeySample, outline_stroke};
 use crate::lines::wrap;
 use crate::number::{self, MISSING, significant};
@@ -99,7 +99,7 @@ impl CellMap {
             (false, _, false) => 2.0 * theme.tick_font,
         };
         let lines = self.rows.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len()).max();
-        let usual = usual.max((0.3 + 1.15 * lines.unwrap_or(1) as f64) * theme.tick_font);
+        let usual = usual.max((0.3 + LINE * lines.unwrap_or(1) as f64) * theme.tick_font);
         let higher = (SPREAD * usual).min(HEIGHT * theme.width / self.rows.len().max(1) as f64);
         if theme.is_narrow() { usual } else { usual.max(higher) }
     }

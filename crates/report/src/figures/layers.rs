@@ -4,6 +4,7 @@ use plotters::element::ErrorBar;
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
+use super::aside;
 use super::panels::{Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Ruler, Stack};
 use super::reach::{Extents, INTERVALS, robust};
 use super::shared::{ACROSS_PAD, PAD, asides, record, zero_stroke};
@@ -29,11 +30,16 @@ struct Unshown {
     marks: bool,
     /// Whether marks stand side by side.
     apart: bool,
+    /// Names without a place in the frame, with their numbers.
+    names: Vec<String>,
 }
 
 /// Largest height of all panels of a wide figure, as a share of its width, and the least share of its height that a
 /// panel keeps.
 const WIDE: [f64; 2] = [0.52, 0.62];
+
+/// Largest share of the height of a panel that is left free below and above its data.
+const MAX_ROOM: f64 = 0.6;
 
 /// Panels side by side in a narrow figure.
 const NARROW: usize = 3;
@@ -43,6 +49,7 @@ const NARROW: usize = 3;
 fn fitted(data: &Panels, theme: &Theme) -> Panels {
     let mut data = data.clone();
     if theme.is_narrow() {
+        data.names_aside = false;
         for stack in data.stacks.iter_mut().filter(|stack| stack.across.is_none() && stack.rows.len() == 1) {
             stack.across = (stack.x.len() > NARROW).then_some(NARROW);
         }
@@ -87,7 +94,7 @@ pub(super) fn annotated(
     for stacks in side_by_side(data, theme) {
         let width = if stacks[0].is_half && !theme.is_narrow() { 2 } else { 1 };
         let gap = Sheet::gap(theme);
-        let part = (theme.width - gap * (width - 1) as f64) / width as f64;
+        let part = (theme.width - aside::room(data, theme) - gap * (width - 1) as f64) / width as f64;
         let (top, mut lowest) = (sheet.y, sheet.y);
         for (column, stack) in stacks.iter().enumerate() {
             sheet.y = top;
@@ -106,6 +113,9 @@ pub(super) fn annotated(
             outside.is_cut |= is_cut;
             let drawn = sheet.grid_within(grid, (column as f64 * (part + gap), part))?;
             draw(&drawn, stack, theme, &mut outside)?;
+            if data.names_aside {
+                outside.names.extend(aside::of_stack(&drawn, stack, columns(stack, theme), theme)?);
+            }
             charts.extend(drawn);
             lowest = lowest.max(sheet.y);
         }
@@ -125,12 +135,13 @@ fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
     let apart = outside.apart.then(|| String::from("Records of one amplitude stand side by side."));
     let marks = outside.marks.then(|| String::from("Arrows: beyond the axis."));
     let cut = data.cut.clone().filter(|_| outside.is_cut);
-    [data.note.clone(), cut, dots, apart, marks].into_iter().flatten().collect()
+    let names = (!outside.names.is_empty()).then(|| format!("Outside the axes: {}.", outside.names.join(", ")));
+    [data.note.clone(), cut, dots, names, apart, marks].into_iter().flatten().collect()
 }
 
 fn entries(data: &Panels, theme: &Theme) -> Vec<KeyEntry> {
     let mut entries: Vec<KeyEntry> = Vec::new();
-    for panel in data.stacks.iter().flat_map(|stack| &stack.panels) {
+    for panel in data.stacks.iter().flat_map(|stack| &stack.panels).filter(|_| !data.names_aside) {
         // Where a band lies on another one, that shines through.
         let mut light = 1.0;
         for layer in &panel.layers {
@@ -209,7 +220,10 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let (axis, cut) = row.y.axis(&data, PAD);
         is_cut |= cut;
         let (lo, hi) = axis.ends();
-        let [below, above] = row.room.map(|share| share * (hi - lo) / (1.0 - row.room[0] - row.room[1]));
+        // Where type is large beside the panel, the data keep a part of it.
+        let taken = row.room[0] + row.room[1];
+        let scale = (MAX_ROOM / taken).min(1.0);
+        let [below, above] = row.room.map(|share| scale * share * (hi - lo) / (1.0 - scale * taken));
         let axis = if row.room == [0.0; 2] { axis } else { axis.between(lo - below, hi + above) };
         (AxisSide::new(axis, row.y.title.as_str()), theme.tall(row.height))
     };
@@ -375,7 +389,9 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
         for (row, pair) in curve.pairs().enumerate() {
             let is_along = row > 0 && !is_inside(&places[row - 1]) && !is_inside(&places[row]);
             line.extend(is_along.then_some((f64::NAN, f64::NAN)));
-            line.push((pair.0, pair.1.clamp(-f64::MAX, f64::MAX)));
+            // It ends at the arrow of a mark beyond the panel.
+            let (low, high) = chart.y.ends();
+            line.push((pair.0, if is_inside(&places[row]) { pair.1 } else { pair.1.clamp(low, high) }));
             line.extend((pair.0 == 0.0 && chart.x.break_at().is_some()).then_some((f64::NAN, f64::NAN)));
         }
         chart.line(name, line, pen.stroke(theme))?;

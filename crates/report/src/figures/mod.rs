@@ -1,6 +1,7 @@
 //! Few kinds of figure: panels of layers, named rows, maps of cells, and the zig-zag with its dimension lines. A figure
 //! is a specification, plain data in display units; [`Plot::draw`] draws it.
 
+mod aside;
 mod cells;
 mod layers;
 mod panels;
@@ -57,7 +58,8 @@ impl Plot {
             Self::Cells(_) => Vec::new(),
             Self::ZigZag(_) => vec![Ruler::time(), Ruler::heading(), Ruler::rudder()],
         };
-        rulers.iter().map(|ruler| ruler.title.chars().filter(|letter| !is_markup(*letter)).collect()).collect()
+        let titles = rulers.iter().map(|ruler| ruler.title.replace(is_markup, ""));
+        titles.filter(|title| !title.is_empty()).collect()
     }
 
     /// The title above it.

@@ -218,6 +218,16 @@ impl Layer {
         [&self.curve].into_iter().chain(other)
     }
 
+    pub(super) fn colour(&self) -> RGBColor {
+        match &self.kind {
+            LayerKind::Line(pen) => pen.colour,
+            LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
+            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour,
+            LayerKind::Marks(marks) => marks.look.colour,
+            LayerKind::Record => crate::palette::RECORD,
+        }
+    }
+
     /// How it looks in the key; a band where others lie under it as dense as `shade`.
     pub(super) fn sample(&self, theme: &Theme, shade: f64) -> Option<KeySample> {
         Some(match &self.kind {
@@ -328,6 +338,8 @@ pub struct Panels {
     pub title: Option<String>,
     /// The stacks, in reading order.
     pub stacks: Vec<Stack>,
+    /// Whether names stand right of the frame, in place of a key; on a narrow page they are in the key all the same.
+    pub names_aside: bool,
     /// Numbers that stand in the key.
     pub said: Vec<String>,
     /// A remark under the figure.

@@ -11,6 +11,7 @@ use crate::backend::Plotted;
 use crate::canvas::{Stroke, TextLine};
 use crate::chart::{Bar, Chart};
 use crate::figure::Drawing;
+use crate::fonts::LINE;
 use crate::key::{KeyEntry, KeySample};
 use crate::lines::wrap;
 use crate::number::significant;
@@ -222,7 +223,7 @@ pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Plotted<Drawing> {
 fn pitch(data: &NamedRows, theme: &Theme) -> f64 {
     let items = || data.columns.iter().flat_map(|column| &column.rows);
     let lines = data.names.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len());
-    let lines = 1.15 * lines.max().unwrap_or(1).max(1) as f64;
+    let lines = LINE * lines.max().unwrap_or(1).max(1) as f64;
     let stacked = 0.62 * items().map(|row| stacked(row)).max().unwrap_or(0) as f64 + 1.1;
     let is_high = items().flatten().any(|item| matches!(item.kind, RowKind::Violin(..)));
     let usual = (lines + 0.95).max(stacked).max(if is_high { 2.6 } else { 0.0 }) * theme.tick_font;
@@ -345,7 +346,7 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
 /// A mark at a value and a height, or an arrow with its number where it lies beyond the axis; returns whether it does.
 fn mark(chart: &Chart, theme: &Theme, item: &RowItem, (value, y): (f64, f64), is_alone: bool) -> Plotted<bool> {
     let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
-    let place = chart.place((value.clamp(-f64::MAX, f64::MAX), y));
+    let place = chart.reach((value.clamp(-f64::MAX, f64::MAX), y));
     let Some((x, height)) = place.filter(|place| !chart.rect.contains(*place)) else {
         return chart.marker(item.name.as_deref(), (value, y), theme.marker, look).map(|()| false);
     };
@@ -382,9 +383,12 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
     if chart.across(q[4]).zip(chart.across(q[0])).is_some_and(|(hi, lo)| hi - lo < 2.0 * theme.marker) {
         let ends = format!("{} to {}", significant(q[0], 2), significant(q[4], 2));
         let text = TextLine::new(ends, theme.small_font, HPos::Left);
-        let is_right = middle + apart + text.width() < chart.rect.right();
-        let (anchor, x) = if is_right { (HPos::Left, middle + apart) } else { (HPos::Right, middle - apart) };
-        chart.canvas.text_on_ground((x, height), &TextLine { anchor, ..text })?;
+        let [left, right] = [middle - apart - text.width(), middle + apart + text.width()];
+        if right < chart.rect.right() {
+            chart.canvas.text_on_ground((middle + apart, height), &text)?;
+        } else if left > chart.rect.x {
+            chart.canvas.text_on_ground((middle - apart, height), &TextLine { anchor: HPos::Right, ..text })?;
+        }
     }
     let median = Look { hollow: true, ..CurveOrigin::Truth.look() };
     chart.marker(None, (q[2], y), 0.6 * theme.marker, &median)

@@ -21,6 +21,9 @@ pub(super) const ACROSS_PAD: f64 = 0.02;
 /// More points than this in a panel run into each other and are drawn as a line.
 const DENSE: usize = 400;
 
+/// More points than this are smaller, so that they stay apart.
+const MANY: usize = 150;
+
 /// The line of a dense record.
 fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
     let stroke = Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) };
@@ -31,7 +34,10 @@ fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
 pub(super) fn record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> Plotted {
     match dense(heading, theme) {
         Some(stroke) => chart.line(name, heading.pairs(), stroke),
-        None => chart.dots(name, heading.finite(), 1.4 * theme.dot, RECORD.mix(1.0)),
+        None => {
+            let size = if heading.finite().count() > MANY { 1.0 } else { 1.4 };
+            chart.dots(name, heading.finite(), size * theme.dot, RECORD.mix(1.0))
+        }
     }
 }
 

@@ -111,7 +111,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     vec![
         ("layers", layered.into()),
         ("clouds", Panels::of(clouds).into()),
-        ("marks", Panels::of(marks).into()),
+        ("aside", Panels { names_aside: true, ..Panels::of(marks) }.into()),
         ("track", Panels::of(Stack { equal: true, ..track }).into()),
     ]
 }
@@ -299,14 +299,14 @@ fn labels_carry_symbol_and_unit() {
         ("map", "– is not defined."),
         ("shares", "mostly cannot be told from it"),
         ("track", "drawn ships"),
-        ("marks", "maximum-likelihood"),
+        ("aside", "maximum-likelihood"),
     ] {
         assert!(svg(name).contains(text), "{text} in {name}");
     }
     for id in palette::method_ids() {
-        assert_eq!(svg("marks").matches(&format!("\n{id}\n")).count(), 1, "{id}");
+        assert_eq!(svg("aside").matches(&format!("\n{id}\n")).count(), 1, "{id}");
     }
-    for name in ["clouds", "marks", "rows"] {
+    for name in ["clouds", "aside", "rows"] {
         assert!(svg(name).contains("#009E73"), "output-error in {name}");
     }
 }
@@ -329,6 +329,29 @@ fn what_runs_off_is_cut_and_says_so() {
     assert!(!dots(wild.clone()).contains("beyond a panel"));
     wild.y[200] = 500.0;
     assert!(dots(wild).contains("1 point lies beyond a panel"));
+}
+
+#[test]
+fn large_type_leaves_a_heading_upright() {
+    let style = crate::Style { font_size_pt: Some(16.0), ..Default::default() };
+    let theme = style.on(Theme::paper(60.0, 300.0).unwrap()).unwrap();
+    let figure = Plot::from(zigzag(40, 0.3)).draw(&theme);
+    let ends: Vec<f64> =
+        numbers(figure.svg(), "data-y")[0].split('|').skip(1).map(|end| end.parse().unwrap()).collect();
+    assert!(ends[0] < -20.0 && ends[1] > 20.0 && ends[1] - ends[0] < 400.0, "{ends:?}");
+}
+
+#[test]
+fn limits_make_room_for_their_labels() {
+    let limits = [(String::from("heading ψ [°]"), [0.0, 1e-4])].into();
+    let theme = crate::Style { limits, ..Default::default() }.on(Theme::screen()).unwrap();
+    let heading = vec![Layer::line("", wave(40, 0.3, 25.0), Pen::new(INK))];
+    let draw = |theme: &Theme| {
+        let figure =
+            Plot::from(Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.2), heading.clone())])).draw(theme);
+        numbers(figure.svg(), "data-panel")[0].split(' ').next().unwrap().parse::<f64>().unwrap()
+    };
+    assert!(draw(&theme) > draw(&Theme::screen()) + 100.0);
 }
 
 #[test]
@@ -363,8 +386,8 @@ fn what_sets_no_axis_is_an_arrow_at_its_edge() {
     let answers = vec![far("output-error", 0.1), far("srivc", 0.101), far("least-squares", 0.099), far("x", 9.0)];
     let axis = |title: &str| Ruler::decimal(title).within(4.0, None);
     let stack = Stack::over(axis("K [1/s]"), vec![(PanelRow::new(axis("T [s]"), 0.5), answers)]);
-    let figure = Plot::from(Panels::of(stack)).draw(&Theme::screen());
-    assert!(figure.svg().contains("Arrows: beyond the axis."), "{}", figure.svg());
+    let figure = Plot::from(Panels { names_aside: true, ..Panels::of(stack) }).draw(&Theme::screen());
+    assert!(figure.svg().contains("Outside the axes: x (K = 9.00, T = 1440)."), "{}", figure.svg());
 }
 
 #[test]

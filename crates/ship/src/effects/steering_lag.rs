@@ -36,7 +36,8 @@ impl Effect for SteeringLag {
                 Proposal::new(*self, [Prior::normal(&DEAD_TIME[0], 0.0, sd).within([-longest, longest])])
             }
             Self::FirstOrder => {
-                let shortest = SHORTEST_LAG.max(0.25 * spacing);
+                // A record with longer steps shows no lag that a ship has.
+                let shortest = Some(SHORTEST_LAG.max(0.25 * spacing)).filter(|lag| *lag < FIRST_ORDER[0].highest)?;
                 Proposal::new(
                     *self,
                     [Prior::normal(&FIRST_ORDER[0], 0.0, sd).within([shortest, FIRST_ORDER[0].highest])],

@@ -121,6 +121,7 @@ fn index_plane(title: String, document: &FitDocument, curves: &FitCurves) -> Pan
     let note = format!("Outlines hold {} and {} together with 95 %.", symbol("K"), symbol("T"));
     Panels {
         title: Some(title),
+        names_aside: true,
         note: (!curves.regions.is_empty()).then_some(note),
         ..Panels::of(Stack::over(k, vec![(PanelRow::new(t, 0.5), layers)]))
     }

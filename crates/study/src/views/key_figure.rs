@@ -41,6 +41,7 @@ fn of_panels(data: &mut Panels, about: &[String]) {
             stack.panels.retain(|panel| !is_quiet(panel.head.as_ref(), about));
             continue;
         }
+        data.names_aside = true;
         keep_t(stack);
         for panel in &mut stack.panels {
             let left_out = panel.layers.extract_if(.., |layer| is_quiet(layer.name.as_ref(), about));

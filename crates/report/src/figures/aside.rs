@@ -1,0 +1,106 @@
+//! Names right of the frame, in place of a key: as near to what they name as they can stand without touching.
+
+use plotters::style::text_anchor::HPos;
+
+use super::panels::{Layer, Panels, Stack};
+use crate::backend::Plotted;
+use crate::canvas::{PagePoint, Stroke, TextLine};
+use crate::chart::Chart;
+use crate::markup::is_markup;
+use crate::number::significant;
+use crate::theme::Theme;
+
+/// Free space between the frame and a name, in small-font sizes.
+const GAP: f64 = 0.8;
+
+fn text(layer: &Layer, theme: &Theme) -> TextLine {
+    let name = layer.name.as_deref().unwrap_or_default();
+    TextLine { bold: true, colour: layer.colour(), ..TextLine::new(name, theme.small_font, HPos::Left) }
+}
+
+/// Width of the names with what keeps them clear of the frame, points.
+pub(super) fn room(data: &Panels, theme: &Theme) -> f64 {
+    let layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
+    let named = layers.filter(|layer| data.names_aside && layer.name.is_some());
+    let widths = named.map(|layer| text(layer, theme).width());
+    widths.reduce(f64::max).map_or(0.0, |width| width + GAP * theme.small_font)
+}
+
+/// Where a name points: the rightmost point of its layer in the frame; one without bound is at the edge.
+fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
+    let place = |pair: (f64, f64)| match pair.1.is_infinite() {
+        true => Some((chart.across(pair.0)?, chart.rect.y)),
+        false => chart.inside(pair),
+    };
+    layer.curve.pairs().filter_map(place).max_by(|one, other| one.0.total_cmp(&other.0))
+}
+
+/// Writes the names right of the last panel of every row of `count`; returns those without a point in the frame, with
+/// their numbers.
+pub(super) fn of_stack(charts: &[Chart], stack: &Stack, count: usize, theme: &Theme) -> Plotted<Vec<String>> {
+    let symbol = |title: &str| title.split(" [").next().unwrap_or_default().replace(is_markup, "");
+    let across = stack.x.first().map_or_else(String::new, |ruler| symbol(&ruler.title));
+    let mut outside = Vec::new();
+    for (index, (chart, panel)) in charts.iter().zip(&stack.panels).enumerate().filter(|(k, _)| (k + 1) % count == 0) {
+        let row = &stack.rows[if stack.across.is_some() { 0 } else { index / count }];
+        for layer in names(chart, theme, &panel.layers)? {
+            let (x, y) = layer.curve.pairs().next().unwrap_or((f64::NAN, f64::NAN));
+            let (x, y) = (significant(x, 3), significant(y, 3));
+            let name = layer.name.as_deref().unwrap_or_default();
+            outside.push(format!("{name} ({across} = {x}, {} = {y})", symbol(&row.y.title)));
+        }
+    }
+    Ok(outside)
+}
+
+/// Writes the names of a panel; returns the layers that have no point in the frame.
+fn names<'a>(chart: &Chart, theme: &Theme, layers: &'a [Layer]) -> Plotted<Vec<&'a Layer>> {
+    let (named, outside): (Vec<_>, Vec<_>) = layers
+        .iter()
+        .filter(|layer| layer.name.is_some())
+        .map(|layer| (layer, anchor(chart, layer)))
+        .partition(|(_, anchor)| anchor.is_some());
+    let mut labels: Vec<(PagePoint, &Layer)> =
+        named.into_iter().filter_map(|(layer, anchor)| Some((anchor?, layer))).collect();
+    labels.sort_by(|one, other| one.0.1.total_cmp(&other.0.1));
+    let line = 1.2 * theme.small_font;
+    let wanted: Vec<f64> = labels.iter().map(|(at, _)| at.1).collect();
+    let middles = spread(&wanted, line, [chart.rect.y - 0.5 * line, chart.rect.bottom() + 0.5 * line]);
+    let right = chart.rect.right();
+    for ((from, layer), middle) in labels.iter().zip(middles) {
+        let knee = right + 0.4 * theme.small_font;
+        let thin = Stroke { opacity: 0.6, ..Stroke::solid(layer.colour(), theme.thin) };
+        chart.canvas.line(&[*from, (right, middle), (knee, middle)], thin)?;
+        chart.canvas.text((knee + 0.3 * theme.small_font, middle), &text(layer, theme))?;
+    }
+    Ok(outside.into_iter().map(|(layer, _)| layer).collect())
+}
+
+/// Middles of labels of one height, clear of each other and as near as may be to the wanted ones, which are in order.
+fn spread(wanted: &[f64], height: f64, [top, bottom]: [f64; 2]) -> Vec<f64> {
+    let mut free = top;
+    let mut tops: Vec<f64> = Vec::with_capacity(wanted.len());
+    for middle in wanted {
+        tops.push((middle - 0.5 * height).max(free));
+        free = tops[tops.len() - 1] + height;
+    }
+    let mut limit = bottom;
+    for top in tops.iter_mut().rev() {
+        *top = top.min(limit - height);
+        limit = *top;
+    }
+    tops.iter().map(|top| top + 0.5 * height).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_keep_their_order_and_their_distance() {
+        let of = |wanted: &[f64]| spread(wanted, 5.0, [-2.5, 102.5]);
+        assert_eq!(of(&[10.0, 11.0, 50.0]), [10.0, 15.0, 50.0]);
+        assert_eq!(of(&[97.0, 98.0, 99.0]), [90.0, 95.0, 100.0]);
+        assert_eq!(of(&[-5.0]), [0.0]);
+    }
+}
