@@ -5,11 +5,12 @@ use crate::fonts::text_width;
 /// Line spacing, in font sizes.
 pub(crate) const LEADING: f64 = 1.35;
 
-/// The lines of [`wrap`], as equal in length as they can be.
+/// The lines of [`wrap`], as equal in length as they can be without breaking a word.
 pub(crate) fn balanced(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
     let widest = wrap(text, size, bold, width);
     let mut narrower = (5..20).map(|twentieths| wrap(text, size, bold, 0.05 * f64::from(twentieths) * width));
-    narrower.find(|lines| lines.len() == widest.len()).unwrap_or(widest)
+    let is_whole = |lines: &Vec<String>| lines.len() == widest.len() && lines.join(" ") == widest.join(" ");
+    narrower.find(is_whole).unwrap_or(widest)
 }
 
 /// The words of a text; a unit in brackets is one.
@@ -76,6 +77,7 @@ mod tests {
         assert_eq!(wrap("moment [° rudder]", 10.0, false, 60.0), ["moment", "[° rudder]"]);
         assert_eq!(wrap("one two three four", 10.0, false, 75.0), ["one two three", "four"]);
         assert_eq!(balanced("one two three four", 10.0, false, 75.0), ["one two", "three four"]);
+        assert_eq!(balanced("a, extraordinarily", 10.0, false, 90.0), ["a,", "extraordinarily"]);
         assert!(wrap("  ", 10.0, false, 5.0).is_empty() && balanced("", 10.0, false, 5.0).is_empty());
     }
 }
