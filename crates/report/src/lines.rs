@@ -77,7 +77,7 @@ mod tests {
         assert_eq!(wrap("moment [° rudder]", 10.0, false, 60.0), ["moment", "[° rudder]"]);
         assert_eq!(wrap("one two three four", 10.0, false, 75.0), ["one two three", "four"]);
         assert_eq!(balanced("one two three four", 10.0, false, 75.0), ["one two", "three four"]);
-        assert_eq!(balanced("a, extraordinarily", 10.0, false, 90.0), ["a,", "extraordinarily"]);
+        assert_eq!(balanced("aa extraordinarily", 10.0, false, 88.0), ["aa", "extraordinarily"]);
         assert!(wrap("  ", 10.0, false, 5.0).is_empty() && balanced("", 10.0, false, 5.0).is_empty());
     }
 }
