@@ -342,6 +342,24 @@ fn large_type_leaves_a_heading_upright() {
 }
 
 #[test]
+fn names_that_cannot_stand_side_by_side_are_turned() {
+    let drawn = |name: &str| {
+        let cell = MapCell { value: Some(50.0), ..MapCell::default() };
+        let map = CellMap {
+            title: None,
+            titles: ["named".into(), "missing".into()],
+            columns: vec![name.into(); 12],
+            rows: vec!["a".into()],
+            shades: Shades::Shares,
+            panels: vec![(None, vec![vec![cell; 12]])],
+            note: None,
+        };
+        Plot::from(map).draw(&Theme::screen()).svg().matches("text-anchor=\"end\" transform=\"rotate(270").count()
+    };
+    assert_eq!([drawn("b"), drawn("port_starboard_asymmetry")], [0, 12]);
+}
+
+#[test]
 fn limits_make_room_for_their_labels() {
     let limits = [(String::from("heading ψ [°]"), [0.0, 1e-4])].into();
     let theme = crate::Style { limits, ..Default::default() }.on(Theme::screen()).unwrap();
