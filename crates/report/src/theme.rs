@@ -1,5 +1,5 @@
 //! Sizes of a figure: everything is in points (1/72 inch) on the finished page, so one theme decides whether a figure
-//! can be read. Colours are in [`crate::palette`]; where things go is decided in [`crate::sheet`].
+//! can be read. Colours are in [`crate::palette`]; where things go is decided in the module `sheet`.
 
 use crate::changes::Changes;
 use crate::error::ReportError;
