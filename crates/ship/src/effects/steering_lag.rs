@@ -93,3 +93,28 @@ impl<R: Real> Acts<R> for SteeringLag {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_with_long_steps_shows_no_first_order_lag() {
+        let about = |spacing: f64| Manoeuvres {
+            time: 20.0,
+            rudder: 0.35,
+            duration: 1e5,
+            spacing,
+            speed: None,
+            sway: None,
+            wind_square: None,
+            propeller: None,
+            span: [0.0, 1e5],
+        };
+        for effect in [SteeringLag::DeadTime, SteeringLag::FirstOrder] {
+            assert!(effect.proposal(&about(1.0)).is_some());
+            let is_dead_time = effect == SteeringLag::DeadTime;
+            assert_eq!(effect.proposal(&about(1000.0)).is_some(), is_dead_time);
+        }
+    }
+}
