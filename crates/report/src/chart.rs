@@ -70,8 +70,8 @@ impl Chart {
     }
 
     /// Place of a pair of values, also outside the frame.
-    pub(crate) fn place(&self, (x, y): (f64, f64)) -> Option<PagePoint> {
-        Some((self.across(x)?, self.up(y)?))
+    pub(crate) fn place(&self, pair: (f64, f64)) -> Option<PagePoint> {
+        self.reach(pair).filter(|_| self.has_place(&pair))
     }
 
     /// The same of values that are numbers; what has no place on a logarithmic axis lies far beyond its lower end.
