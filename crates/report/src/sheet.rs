@@ -146,9 +146,8 @@ impl Sheet {
     /// Margin that the labels and titles of the rows need, points.
     pub(crate) fn left_margin(&self, grid: &Grid) -> f64 {
         let theme = &self.theme;
-        let rows: Vec<AxisSide> = grid.rows.iter().map(|(side, height)| self.row(side, *height)).collect();
-        let labels = rows.iter().map(|row| row.axis.widest(theme.tick_font));
-        let titles = rows.iter().map(|row| row.title.lines().count());
+        let labels = grid.rows.iter().map(|(side, height)| self.row(side, *height).axis.widest(theme.tick_font));
+        let titles = grid.rows.iter().map(|(side, height)| self.row(side, *height).title.lines().count());
         let lines = titles.max().unwrap_or(0).max(usize::from(grid.shared_title.is_some())) as f64;
         let titles = if lines == 0.0 { 0.0 } else { (lines * LINE + 0.5) * theme.label_font };
         0.5 * theme.small_font + titles + labels.fold(0.0, f64::max) + 2.0 * self.tick_length()

@@ -144,8 +144,8 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Plotted<Drawing> {
         chart.frame(theme)?;
         cells.iter().try_for_each(|cell| cell.label(chart))?;
     }
-    if let Shades::Range(_, title) = &data.shades {
-        bar(&mut sheet, title, &shading)?;
+    if let Shades::Range(division, title) = &data.shades {
+        bar(&mut sheet, *division, title, &shading)?;
     }
     let undefined = data.all().any(|cell| cell.value.is_none()).then_some("– is not defined.");
     let small = data.has_intervals(theme).then_some("Small: 95 % intervals, where there is room.");
@@ -157,17 +157,16 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Plotted<Drawing> {
 const PIECES: usize = 64;
 
 /// The colours with their values, under the panels; nothing where there is one value, or none.
-fn bar(sheet: &mut Sheet, title: &str, shading: &Shading) -> Plotted {
+fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) -> Plotted {
     if shading.high <= shading.low {
         return Ok(());
     }
     let theme = sheet.theme;
     let value = |along: f64| if shading.is_log { 10f64.powf(along) } else { along };
     let (low, high) = (value(shading.low), value(shading.high));
-    let axis = if shading.is_log {
-        Axis::log_covering(&[low, high]).between(low, high)
-    } else {
-        Axis::linear(low, high, Division::Decimal)
+    let axis = match division {
+        Division::Factors => Axis::log_covering(&[low, high]).between(low, high),
+        _ => Axis::linear(low, high, Division::Decimal),
     };
     let rows = vec![(AxisSide::new(Axis::rows(&[], 0.5), ""), 0.9 * theme.small_font)];
     let grid = Grid { columns: vec![AxisSide::new(axis, title)], rows, ..Grid::default() };

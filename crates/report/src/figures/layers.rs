@@ -89,17 +89,16 @@ pub(super) fn annotated(
     let mut outside = Unshown::default();
     let mut charts = Vec::new();
     // Panels of the whole width stand below each other to the point.
-    let grids: Vec<(Grid, bool)> = data.stacks.iter().map(|stack| grid(stack, theme)).collect();
-    let whole = data.stacks.iter().zip(&grids).filter(|(stack, _)| !stack.is_half);
-    let left = whole.map(|(_, (grid, _))| sheet.left_margin(grid)).fold(0.0, f64::max);
-    let mut grids = grids.into_iter();
+    let whole = data.stacks.iter().filter(|stack| !stack.is_half);
+    let left = whole.map(|stack| sheet.left_margin(&grid(stack, theme).0)).fold(0.0, f64::max);
     for stacks in side_by_side(data, theme) {
         let width = if stacks[0].is_half && !theme.is_narrow() { 2 } else { 1 };
         let gap = Sheet::gap(theme);
         let part = (theme.width - aside::room(data, theme) - gap * (width - 1) as f64) / width as f64;
         let (top, mut lowest) = (sheet.y, sheet.y);
-        for ((column, stack), (mut grid, mut is_cut)) in stacks.iter().enumerate().zip(grids.by_ref()) {
+        for (column, stack) in stacks.iter().enumerate() {
             sheet.y = top;
+            let (mut grid, mut is_cut) = grid(stack, theme);
             grid.left = Some(if stack.is_half { 0.0 } else { left });
             if stack.equal {
                 // Longer labels of the vertical axis take from the width, which changes the axis.
