@@ -269,6 +269,22 @@ impl Whitener {
         });
     }
 
+    /// The states that are predicted before every reading of a column, from the readings before it.
+    pub fn predicted(&self, column: &[f64]) -> Vec<[f64; MOST]> {
+        let mut x = [[0.0]; MOST];
+        let predict = |(&value, &(Reading { step, sensor }, gain)): (&f64, &(Reading, u32))| {
+            if let Some(step) = step {
+                x = advanced(&self.transitions[step], &x);
+            }
+            let before = x.map(|[state]| state);
+            let [seen] = if self.states == 0 { [0.0] } else { self.sensors[sensor].of(&x) };
+            let (gain, _) = &self.gains[gain as usize];
+            x.iter_mut().zip(gain).for_each(|(state, gain)| state[0] += gain * (value - seen));
+            before
+        };
+        column.iter().zip(&self.readings).map(predict).collect()
+    }
+
     /// Applies the transpose of what makes a column white, so that both together are Σ⁻¹ of the noise.
     pub fn apply_transposed(&self, column: &mut [f64]) {
         let mut later = [0.0; MOST];

@@ -26,6 +26,7 @@ pub mod replay_errors;
 mod report;
 pub mod selection;
 pub mod settings;
+pub mod shape;
 mod shapes;
 mod signature;
 pub mod structures;

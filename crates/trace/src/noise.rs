@@ -33,6 +33,9 @@ pub enum CorrelatedNoise {
     /// ε'' + 2ε'/τ + ε/τ² = w, added to the heading: a smooth error that lasts for a time τ, this one of [`SMOOTH`].
     /// It is what a model leaves that is not quite that of the ship.
     Smooth(usize),
+    /// r' = −a r + d with a smooth d, d'' + 2d'/τ + d/τ² = w (Matérn 3/2): no weather, but a moment of any smooth
+    /// course. Its time τ is this one of [`SMOOTH_MOMENTS`].
+    SmoothMoment(usize),
 }
 
 /// A gain of the filter that changes by less than this share has settled. Which structures are refitted, and with them
@@ -49,7 +52,16 @@ pub const COMPASS: [f64; 4] = [0.01, 0.03, 0.06, 0.128];
 /// Correlation times of a smooth error that are told apart, as shares of the longest record.
 pub const SMOOTH: [f64; 3] = [0.01, 0.03, 0.08];
 
+/// Correlation times of a smooth moment that are told apart, as shares of the longest record.
+pub const SMOOTH_MOMENTS: [f64; 4] = [0.03, 0.06, 0.12, 0.25];
+
 impl CorrelatedNoise {
+    /// Smooth moments, which are no law of the noise of a record: a moment that one of them describes better than any
+    /// law of [`all`](Self::all) is not chance.
+    pub fn smooth_moments() -> impl Iterator<Item = Self> {
+        (0..SMOOTH_MOMENTS.len()).map(Self::SmoothMoment)
+    }
+
     /// Every kind: random moments, then errors of the heading.
     pub fn all() -> impl Iterator<Item = Self> {
         let gusts = (0..GUSTS.len()).map(Self::OrnsteinUhlenbeck);
@@ -74,11 +86,12 @@ impl CorrelatedNoise {
             Self::OrnsteinUhlenbeck(number) => Some(GUSTS[number] * longest),
             Self::Compass(number) => Some(COMPASS[number] * longest),
             Self::Smooth(number) => Some(SMOOTH[number] * longest),
+            Self::SmoothMoment(number) => Some(SMOOTH_MOMENTS[number] * longest),
         }
     }
 
     /// Intensity of w for level 1. Gusts have that of the white moment they are to slow motions.
-    fn intensity(self, longest: f64) -> f64 {
+    pub fn intensity(self, longest: f64) -> f64 {
         let white = 3.0 / longest.powi(3);
         match self {
             Self::White => white,
@@ -86,6 +99,7 @@ impl CorrelatedNoise {
             Self::Walk => 20.0 / longest.powi(5),
             Self::Compass(number) => 2.0 / (COMPASS[number] * longest),
             Self::Smooth(number) => 4.0 / (SMOOTH[number] * longest).powi(3),
+            Self::SmoothMoment(number) => 4.0 / (SMOOTH_MOMENTS[number] * longest).powi(3),
         }
     }
 
@@ -95,7 +109,7 @@ impl CorrelatedNoise {
     pub fn size(self, level: f64, longest: f64) -> f64 {
         let square = level * self.intensity(longest);
         match (self, self.correlation(longest)) {
-            (Self::Smooth(_), _) => level.sqrt(),
+            (Self::Smooth(_) | Self::SmoothMoment(_), _) => level.sqrt(),
             (_, Some(time)) => (0.5 * time * square).sqrt(),
             (_, None) => square.sqrt(),
         }
@@ -111,6 +125,11 @@ impl CorrelatedNoise {
             }
             Self::Compass(_) => DMatrix::from_element(1, 1, -fading),
             Self::Smooth(_) => DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -fading * fading, -2.0 * fading]),
+            Self::SmoothMoment(_) => {
+                let rows = [[0.0, 1.0, 0.0, 0.0], [0.0, -damping, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+                let last = [0.0, 0.0, -fading * fading, -2.0 * fading];
+                DMatrix::from_row_slice(4, 4, [rows.as_flattened(), &last].concat().as_slice())
+            }
         }
     }
 }
@@ -140,7 +159,7 @@ impl NoiseColour {
 struct NoiseTransition {
     states: usize,
     /// Variance of the states at the beginning.
-    beginning: [f64; 3],
+    beginning: [f64; 4],
     /// Every distinct step.
     steps: Vec<Step<MOST>>,
     /// The step before every observed row.
@@ -152,10 +171,11 @@ impl NoiseTransition {
         let intensity = kind.intensity(longest);
         let generator = kind.generator(inverse_time, longest);
         let beginning = match (kind, kind.correlation(longest)) {
-            (CorrelatedNoise::Smooth(_), Some(time)) => [1.0, time.powi(-2), 0.0],
-            (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => [0.0, 0.0, 0.5 * time * intensity],
-            (_, Some(time)) => [0.5 * time * intensity, 0.0, 0.0],
-            (_, None) => [0.0; 3],
+            (CorrelatedNoise::Smooth(_), Some(time)) => [1.0, time.powi(-2), 0.0, 0.0],
+            (CorrelatedNoise::SmoothMoment(_), Some(time)) => [0.0, 0.0, 1.0, time.powi(-2)],
+            (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => [0.0, 0.0, 0.5 * time * intensity, 0.0],
+            (_, Some(time)) => [0.5 * time * intensity, 0.0, 0.0, 0.0],
+            (_, None) => [0.0; 4],
         };
         let mut known: Vec<f64> = Vec::new();
         let of_row = durations.iter().map(|&h| {
@@ -178,7 +198,7 @@ pub struct RecordNoise {
     variances: Vec<f64>,
     longest: f64,
     damping: f64,
-    /// What wanders, of every kind that was asked for, in the order of [`CorrelatedNoise::all`].
+    /// What wanders, of every kind that was asked for, smooth moments last.
     drifts: Vec<OnceLock<NoiseTransition>>,
 }
 
@@ -197,8 +217,13 @@ impl RecordNoise {
             variances,
             longest,
             damping,
-            drifts: CorrelatedNoise::all().map(|_| OnceLock::new()).collect(),
+            drifts: Self::kinds().map(|_| OnceLock::new()).collect(),
         }
+    }
+
+    /// Every kind of what wanders.
+    fn kinds() -> impl Iterator<Item = CorrelatedNoise> {
+        CorrelatedNoise::all().chain(CorrelatedNoise::smooth_moments())
     }
 
     /// The filter that makes noise of this colour white, in units of the white noise of a full row.
@@ -210,7 +235,7 @@ impl RecordNoise {
     /// Random moment and waves of this colour as one linear system, and the number of its states.
     pub(crate) fn system(&self, colour: &NoiseColour) -> (System<MOST>, usize) {
         let drift = colour.wander.map(|(kind, level)| {
-            let place = CorrelatedNoise::all().position(|other| other == kind).expect("a kind of the list");
+            let place = Self::kinds().position(|other| other == kind).expect("a kind of the list");
             let new = || NoiseTransition::new(kind, self.damping, &self.durations, self.longest);
             (self.drifts[place].get_or_init(new), level)
         });

@@ -1,0 +1,219 @@
+//! A linearised structure under one law of the noise, and what shapes behind its unknowns explain.
+//!
+//! −2 log p = (n − p) log s² + Σ log S + log det(XᵀV⁻¹X) + Σ price, with s² = RSS/(n − p) and the p unknowns X that are
+//! integrated out: base, initial states and what is beside them. The coefficient of an effect or a shape pays
+//! max(log n, log(1 + t²)) + 1 with its t value behind those before it, a shape the logarithm of the places and forms
+//! that were tried, a law log n for each of its parameters.
+
+use estimation::column::dot;
+
+use crate::linear::{HeadingSensitivities, Linear};
+use crate::weights::Weights;
+
+/// A share of its own square below which a column is one of the others.
+const DEPENDENT: f64 = 1e-7;
+
+/// The change of the headings for one coefficient, rad for rad, by record.
+pub type Column = Vec<(usize, Vec<f64>)>;
+
+/// Residual and sensitivities of a structure, its unknowns in the order in which they are taken.
+#[derive(Debug, Clone)]
+pub struct LinearisedStructure {
+    /// Residual and columns.
+    pub linear: Linear,
+    /// Unknowns that are integrated out; those behind them pay.
+    pub integrated: usize,
+    /// Precision of what is expected of the unknowns, and where they stand beside it.
+    pub prior: Vec<(f64, f64)>,
+    /// How far the unknowns that pay are from neutral.
+    pub sizes: Vec<f64>,
+}
+
+impl LinearisedStructure {
+    /// Number of headings.
+    pub fn rows(&self) -> usize {
+        self.linear.blocks.iter().map(|block| block.residual.len()).sum()
+    }
+}
+
+/// The same under a law.
+#[derive(Debug, Clone)]
+pub struct Conditioned {
+    blocks: Vec<HeadingSensitivities>,
+    /// Rows of the lower factor of the products of all columns, and its solution for the residual.
+    factor: Vec<Vec<f64>>,
+    solution: Vec<f64>,
+    /// What every coefficient that pays stands at, in its standard deviations times s.
+    paid: Vec<f64>,
+    /// RSS of the whitened residual.
+    square: f64,
+    /// What does not depend on the shapes: Σ log S, log det, and the price of the law.
+    fixed: f64,
+    /// n − p and log n.
+    freedom: f64,
+    log_n: f64,
+}
+
+/// What shapes add to a [`Conditioned`].
+struct Extension {
+    factor: Vec<Vec<f64>>,
+    solution: Vec<f64>,
+}
+
+impl Conditioned {
+    /// A structure under a law of so many parameters; `None` where its unknowns cannot be told apart.
+    pub fn new(structure: &LinearisedStructure, weights: &Weights, law_freedom: usize) -> Option<Self> {
+        let blocks = structure.linear.blocks.iter().enumerate();
+        let blocks: Vec<HeadingSensitivities> = blocks.map(|(record, block)| block.white(record, weights)).collect();
+        let count = structure.linear.unknowns;
+        let (mut matrix, mut gradient, mut square) = (vec![vec![0.0; count]; count], vec![0.0; count], 0.0);
+        for block in &blocks {
+            for (k, (i, column)) in block.columns.iter().enumerate() {
+                for (j, other) in &block.columns[..=k] {
+                    matrix[(*i).max(*j)][(*i).min(*j)] += dot(column, other);
+                }
+                gradient[*i] += dot(column, &block.residual);
+            }
+            square += dot(&block.residual, &block.residual);
+        }
+        for (k, &(precision, beside)) in structure.prior.iter().enumerate() {
+            matrix[k][k] += precision;
+            gradient[k] -= precision * beside;
+            square += precision * beside * beside;
+        }
+        let (factor, solution) = (factor(&matrix, &[])?, Vec::new());
+        let rows = structure.rows() as f64;
+        let (freedom, log_n) = (rows - structure.integrated as f64, rows.ln());
+        let weights_rows = weights.whiteners.iter().zip(&weights.scale).zip(&blocks);
+        let log_variance: f64 = weights_rows
+            .map(|((own, scale), block)| own.log_variance - 2.0 * block.residual.len() as f64 * scale.ln())
+            .sum();
+        let volume: f64 = (0..structure.integrated).map(|k| 2.0 * factor[k][k].ln()).sum();
+        let fixed = log_variance + volume + law_freedom as f64 * log_n;
+        let mut all = Self { blocks, factor, solution, paid: Vec::new(), square, fixed, freedom, log_n };
+        all.solution = solved(&all.factor, &gradient);
+        all.square -= dot(&all.solution, &all.solution);
+        all.paid = (structure.integrated..count)
+            .map(|k| {
+                let sizes = structure.sizes.iter().enumerate().skip(k - structure.integrated);
+                let away: f64 = sizes.map(|(j, size)| all.factor[structure.integrated + j][k] * size).sum();
+                all.solution[k] + away
+            })
+            .collect();
+        Some(all)
+    }
+
+    /// −2 log p.
+    pub fn height(&self) -> f64 {
+        self.height_with(&[], self.square)
+    }
+
+    /// The same with coefficients behind it that leave a square.
+    fn height_with(&self, behind: &[f64], square: f64) -> f64 {
+        let variance = square.max(1e-12) / self.freedom;
+        let price = |c: &f64| self.log_n.max((c * c / variance).ln_1p()) + 1.0;
+        self.freedom * variance.ln() + self.fixed + self.paid.iter().chain(behind).map(price).sum::<f64>()
+    }
+
+    /// −2 log p with white columns behind it; infinite where they are some of those before.
+    pub fn height_of(&self, columns: &[Column]) -> f64 {
+        let extension = self.extension(columns);
+        extension.map_or(f64::INFINITY, |own| self.height_with(&own.solution, self.square_with(&own.solution)))
+    }
+
+    fn square_with(&self, solution: &[f64]) -> f64 {
+        (self.square - dot(solution, solution)).max(1e-9 * self.square)
+    }
+
+    /// The structure with white columns behind it.
+    pub fn extended(&self, columns: &[Column]) -> Option<Self> {
+        let extension = self.extension(columns)?;
+        let mut next = self.clone();
+        for (k, column) in columns.iter().enumerate() {
+            for (record, values) in column {
+                next.blocks[*record].columns.push((self.factor.len() + k, values.clone()));
+            }
+        }
+        next.square = self.square_with(&extension.solution);
+        next.factor.extend(extension.factor);
+        next.paid.extend_from_slice(&extension.solution);
+        next.solution.extend(extension.solution);
+        Some(next)
+    }
+
+    /// Rows of the factor, and of its solution, for white columns behind all others.
+    fn extension(&self, columns: &[Column]) -> Option<Extension> {
+        let count = self.factor.len();
+        let mut matrix = Vec::with_capacity(columns.len());
+        let mut gradient = Vec::with_capacity(columns.len());
+        for (k, column) in columns.iter().enumerate() {
+            let (mut row, mut with) = (vec![0.0; count + k + 1], 0.0);
+            for (record, values) in column {
+                let block = &self.blocks[*record];
+                block.columns.iter().for_each(|(unknown, own)| row[*unknown] += dot(own, values));
+                with += dot(&block.residual, values);
+            }
+            for (j, other) in columns[..=k].iter().enumerate() {
+                let pairs = column.iter().flat_map(|(record, values)| {
+                    other.iter().filter(move |(own, _)| own == record).map(move |(_, own)| dot(own, values))
+                });
+                row[count + j] = pairs.sum();
+            }
+            matrix.push(row);
+            gradient.push(with);
+        }
+        let factor = factor(&matrix, &self.factor)?;
+        let mut solution: Vec<f64> = Vec::with_capacity(columns.len());
+        for (k, row) in factor.iter().enumerate() {
+            let before = dot(&row[..count], &self.solution) + dot(&row[count..count + k], &solution);
+            solution.push((gradient[k] - before) / row[count + k]);
+        }
+        Some(Extension { factor, solution })
+    }
+
+    /// The step of all unknowns from where they stand.
+    pub fn step(&self) -> Vec<f64> {
+        let count = self.factor.len();
+        let mut step = self.solution.clone();
+        for k in (0..count).rev() {
+            step[k] /= self.factor[k][k];
+            let moved = step[k];
+            (0..k).for_each(|j| step[j] -= self.factor[k][j] * moved);
+        }
+        step
+    }
+
+    /// Standard deviation of the white noise of a row, in units of that of the weights.
+    pub fn sd(&self) -> f64 {
+        (self.square / self.freedom).sqrt()
+    }
+}
+
+/// Rows of the lower factor of a symmetric matrix behind those of a `known` part; `None` where it is singular.
+fn factor(matrix: &[Vec<f64>], known: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(matrix.len());
+    for (k, source) in matrix.iter().enumerate() {
+        let here = known.len() + k;
+        let mut row = vec![0.0; here + 1];
+        for j in 0..here {
+            let other = if j < known.len() { &known[j] } else { &rows[j - known.len()] };
+            row[j] = (source[j] - dot(&row[..j], &other[..j])) / other[j];
+        }
+        let left = source[here] - dot(&row[..here], &row[..here]);
+        if !(left > DEPENDENT * source[here] && left > 0.0) {
+            return None;
+        }
+        row[here] = left.sqrt();
+        rows.push(row);
+    }
+    Some(rows)
+}
+
+/// L⁻¹ of a right side.
+fn solved(factor: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
+    let mut solution: Vec<f64> = Vec::with_capacity(right.len());
+    for (k, row) in factor.iter().enumerate() {
+        solution.push((right[k] - dot(&row[..k], &solution)) / row[k]);
+    }
+    solution
+}

@@ -1,0 +1,159 @@
+//! The motion of a ship as it was foreseen one row ahead, and the answer of her heading to a moment.
+//!
+//! Heading and yaw rate are those of the replay and, under a random moment, what the filter of the law predicts from the
+//! rows before. A shape of these states is known before the row that it explains; one of smoothed states would hold the
+//! random moment itself and always explain it.
+
+use ship::Replayable;
+use ship::dynamics::Dynamics;
+use ship::first_order::{State, Transition};
+use ship::replay::replay_states;
+
+use crate::model::{Structure, step};
+use crate::noise::{NoiseColour, RecordNoise};
+use crate::record::PreparedRecord;
+
+/// Solver steps for each shortest time constant.
+const STEPS: f64 = 2.0;
+
+/// Rows among which the median of the rudder is taken: a reading that stands alone is no motion of the rudder.
+const MEDIAN: usize = 5;
+
+/// One record: its motion, and the first-order response that a moment goes through.
+#[derive(Debug, Clone)]
+pub struct Motion<'a> {
+    /// The record.
+    pub record: &'a PreparedRecord,
+    /// Its number.
+    pub number: usize,
+    /// 1/T, 1/s, and K/T, 1/s².
+    pub base: [f64; 2],
+    /// Foreseen heading less the first one at every row, rad.
+    pub heading: Vec<f64>,
+    /// Foreseen yaw rate at every row, rad/s.
+    pub rate: Vec<f64>,
+    /// Rudder angle at every row, rad.
+    pub rudder: Vec<f64>,
+    /// Its rate, rad/s.
+    pub rudder_rate: Vec<f64>,
+    /// Way to starboard of the first course at every row for a speed of 1 m/s: ∫ sin(ψ − ψ₀) dt, s.
+    pub way: Vec<f64>,
+    transitions: Vec<Transition>,
+}
+
+impl<'a> Motion<'a> {
+    /// The motion of a record under a structure and a colour of the noise, from what the structure leaves of the headings
+    /// (rad).
+    pub fn new(
+        (record, number): (&'a PreparedRecord, usize),
+        structure: &Structure,
+        (theta, initial): (&[f64], [f64; 2]),
+        (noise, colour): (&RecordNoise, &NoiseColour),
+        residual: &[f64],
+    ) -> Self {
+        let response = structure.response(Some(number), theta);
+        let recorded = record.recorded(&response);
+        let mut state = vec![0.0; response.dimension()];
+        response.enter(initial[0], initial[1], &recorded.input(record.time[0], response.dead_time()), &mut state);
+        let (mut heading, mut rate) = (Vec::new(), Vec::new());
+        let step = step(&response, record.spacing, STEPS);
+        replay_states(&response, &recorded, &record.time, step, &mut state, |_, state, _| {
+            heading.push(state[0]);
+            rate.push(state[1]);
+        });
+        if colour.wander.is_some_and(|(kind, _)| !kind.is_of_heading()) {
+            let predicted = noise.whitener(colour).predicted(residual);
+            for row in 0..record.time.len() {
+                heading[row] += between(record, row, |k| predicted[k][0]);
+                rate[row] += between(record, row, |k| predicted[k][1]);
+            }
+        }
+        let first = heading[0];
+        heading.iter_mut().for_each(|psi| *psi -= first);
+        let rudder = medians(&record.time.iter().map(|&t| record.rudder.at(t)).collect::<Vec<_>>());
+        let intervals = || record.time.windows(2).map(|pair| pair[1] - pair[0]);
+        let mut way = vec![0.0];
+        for (row, h) in intervals().enumerate() {
+            way.push(way[row] + 0.5 * h * (heading[row].sin() + heading[row + 1].sin()));
+        }
+        Self {
+            record,
+            number,
+            base: [theta[0], theta[1]],
+            rudder_rate: slopes(&record.time, &rudder),
+            transitions: intervals().map(|h| Transition::new(theta[0], h)).collect(),
+            heading,
+            rate,
+            rudder,
+            way,
+        }
+    }
+
+    /// Change of the heading at the observed rows for a moment at the rows that runs straight between them, rad for rad
+    /// of rudder.
+    pub fn answer(&self, moment: &[f64]) -> Vec<f64> {
+        let gain = self.base[1];
+        let (mut state, mut row) = (State::default(), 0);
+        let at = |&observed: &usize| {
+            while row < observed {
+                let (transition, [from, to]) = (&self.transitions[row], [gain * moment[row], gain * moment[row + 1]]);
+                state = transition.advance(state, from, (to - from) / transition.h);
+                row += 1;
+            }
+            state.heading
+        };
+        self.record.observed.iter().map(at).collect()
+    }
+
+    /// A signal of the rows after a first-order lag, s.
+    pub fn lagged(&self, signal: impl Fn(usize) -> f64, lag: f64) -> Vec<f64> {
+        let mut all = vec![signal(0)];
+        for (row, transition) in self.transitions.iter().enumerate() {
+            let kept = (-transition.h / lag).exp();
+            all.push(kept * all[row] + (1.0 - kept) * 0.5 * (signal(row) + signal(row + 1)));
+        }
+        all
+    }
+
+    /// First instant, s, and length, s.
+    pub fn span(&self) -> [f64; 2] {
+        [self.record.time[0], self.record.duration()]
+    }
+}
+
+/// A value of the observed rows at any row, straight between two of them.
+fn between(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f64) -> f64 {
+    let after = record.observed.partition_point(|&observed| observed < row);
+    let last = record.observed.len() - 1;
+    if after > last {
+        return value(last);
+    }
+    if after == 0 || record.observed[after] == row {
+        return value(after);
+    }
+    let [from, to] = [after - 1, after].map(|k| record.time[record.observed[k]]);
+    let share = (record.time[row] - from) / (to - from);
+    value(after - 1) * (1.0 - share) + value(after) * share
+}
+
+/// Running medians.
+fn medians(values: &[f64]) -> Vec<f64> {
+    let half = MEDIAN / 2;
+    let at = |row: usize| {
+        let mut near: [f64; MEDIAN] =
+            std::array::from_fn(|k| values[(row + k).saturating_sub(half).min(values.len() - 1)]);
+        near.sort_by(f64::total_cmp);
+        near[half]
+    };
+    (0..values.len()).map(at).collect()
+}
+
+/// Slopes of a signal from the row before to the row behind.
+fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
+    let last = time.len() - 1;
+    let at = |row: usize| {
+        let (from, to) = (row.saturating_sub(1), (row + 1).min(last));
+        (values[to] - values[from]) / (time[to] - time[from])
+    };
+    (0..time.len()).map(at).collect()
+}

@@ -1,0 +1,293 @@
+//! The search for shapes: all are tried beside those that stand, under some laws; the law of the best is found anew among
+//! all, and their places are refined.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::conditioned::{Column, Conditioned};
+use super::dictionary::{Shape, shapes};
+use super::laws::{RandomLaw, tried};
+use super::motion::Motion;
+use crate::weights::Weights;
+
+/// Classes of shapes: each had its chance.
+const CLASSES: f64 = 11.0;
+
+/// Rounds, each with one shape more.
+const ROUNDS: usize = 3;
+
+/// Shapes whose law is found anew: the best of all, the best of so many classes; and those that are refined.
+const BEST: usize = 5;
+const BEST_OF_CLASSES: usize = 6;
+const REFINED: usize = 2;
+
+/// Shapes that are made white side by side.
+const SIDE_BY_SIDE: usize = 8;
+
+/// A shape with what the headings answer.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// The shape.
+    pub shape: Shape,
+    /// The record in which it acts; `None` for all.
+    pub only: Option<usize>,
+    /// −2 log of the prior odds of its places and forms.
+    pub price: f64,
+    columns: Vec<Column>,
+}
+
+/// Shapes that stand together, with the law beside them.
+#[derive(Debug, Clone)]
+pub struct Explanation {
+    /// The shapes.
+    pub shapes: Vec<Arc<Candidate>>,
+    /// −2 log p with the price of all.
+    pub height: f64,
+    /// Place of the law.
+    pub law: usize,
+}
+
+/// What a search needs.
+pub struct Search<'a> {
+    /// The records.
+    pub motions: Vec<Motion<'a>>,
+    /// Laws, and what makes columns white under each.
+    pub laws: &'a [RandomLaw],
+    pub weights: &'a [Weights],
+    /// The structure under each; `None` where its unknowns cannot be told apart.
+    pub structure: Vec<Option<Conditioned>>,
+}
+
+/// Sizes below which a moment is none.
+const LEAST: f64 = 1e-12;
+
+impl Search<'_> {
+    /// A shape in all records, or in one; `None` where the records do not hold it.
+    fn candidate(&self, shape: Shape, only: Option<usize>, price: f64) -> Option<Candidate> {
+        let acting = || self.motions.iter().filter(|motion| only.is_none_or(|only| only == motion.number));
+        let moments: Vec<(&Motion, Vec<Vec<f64>>)> = acting().map(|motion| (motion, shape.moments(motion))).collect();
+        let column = |k: usize| -> Option<Column> {
+            let values = moments.iter().flat_map(|(_, own)| &own[k]);
+            let (square, rows) = values.fold((0.0, 0.0), |(sum, rows), m| (sum + m * m, rows + 1.0));
+            let size = (square / rows).sqrt();
+            let answer = |(motion, own): &(&Motion, Vec<Vec<f64>>)| {
+                let moment: Vec<f64> = own[k].iter().map(|m| m / size).collect();
+                (motion.number, motion.answer(&moment))
+            };
+            (size.is_finite() && size > LEAST).then(|| moments.iter().map(answer).collect())
+        };
+        let columns = (0..moments.first()?.1.len()).map(column).collect::<Option<Vec<Column>>>()?;
+        Some(Candidate { shape, only, price, columns })
+    }
+
+    /// Every shape.
+    fn library(&self, unit: f64) -> Vec<Arc<Candidate>> {
+        let longest = self.motions.iter().max_by(|one, other| one.span()[1].total_cmp(&other.span()[1]));
+        let Some(longest) = longest else { return Vec::new() };
+        let all = |motion: &Motion| shapes([motion.span()[1], motion.record.spacing], unit);
+        let forms = |class: usize, all: &[(Shape, usize)]| {
+            all.iter().filter(|(shape, places)| *places == 1 && shape.class() == class).count()
+        };
+        let records = self.motions.len();
+        let price = |shape: &Shape, places: usize, all: &[(Shape, usize)]| {
+            let tried = if places > 1 { places } else { forms(shape.class(), all) };
+            let records = if shape.is_of_time() { records } else { 1 };
+            2.0 * ((tried * records) as f64).ln() + 2.0 * CLASSES.ln()
+        };
+        let of_ship = all(longest);
+        let mut wanted: Vec<(Shape, Option<usize>, f64)> = Vec::new();
+        for (shape, places) in of_ship.iter().filter(|(shape, _)| !shape.is_of_time()) {
+            wanted.push((*shape, None, price(shape, *places, &of_ship)));
+        }
+        for motion in &self.motions {
+            let of_record = all(motion);
+            for (shape, places) in of_record.iter().filter(|(shape, _)| shape.is_of_time()) {
+                wanted.push((*shape, Some(motion.number), price(shape, *places, &of_record)));
+            }
+        }
+        let made = |(shape, only, price)| self.candidate(shape, only, price).map(Arc::new);
+        wanted.into_par_iter().filter_map(made).collect()
+    }
+
+    /// The columns of a shape, white under a law.
+    fn white(&self, law: usize, candidates: &[&Candidate]) -> Vec<Vec<Column>> {
+        let mut all: Vec<Vec<Column>> = candidates.iter().map(|own| own.columns.clone()).collect();
+        let columns = || all.iter().flatten().flatten();
+        let mut records: Vec<usize> = columns().map(|(record, _)| *record).collect();
+        records.sort_unstable();
+        records.dedup();
+        for record in records {
+            let pieces = all.iter_mut().flatten().flatten().filter(|(number, _)| *number == record);
+            self.weights[law].apply(record, &mut pieces.map(|(_, values)| values).collect::<Vec<_>>());
+        }
+        all
+    }
+
+    /// The structures with shapes behind them, under every law.
+    fn extended(&self, shapes: &[Arc<Candidate>]) -> Vec<Option<Conditioned>> {
+        let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
+        let under = |(law, structure): (usize, &Option<Conditioned>)| {
+            structure.as_ref()?.extended(&self.white(law, &all).concat())
+        };
+        self.structure.par_iter().enumerate().map(under).collect()
+    }
+
+    /// The best law of a structure with one shape more.
+    fn judged(&self, under: &[Option<Conditioned>], shapes: &[&Candidate]) -> (f64, usize) {
+        let price: f64 = shapes.iter().map(|own| own.price).sum();
+        let height = |(law, structure): (usize, &Option<Conditioned>)| {
+            let own = structure.as_ref()?.height_of(&self.white(law, shapes).concat());
+            Some((own + price, law))
+        };
+        under.par_iter().enumerate().filter_map(height).min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or(NONE)
+    }
+
+    /// The best law of the structure alone.
+    pub fn alone(&self) -> (f64, usize) {
+        best_of(&self.structure)
+    }
+
+    /// The lowest height of every shape behind structures, under some laws.
+    fn scan(&self, under: &[Option<Conditioned>], laws: &[usize], library: &[Arc<Candidate>]) -> Vec<f64> {
+        let of = |chunk: &[Arc<Candidate>]| {
+            let candidates: Vec<&Candidate> = chunk.iter().map(Arc::as_ref).collect();
+            let mut lowest = vec![f64::INFINITY; chunk.len()];
+            for &law in laws {
+                let Some(structure) = &under[law] else { continue };
+                for (low, columns) in lowest.iter_mut().zip(self.white(law, &candidates)) {
+                    *low = low.min(structure.height_of(&columns));
+                }
+            }
+            lowest.into_iter().zip(chunk).map(|(low, own)| low + own.price).collect::<Vec<f64>>()
+        };
+        library.par_chunks(SIDE_BY_SIDE).flat_map_iter(of).collect()
+    }
+
+    /// The best shapes of a scan: those of all, and those of some classes.
+    fn finalists(&self, heights: &[f64], library: &[Arc<Candidate>]) -> Vec<Arc<Candidate>> {
+        let mut order: Vec<usize> = (0..library.len()).filter(|&place| heights[place].is_finite()).collect();
+        order.sort_by(|&one, &other| heights[one].total_cmp(&heights[other]));
+        let (mut classes, mut kept) = (Vec::new(), Vec::new());
+        for (rank, place) in order.into_iter().enumerate() {
+            let class = library[place].shape.class();
+            let is_new = classes.len() < BEST_OF_CLASSES && !classes.contains(&class);
+            if is_new {
+                classes.push(class);
+            }
+            if is_new || rank < BEST {
+                kept.push(Arc::clone(&library[place]));
+            }
+        }
+        kept
+    }
+
+    /// The best explanation, and all that were tried.
+    pub fn explain(&self, unit: f64) -> (Explanation, Vec<Explanation>) {
+        let library = self.library(unit);
+        let (height, law) = self.alone();
+        let laws = tried(self.laws, law);
+        let mut stand = Explanation { shapes: Vec::new(), height, law };
+        let mut all = vec![stand.clone()];
+        let mut under = self.structure.clone();
+        for _ in 0..ROUNDS {
+            let heights = self.scan(&under, &laws, &library);
+            let price: f64 = stand.shapes.iter().map(|own| own.price).sum();
+            let with = |shape: Arc<Candidate>| {
+                let (height, law) = self.judged(&under, &[&shape]);
+                let shapes = [stand.shapes.as_slice(), &[shape]].concat();
+                Explanation { shapes, height: height + price, law }
+            };
+            let mut next: Vec<Explanation> = self.finalists(&heights, &library).into_iter().map(with).collect();
+            next.sort_by(|one, other| one.height.total_cmp(&other.height));
+            let refined: Vec<Explanation> = next.iter().take(REFINED).filter_map(|own| self.refined(own)).collect();
+            next.extend(refined);
+            next.sort_by(|one, other| one.height.total_cmp(&other.height));
+            let Some(best) = next.first().cloned() else { break };
+            all.extend(next);
+            stand = best;
+            under = self.extended(&stand.shapes);
+        }
+        let lowest = all.iter().min_by(|one, other| one.height.total_cmp(&other.height)).cloned();
+        (self.pruned(lowest.expect("the structure alone is one")), all)
+    }
+
+    /// Without the shapes that do not pay.
+    fn pruned(&self, mut best: Explanation) -> Explanation {
+        while best.shapes.len() > 1 {
+            let fewer = (0..best.shapes.len()).map(|place| self.without(&best, place));
+            match fewer.min_by(|one, other| one.height.total_cmp(&other.height)) {
+                Some(next) if next.height < best.height => best = next,
+                _ => break,
+            }
+        }
+        best
+    }
+
+    /// An explanation without one of its shapes, its law found anew.
+    pub fn without(&self, all: &Explanation, place: usize) -> Explanation {
+        let mut shapes = all.shapes.clone();
+        shapes.remove(place);
+        self.explained(shapes)
+    }
+
+    /// Shapes with their best law.
+    fn explained(&self, shapes: Vec<Arc<Candidate>>) -> Explanation {
+        let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
+        let (height, law) = if all.is_empty() { self.alone() } else { self.judged(&self.structure, &all) };
+        Explanation { shapes, height, law }
+    }
+
+    /// The places of all shapes refined under their law by steps that are halved, and the law found anew; `None` where
+    /// nothing moves.
+    fn refined(&self, from: &Explanation) -> Option<Explanation> {
+        let structure = self.structure[from.law].as_ref()?;
+        let mut shapes = from.shapes.clone();
+        let white = |own: &Candidate| self.white(from.law, &[own]).concat();
+        let mut columns: Vec<Vec<Column>> = shapes.iter().map(|own| white(own)).collect();
+        let mut lowest = structure.height_of(&columns.concat());
+        let mut has_moved = false;
+        for scale in [1.0, 0.5, 0.25] {
+            for number in 0..shapes.len() {
+                for (place, sign) in (0..shapes[number].shape.place_count()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
+                    for _ in 0..3 {
+                        let Candidate { shape, only, price, .. } = *shapes[number];
+                        let motion = &self.motions[only.unwrap_or(0)];
+                        let about = [motion.span()[1], motion.record.spacing];
+                        let moved = shape.moved(place, sign * scale, about);
+                        let Some(next) = moved.and_then(|shape| self.candidate(shape, only, price)) else { break };
+                        let before = std::mem::replace(&mut columns[number], white(&next));
+                        let height = structure.height_of(&columns.concat());
+                        if height >= lowest - 1e-6 {
+                            columns[number] = before;
+                            break;
+                        }
+                        (lowest, has_moved) = (height, true);
+                        shapes[number] = Arc::new(next);
+                    }
+                }
+            }
+        }
+        has_moved.then(|| self.explained(shapes))
+    }
+
+    /// The coefficients of an explanation, rad of rudder at the root mean square of every moment, shape by shape.
+    pub fn coefficients(&self, all: &Explanation) -> Vec<Vec<f64>> {
+        let shapes: Vec<&Candidate> = all.shapes.iter().map(Arc::as_ref).collect();
+        let structure = self.structure[all.law].as_ref();
+        let whole = structure.and_then(|own| own.extended(&self.white(all.law, &shapes).concat()));
+        let step = whole.map_or_else(Vec::new, |own| own.step());
+        let count: usize = shapes.iter().map(|own| own.columns.len()).sum();
+        let mut behind = step.get(step.len().saturating_sub(count)..).unwrap_or_default().iter().copied();
+        shapes.iter().map(|own| behind.by_ref().take(own.columns.len()).collect()).collect()
+    }
+}
+
+/// No explanation.
+const NONE: (f64, usize) = (f64::INFINITY, 0);
+
+/// Height and place of the best law of a structure.
+fn best_of(under: &[Option<Conditioned>]) -> (f64, usize) {
+    let heights = under.iter().enumerate().filter_map(|(law, own)| Some((own.as_ref()?.height(), law)));
+    heights.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or(NONE)
+}
