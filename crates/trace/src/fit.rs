@@ -61,10 +61,16 @@ pub struct FittedRecords {
 impl FittedRecords {
     /// Prepares records of a ship whose base has about this 1/T (1/s) and which sails its length in `time` seconds.
     pub fn new(records: Vec<PreparedRecord>, inverse_time: f64, time: f64) -> Self {
-        let longest = records.iter().map(PreparedRecord::duration).fold(0.0, f64::max);
-        let full = records.iter().map(|record| record.full_readings).max().unwrap_or(1);
-        let noise = records.iter().map(|record| RecordNoise::new(record, inverse_time, longest, full)).collect();
-        Self { records, noise, time }
+        let mut all = Self { records, noise: Vec::new(), time };
+        all.noise = all.noise_of(inverse_time);
+        all
+    }
+
+    /// The noise of the records of a ship of this 1/T, 1/s.
+    pub fn noise_of(&self, inverse_time: f64) -> Vec<RecordNoise> {
+        let full = self.records.iter().map(|record| record.full_readings).max().unwrap_or(1);
+        let of = |record| RecordNoise::new(record, inverse_time, self.longest(), full);
+        self.records.iter().map(of).collect()
     }
 
     /// Number of observed headings.

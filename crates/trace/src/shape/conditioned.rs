@@ -187,6 +187,20 @@ impl Conditioned {
     pub fn sd(&self) -> f64 {
         (self.square / self.freedom).sqrt()
     }
+
+    /// What is new in every heading of the records, over its standard deviation.
+    pub fn innovations(&self) -> Vec<Vec<f64>> {
+        let (step, sd) = (self.step(), self.sd());
+        let of = |block: &HeadingSensitivities| {
+            let mut left = block.residual.clone();
+            for (unknown, column) in &block.columns {
+                left.iter_mut().zip(column).for_each(|(e, x)| *e -= step[*unknown] * x);
+            }
+            left.iter_mut().for_each(|e| *e /= sd);
+            left
+        };
+        self.blocks.iter().map(of).collect()
+    }
 }
 
 /// Rows of the lower factor of a symmetric matrix behind those of a `known` part; `None` where it is singular.

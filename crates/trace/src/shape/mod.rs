@@ -1,251 +1,185 @@
-//! Structure against chance: whether what a structure leaves of the records is a moment of a shape, a random moment, or
+//! Structure against chance: whether what a structure leaves of the records is a moment of some shape, a random moment, or
 //! the noise of the instruments.
 //!
 //! A random moment can follow almost any heading, so a shape is held against every random law with the law found anew
-//! beside the shape: G = ½ (h₀ − h), in nats, with −2 log p of the best law without the shapes and with them.
+//! beside the shape: G = ½ (h₀ − h), in nats, of −2 log p under the best law without the shapes and with them.
 
 mod conditioned;
 mod dictionary;
 mod laws;
 mod motion;
+mod point;
 mod search;
 
 use rayon::prelude::*;
 
-use crate::fit::{FittedRecords, StructureFit, curvature, deviation};
-use crate::linear::{HeadingSensitivities, Linear};
-use crate::noise::{NoiseColour, RecordNoise};
-use crate::record::PreparedRecord;
+use crate::fit::{FittedRecords, StructureFit};
+use crate::noise::{CorrelatedNoise, NoiseColour};
 use crate::weights::{NoiseLaw, Weights};
 use conditioned::{Conditioned, LinearisedStructure};
 use laws::RandomLaw;
 use motion::Motion;
+use point::Point;
 use search::Search;
 
 pub use dictionary::{Dependence, Shape};
 pub use search::{Candidate, Explanation};
 
-/// Gain in nats from which a shape is believed.
+/// Gain in nats from which shapes are believed.
 pub const BELIEVED: f64 = 4.0;
 
 /// Within so many nats two explanations are alike.
 pub const ALIKE: f64 = 3.0;
 
-/// How often the response of the ship is found anew under the best law.
-const ROUNDS: usize = 3;
+/// Gain in nats from which a smooth moment of unknown shape is believed.
+const SMOOTH: f64 = 1.5;
 
-/// A change of 1/T by less than this share ends that.
+/// How often the response of the ship is found anew under the best law, and the change of 1/T, as a share, that ends it.
+const ROUNDS: usize = 3;
 const SETTLED: f64 = 0.02;
 
-/// A gap of more than so many usual steps between headings, and the gaps of a record that are bridged: the heading and
-/// the yaw rate begin anew behind them.
-const GAP: f64 = 3.5;
-const MOST_GAPS: usize = 4;
-
-/// The unit of the lags as a share of T.
+/// The unit of the lags as a share of T, and the longest T for it, s.
 const UNIT: f64 = 1.0 / 16.0;
+const LONGEST_TIME: f64 = 1000.0;
 
-/// What was found in what a structure leaves.
+/// A random moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RandomMoment {
+    /// Its size as a rudder angle, rad: the root mean square over the longest record; of a white moment that of its mean
+    /// over T.
+    pub rudder: f64,
+    /// Share of the square of the heading error that it carries.
+    pub share: f64,
+}
+
+/// What is behind the error of a structure.
 #[derive(Debug, Clone)]
-pub struct Found {
+pub struct ShapeAnalysis {
+    /// Shapes that explain it best with their law; none where none does better than chance.
     pub best: Explanation,
-    pub tried: Vec<Explanation>,
-    /// −2 log p of the structure alone, and its law.
-    pub alone: f64,
-    pub law: RandomLaw,
-    pub gain: f64,
-    pub smooth: f64,
+    /// Other explanations that the records cannot tell from the best.
+    pub alike: Vec<Explanation>,
+    /// Coefficients of the best, rad of rudder at the root mean square of each moment.
     pub coefficients: Vec<Vec<f64>>,
+    /// How much worse every shape's absence is, nats.
+    pub losses: Vec<f64>,
+    /// Gain of the best, nats.
+    pub gain: f64,
+    /// Whether a smooth moment explains it better than any random law, where no shape does.
+    pub is_smooth: bool,
+    /// The random moment beside the best.
+    pub moment: Option<RandomMoment>,
+    /// What is new in every heading of the records under the best, over its standard deviation.
+    pub innovations: Vec<Vec<f64>>,
 }
 
-/// A structure with its noise, as it is linearised.
-struct Point<'a> {
-    problem: &'a FittedRecords,
-    fit: &'a StructureFit,
-    law: &'a NoiseLaw,
-    theta: Vec<f64>,
-    initial: Vec<[f64; 2]>,
-    noise: Vec<RecordNoise>,
-}
-
-impl<'a> Point<'a> {
-    fn new(problem: &'a FittedRecords, fit: &'a StructureFit, law: &'a NoiseLaw) -> Self {
-        let (theta, initial) = (fit.theta.clone(), fit.initial.clone());
-        Self { problem, fit, law, noise: Self::noise(problem, theta[0]), theta, initial }
-    }
-
-    fn noise(problem: &FittedRecords, inverse_time: f64) -> Vec<RecordNoise> {
-        let full = problem.records.iter().map(|record| record.full_readings).max().unwrap_or(1);
-        let of = |record| RecordNoise::new(record, inverse_time, problem.longest(), full);
-        problem.records.iter().map(of).collect()
-    }
-
-    /// What makes columns white under a colour.
-    fn weights(&self, colour: &NoiseColour) -> Weights {
-        let whiteners = self.noise.iter().map(|noise| noise.whitener(colour)).collect();
-        Weights { whiteners, scale: self.law.variance.iter().map(|variance| variance.sqrt().recip()).collect() }
-    }
-
-    fn motions(&self, colour: &NoiseColour) -> Vec<Motion<'a>> {
-        let residual = self.problem.residual(&self.fit.structure, &self.theta, &self.initial);
-        let of = |(number, record): (usize, &'a PreparedRecord)| {
-            let at = (self.theta.as_slice(), self.initial[number]);
-            Motion::new(
-                (record, number),
-                &self.fit.structure,
-                at,
-                (&self.noise[number], colour),
-                &residual[number],
-            )
-        };
-        self.problem.records.iter().enumerate().map(of).collect()
-    }
-
-    /// Residual and columns: base, deviations, initial states and gaps first, the parameters of the terms behind them.
-    fn linearised(&self, motions: &[Motion]) -> LinearisedStructure {
-        let structure = &self.fit.structure;
-        let mut linear = self.problem.linear(structure, &self.theta, &self.initial);
-        if structure.terms.is_empty() {
-            // Exact for a linear response under any noise: the answer to the moment that another 1/T is.
-            for (block, motion) in linear.blocks.iter_mut().zip(motions) {
-                let moment: Vec<f64> = motion.rate.iter().map(|rate| -rate / motion.base[1]).collect();
-                let own = block.columns.iter_mut().find(|(unknown, _)| *unknown == 0);
-                own.into_iter().for_each(|(_, column)| *column = motion.answer(&moment));
-            }
-        }
-        let (entries, fitted) = (structure.entries(), structure.fitted());
-        let paying = fitted.iter().filter(|place| **place >= structure.base_count()).count();
-        let of_base = fitted.len() - paying;
-        let mut integrated = linear.unknowns - paying;
-        for block in &mut linear.blocks {
-            for (unknown, _) in &mut block.columns {
-                *unknown = match *unknown {
-                    k if k < of_base => k,
-                    k if k < fitted.len() => k + (linear.unknowns - fitted.len()),
-                    k => k - paying,
-                };
-            }
-        }
-        for (block, motion) in linear.blocks.iter_mut().zip(motions) {
-            bridge(block, motion, &mut integrated, paying);
-        }
-        linear.unknowns = integrated + paying;
-        let mut prior = vec![(0.0, 0.0); integrated];
-        // Deviations of the rudder bias from record to record are expected to be small.
-        for (k, &place) in fitted[..of_base].iter().enumerate().skip(3) {
-            let precision = curvature(entries[place].prior);
-            prior[k] = (precision, deviation(entries[place].prior, self.theta[place]) / precision.sqrt());
-        }
-        let neutral: Vec<f64> = structure.terms.iter().flat_map(|term| term.neutral()).collect();
-        let size = |&place: &usize| {
-            let is_shape = entries[place].prior.is_shape;
-            if is_shape { 0.0 } else { self.theta[place] - neutral[place - structure.base_count()] }
-        };
-        LinearisedStructure { linear, integrated, prior, sizes: fitted[of_base..].iter().map(size).collect() }
-    }
-
-    /// Moves all unknowns; how far 1/T has moved, as a share.
-    fn advance(&mut self, step: &[f64]) -> f64 {
-        let structure = &self.fit.structure;
-        let (entries, fitted) = (structure.entries(), structure.fitted());
-        let paying = fitted.iter().filter(|place| **place >= structure.base_count()).count();
-        let of_base = fitted.len() - paying;
-        let before = self.theta[0];
-        let behind = step.len() - paying;
-        for (k, &place) in fitted.iter().enumerate() {
-            let by = if k < of_base { step[k] } else { step[behind + k - of_base] };
-            let prior = &entries[place].prior;
-            self.theta[place] = (self.theta[place] + by).clamp(prior.lowest, prior.highest);
-        }
-        let size = before.abs().max(1e-6);
-        self.theta[0] = self.theta[0].clamp(before - 0.5 * size, before + size);
-        for (number, initial) in self.initial.iter_mut().enumerate() {
-            (0..2).for_each(|k| initial[k] += step[of_base + 2 * number + k]);
-        }
-        self.noise = Self::noise(self.problem, self.theta[0]);
-        (self.theta[0] - before).abs() / size
+impl ShapeAnalysis {
+    /// Whether shapes are believed.
+    pub fn is_located(&self) -> bool {
+        self.gain >= BELIEVED
     }
 }
 
-/// Lets heading and yaw rate begin anew behind gaps.
-fn bridge(block: &mut HeadingSensitivities, motion: &Motion, integrated: &mut usize, paying: usize) {
-    let time: Vec<f64> = motion.record.observed.iter().map(|&row| motion.record.time[row]).collect();
-    let mut lengths: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let all = lengths.clone();
-    lengths.sort_by(f64::total_cmp);
-    let usual = lengths.get(lengths.len() / 2).copied().unwrap_or(f64::INFINITY);
-    let mut gaps: Vec<usize> = (0..all.len()).filter(|&row| all[row] > GAP * usual).collect();
-    gaps.sort_by(|&one, &other| all[other].total_cmp(&all[one]));
-    for &row in gaps.iter().take(MOST_GAPS) {
-        let from = time[row + 1];
-        let after = |value: &dyn Fn(f64) -> f64| -> Vec<f64> {
-            time.iter().map(|&t| if t < from { 0.0 } else { value(t - from) }).collect()
-        };
-        let columns = [after(&|_| 1.0), after(&|t| ship::first_order::Transition::new(motion.base[0], t).phi1)];
-        // The parameters of terms stand behind.
-        block.columns.iter_mut().filter(|(unknown, _)| *unknown >= *integrated).for_each(|(unknown, _)| *unknown += 2);
-        block.columns.extend((*integrated..).zip(columns));
-        *integrated += 2;
-        let _ = paying;
+/// Looks for shapes in what a fit leaves, beside a law whose waves are known; `None` where its unknowns cannot be told
+/// apart.
+pub fn analysis(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLaw) -> Option<ShapeAnalysis> {
+    let mut stand = Stand::new(Point::new(problem, fit, law), problem, law, &law.colour)?;
+    for _ in 0..ROUNDS {
+        let (before, colour) = (stand.point.theta[0], stand.laws[stand.law].colour);
+        let point = stand.point.moved(&stand.structure[stand.law].as_ref()?.step());
+        let change = (point.theta[0] / before - 1.0).abs();
+        let Some(next) = Stand::new(point, problem, law, &colour) else { break };
+        let is_settled = change < SETTLED && next.laws[next.law].colour == colour;
+        stand = next;
+        if is_settled {
+            break;
+        }
     }
+    stand.explained(problem, law)
 }
 
-/// Looks for shapes in what a fit leaves, beside `law`, whose waves and sizes are known.
-pub fn find(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLaw) -> Option<Found> {
-    let mut point = Point::new(problem, fit, law);
-    let longest = problem.longest();
-    let spacing = problem.records.iter().map(|record| record.spacing).fold(f64::INFINITY, f64::min);
-    let mut colour = law.colour;
-    let mut round = 0;
-    loop {
-        let gain = point.theta[1].abs();
-        let laws = laws::all(gain, longest, spacing, law.colour.waves);
-        let weights: Vec<Weights> = laws.par_iter().map(|law| point.weights(&law.colour)).collect();
-        let motions = point.motions(&colour);
+/// A point with its motions and laws.
+struct Stand<'a> {
+    point: Point<'a>,
+    motions: Vec<Motion<'a>>,
+    linearised: LinearisedStructure,
+    laws: Vec<RandomLaw>,
+    weights: Vec<Weights>,
+    structure: Vec<Option<Conditioned>>,
+    height: f64,
+    law: usize,
+}
+
+impl<'a> Stand<'a> {
+    /// A point whose motions are foreseen under a colour; `None` where its unknowns cannot be told apart.
+    fn new(point: Point<'a>, problem: &FittedRecords, law: &NoiseLaw, colour: &NoiseColour) -> Option<Self> {
+        let spacing = problem.records.iter().map(|record| record.spacing).fold(f64::INFINITY, f64::min);
+        let laws = laws::all(point.theta[1].abs(), problem.longest(), spacing, law.colour.waves);
+        let motions = point.motions(colour);
         let linearised = point.linearised(&motions);
-        let under = |laws: &[RandomLaw], weights: &[Weights]| -> Vec<Option<Conditioned>> {
-            let both = laws.par_iter().zip(weights);
-            both.map(|(law, weights)| Conditioned::new(&linearised, weights, law.freedom)).collect()
+        let under = |law: &RandomLaw| {
+            let weights = point.weights(&law.colour);
+            (Conditioned::new(&linearised, &weights, law.freedom), weights)
         };
-        let structure = under(&laws, &weights);
-        let search = Search { motions, laws: &laws, weights: &weights, structure };
-        let (alone, best) = search.alone();
-        let chosen = search.structure[best].as_ref()?;
-        if round < ROUNDS {
-            round += 1;
-            let step = chosen.step();
-            let moved = point.advance(&step);
-            let same = colour == laws[best].colour;
-            colour = laws[best].colour;
-            if !(moved < SETTLED && same) {
-                continue;
-            }
-            round = ROUNDS;
-            continue;
+        let (structure, weights): (Vec<_>, Vec<_>) = laws.par_iter().map(under).unzip();
+        let (height, law) = search::best(&structure)?;
+        Some(Self { point, motions, linearised, laws, weights, structure, height, law })
+    }
+
+    /// −2 log p of shapes beside a law, of its own weights.
+    fn under(&self, law: &RandomLaw) -> f64 {
+        let weights = self.point.weights(&law.colour);
+        Conditioned::new(&self.linearised, &weights, law.freedom).map_or(f64::INFINITY, |own| own.height())
+    }
+
+    /// Looks for the shapes.
+    fn explained(self, problem: &FittedRecords, law: &NoiseLaw) -> Option<ShapeAnalysis> {
+        let longest = problem.longest();
+        let smooth = law.colour.waves.is_none().then(|| laws::smooth(self.point.theta[1].abs(), longest));
+        let smooth = smooth.unwrap_or_default().par_iter().map(|law| self.under(law)).reduce(|| f64::INFINITY, f64::min);
+        let search = Search {
+            motions: &self.motions,
+            laws: &self.laws,
+            weights: &self.weights,
+            structure: &self.structure,
+        };
+        let unit = UNIT / self.point.theta[0].max(LONGEST_TIME.recip());
+        let (mut best, mut tried) = search.explain(unit);
+        if 0.5 * (self.height - best.height) < BELIEVED {
+            best = Explanation { shapes: Vec::new(), height: self.height, law: self.law };
         }
-        let smooth = match law.colour.waves {
-            None => {
-                let laws = laws::smooth(gain, longest);
-                let weights: Vec<Weights> = laws.par_iter().map(|law| point.weights(&law.colour)).collect();
-                let heights = under(&laws, &weights);
-                heights.iter().flatten().map(Conditioned::height).fold(f64::INFINITY, f64::min)
-            }
-            Some(_) => f64::INFINITY,
+        tried.retain(|other| other.shapes.len() <= best.shapes.len() && other.height < best.height + 2.0 * ALIKE);
+        let losses = (0..best.shapes.len()).map(|place| 0.5 * (search.without(&best, place).height - best.height));
+        let losses = losses.collect();
+        let whole = search.whole(&best)?;
+        let step = whole.step();
+        Some(ShapeAnalysis {
+            losses,
+            coefficients: search::coefficients(&best.shapes, &step),
+            moment: self.moment(&best, whole.sd(), &step, longest),
+            alike: tried,
+            gain: 0.5 * (self.height - best.height),
+            is_smooth: best.shapes.is_empty() && 0.5 * (self.height - smooth) >= SMOOTH,
+            innovations: whole.innovations(),
+            best,
+        })
+    }
+
+    /// The random moment of an explanation with a step of all unknowns, whose white noise has a standard deviation in
+    /// units of that of the records.
+    fn moment(&self, best: &Explanation, sd: f64, step: &[f64], longest: f64) -> Option<RandomMoment> {
+        let law = &self.laws[best.law];
+        let (kind, _) = law.colour.wander.filter(|_| law.is_moment())?;
+        let spread = match kind {
+            CorrelatedNoise::Walk => (0.5 * longest).sqrt(),
+            CorrelatedNoise::White => self.point.theta[0].max(longest.recip()).sqrt(),
+            _ => 1.0,
         };
-        let unit = UNIT / point.theta[0].max(1e-3);
-        let (explanation, tried) = search.explain(unit);
-        let coefficients = search.coefficients(&explanation);
-        return Some(Found {
-            gain: 0.5 * (alone - explanation.height),
-            best: explanation,
-            tried,
-            alone,
-            law: laws[best],
-            smooth: 0.5 * (alone - smooth),
-            coefficients,
-        });
+        let linear = &self.linearised.linear;
+        let white = || self.point.sd.iter().map(|own| own * sd);
+        let rows = linear.blocks.iter().map(|block| block.residual.len() as f64);
+        let noise: f64 = white().zip(rows).map(|(sd, rows)| sd * sd * rows).sum();
+        let left = search::square_left(linear, &best.shapes, step);
+        Some(RandomMoment { rudder: law.size * white().fold(0.0, f64::max) * spread, share: (1.0 - noise / left).max(0.0) })
     }
 }
-
-#[allow(dead_code)]
-fn unused(_: &Linear) {}

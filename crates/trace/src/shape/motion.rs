@@ -115,6 +115,11 @@ impl<'a> Motion<'a> {
         all
     }
 
+    /// Heading a time (s) after a yaw rate of one, s.
+    pub fn turned(&self, time: f64) -> f64 {
+        Transition::new(self.base[0], time).phi1
+    }
+
     /// First instant, s, and length, s.
     pub fn span(&self) -> [f64; 2] {
         [self.record.time[0], self.record.duration()]

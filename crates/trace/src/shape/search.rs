@@ -3,12 +3,14 @@
 
 use std::sync::Arc;
 
+use estimation::column::dot;
 use rayon::prelude::*;
 
 use super::conditioned::{Column, Conditioned};
 use super::dictionary::{Shape, shapes};
 use super::laws::{RandomLaw, tried};
 use super::motion::Motion;
+use crate::linear::{HeadingSensitivities, Linear};
 use crate::weights::Weights;
 
 /// Classes of shapes: each had its chance.
@@ -51,12 +53,13 @@ pub struct Explanation {
 /// What a search needs.
 pub struct Search<'a> {
     /// The records.
-    pub motions: Vec<Motion<'a>>,
-    /// Laws, and what makes columns white under each.
+    pub motions: &'a [Motion<'a>],
+    /// Laws.
     pub laws: &'a [RandomLaw],
+    /// What makes columns white under each.
     pub weights: &'a [Weights],
     /// The structure under each; `None` where its unknowns cannot be told apart.
-    pub structure: Vec<Option<Conditioned>>,
+    pub structure: &'a [Option<Conditioned>],
 }
 
 /// Sizes below which a moment is none.
@@ -100,7 +103,7 @@ impl Search<'_> {
         for (shape, places) in of_ship.iter().filter(|(shape, _)| !shape.is_of_time()) {
             wanted.push((*shape, None, price(shape, *places, &of_ship)));
         }
-        for motion in &self.motions {
+        for motion in self.motions {
             let of_record = all(motion);
             for (shape, places) in of_record.iter().filter(|(shape, _)| shape.is_of_time()) {
                 wanted.push((*shape, Some(motion.number), price(shape, *places, &of_record)));
@@ -143,11 +146,6 @@ impl Search<'_> {
         under.par_iter().enumerate().filter_map(height).min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or(NONE)
     }
 
-    /// The best law of the structure alone.
-    pub fn alone(&self) -> (f64, usize) {
-        best_of(&self.structure)
-    }
-
     /// The lowest height of every shape behind structures, under some laws.
     fn scan(&self, under: &[Option<Conditioned>], laws: &[usize], library: &[Arc<Candidate>]) -> Vec<f64> {
         let of = |chunk: &[Arc<Candidate>]| {
@@ -185,11 +183,11 @@ impl Search<'_> {
     /// The best explanation, and all that were tried.
     pub fn explain(&self, unit: f64) -> (Explanation, Vec<Explanation>) {
         let library = self.library(unit);
-        let (height, law) = self.alone();
+        let (height, law) = best(self.structure).unwrap_or(NONE);
         let laws = tried(self.laws, law);
         let mut stand = Explanation { shapes: Vec::new(), height, law };
         let mut all = vec![stand.clone()];
-        let mut under = self.structure.clone();
+        let mut under = self.structure.to_vec();
         for _ in 0..ROUNDS {
             let heights = self.scan(&under, &laws, &library);
             let price: f64 = stand.shapes.iter().map(|own| own.price).sum();
@@ -203,9 +201,9 @@ impl Search<'_> {
             let refined: Vec<Explanation> = next.iter().take(REFINED).filter_map(|own| self.refined(own)).collect();
             next.extend(refined);
             next.sort_by(|one, other| one.height.total_cmp(&other.height));
-            let Some(best) = next.first().cloned() else { break };
+            let Some(lowest) = next.first().cloned() else { break };
             all.extend(next);
-            stand = best;
+            stand = lowest;
             under = self.extended(&stand.shapes);
         }
         let lowest = all.iter().min_by(|one, other| one.height.total_cmp(&other.height)).cloned();
@@ -234,7 +232,11 @@ impl Search<'_> {
     /// Shapes with their best law.
     fn explained(&self, shapes: Vec<Arc<Candidate>>) -> Explanation {
         let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
-        let (height, law) = if all.is_empty() { self.alone() } else { self.judged(&self.structure, &all) };
+        let (height, law) = if all.is_empty() {
+            best(self.structure).unwrap_or(NONE)
+        } else {
+            self.judged(self.structure, &all)
+        };
         Explanation { shapes, height, law }
     }
 
@@ -271,23 +273,41 @@ impl Search<'_> {
         has_moved.then(|| self.explained(shapes))
     }
 
-    /// The coefficients of an explanation, rad of rudder at the root mean square of every moment, shape by shape.
-    pub fn coefficients(&self, all: &Explanation) -> Vec<Vec<f64>> {
+    /// The structure with an explanation behind it, under its law.
+    pub fn whole(&self, all: &Explanation) -> Option<Conditioned> {
         let shapes: Vec<&Candidate> = all.shapes.iter().map(Arc::as_ref).collect();
-        let structure = self.structure[all.law].as_ref();
-        let whole = structure.and_then(|own| own.extended(&self.white(all.law, &shapes).concat()));
-        let step = whole.map_or_else(Vec::new, |own| own.step());
-        let count: usize = shapes.iter().map(|own| own.columns.len()).sum();
-        let mut behind = step.get(step.len().saturating_sub(count)..).unwrap_or_default().iter().copied();
-        shapes.iter().map(|own| behind.by_ref().take(own.columns.len()).collect()).collect()
+        self.structure[all.law].as_ref()?.extended(&self.white(all.law, &shapes).concat())
     }
+}
+
+/// The coefficients of shapes, shape by shape, from the step of all unknowns: rad of rudder at the root mean square of
+/// every moment.
+pub fn coefficients(shapes: &[Arc<Candidate>], step: &[f64]) -> Vec<Vec<f64>> {
+    let count: usize = shapes.iter().map(|own| own.columns.len()).sum();
+    let mut behind = step[step.len() - count..].iter().copied();
+    shapes.iter().map(|own| behind.by_ref().take(own.columns.len()).collect()).collect()
+}
+
+/// Σ e² of the headings, rad², that a structure leaves after a step, with shapes behind its unknowns.
+pub fn square_left(linear: &Linear, shapes: &[Arc<Candidate>], step: &[f64]) -> f64 {
+    let columns: Vec<&Column> = shapes.iter().flat_map(|own| &own.columns).collect();
+    let of = |(number, block): (usize, &HeadingSensitivities)| {
+        let mut left = block.residual.clone();
+        let mut take = |by: f64, column: &[f64]| left.iter_mut().zip(column).for_each(|(e, x)| *e -= by * x);
+        block.columns.iter().for_each(|(unknown, column)| take(step[*unknown], column));
+        for (column, by) in columns.iter().zip(&step[linear.unknowns..]) {
+            column.iter().filter(|(record, _)| *record == number).for_each(|(_, column)| take(*by, column));
+        }
+        dot(&left, &left)
+    };
+    linear.blocks.iter().enumerate().map(of).sum()
 }
 
 /// No explanation.
 const NONE: (f64, usize) = (f64::INFINITY, 0);
 
 /// Height and place of the best law of a structure.
-fn best_of(under: &[Option<Conditioned>]) -> (f64, usize) {
+pub fn best(under: &[Option<Conditioned>]) -> Option<(f64, usize)> {
     let heights = under.iter().enumerate().filter_map(|(law, own)| Some((own.as_ref()?.height(), law)));
-    heights.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or(NONE)
+    heights.min_by(|one, other| one.0.total_cmp(&other.0))
 }

@@ -1,0 +1,150 @@
+//! Where a structure stands when shapes are looked for beside it, and its linearisation there.
+
+use crate::fit::{FittedRecords, StructureFit, curvature, deviation};
+use crate::linear::HeadingSensitivities;
+use crate::noise::{NoiseColour, RecordNoise};
+use crate::weights::{NoiseLaw, Weights};
+
+use super::conditioned::LinearisedStructure;
+use super::motion::Motion;
+
+/// A gap of more than so many usual steps between headings, and the gaps of a record that are bridged: heading and yaw
+/// rate begin anew behind them.
+const GAP: f64 = 3.5;
+const MOST_GAPS: usize = 4;
+
+/// A structure with its unknowns, and the noise of a ship of its T.
+#[derive(Clone)]
+pub struct Point<'a> {
+    problem: &'a FittedRecords,
+    fit: &'a StructureFit,
+    /// Standard deviations of the white noise of the records, rad.
+    pub sd: Vec<f64>,
+    /// Parameters.
+    pub theta: Vec<f64>,
+    initial: Vec<[f64; 2]>,
+    noise: Vec<RecordNoise>,
+}
+
+impl<'a> Point<'a> {
+    /// That of a fit under a law.
+    pub fn new(problem: &'a FittedRecords, fit: &'a StructureFit, law: &NoiseLaw) -> Self {
+        let (theta, initial) = (fit.theta.clone(), fit.initial.clone());
+        let sd = law.variance.iter().map(|variance| variance.sqrt()).collect();
+        Self { problem, fit, sd, noise: problem.noise_of(theta[0]), theta, initial }
+    }
+
+    /// What makes columns white under a colour.
+    pub fn weights(&self, colour: &NoiseColour) -> Weights {
+        let whiteners = self.noise.iter().map(|noise| noise.whitener(colour)).collect();
+        Weights { whiteners, scale: self.sd.iter().map(|sd| sd.recip()).collect() }
+    }
+
+    /// The motions of the records as they are foreseen under a colour.
+    pub fn motions(&self, colour: &NoiseColour) -> Vec<Motion<'a>> {
+        let structure = &self.fit.structure;
+        let residual = self.problem.residual(structure, &self.theta, &self.initial);
+        let of = |number: usize| {
+            let (record, noise) = (&self.problem.records[number], &self.noise[number]);
+            let at = (self.theta.as_slice(), self.initial[number]);
+            Motion::new((record, number), structure, at, (noise, colour), &residual[number])
+        };
+        (0..self.problem.records.len()).map(of).collect()
+    }
+
+    /// Number of unknowns of the base, and of the terms.
+    fn counts(&self) -> [usize; 2] {
+        let base = self.fit.structure.base_count();
+        let fitted = self.fit.structure.fitted();
+        let of_base = fitted.iter().filter(|place| **place < base).count();
+        [of_base, fitted.len() - of_base]
+    }
+
+    /// Residual and columns: base, initial states and gaps first, which are integrated out, then the parameters of the
+    /// terms, which pay.
+    pub fn linearised(&self, motions: &[Motion]) -> LinearisedStructure {
+        let structure = &self.fit.structure;
+        let mut linear = self.problem.linear(structure, &self.theta, &self.initial);
+        let [of_base, of_terms] = self.counts();
+        let gaps: Vec<Vec<[Vec<f64>; 2]>> = motions.iter().map(behind_gaps).collect();
+        let states = linear.unknowns - of_terms;
+        let integrated = states + 2 * gaps.iter().map(Vec::len).sum::<usize>();
+        let mut next = states;
+        for ((block, motion), gaps) in linear.blocks.iter_mut().zip(motions).zip(gaps) {
+            for (unknown, _) in &mut block.columns {
+                *unknown = match *unknown {
+                    k if k < of_base => k,
+                    k if k < of_base + of_terms => k - of_base + integrated,
+                    k => k - of_terms,
+                };
+            }
+            for columns in gaps {
+                block.columns.extend((next..).zip(columns));
+                next += 2;
+            }
+            if structure.terms.is_empty() {
+                with_foreseen_rate(block, motion);
+            }
+        }
+        linear.unknowns = integrated + of_terms;
+        let (entries, fitted) = (structure.entries(), structure.fitted());
+        let mut prior = vec![(0.0, 0.0); integrated];
+        // Deviations of the rudder bias from record to record are expected to be small.
+        for (place, prior) in prior.iter_mut().enumerate().take(of_base).skip(ship::response::BASE_PARAMETERS) {
+            let (expected, value) = (entries[fitted[place]].prior, self.theta[fitted[place]]);
+            let precision = curvature(expected);
+            *prior = (precision, deviation(expected, value) / precision.sqrt());
+        }
+        let neutral: Vec<f64> = structure.terms.iter().flat_map(|term| term.neutral()).collect();
+        let size = |&place: &usize| match entries[place].prior.is_shape {
+            true => 0.0,
+            false => self.theta[place] - neutral[place - structure.base_count()],
+        };
+        LinearisedStructure { linear, integrated, prior, sizes: fitted[of_base..].iter().map(size).collect() }
+    }
+
+    /// The point after a step of all unknowns of [`linearised`](Self::linearised), within their ranges.
+    #[must_use]
+    pub fn moved(&self, step: &[f64]) -> Self {
+        let mut next = self.clone();
+        let [of_base, of_terms] = self.counts();
+        let entries = self.fit.structure.entries();
+        for (k, place) in self.fit.structure.fitted().into_iter().enumerate() {
+            let by = if k < of_base { step[k] } else { step[step.len() - of_terms + k - of_base] };
+            let prior = &entries[place].prior;
+            next.theta[place] = (self.theta[place] + by).clamp(prior.lowest, prior.highest);
+        }
+        let (before, size) = (self.theta[0], self.theta[0].abs());
+        next.theta[0] = next.theta[0].clamp(before - 0.5 * size, before + size);
+        for (number, initial) in next.initial.iter_mut().enumerate() {
+            initial.iter_mut().zip(&step[of_base + 2 * number..]).for_each(|(state, by)| *state += by);
+        }
+        next.noise = self.problem.noise_of(next.theta[0]);
+        next
+    }
+}
+
+/// Puts the answer to the moment that another 1/T is in the place of that of a replay: exact under any noise.
+fn with_foreseen_rate(block: &mut HeadingSensitivities, motion: &Motion) {
+    let moment: Vec<f64> = motion.rate.iter().map(|rate| -rate / motion.base[1]).collect();
+    let by_inverse_time = block.columns.iter_mut().find(|(unknown, _)| *unknown == 0);
+    by_inverse_time.into_iter().for_each(|(_, column)| *column = motion.answer(&moment));
+}
+
+/// Heading and yaw rate that begin anew behind the largest gaps.
+fn behind_gaps(motion: &Motion) -> Vec<[Vec<f64>; 2]> {
+    let time: Vec<f64> = motion.record.observed.iter().map(|&row| motion.record.time[row]).collect();
+    let lengths: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut sorted = lengths.clone();
+    sorted.sort_by(f64::total_cmp);
+    let Some(usual) = sorted.get(sorted.len() / 2) else { return Vec::new() };
+    let mut gaps: Vec<usize> = (0..lengths.len()).filter(|&row| lengths[row] > GAP * usual).collect();
+    gaps.sort_by(|&one, &other| lengths[other].total_cmp(&lengths[one]));
+    let columns = |&row: &usize| {
+        let after = |value: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            time.iter().map(|&t| if t < time[row + 1] { 0.0 } else { value(t - time[row + 1]) }).collect()
+        };
+        [after(&|_| 1.0), after(&|t| motion.turned(t))]
+    };
+    gaps.iter().take(MOST_GAPS).map(columns).collect()
+}
