@@ -16,12 +16,12 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use estimation::number::Real;
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Places, Prior, Proposal};
-use crate::dynamics::Regressor;
+use crate::dynamics::{Measured, Regressor};
 use crate::particulars::Dimension;
 use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
 use parse::LONGEST;
-use points::SignalSizes;
+use points::{SignalSizes, way_speed};
 use program::{FormulaProgram, FormulaSignal, OF_RECORD, OfRecord};
 
 /// Longest name of an effect, characters.
@@ -192,8 +192,24 @@ impl Formula {
     /// The same for a ship of this length, m.
     #[must_use]
     pub fn with_length(&self, length: f64) -> Self {
-        let [speed, start, _] = self.of_record;
-        Self { of_record: [speed, start, length], ..self.clone() }
+        let mut formula = self.clone();
+        formula.of_record[2] = length;
+        formula
+    }
+
+    /// Whether it says nothing, or nothing of its own, of ships that lack a channel.
+    pub fn is_idle_without(&self, channel: Regressor) -> bool {
+        self.channels.contains(&channel) || channel == Regressor::Speed && self.has(FormulaSignal::SpeedRatio)
+    }
+
+    fn has(&self, signal: FormulaSignal) -> bool {
+        self.program.signals.contains(&signal)
+    }
+
+    /// Speed by which the lateral way grows, m/s.
+    fn way_speed(&self, measured: &Measured) -> f64 {
+        let [.., speed, is_always] = self.of_record;
+        measured.speed.filter(|_| is_always == 0.0).unwrap_or(speed)
     }
 }
 
@@ -213,7 +229,9 @@ impl Effect for Formula {
             return None;
         }
         let SignalSizes { speed, length, .. } = SignalSizes::of(about);
-        let own = Self { of_record: [speed, about.span[0], length], ..self.clone() };
+        let is_always = f64::from(u8::from(about.speed.is_none()));
+        let of_record = [speed, about.span[0], length, way_speed(about), is_always];
+        let own = Self { of_record, ..self.clone() };
         let priors = match own.listed {
             None => own.found_priors(about)?,
             Some(prior) => {
@@ -236,8 +254,12 @@ impl Effect for Formula {
     }
 
     fn uses(&self, channel: Regressor) -> bool {
-        let has_ratio = || self.program.signals.contains(&FormulaSignal::SpeedRatio);
-        self.channels.contains(&channel) || channel == Regressor::Speed && has_ratio()
+        self.is_idle_without(channel) || channel == Regressor::Speed && self.has(FormulaSignal::LateralWay)
+    }
+
+    /// The lateral way, and the course ψ₀ from which it goes.
+    fn states(&self) -> usize {
+        if self.has(FormulaSignal::LateralWay) { 2 } else { 0 }
     }
 
     fn constants(&self) -> Vec<(f64, Dimension)> {
@@ -251,15 +273,27 @@ impl Effect for Formula {
     }
 
     fn is_of_time(&self) -> bool {
-        self.program.signals.contains(&FormulaSignal::Time)
+        self.has(FormulaSignal::Time)
     }
 
+    /// A lateral way turns with the record.
     fn sees_heading(&self) -> bool {
-        self.program.signals.contains(&FormulaSignal::Heading)
+        self.has(FormulaSignal::Heading)
     }
 }
 
 impl<R: Real> Acts<R> for Formula {
+    fn approach(&self, _p: &[R], now: &Now<R>, z: &mut [R]) {
+        if let [way, course] = z {
+            (*way, *course) = (R::from(0.0), now.heading);
+        }
+    }
+
+    fn rates(&self, _p: &[R], z: &[R], now: &Now<R>, _before: R, rate: &mut [R]) {
+        let (sin, _) = (now.heading - z[1]).sin_cos();
+        (rate[0], rate[1]) = (sin * self.way_speed(now.measured), R::from(0.0));
+    }
+
     #[inline]
     fn rudder(&self, p: &[R], _z: &[R], rudder: R) -> R {
         if !self.acts.rudder {
@@ -269,13 +303,15 @@ impl<R: Real> Acts<R> for Formula {
     }
 
     #[inline]
-    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+    fn yaw_acceleration(&self, p: &[R], z: &[R], now: &Now<R>) -> R {
         if !self.acts.moment || !self.channels.iter().all(|channel| now.measured.has(*channel)) {
             return R::from(0.0);
         }
-        self.program.value(p, |signal| signal.at(now, &self.of_record))
+        self.program.value(p, |signal| signal.at(now, z, &self.of_record))
     }
 }
 
+#[cfg(test)]
+mod lateral_way_tests;
 #[cfg(test)]
 mod tests;

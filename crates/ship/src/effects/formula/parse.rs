@@ -305,9 +305,10 @@ impl FormulaParser {
 
 /// A signal that a name is meant for: another spelling of it.
 fn misspelt(name: &str) -> Option<&'static str> {
-    const SPELLINGS: [(&str, &[&str]); 8] = [
+    const SPELLINGS: [(&str, &[&str]); 9] = [
         ("delta", &["δ", "rudder", "rudder_angle"]),
         ("psi", &["ψ", "heading"]),
+        ("y", &["Y", "lateral", "lateral_way", "cross_track"]),
         ("r", &["R", "yaw_rate", "yawrate"]),
         ("v", &["V", "sway", "sway_velocity"]),
         ("U", &["speed", "Speed"]),

@@ -14,6 +14,7 @@ pub(super) struct SignalSizes {
     wind: f64,
     gain: f64,
     pub(super) length: f64,
+    lateral_way: f64,
 }
 
 impl SignalSizes {
@@ -27,10 +28,11 @@ impl SignalSizes {
             wind: 1.0,
             gain: 1.0,
             length: 1.0,
+            lateral_way: 1.0,
         }
     }
 
-    /// r L/U of a zig-zag is about 0.3, K′/T′ about 1.
+    /// r L/U of a zig-zag is about 0.3, K′/T′ about 1, and it goes about three lengths aside for every radian of rudder.
     pub(super) fn of(about: &Manoeuvres) -> Self {
         let speed = about.speed.or(about.sway).unwrap_or(1.0);
         Self {
@@ -42,16 +44,22 @@ impl SignalSizes {
             wind: about.wind_square.unwrap_or(1.0).sqrt(),
             gain: about.time.powi(-2),
             length: about.time * speed,
+            lateral_way: 3.0 * about.rudder * about.time * way_speed(about),
         }
     }
+}
+
+/// Speed by which a lateral way grows in these records, m/s: 1 where one of them has none.
+pub(super) fn way_speed(about: &Manoeuvres) -> f64 {
+    about.speed.unwrap_or(1.0)
 }
 
 /// The signals at a point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SignalPoint {
     pub(super) scales: SignalSizes,
-    /// From −1 to 1: yaw rate, rudder, heading, sway, direction of the wind.
-    pub(super) signed: [f64; 5],
+    /// From −1 to 1: yaw rate, rudder, heading, sway, direction of the wind, lateral way.
+    pub(super) signed: [f64; 6],
     /// From 0.5 to 1: speed, propeller, time, speed of the wind.
     pub(super) positive: [f64; 4],
     /// Numbers of units that go into a second and into a metre.
@@ -71,12 +79,12 @@ impl SignalPoint {
 
     /// The point of a number: parts of multiples of roots, which fill a box evenly (Weyl).
     fn of_number(number: usize, scales: &SignalSizes) -> Self {
-        const ROOTS: [f64; 9] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0];
+        const ROOTS: [f64; 10] = [2.0, 3.0, 5.0, 7.0, 11.0, 29.0, 13.0, 17.0, 19.0, 23.0];
         let part = |root: f64| (number as f64 * root.sqrt()).fract();
         Self {
             scales: *scales,
             signed: std::array::from_fn(|place| 2.0 * part(ROOTS[place]) - 1.0),
-            positive: std::array::from_fn(|place| 0.5 + 0.5 * part(ROOTS[5 + place])),
+            positive: std::array::from_fn(|place| 0.5 + 0.5 * part(ROOTS[6 + place])),
             second: 1.0,
             metre: 1.0,
         }
@@ -87,13 +95,14 @@ impl SignalPoint {
     }
 
     pub(super) fn of(&self, signal: FormulaSignal) -> f64 {
-        let Self { scales, signed: [r, delta, psi, v, angle], positive: [speed, n, t, wind], second, metre } = *self;
+        let Self { scales, signed: [r, delta, psi, v, angle, y], positive: [speed, n, t, wind], second, metre } = *self;
         let per_second = metre / second;
         match signal {
             FormulaSignal::YawRate => r * scales.yaw_rate / second,
             FormulaSignal::Rudder => delta * scales.rudder,
             // A zig-zag turns about as far as its rudder goes.
             FormulaSignal::Heading => psi * scales.rudder,
+            FormulaSignal::LateralWay => y * scales.lateral_way * metre,
             FormulaSignal::Sway => 0.15 * v * scales.speed * per_second,
             FormulaSignal::Surge | FormulaSignal::Speed => speed * scales.speed * per_second,
             FormulaSignal::Propeller => n * scales.propeller / second,

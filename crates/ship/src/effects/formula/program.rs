@@ -20,6 +20,9 @@ pub enum FormulaSignal {
     Rudder,
     /// `psi`, heading, rad.
     Heading,
+    /// `y`, way to starboard of the course at which the record begins, m: y' = U sin(ψ − ψ₀). The speed is the measured
+    /// one; 1 m/s where records have none, so that y is in metres for every m/s.
+    LateralWay,
     /// `v`, sway velocity to starboard, m/s.
     Sway,
     /// `u`, surge velocity, m/s: √(U² − v²).
@@ -47,21 +50,25 @@ pub enum FormulaSignal {
 }
 
 /// Numbers that a formula takes from a record: the signal that needs it, its neutral value and its dimension.
-pub(super) const OF_RECORD: [(FormulaSignal, f64, Dimension); 3] = [
+pub(super) const OF_RECORD: [(FormulaSignal, f64, Dimension); 5] = [
     (FormulaSignal::SpeedRatio, 1.0, [-1, 1]),
     (FormulaSignal::Start, 0.0, [1, 0]),
     (FormulaSignal::PrimeYawRate, 1.0, [0, 1]),
+    (FormulaSignal::LateralWay, 1.0, [-1, 1]),
+    (FormulaSignal::LateralWay, 0.0, [0, 0]),
 ];
 
-/// Their values: approach speed, m/s, first time, s, and length of the ship, m.
+/// Their values: approach speed, m/s, first time, s, and length of the ship, m; the speed by which a lateral way grows
+/// where none is measured, m/s, and 1 where it always does, else 0.
 pub(super) type OfRecord = [f64; OF_RECORD.len()];
 
 impl FormulaSignal {
     /// Every signal with its name.
-    pub const NAMES: [(&'static str, Self); 15] = [
+    pub const NAMES: [(&'static str, Self); 16] = [
         ("r", Self::YawRate),
         ("delta", Self::Rudder),
         ("psi", Self::Heading),
+        ("y", Self::LateralWay),
         ("v", Self::Sway),
         ("u", Self::Surge),
         ("U", Self::Speed),
@@ -88,9 +95,9 @@ impl FormulaSignal {
         }
     }
 
-    /// Its value at an instant of a record that has its channels.
+    /// Its value at an instant of a record that has its channels; `z` are the states of the formula.
     #[inline(always)]
-    pub(super) fn at<R: Real>(self, now: &Now<R>, &[approach_speed, start, length]: &OfRecord) -> R {
+    pub(super) fn at<R: Real>(self, now: &Now<R>, z: &[R], &[approach_speed, start, length, ..]: &OfRecord) -> R {
         let Measured { speed, sway, wind_speed, wind_from, propeller } = *now.measured;
         let there = |channel: Option<f64>| channel.unwrap_or(f64::NAN);
         let of = |channel: Option<f64>| R::from(there(channel));
@@ -98,6 +105,7 @@ impl FormulaSignal {
             Self::YawRate => now.yaw_rate,
             Self::Rudder => now.rudder,
             Self::Heading => now.heading,
+            Self::LateralWay => z[0],
             Self::Sway => of(sway),
             Self::Surge => R::from((there(speed).powi(2) - there(sway).powi(2)).max(0.0).sqrt()),
             Self::Speed => of(speed),

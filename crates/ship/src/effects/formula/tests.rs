@@ -62,10 +62,16 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
         ("drift = c * abs(r) + d * abs(v)", Sides::Same),
         ("drift = c * abs(r) + d * v", Sides::Differ),
         ("one_sided = c * max(r, 0)", Sides::Differ),
+        ("bank = c * y", Sides::Alike),
+        ("banks = c * y + d * y^3", Sides::Alike),
+        ("bank = c * abs(y)", Sides::Same),
+        ("bank = c * y + d * y^2", Sides::Differ),
     ] {
         assert_eq!(Formula::read(line).expect("a formula").sides(), sides, "{line}");
     }
     assert!(Formula::read("trend = c * t").expect("a formula").is_of_time());
+    let bank = Formula::read("bank = c * y").expect("a formula");
+    assert!(!bank.is_of_time() && !bank.sees_heading() && bank.needs().is_none() && bank.uses(Regressor::Speed));
     for (line, units) in [
         ("cross = c * r * abs(v)", vec!["s²/m"]),
         ("bank = c * tanh(k * psi)", vec!["1", "1"]),
@@ -75,6 +81,8 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
         ("damping = c * r^3 / K_over_T", vec!["s"]),
         ("slow = c * q * v", vec!["s/m"]),
         ("trend = c * (t - start)", vec!["1/s"]),
+        ("bank = c * y", vec!["1/m"]),
+        ("bank = c * tanh(k * y)", vec!["1", "1/m"]),
         ("fading = c * delta * U^1.6", vec![Parameter::NO_UNIT]),
     ] {
         let formula = Formula::read(line).expect("a formula");
@@ -91,6 +99,9 @@ fn priors_follow_from_the_records_or_from_what_is_said() {
     let bank = proposal("bank = c * tanh(k * psi)").expect("no channel is needed").priors;
     // The heading goes to 0.35 rad, where tanh bends.
     assert!((1.0..20.0).contains(&bank[1].mean) && bank[1].is_shape, "{bank:?}");
+    // About a length to either side, of 140 m.
+    let way = proposal("bank = c * y").expect("no channel is needed").priors;
+    assert!((2.5e-4..1e-3).contains(&way[0].sd), "{way:?}");
     let said = proposal("bank = c * tanh(k * psi); k about 5; c about 0.02; k from 1 to 20").expect("said").priors;
     assert_eq!([said[0].sd, said[1].mean, said[1].sd, said[1].lowest, said[1].highest], [0.02, 5.0, 2.5, 1.0, 20.0]);
     assert!(proposal("wind = c * wind_speed^2 * sin(wind_angle)").is_none(), "no record has wind");
@@ -107,6 +118,7 @@ fn what_is_no_effect_is_refused_where_it_stands() {
     for (line, at, said) in [
         ("bank", 4, "expected `name = formula`"),
         ("bank = c * dleta", 11, "did you mean `delta`"),
+        ("bank = c * Y", 11, "did you mean `y`"),
         ("bank = r", 7, "no constant"),
         ("bank = c + r", 7, "takes the effect away"),
         ("bank = tanh(c * r) + 1", 7, "takes the effect away"),
@@ -126,6 +138,7 @@ fn a_formula_is_had_again_from_what_is_written_of_it() {
         ("bank = c * tanh(k * psi); k about 5", vec![]),
         ("prime = c * rp * q", vec![6.0, 150.0]),
         ("trend = c * rp * (t - start)", vec![-20.0, 150.0]),
+        ("bank = c * y", vec![7.0, 0.0]),
     ] {
         let formula = Formula::read(line).expect("a formula");
         let again = crate::effects::named(formula.id(), formula.form(), &constants).expect("it is known");
