@@ -13,7 +13,7 @@ use ship::{Polyline, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Squall};
 use simulate::{Simulation, StreamKey, Vessel};
 use trace::document::{EffectEntry, Outcome};
-use trace::{Analysis, Settings, Verdict};
+use trace::{Analysis, Selection, Settings, Verdict};
 use trial::{Channel, Columns, Origin, Trial};
 
 /// An effect with its parameters.
@@ -225,6 +225,25 @@ fn measured_channels_are_used_where_they_help() {
         let all: Vec<Channel> = channels.iter().map(|(channel, _)| *channel).collect();
         let blind = analysed(&[trial.without(&all)], &[]);
         assert!(blind.document.effects.iter().all(|effect| effect.form != form), "{id} ({form})");
+    }
+}
+
+/// A bank by the lateral way is named with its formula and its coefficient, with a measured speed and without.
+#[test]
+fn a_bank_by_the_lateral_way_is_named() {
+    let bank = effects::formula("bank = c * y").expect("a formula");
+    let speed: Signal = (Channel::Speed, |t| 8.0 - 0.004 * t);
+    let steered = run(&steered(Vessel::response(ship(vec![(bank.clone(), vec![-4e-3])])), 10.0), 4);
+    for (trial, truth) in [(steered, -4e-3), (with_channel(bank.clone(), vec![-5e-4], &[speed]), -5e-4)] {
+        let selection = Selection { formulas: vec![Arc::clone(&bank)], ..Selection::default() };
+        let settings = Settings { selection, ..Settings::default() };
+        let analysis = trace::trace(&[from_csv(&trial)], &[], &settings).expect("a zig-zag has a base");
+        assert_eq!(names(&analysis), ["bank"], "{:?}", analysis.document.candidates);
+        let effect = &analysis.document.effects[0];
+        let [low, high] = effect.parameters["c"].quantity.ci95.expect("an interval");
+        assert!(effect.form == "c * y" && low < truth && truth < high, "{truth}: {effect:?}");
+        let error = analysis.identification[0].after.errors.heading;
+        assert!((error / from_deg(0.05) - 1.0).abs() < 0.1, "{:.4} deg is left", error.to_degrees());
     }
 }
 
