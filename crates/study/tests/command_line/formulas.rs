@@ -71,6 +71,8 @@ fn a_formula_of_a_scenario_is_marked_in_the_file() {
         let place = format!("--> bad.toml:{line}:{column}");
         assert!(column == 0 || run.err.contains(&place), "{place}: {}", run.err);
     }
+    desk.file("good.toml", format!("{GOOD}\n[[effect]]\nformula = \"bank = c * y\"\nc = -0.004\n"));
+    desk.run(&["check", "good.toml"]).is_done();
     let typed = "\n[[identifier]]\ntrace.formulas = [\"bank = c * r\", \"bend = c * dleta\"]\n";
     desk.file("bad.toml", format!("{GOOD}{typed}"));
     desk.run(&["check", "bad.toml"]).is_refused(2, &[&format!("--> bad.toml:{line}:47"), "did you mean `delta`"]);

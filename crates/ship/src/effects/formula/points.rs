@@ -32,7 +32,7 @@ impl SignalSizes {
         }
     }
 
-    /// r L/U of a zig-zag is about 0.3, K′/T′ about 1, and it goes about three lengths aside for every radian of rudder.
+    /// r L/U of a zig-zag is about 0.3, K′/T′ about 1, y/L about three times the rudder.
     pub(super) fn of(about: &Manoeuvres) -> Self {
         let speed = about.speed.or(about.sway).unwrap_or(1.0);
         Self {

@@ -4,7 +4,7 @@ use crate::dynamics::Measured;
 use crate::effects::effect::Parameter;
 use crate::effects::list::{LIST, ListedEffect};
 
-fn about() -> Manoeuvres {
+pub(super) fn about() -> Manoeuvres {
     Manoeuvres {
         time: 20.0,
         rudder: 0.35,
