@@ -1,6 +1,6 @@
 //! The whole analysis of some records of one ship: a pipeline of stages, each a function of what the last one made.
 //!
-//! prepare → base → full fit → noise → structures → comparison → document
+//! prepare → base → full fit → noise → structures → names held against shapes → comparison → document
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -22,6 +22,7 @@ use crate::fit::{FittedRecords, StructureFit};
 use crate::full::{self, Full};
 use crate::hulls;
 use crate::leave_one_out::leave_one_out;
+use crate::location::locate;
 use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::remainder::{Innovations, Remainder, innovations, squares};
@@ -135,7 +136,8 @@ pub fn watched(
     let members = structures.members();
     let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, (&full.law, &members), hulls, settings.thorough, time);
     let (mut identification, mut no_nearer) = fit(&[])?;
-    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
+    let location = locate(&problem, &full, &structures, &candidates, settings);
+    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &location);
     let hulls = hulls::fit(&trials, settings, &identification, &remainder);
     if !hulls.is_empty() {
         (identification, no_nearer) = fit(&hulls)?;
@@ -156,6 +158,7 @@ pub fn watched(
         validation: (&validation, &judged),
         left_out: &left_out,
         remainder: &remainder,
+        location: &location,
         outliers: &outliers,
         no_nearer,
         problem: &problem,

@@ -14,30 +14,37 @@ use crate::comparison::ReplayResult;
 use crate::replay_errors::HORIZONS;
 
 /// Name of the schema.
-pub const SCHEMA: &str = "trace/3";
+pub const SCHEMA: &str = "trace/4";
 
 /// What the analysis says.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// Nothing is missing.
+    /// The noise of the instruments alone explains the records.
     #[default]
     Clean,
-    /// What is missing has a name, and what is left is noise.
+    /// A random moment is needed, and no effect is named: weather does this, and so does an effect of a shape that was
+    /// not looked for.
+    Disturbed,
+    /// What is missing has a name, and what is left is clean or disturbed.
     Traced,
-    /// Structure is left that no candidate carries.
+    /// What is left has a shape that no effect of the list is.
+    Located,
+    /// What is left is neither chance nor of a shape that was looked for.
     Unexplained,
 }
 
 impl Verdict {
     /// All verdicts.
-    pub const ALL: [Self; 3] = [Self::Clean, Self::Traced, Self::Unexplained];
+    pub const ALL: [Self; 5] = [Self::Clean, Self::Disturbed, Self::Traced, Self::Located, Self::Unexplained];
 
     /// The word used in files.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Clean => "clean",
+            Self::Disturbed => "disturbed",
             Self::Traced => "traced",
+            Self::Located => "located",
             Self::Unexplained => "unexplained",
         }
     }
@@ -246,28 +253,42 @@ pub struct PriorEntry {
 /// What is left.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct UnexplainedEntry {
-    /// Whether there is structure.
+    /// Whether it is neither chance nor of a shape that was looked for.
     pub present: bool,
-    /// Where it is.
+    /// Where it is, where it is more than noise.
     pub signature: Option<String>,
-    /// A term that would carry some of it.
-    pub empirical: Option<EmpiricalEntry>,
 }
 
-/// Moments without a name, which add m to δ + δ_r.
+/// A random moment beside what is named and located.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct DisturbanceEntry {
+    /// Its size as a rudder angle: the root mean square over the longest record.
+    pub rudder_deg: f64,
+    /// Share of the square of the heading error that it carries.
+    pub heading_error_share: f64,
+}
+
+/// A moment that is no effect of the list.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct EmpiricalEntry {
-    /// The best, and those that the records cannot tell from it.
-    pub terms: Vec<String>,
-    /// The best as an effect that a trace can be asked for, where it is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub effect: Option<String>,
-    /// Coefficients of the best: the rudder angle that its root mean square is worth.
-    pub parameters: Vec<ParameterEntry>,
-    /// As that of an effect.
-    pub delta_bic: f64,
-    /// Root mean square heading error with it.
-    pub heading_rmse_deg: f64,
+pub struct LocatedEntry {
+    /// What it depends on: `time`, `heading`, `way to one side`, `yaw rate`, `rudder` or `history of the rudder`.
+    pub depends_on: String,
+    /// The moment in words.
+    pub form: String,
+    /// The one record in which it acts.
+    pub only: Option<String>,
+    /// Since when, where it is a matter of instants.
+    pub from_s: Option<f64>,
+    /// Until when.
+    pub until_s: Option<f64>,
+    /// How much worse the records are explained without it, by any random moment as well.
+    pub nats: f64,
+    /// Rudder angle that its root mean square is worth.
+    pub rudder_deg: f64,
+    /// What the records cannot tell from it: other moments, and effects of the list.
+    pub alternatives: Vec<String>,
+    /// The moment as an effect that a trace can be asked for, where a formula says it.
+    pub formula: Option<String>,
 }
 
 /// Errors on all records.
@@ -376,17 +397,21 @@ pub struct ModelEntry {
 /// A trace.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Document {
-    /// `trace/3`.
-    #[schemars(extend("const" = "trace/3"))]
+    /// `trace/4`.
+    #[schemars(extend("const" = "trace/4"))]
     pub schema: String,
     /// The result in one sentence.
     pub headline: String,
-    /// `clean`, `traced` or `unexplained`.
+    /// `clean`, `disturbed`, `traced`, `located` or `unexplained`.
     pub verdict: Verdict,
     /// K, T and δ_r of the base fitted alone.
     pub base: Indices,
     /// What is named, the most probable first.
     pub effects: Vec<EffectEntry>,
+    /// The random moment that is needed beside them.
+    pub disturbance: Option<DisturbanceEntry>,
+    /// Moments that are no effects of the list, the clearest first.
+    pub located: Vec<LocatedEntry>,
     /// Every effect of the list and what became of it.
     pub candidates: Vec<CandidateEntry>,
     /// The structures, the most probable first.

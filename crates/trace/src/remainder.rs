@@ -6,9 +6,9 @@ use trial::Trial;
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::FittedRecords;
 use crate::full::Full;
+use crate::location::Location;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayErrors;
-use crate::shapes::{self, Empirical};
 use crate::signature::{Signature, signature};
 use crate::structures::Structures;
 use crate::weights::NoiseLaw;
@@ -47,10 +47,10 @@ pub struct Remainder {
     /// Whether it does, or the structures replay the records nearer than the base: probabilities under a noise that
     /// does not describe the rest are worth nothing where no replay bears them out.
     pub is_founded: bool,
+    /// Whether it is neither chance nor of a shape that was looked for.
+    pub is_unexplained: bool,
     /// Where it is, where it is more than noise.
     pub signature: Option<Signature>,
-    /// A term without a name that would carry some of it.
-    pub empirical: Option<Empirical>,
 }
 
 /// Share of the error of the base from which a rest that is not white noise is looked at.
@@ -67,44 +67,44 @@ impl Remainder {
         structures: &Structures,
         identification: &[RecordComparison],
         trials: &[Trial],
+        location: &Location,
     ) -> Self {
-        let Some(best) = structures.all.first() else { return Self::noise(true, true) };
+        let Some(best) = structures.all.first() else {
+            return Self { holds: true, is_founded: true, is_unexplained: false, signature: None };
+        };
         let is_held = |one: &RecordComparison| one.after.coverage().is_none_or(|own| own.is_held());
         let innovations = innovations(problem, &best.fit.residual, &full.law);
         let holds = are_noise(&innovations) && identification.iter().all(is_held);
         let [before, after] = squares(identification);
         let is_founded = holds || after < before;
-        let share = (after / before).sqrt();
-        let is_noise = holds && !full.law.is_of_model() && !full.law.is_random_moment();
         let rows: f64 = identification.iter().map(|one| one.after.errors.rows as f64).sum();
         let white =
             full.law.variance.iter().zip(&problem.records).map(|(own, record)| own * record.full_readings as f64);
         let is_small = after / rows < SMALL * SMALL * white.fold(0.0, f64::max);
-        if is_noise || is_small || share < UNEXPLAINED {
-            return Self::noise(holds, is_founded);
-        }
-        let empirical = shapes::explain(problem, full, best);
-        if holds && full.law.is_random_moment() && empirical.is_none() {
-            return Self::noise(holds, is_founded);
-        }
-        let worst = (0..identification.len()).max_by(|&one, &other| {
-            let error = |number: usize| identification[number].after.errors.heading;
-            error(one).total_cmp(&error(other))
-        });
-        let signature = worst.map(|number| {
-            let ReplayResult { replay, .. } = &identification[number].after;
-            let first = trials[number].observed_rows().next().unwrap_or(0);
-            let rows = first..first + replay.time.len();
-            let (heading, rudder) = (&trials[number].heading()[rows.clone()], &trials[number].rudder()[rows]);
-            signature(number, &replay.time, &replay.residual, heading, rudder, trials[number].sampling_period())
-        });
-        Self { holds, is_founded, signature, empirical }
+        let shapes = location.shapes.as_ref();
+        let is_chance = shapes.is_none_or(|own| are_noise(&with_values(innovations, &own.innovations)));
+        let is_smooth = shapes.is_some_and(|own| own.is_smooth);
+        let is_large = !is_small && (after / before).sqrt() >= UNEXPLAINED;
+        let is_unexplained = is_large && (is_smooth || !is_chance);
+        let signature = (is_unexplained || location.is_located()).then(|| worst(identification, trials)).flatten();
+        Self { holds, is_founded, is_unexplained, signature }
     }
+}
 
-    /// Nothing but noise.
-    fn noise(holds: bool, is_founded: bool) -> Self {
-        Self { holds, is_founded, signature: None, empirical: None }
-    }
+/// Where the rest of the record with the largest error lives.
+fn worst(identification: &[RecordComparison], trials: &[Trial]) -> Option<Signature> {
+    let error = |number: usize| identification[number].after.errors.heading;
+    let number = (0..identification.len()).max_by(|&one, &other| error(one).total_cmp(&error(other)))?;
+    let (ReplayResult { replay, .. }, trial) = (&identification[number].after, &trials[number]);
+    let first = trial.observed_rows().next().unwrap_or(0);
+    let rows = first..first + replay.time.len();
+    let (heading, rudder) = (&trial.heading()[rows.clone()], &trial.rudder()[rows]);
+    Some(signature(number, &replay.time, &replay.residual, heading, rudder, trial.sampling_period()))
+}
+
+/// Innovations of the same records with other values.
+fn with_values(all: Vec<Innovations>, values: &[Vec<f64>]) -> Vec<Innovations> {
+    all.into_iter().zip(values).map(|(own, values)| Innovations { values: values.clone(), ..own }).collect()
 }
 
 /// Probability below which innovations are not those of the law.

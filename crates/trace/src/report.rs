@@ -15,14 +15,15 @@ use crate::base::Base;
 use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME};
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::document::*;
-use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::model::{ModelParameter, Term, TermName};
-use crate::naming::{EffectNaming, named};
+use crate::location::Location;
+use crate::naming::EffectNaming;
 use crate::noise::CorrelatedNoise;
-use crate::remainder::Remainder;
+use crate::remainder::{Remainder, squares};
 use crate::settings::Settings;
+use crate::shape::{Candidate, NamedShape};
 use crate::signature::Signature;
 use crate::structures::Structures;
 use crate::words;
@@ -49,6 +50,8 @@ pub struct TraceParts<'a> {
     pub left_out: &'a [Option<RecordComparison>],
     /// What is left.
     pub remainder: &'a Remainder,
+    /// What is named, and shapes beside it.
+    pub location: &'a Location,
     /// Readings that were left out of the fitted records, s.
     pub outliers: &'a [Vec<f64>],
     /// Whether the structures replay the fitted records no nearer than the base.
@@ -67,20 +70,24 @@ impl TraceParts<'_> {
     /// The document.
     pub fn document(&self) -> Document {
         let selection = &self.settings.selection;
-        let mut named = named(self.structures, self.settings.probability, selection);
+        let mut named = self.location.named.clone();
         named.retain(|own| self.remainder.is_founded || selection.asks_for(own.term.0));
         let effects = self.effects(&named);
         let signature = self.remainder.signature.as_ref();
-        let verdict = match (signature, effects.is_empty()) {
-            (Some(_), _) => Verdict::Unexplained,
-            (None, true) => Verdict::Clean,
-            (None, false) => Verdict::Traced,
-        };
         let error = self.errors();
+        let disturbance = self.disturbance();
+        let verdict = match (self.location.is_located(), effects.is_empty(), disturbance) {
+            _ if self.remainder.is_unexplained => Verdict::Unexplained,
+            (true, ..) => Verdict::Located,
+            (_, false, _) => Verdict::Traced,
+            (.., Some(_)) => Verdict::Disturbed,
+            _ => Verdict::Clean,
+        };
+        let located = self.located();
         let (base, indices) = (&self.base.estimate, self.indices());
         Document {
             schema: SCHEMA.into(),
-            headline: words::headline(verdict, &effects, &error),
+            headline: words::Headline { verdict, effects: &effects, error: &error, disturbance, located: &located }.sentence(),
             verdict,
             base: self.with_prime([base.K(), base.T(), base.rudder_bias()]),
             candidates: selection.ids().into_iter().map(|id| self.candidate(id.as_str(), &named)).collect(),
@@ -93,10 +100,11 @@ impl TraceParts<'_> {
                 rule: self.settings.rule.as_str().into(),
             },
             unexplained: UnexplainedEntry {
-                present: signature.is_some(),
+                present: self.remainder.is_unexplained,
                 signature: signature.map(|own| words::signature(own, self.name_of(own)) + &self.bands()),
-                empirical: self.empirical(),
             },
+            disturbance,
+            located,
             residual: ResidualEntry {
                 before: self.whiteness(|one| &one.before),
                 after: self.whiteness(|one| &one.after),
@@ -335,20 +343,50 @@ impl TraceParts<'_> {
         self.structures.all.iter().take(LISTED).enumerate().map(of).collect()
     }
 
-    fn empirical(&self) -> Option<EmpiricalEntry> {
-        let own = self.remainder.empirical.as_ref()?;
-        let monomial = |form: &str| empirical::plain().iter().find(|own| own.form == form).map(empirical::Powers::line);
-        let parameter = |&(value, sd): &(f64, f64)| {
-            let quantity = Quantity { value, sd: Some(sd), ci95: Some([value - 1.96 * sd, value + 1.96 * sd]) };
-            self.number(&empirical::COEFFICIENT, quantity, None, false)
+    /// The random moment beside what is named and located, and its share of the heading error of the replays.
+    fn disturbance(&self) -> Option<DisturbanceEntry> {
+        let shapes = self.location.shapes.as_ref()?;
+        let rudder_deg = to_deg(shapes.moment?);
+        let [_, after] = squares(self.identification);
+        let rows = || self.identification.iter().map(|one| one.after.errors.rows as f64);
+        let of_row = self.problem.records.iter().zip(&shapes.heading_sd);
+        let noise = of_row.zip(rows()).map(|((record, sd), rows)| sd * sd * record.full_readings as f64 * rows);
+        let left = shapes.mean_square.map_or(after, |square| square * rows().sum::<f64>());
+        let share = (left - noise.sum::<f64>()).max(0.0) / after.max(left);
+        Some(DisturbanceEntry { rudder_deg, heading_error_share: share })
+    }
+
+    /// The shapes that are believed; what belongs to the change of a ship is no shape of its own.
+    fn located(&self) -> Vec<LocatedEntry> {
+        let Some(shapes) = self.location.shapes.as_ref().filter(|own| own.is_located()) else { return Vec::new() };
+        let mut alternatives = shapes.alternatives(|only| self.span(only));
+        let label = |(id, form, _): TermName| format!("{id} ({form})");
+        alternatives.extend(self.location.displaced.iter().map(|effect| label(effect.term)));
+        let entry = |named: &NamedShape| {
+            let Candidate { shape, only, .. } = *named.candidate;
+            let span = self.span(only);
+            let acts = shape.span(span[1]).map(|times| times.map(|t| span[0] + t.clamp(0.0, span[1])));
+            LocatedEntry {
+                depends_on: shape.dependence().as_str().into(),
+                form: shape.words(span),
+                only: self.only(only),
+                from_s: acts.map(|[from, _]| from),
+                until_s: acts.map(|[_, until]| until),
+                nats: named.loss,
+                rudder_deg: to_deg(named.size),
+                alternatives: alternatives.clone(),
+                formula: shape.formula().map(|formula| format!("located = {formula}")),
+            }
         };
-        Some(EmpiricalEntry {
-            terms: own.group.clone(),
-            effect: own.group.first().and_then(|best| monomial(best)),
-            parameters: own.coefficients.iter().map(parameter).collect(),
-            delta_bic: -2.0 * own.gain,
-            heading_rmse_deg: to_deg(own.error),
-        })
+        shapes.named(|only| self.span(only)[1]).iter().map(entry).collect()
+    }
+
+    /// Beginning and length, s, of a record, or of the longest.
+    fn span(&self, only: Option<usize>) -> [f64; 2] {
+        let records = &self.problem.records;
+        let longest = || records.iter().max_by(|one, other| one.duration().total_cmp(&other.duration()));
+        let record = only.map_or_else(longest, |number| records.get(number));
+        record.map_or([0.0; 2], |record| [record.time[0], record.duration()])
     }
 
     fn errors(&self) -> ErrorEntry {

@@ -4,7 +4,9 @@ use ship::angle::to_deg;
 use trial::{Origin, Trial};
 
 use crate::comparison::BandCoverage;
-use crate::document::{BeforeAfter, EffectEntry, ErrorEntry, ErrorsEntry, Verdict};
+use crate::document::{
+    BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict,
+};
 use crate::naming::EffectNaming;
 use crate::signature::Signature;
 
@@ -61,46 +63,101 @@ fn times(errors: Option<[f64; 2]>) -> Option<String> {
     errors.map(|[before, after]| after / before).filter(|ratio| ratio.is_finite()).map(|ratio| format!("× {ratio:.2}"))
 }
 
-/// The result in one sentence: what is missing, and the error of the heading with it over that without, on fitted and
-/// on other records, over whole replays and over windows.
-pub fn headline(verdict: Verdict, effects: &[EffectEntry], error: &ErrorEntry) -> String {
-    let own = |one: &EffectEntry| match one.aliases.is_empty() {
-        true => format!("{} ({})", one.id, one.form),
-        false => format!("one of {}", listed(&[vec![one.id.clone()], one.aliases.clone()].concat())),
-    };
-    let names = listed(&effects.iter().map(own).collect::<Vec<_>>());
-    let whole = |errors: &ErrorsEntry| Some(errors.heading_rmse_deg);
-    let window = |errors: &ErrorsEntry| errors.horizon_rmse_deg.get(WINDOW).copied().flatten();
-    let fitted = errors_of(&error.identification, whole).unwrap_or([f64::NAN; 2]);
-    let (others, how) = match error.validation.is_empty() {
-        true => (&error.leave_one_out, "left out in turn"),
-        false => (&error.validation, "held out"),
-    };
-    let judged = times(errors_of(others, whole)).map_or_else(String::new, |ratio| format!(", {how} {ratio}"));
-    let [from, to] = fitted.map(short);
-    let ratio = times(Some(fitted)).map_or_else(String::new, |ratio| format!(" ({ratio})"));
-    let in_windows = match times(errors_of(&error.identification, window)) {
-        Some(own) => {
-            let other = times(errors_of(others, window)).map_or_else(String::new, |other| format!(", {how} {other}"));
-            format!("; in windows of {WINDOW} s {own}{other}")
+/// What is said in one sentence.
+pub struct Headline<'a> {
+    /// Verdict.
+    pub verdict: Verdict,
+    /// What is named.
+    pub effects: &'a [EffectEntry],
+    /// Errors before and after.
+    pub error: &'a ErrorEntry,
+    /// The random moment.
+    pub disturbance: Option<DisturbanceEntry>,
+    /// Moments that are no effects of the list.
+    pub located: &'a [LocatedEntry],
+}
+
+impl Headline<'_> {
+    /// The result in one sentence: what is missing, and the error of the heading with it over that without, on fitted
+    /// and on other records, over whole replays and over windows.
+    pub fn sentence(&self) -> String {
+        let named = |one: &EffectEntry| match one.aliases.is_empty() {
+            true => format!("{} ({})", one.id, one.form),
+            false => format!("one of {}", listed(&[vec![one.id.clone()], one.aliases.clone()].concat())),
+        };
+        let names = listed(&self.effects.iter().map(named).collect::<Vec<_>>());
+        let [from, to, judged, in_windows] = self.errors();
+        let errors = format!("heading error {from}° → {to}{judged}{in_windows}");
+        match (self.verdict, self.effects.is_empty()) {
+            (Verdict::Clean, _) => format!(
+                "The noise of the instruments alone explains the records: nothing is seen to be missing; the heading error \
+                 of the first-order response is {from}°{judged}."
+            ),
+            (Verdict::Disturbed, _) => format!(
+                "No effect is named, but something turns the ship: {} of the heading error of {from}°{judged}. Weather \
+                 does this, and so does an effect of a shape that was not looked for.",
+                self.moment()
+            ),
+            (Verdict::Located, true) => format!("What is missing depends on {}: {errors}.", self.shapes()),
+            (_, true) => format!(
+                "No effect of the list explains what is missing: {errors}; what is left is neither chance nor of a shape \
+                 that was looked for."
+            ),
+            (verdict, false) => {
+                let (more, left) = match (verdict, self.disturbance) {
+                    (Verdict::Unexplained, _) => (" and more", String::from("; what is left is not noise")),
+                    (Verdict::Located, _) => ("", format!("; what is left depends on {}", self.shapes())),
+                    (_, Some(_)) => ("", format!("; what is left is chance: {} of it", self.moment())),
+                    (_, None) => ("", String::new()),
+                };
+                format!("The first-order response lacks {names}{more}{}{left}.", self.seen(&errors))
+            }
         }
-        None => String::new(),
-    };
-    let errors = format!("heading error {from}° → {to}°{ratio}{judged}{in_windows}");
-    let left = if verdict == Verdict::Unexplained { "; what is left is not noise" } else { "" };
-    match (verdict, effects.is_empty()) {
-        (Verdict::Clean, _) => {
-            format!("Nothing is seen to be missing: the heading error of the first-order response is {from}°{judged}.")
+    }
+
+    /// Errors of the fitted records before and after, of others, and in windows.
+    fn errors(&self) -> [String; 4] {
+        let whole = |errors: &ErrorsEntry| Some(errors.heading_rmse_deg);
+        let window = |errors: &ErrorsEntry| errors.horizon_rmse_deg.get(WINDOW).copied().flatten();
+        let fitted = errors_of(&self.error.identification, whole).unwrap_or([f64::NAN; 2]);
+        let (others, how) = match self.error.validation.is_empty() {
+            true => (&self.error.leave_one_out, "left out in turn"),
+            false => (&self.error.validation, "held out"),
+        };
+        let of_others = |ratio: Option<String>| ratio.map_or_else(String::new, |ratio| format!(", {how} {ratio}"));
+        let judged = of_others(times(errors_of(others, whole)));
+        let [from, to] = fitted.map(short);
+        let ratio = times(Some(fitted)).map_or_else(String::new, |ratio| format!(" ({ratio})"));
+        let in_windows = times(errors_of(&self.error.identification, window)).map_or_else(String::new, |own| {
+            format!("; in windows of {WINDOW} s {own}{}", of_others(times(errors_of(others, window))))
+        });
+        [from, format!("{to}°{ratio}"), judged, in_windows]
+    }
+
+    /// The errors with named effects; where a whole replay gains nothing, what shows instead.
+    fn seen(&self, errors: &str) -> String {
+        let fitted = errors_of(&self.error.identification, |errors| Some(errors.heading_rmse_deg));
+        match fitted.is_some_and(|[before, after]| after > STAYS * before) {
+            true => format!("{}; the whole replay changes little: {errors}", one_step(self.effects)),
+            false => format!(": {errors}"),
         }
-        (_, true) => format!("No effect of the list explains what is missing: {errors}{left}."),
-        _ => {
-            let more = if left.is_empty() { "" } else { " and more" };
-            let seen = match fitted[1] > STAYS * fitted[0] {
-                true => format!("{}; the whole replay changes little: {errors}", one_step(effects)),
-                false => format!(": {errors}"),
-            };
-            format!("The first-order response lacks {names}{more}{seen}{left}.")
-        }
+    }
+
+    /// The random moment and what it carries.
+    fn moment(&self) -> String {
+        let own = self.disturbance.unwrap_or(DisturbanceEntry { rudder_deg: f64::NAN, heading_error_share: f64::NAN });
+        let share = 100.0 * own.heading_error_share;
+        format!("a random moment like {}° of rudder (rms) carries {share:.0} %", short(own.rudder_deg))
+    }
+
+    /// What the shapes are, with their evidence.
+    fn shapes(&self) -> String {
+        let shape = |own: &LocatedEntry| format!("{} ({})", own.depends_on, own.form);
+        let nats = self.located.first().map_or(0.0, |clearest| clearest.nats);
+        let words = listed(&self.located.iter().map(shape).collect::<Vec<_>>());
+        let other = self.located.first().and_then(|clearest| clearest.alternatives.first());
+        let other = other.map_or_else(String::new, |other| format!(", or {other}"));
+        format!("{words}, {nats:.0} nats better than any random moment{other}")
     }
 }
 
@@ -209,6 +266,10 @@ mod tests {
         BeforeAfter { file: String::new(), before: own(0), after: own(1) }
     }
 
+    fn sentence(effects: &[EffectEntry], error: &ErrorEntry) -> String {
+        Headline { verdict: Verdict::Traced, effects, error, disturbance: None, located: &[] }.sentence()
+    }
+
     #[test]
     fn the_headline_names_effects_and_every_ratio() {
         let error = ErrorEntry {
@@ -218,7 +279,7 @@ mod tests {
         };
         let effects = [effect("nonlinear_damping", -94.0), effect("speed_loss", -20.0)];
         assert_eq!(
-            headline(Verdict::Traced, &effects, &error),
+            sentence(&effects, &error),
             "The first-order response lacks nonlinear_damping (r³) and speed_loss (r³): heading error 2.00° → 0.500° \
              (× 0.25), held out × 0.50; in windows of 60 s × 0.40, held out × 0.60."
         );
@@ -229,7 +290,7 @@ mod tests {
     fn a_gain_that_no_replay_shows_is_said_to_be_of_one_step() {
         let error = ErrorEntry { identification: vec![record([2.0, 2.0], [None; 2])], ..ErrorEntry::default() };
         assert_eq!(
-            headline(Verdict::Traced, &[effect("nonlinear_damping", -94.2)], &error),
+            sentence(&[effect("nonlinear_damping", -94.2)], &error),
             "The first-order response lacks nonlinear_damping (r³), seen from one heading to the next, where BIC falls \
              by 94; the whole replay changes little: heading error 2.00° → 2.00° (× 1.00)."
         );

@@ -11,6 +11,8 @@ mod motion;
 mod point;
 mod search;
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use crate::fit::{FittedRecords, StructureFit};
@@ -42,15 +44,22 @@ const SETTLED: f64 = 0.02;
 const UNIT: f64 = 1.0 / 16.0;
 const LONGEST_TIME: f64 = 1000.0;
 
-/// A random moment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RandomMoment {
-    /// Its size as a rudder angle, rad: the root mean square over the longest record; of a white moment that of its mean
-    /// over T.
-    pub rudder: f64,
-    /// Share of the square of the heading error that it carries.
-    pub share: f64,
+/// A shape that is believed.
+#[derive(Debug, Clone)]
+pub struct NamedShape {
+    /// The shape.
+    pub candidate: Arc<Candidate>,
+    /// How much worse the records are explained without it, nats.
+    pub loss: f64,
+    /// Rudder angle that its root mean square is worth, rad.
+    pub size: f64,
 }
+
+/// A shape whose absence costs less than this share of that of the clearest is no name.
+const SMALLEST_LOSS: f64 = 0.25;
+
+/// A moment that sets in within this share of a record from the change of a ship belongs to the change.
+const BESIDE: f64 = 0.1;
 
 /// What is behind the error of a structure.
 #[derive(Debug, Clone)]
@@ -61,14 +70,19 @@ pub struct ShapeAnalysis {
     pub alike: Vec<Explanation>,
     /// Coefficients of the best, rad of rudder at the root mean square of each moment.
     pub coefficients: Vec<Vec<f64>>,
-    /// How much worse every shape's absence is, nats.
+    /// How much worse the records are explained without every shape of the best, nats.
     pub losses: Vec<f64>,
     /// Gain of the best, nats.
     pub gain: f64,
     /// Whether a smooth moment explains it better than any random law, where no shape does.
     pub is_smooth: bool,
-    /// The random moment beside the best.
-    pub moment: Option<RandomMoment>,
+    /// The random moment beside the best as a rudder angle, rad: its root mean square over the longest record; of a white
+    /// moment that of its mean over T.
+    pub moment: Option<f64>,
+    /// Standard deviations of the white noise of a row of the records, rad.
+    pub heading_sd: Vec<f64>,
+    /// Mean square of the heading error that the shapes leave, rad²; `None` without any.
+    pub mean_square: Option<f64>,
     /// What is new in every heading of the records under the best, over its standard deviation.
     pub innovations: Vec<Vec<f64>>,
 }
@@ -77,6 +91,48 @@ impl ShapeAnalysis {
     /// Whether shapes are believed.
     pub fn is_located(&self) -> bool {
         self.gain >= BELIEVED
+    }
+
+    /// The shapes of the best that are clear, the clearest first, for records that last so long, s.
+    pub fn named(&self, duration: impl Fn(Option<usize>) -> f64) -> Vec<NamedShape> {
+        let size = |own: &Vec<f64>| own.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let shapes = self.best.shapes.iter().zip(&self.losses).zip(&self.coefficients);
+        let all = shapes.map(|((shape, &loss), own)| NamedShape { candidate: Arc::clone(shape), loss, size: size(own) });
+        let mut all: Vec<NamedShape> = all.collect();
+        all.sort_by(|one, other| other.loss.total_cmp(&one.loss));
+        let least = all.first().map_or(0.0, |clearest| (SMALLEST_LOSS * clearest.loss).max(BELIEVED).min(clearest.loss));
+        all.retain(|own| own.loss >= least);
+        let from = |own: &NamedShape| own.candidate.shape.span(0.0).map(|[from, _]| from);
+        let changes: Vec<(Option<usize>, Option<f64>)> =
+            all.iter().filter(|own| own.candidate.shape.is_change()).map(|own| (own.candidate.only, from(own))).collect();
+        all.retain(|own| {
+            let only = own.candidate.only;
+            let is_beside = |&(other, at): &(Option<usize>, Option<f64>)| {
+                let apart = at.zip(from(own)).map(|(at, from)| (at - from).abs());
+                other == only && apart.is_some_and(|apart| apart <= BESIDE * duration(only))
+            };
+            own.candidate.shape.is_change() || !changes.iter().any(is_beside)
+        });
+        all
+    }
+
+    /// What the records cannot tell from the best, in words: other dependences, and other moments of the same one.
+    pub fn alternatives(&self, span: impl Fn(Option<usize>) -> [f64; 2]) -> Vec<String> {
+        let words = |own: &Explanation| {
+            let shapes = own.shapes.iter().map(|shape| shape.shape.words(span(shape.only)));
+            shapes.collect::<Vec<_>>().join(" and ")
+        };
+        let classes = |own: &Explanation| own.shapes.iter().map(|shape| shape.shape.class()).collect::<Vec<usize>>();
+        let mut seen = vec![classes(&self.best)];
+        let mut all = Vec::new();
+        for other in &self.alike {
+            let own = classes(other);
+            if !seen.contains(&own) {
+                all.push(words(other));
+                seen.push(own);
+            }
+        }
+        all
     }
 }
 
@@ -156,7 +212,11 @@ impl<'a> Stand<'a> {
         Some(ShapeAnalysis {
             losses,
             coefficients: search::coefficients(&best.shapes, &step),
-            moment: self.moment(&best, whole.sd(), &step, longest),
+            mean_square: (!best.shapes.is_empty()).then(|| {
+                search::square_left(&self.linearised.linear, &best.shapes, &step) / self.linearised.rows() as f64
+            }),
+            heading_sd: self.point.sd.iter().map(|sd| sd * whole.sd()).collect(),
+            moment: self.moment(&best, whole.sd(), longest),
             alike: tried,
             gain: 0.5 * (self.height - best.height),
             is_smooth: best.shapes.is_empty() && 0.5 * (self.height - smooth) >= SMOOTH,
@@ -165,9 +225,8 @@ impl<'a> Stand<'a> {
         })
     }
 
-    /// The random moment of an explanation with a step of all unknowns, whose white noise has a standard deviation in
-    /// units of that of the records.
-    fn moment(&self, best: &Explanation, sd: f64, step: &[f64], longest: f64) -> Option<RandomMoment> {
+    /// The random moment of an explanation whose white noise has a standard deviation in units of that of the records.
+    fn moment(&self, best: &Explanation, sd: f64, longest: f64) -> Option<f64> {
         let law = &self.laws[best.law];
         let (kind, _) = law.colour.wander.filter(|_| law.is_moment())?;
         let spread = match kind {
@@ -175,11 +234,6 @@ impl<'a> Stand<'a> {
             CorrelatedNoise::White => self.point.theta[0].max(longest.recip()).sqrt(),
             _ => 1.0,
         };
-        let linear = &self.linearised.linear;
-        let white = || self.point.sd.iter().map(|own| own * sd);
-        let rows = linear.blocks.iter().map(|block| block.residual.len() as f64);
-        let noise: f64 = white().zip(rows).map(|(sd, rows)| sd * sd * rows).sum();
-        let left = search::square_left(linear, &best.shapes, step);
-        Some(RandomMoment { rudder: law.size * white().fold(0.0, f64::max) * spread, share: (1.0 - noise / left).max(0.0) })
+        Some(law.size * sd * self.point.sd.iter().copied().fold(0.0, f64::max) * spread)
     }
 }

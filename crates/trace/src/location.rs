@@ -1,0 +1,140 @@
+//! Names held against shapes: an effect of the list is named only where no shape explains the records better in its
+//! place, and what is left beside the names is looked at for shapes.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::fit::{Effort, FittedRecords, StructureFit};
+use crate::full::Full;
+use crate::model::{Term, TermName};
+use crate::naming::{EffectNaming, named};
+use crate::settings::Settings;
+use crate::shape::{self, ALIKE, ShapeAnalysis};
+use crate::structures::Structures;
+
+/// Probability of a size as far from neutral by chance, above which an effect is not named.
+const BY_CHANCE: f64 = 0.05;
+
+/// What is named, and what is left beside it.
+#[derive(Debug, Clone)]
+pub struct Location {
+    /// Effects that stand, the most probable first.
+    pub named: Vec<EffectNaming>,
+    /// Effects in whose place shapes, or a random moment, explain the records better.
+    pub displaced: Vec<EffectNaming>,
+    /// What the named effects leave; `None` where their parameters cannot be told apart.
+    pub shapes: Option<ShapeAnalysis>,
+}
+
+impl Location {
+    /// Whether shapes are believed.
+    pub fn is_located(&self) -> bool {
+        self.shapes.as_ref().is_some_and(ShapeAnalysis::is_located)
+    }
+}
+
+/// What names are found among.
+struct NamedStructures<'a> {
+    problem: &'a FittedRecords,
+    full: &'a Full,
+    structures: &'a Structures,
+    candidates: &'a [Arc<Term>],
+}
+
+/// Holds the probable effects against shapes.
+pub fn locate(
+    problem: &FittedRecords,
+    full: &Full,
+    structures: &Structures,
+    candidates: &[Arc<Term>],
+    settings: &Settings,
+) -> Location {
+    let among = NamedStructures { problem, full, structures, candidates };
+    let is_asked = |effect: &EffectNaming| settings.selection.asks_for(effect.term.0);
+    let mut named = named(structures, settings.probability, &settings.selection);
+    named.retain(|effect| is_asked(effect) || among.is_supported(effect));
+    let mut shapes = among.shapes(&named);
+    let mut displaced = Vec::new();
+    loop {
+        let height = |shapes: &Option<ShapeAnalysis>| shapes.as_ref().map_or(f64::INFINITY, |own| own.best.height);
+        let rivals = (0..named.len()).filter(|&place| !is_asked(&named[place])).map(|place| {
+            let mut others = named.clone();
+            others.remove(place);
+            (place, among.shapes(&others))
+        });
+        let lowest = rivals.min_by(|(_, one), (_, other)| height(one).total_cmp(&height(other)));
+        let Some((place, rival)) = lowest.filter(|(_, rival)| height(rival) + 2.0 * ALIKE < height(&shapes)) else {
+            return Location { named, displaced, shapes };
+        };
+        displaced.push(named.remove(place));
+        shapes = rival;
+    }
+}
+
+impl NamedStructures<'_> {
+    /// What speaks for an effect beside its probability: the evidence, and a size that is none by chance.
+    fn is_supported(&self, effect: &EffectNaming) -> bool {
+        let (id, _, only) = effect.term;
+        let is_gain = self.structures.support_of(id, only).gain > 0.0 || !effect.aliases.is_empty();
+        is_gain && self.chance(effect.term).is_none_or(|chance| chance < BY_CHANCE)
+    }
+
+    /// Probability of sizes of a term as far from neutral by chance (χ²), in the most probable structure that has it.
+    fn chance(&self, name: TermName) -> Option<f64> {
+        let with = |fit: &StructureFit| fit.structure.terms.iter().position(|term| term.name() == name);
+        let (fit, place) = self.structures.all.iter().find_map(|own| Some((&own.fit, with(&own.fit)?)))?;
+        let (term, range) = (&fit.structure.terms[place], fit.structure.ranges()[place].clone());
+        let sizes: Vec<(usize, f64)> = (range.zip(&term.priors).zip(term.neutral()))
+            .filter(|((_, prior), _)| prior.is_fitted() && !prior.is_shape)
+            .map(|((place, _), neutral)| (place, fit.theta[place] - neutral))
+            .collect();
+        let all = fit.covariance()?;
+        let covariance = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| all[(sizes[i].0, sizes[j].0)]);
+        let away = DVector::from_iterator(sizes.len(), sizes.iter().map(|(_, away)| *away));
+        let square = away.dot(&covariance.cholesky()?.solve(&away));
+        Some(ChiSquared::new(sizes.len() as f64).ok()?.sf(square))
+    }
+
+    /// What some named effects leave.
+    fn shapes(&self, named: &[EffectNaming]) -> Option<ShapeAnalysis> {
+        let names: Vec<TermName> = named.iter().map(|effect| effect.term).collect();
+        shape::analysis(self.problem, &self.fit(&names)?, &self.full.law)
+    }
+
+    /// The structure of some terms: as it was weighed, else fitted from where they stand in others. `None` where one is
+    /// no candidate.
+    fn fit(&self, names: &[TermName]) -> Option<StructureFit> {
+        let known = || self.structures.all.iter().map(|own| &own.fit);
+        let is_same = |fit: &&StructureFit| {
+            let terms = &fit.structure.terms;
+            terms.len() == names.len() && terms.iter().all(|term| names.contains(&term.name()))
+        };
+        if let Some(fit) = known().find(is_same) {
+            return Some(fit.clone());
+        }
+        let near = known().next()?;
+        let (mut terms, mut theta) = (Vec::new(), near.theta[..near.structure.base_count()].to_vec());
+        let fits = || known().chain([&self.full.fit]);
+        // In the order in which the rudder passes through them.
+        let mut candidates: Vec<&Arc<Term>> = Vec::new();
+        for term in self.full.fit.structure.terms.iter().chain(self.candidates) {
+            if names.contains(&term.name()) && candidates.iter().all(|other| other.name() != term.name()) {
+                candidates.push(term);
+            }
+        }
+        for term in candidates {
+            let place = |fit: &StructureFit| fit.structure.terms.iter().position(|own| own.name() == term.name());
+            let values = fits().find_map(|fit| Some(fit.theta[fit.structure.ranges()[place(fit)?].clone()].to_vec()));
+            theta.extend(values.unwrap_or_else(|| term.priors.iter().map(|prior| prior.mean).collect()));
+            terms.push(Arc::clone(term));
+        }
+        if terms.len() != names.len() {
+            return None;
+        }
+        let weights = self.problem.weights(&self.full.law);
+        let structure = near.structure.of(terms);
+        Some(self.problem.fit(&structure, theta, near.initial.clone(), &weights, Effort::FINE))
+    }
+}
