@@ -212,13 +212,7 @@ impl RecordNoise {
         let variances = record.observed.iter().map(variance).collect();
         // A course-unstable ship is steered: what a random moment does is over after a rudder order.
         let damping = inverse_time.max(0.0);
-        Self {
-            durations,
-            variances,
-            longest,
-            damping,
-            drifts: Self::kinds().map(|_| OnceLock::new()).collect(),
-        }
+        Self { durations, variances, longest, damping, drifts: Self::kinds().map(|_| OnceLock::new()).collect() }
     }
 
     /// Every kind of what wanders.

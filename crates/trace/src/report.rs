@@ -17,8 +17,8 @@ use crate::comparison::{RecordComparison, ReplayResult};
 use crate::document::*;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::Full;
-use crate::model::{ModelParameter, Term, TermName};
 use crate::location::Location;
+use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::EffectNaming;
 use crate::noise::CorrelatedNoise;
 use crate::remainder::{Remainder, squares};
@@ -87,7 +87,8 @@ impl TraceParts<'_> {
         let (base, indices) = (&self.base.estimate, self.indices());
         Document {
             schema: SCHEMA.into(),
-            headline: words::Headline { verdict, effects: &effects, error: &error, disturbance, located: &located }.sentence(),
+            headline: words::Headline { verdict, effects: &effects, error: &error, disturbance, located: &located }
+                .sentence(),
             verdict,
             base: self.with_prime([base.K(), base.T(), base.rudder_bias()]),
             candidates: selection.ids().into_iter().map(|id| self.candidate(id.as_str(), &named)).collect(),

@@ -4,9 +4,7 @@ use ship::angle::to_deg;
 use trial::{Origin, Trial};
 
 use crate::comparison::BandCoverage;
-use crate::document::{
-    BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict,
-};
+use crate::document::{BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict};
 use crate::naming::EffectNaming;
 use crate::signature::Signature;
 

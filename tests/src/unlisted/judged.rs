@@ -97,7 +97,7 @@ impl Answer {
             verdict: document.verdict,
             named: document.effects.iter().map(Named::of).collect(),
             noise: document.noise.iter().all(is_random),
-            shape: document.unexplained.empirical.as_ref().and_then(|shape| shape.terms.first().cloned()),
+            shape: document.located.first().map(|shape| shape.form.clone()),
             heading: [from_deg(*nearest), (square / rows as f64).sqrt()],
         }
     }

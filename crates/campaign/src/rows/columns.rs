@@ -98,7 +98,7 @@ pub const OWN_COLUMNS: [RowColumn; 2] = columns! {
 
 /// Columns that follow in a study with a trace.
 pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
-    "trace_verdict", "clean, traced or unexplained" => text(verdict, set_verdict);
+    "trace_verdict", "clean, disturbed, traced, located or unexplained" => text(verdict, set_verdict);
     "trace_named", "effects named, joined by +; empty where none was" => text(named, set_named);
     "trace_groups", "the same, each with its aliases joined by |" => text(groups, set_groups);
     "trace_probabilities", "effects with a probability of at least 0.005, each with it behind =, joined by +"

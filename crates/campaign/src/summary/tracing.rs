@@ -26,8 +26,8 @@ pub struct TraceSummary {
     pub missing: Vec<String>,
     /// Trials traced.
     pub trials: u64,
-    /// Trials with the verdicts clean, traced and unexplained.
-    pub verdicts: [u64; 3],
+    /// Trials with every verdict.
+    pub verdicts: [u64; Verdict::ALL.len()],
     /// How often every identifier was named.
     pub named: BTreeMap<String, u64>,
     /// How often every identifier was named for a missing effect that the trial could not tell from it.

@@ -24,7 +24,7 @@ pub struct MissingMomentEntry {
     pub rms_rudder_deg: f64,
     /// The explanation beside it in the tables: the named effects together, else the best candidate alone.
     pub explanation: Option<String>,
-    /// Whether the verdict is unexplained and no effect lies inside the bands of all curves that show something.
+    /// Whether the verdict is located or unexplained and no effect lies inside the bands of all curves that show something.
     pub unlisted: bool,
     /// Effects inside the bands of all curves that show something.
     pub inside_all: Vec<String>,
@@ -134,7 +134,9 @@ pub fn entry(
         curves: format!("{stem}-curves.csv"),
         rms_rudder_deg: to_deg(square.sqrt()),
         explanation: (!ids.is_empty()).then_some(explanation),
-        unlisted: verdict == Verdict::Unexplained && inside.is_empty() && telling().next().is_some(),
+        unlisted: matches!(verdict, Verdict::Unexplained | Verdict::Located)
+            && inside.is_empty()
+            && telling().next().is_some(),
         inside_all: effects(missing, &inside),
         over: missing.panels.iter().map(of_panel).collect(),
     }

@@ -36,6 +36,7 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     if let Some(signature) = &trace.unexplained.signature {
         behind += &format!("\nleft: {signature}");
     }
+    located(document, "").for_each(|words| behind += &format!("\n{words}"));
     behind += &odd(document);
     behind += &document.earlier_trials.as_ref().map_or_else(String::new, |prior| format!("\n{}", prior.sentence()));
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
@@ -236,21 +237,28 @@ fn what_is_left(page: &mut Page, document: &TraceDocument) {
     page.say(format!("Noise: {}.", noise(document)));
     let unexplained = &document.trace.unexplained;
     page.say(unexplained.signature.as_ref().map_or_else(String::new, |signature| format!("{signature}.")));
-    if let Some(own) = &unexplained.empirical {
-        let values: Vec<String> = own.parameters.iter().map(tables::value).collect();
-        page.say(format!(
-            "Not part of the model: a moment of this shape would lower the heading error to {}° (ΔBIC {}): {}; {}.",
-            significant(own.heading_rmse_deg, 2),
-            fixed(own.delta_bic, 0),
-            own.terms.join(" or "),
-            values.join(", ")
-        ));
-        page.say(
-            own.effect
-                .as_ref()
-                .map_or_else(String::new, |line| format!("To have it fitted and judged: `--effect \"{line}\"`.")),
-        );
-    }
+    located(document, "`").for_each(|words| page.say(words));
+}
+
+/// A sentence or two for every moment that is no effect of the list, with `mark` around what can be typed.
+fn located(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String> {
+    document.trace.located.iter().map(move |own| {
+        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" in {name}"));
+        let or = if own.alternatives.is_empty() { "" } else { "; as near is " };
+        let typed = match &own.formula {
+            Some(line) => format!("To have it fitted and judged: {mark}--effect \"{line}\"{mark}."),
+            None => String::from("No formula says this moment, so it cannot be typed as an effect."),
+        };
+        format!(
+            "Not part of the model: depends on {}{only}: {}, worth {}° of rudder (rms), {} nats better than any random \
+             moment{or}{}. {typed}",
+            own.depends_on,
+            own.form,
+            significant(own.rudder_deg, 2),
+            fixed(own.nats, 0),
+            own.alternatives.join(" or "),
+        )
+    })
 }
 
 /// What is said under the table of parameters.

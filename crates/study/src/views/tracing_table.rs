@@ -11,6 +11,7 @@ use campaign::design::Design;
 use campaign::statistics::{Statistic, share};
 use campaign::summary::{CALIBRATION, CLEAR, Performance, Summary, TraceSummary};
 use scenario::TRACE;
+use trace::Verdict;
 
 /// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
 ///
@@ -27,8 +28,9 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
         columns.extend(TableColumn::all(&format!(".{name} [%]{ends}")));
     }
     columns.push(TableColumn::right(format!("clear (margin above {CLEAR:.0})")));
+    columns.extend(Verdict::ALL.map(|verdict| TableColumn::right(verdict.as_str())));
     columns.extend(TableColumn::all(
-        ">clean | >traced | >unexplained | .heading before [deg] | .heading after [deg] | .validation before [deg] | \
+        ".heading before [deg] | .heading after [deg] | .validation before [deg] | \
          .validation after [deg] | .expected likelihood ratio | .band covers [%] | .band covers validation [%] | named",
     ));
     let mut table = Table::new(columns);

@@ -228,7 +228,8 @@ impl Shape {
         // Half a row on either side of an instant the moment is on its way.
         let after = |row: usize, at: f64| ((time[row] - start - at) / motion.record.spacing + 0.5).clamp(0.0, 1.0);
         let (rudder, rate) = (&motion.rudder, &motion.rate);
-        let both = |of: &dyn Fn(usize) -> f64| vec![rows(&|row| of(row) * rudder[row]), rows(&|row| of(row) * rate[row])];
+        let both =
+            |of: &dyn Fn(usize) -> f64| vec![rows(&|row| of(row) * rudder[row]), rows(&|row| of(row) * rate[row])];
         let wave = |phase: &dyn Fn(f64) -> f64| [f64::cos, f64::sin].map(|wave| rows(&|row| wave(phase(t(row)))));
         match *self {
             Self::Powers(_, (one, power), other) => {
@@ -442,9 +443,8 @@ fn of_state(unit: f64) -> Vec<Shape> {
         let powers = Power::ALL.into_iter().filter(|power| !is_base || *power != Power::Linear);
         all.extend(powers.map(|power| Shape::Powers(signal.dependence(), (signal, power), None)));
     }
-    let product = |dependence, signal, power, other| {
-        Shape::Powers(dependence, (signal, power), Some((other, Power::Linear)))
-    };
+    let product =
+        |dependence, signal, power, other| Shape::Powers(dependence, (signal, power), Some((other, Power::Linear)));
     let (heading, way) = (Dependence::Heading, Dependence::Way);
     all.extend([
         product(Dependence::YawRate, Signal::YawRate, Power::Linear, Signal::Rudder),

@@ -38,9 +38,7 @@ impl RandomLaw {
     pub fn of(kind: CorrelatedNoise, size: f64, gain: f64, longest: f64, waves: Option<NarrowBand>) -> Self {
         let moment = (gain * size).powi(2);
         let level = match (kind, kind.correlation(longest)) {
-            (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => {
-                2.0 * moment / time / kind.intensity(longest)
-            }
+            (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => 2.0 * moment / time / kind.intensity(longest),
             (CorrelatedNoise::White | CorrelatedNoise::Walk, _) => moment / kind.intensity(longest),
             (CorrelatedNoise::SmoothMoment(_), _) => moment,
             _ => size * size,

@@ -97,14 +97,19 @@ impl ShapeAnalysis {
     pub fn named(&self, duration: impl Fn(Option<usize>) -> f64) -> Vec<NamedShape> {
         let size = |own: &Vec<f64>| own.iter().map(|x| x * x).sum::<f64>().sqrt();
         let shapes = self.best.shapes.iter().zip(&self.losses).zip(&self.coefficients);
-        let all = shapes.map(|((shape, &loss), own)| NamedShape { candidate: Arc::clone(shape), loss, size: size(own) });
+        let all =
+            shapes.map(|((shape, &loss), own)| NamedShape { candidate: Arc::clone(shape), loss, size: size(own) });
         let mut all: Vec<NamedShape> = all.collect();
         all.sort_by(|one, other| other.loss.total_cmp(&one.loss));
-        let least = all.first().map_or(0.0, |clearest| (SMALLEST_LOSS * clearest.loss).max(BELIEVED).min(clearest.loss));
+        let least =
+            all.first().map_or(0.0, |clearest| (SMALLEST_LOSS * clearest.loss).max(BELIEVED).min(clearest.loss));
         all.retain(|own| own.loss >= least);
         let from = |own: &NamedShape| own.candidate.shape.span(0.0).map(|[from, _]| from);
-        let changes: Vec<(Option<usize>, Option<f64>)> =
-            all.iter().filter(|own| own.candidate.shape.is_change()).map(|own| (own.candidate.only, from(own))).collect();
+        let changes: Vec<(Option<usize>, Option<f64>)> = all
+            .iter()
+            .filter(|own| own.candidate.shape.is_change())
+            .map(|own| (own.candidate.only, from(own)))
+            .collect();
         all.retain(|own| {
             let only = own.candidate.only;
             let is_beside = |&(other, at): &(Option<usize>, Option<f64>)| {
@@ -192,13 +197,10 @@ impl<'a> Stand<'a> {
     fn explained(self, problem: &FittedRecords, law: &NoiseLaw) -> Option<ShapeAnalysis> {
         let longest = problem.longest();
         let smooth = law.colour.waves.is_none().then(|| laws::smooth(self.point.theta[1].abs(), longest));
-        let smooth = smooth.unwrap_or_default().par_iter().map(|law| self.under(law)).reduce(|| f64::INFINITY, f64::min);
-        let search = Search {
-            motions: &self.motions,
-            laws: &self.laws,
-            weights: &self.weights,
-            structure: &self.structure,
-        };
+        let smooth =
+            smooth.unwrap_or_default().par_iter().map(|law| self.under(law)).reduce(|| f64::INFINITY, f64::min);
+        let search =
+            Search { motions: &self.motions, laws: &self.laws, weights: &self.weights, structure: &self.structure };
         let unit = UNIT / self.point.theta[0].max(LONGEST_TIME.recip());
         let (mut best, mut tried) = search.explain(unit);
         if 0.5 * (self.height - best.height) < BELIEVED {

@@ -232,11 +232,8 @@ impl Search<'_> {
     /// Shapes with their best law.
     fn explained(&self, shapes: Vec<Arc<Candidate>>) -> Explanation {
         let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
-        let (height, law) = if all.is_empty() {
-            best(self.structure).unwrap_or(NONE)
-        } else {
-            self.judged(self.structure, &all)
-        };
+        let (height, law) =
+            if all.is_empty() { best(self.structure).unwrap_or(NONE) } else { self.judged(self.structure, &all) };
         Explanation { shapes, height, law }
     }
 
