@@ -130,8 +130,7 @@ impl ResidualSampler {
                 let mut whitened = columns.clone();
                 weights.apply(0, &mut whitened.iter_mut().collect::<Vec<_>>());
                 for column in &mut whitened {
-                    weights.whiteners[0].apply_transposed(column);
-                    column.iter_mut().for_each(|x| *x *= weights.scale[0]);
+                    weights.apply_transposed(0, column);
                 }
                 ParameterErrors::OfRecord(&covariance * DMatrix::from_fn(count, rows, |i, row| whitened[i][row]))
             }

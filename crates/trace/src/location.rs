@@ -53,27 +53,69 @@ pub fn locate(
 ) -> Location {
     let among = NamedStructures { problem, full, structures, candidates };
     let is_asked = |effect: &EffectNaming| settings.selection.asks_for(effect.term.0);
-    let mut named = named(structures, settings.probability, &settings.selection);
-    named.retain(|effect| is_asked(effect) || among.is_supported(effect));
-    let mut shapes = among.shapes(&named);
-    let mut displaced = Vec::new();
-    loop {
-        let height = |shapes: &Option<ShapeAnalysis>| shapes.as_ref().map_or(f64::INFINITY, |own| own.best.height);
-        let rivals = (0..named.len()).filter(|&place| !is_asked(&named[place])).map(|place| {
-            let mut others = named.clone();
-            others.remove(place);
-            (place, among.shapes(&others))
-        });
-        let lowest = rivals.min_by(|(_, one), (_, other)| height(one).total_cmp(&height(other)));
-        let Some((place, rival)) = lowest.filter(|(_, rival)| height(rival) + 2.0 * ALIKE < height(&shapes)) else {
-            return Location { named, displaced, shapes };
-        };
-        displaced.push(named.remove(place));
-        shapes = rival;
+    let mut probable = named(structures, settings.probability, &settings.selection);
+    probable.retain(|effect| is_asked(effect) || among.is_supported(effect));
+    let (asked, open): (Vec<EffectNaming>, Vec<EffectNaming>) = probable.into_iter().partition(is_asked);
+    let all = among.shapes(&[asked.as_slice(), &open].concat());
+    if open.is_empty() {
+        return Location { named: asked, displaced: open, shapes: all };
     }
+    // Several names may stand where none is there, each in the place of a part of a shape.
+    let none = among.shapes(&asked);
+    if height(&none) + 2.0 * ALIKE < height(&all) {
+        return among.with_names(Location { named: asked, displaced: open, shapes: none });
+    }
+    let mut stand = Location { named: [asked, open].concat(), displaced: Vec::new(), shapes: all };
+    while let Some(next) = among.without_name(&stand, &none, is_asked) {
+        stand = next;
+    }
+    stand
+}
+
+/// −2 log p of the best explanation.
+fn height(shapes: &Option<ShapeAnalysis>) -> f64 {
+    shapes.as_ref().map_or(f64::INFINITY, |own| own.best.height)
 }
 
 impl NamedStructures<'_> {
+    /// Names again what explains the records better beside shapes than these do alone.
+    fn with_names(&self, mut stand: Location) -> Location {
+        loop {
+            let with = (0..stand.displaced.len()).map(|place| {
+                let named = [stand.named.as_slice(), &stand.displaced[place..=place]].concat();
+                (place, self.shapes(&named))
+            });
+            let lowest = with.min_by(|(_, one), (_, other)| height(one).total_cmp(&height(other)));
+            match lowest.filter(|(_, with)| height(with) < height(&stand.shapes)) {
+                Some((place, shapes)) => {
+                    let effect = stand.displaced.remove(place);
+                    stand.named.push(effect);
+                    stand.shapes = shapes;
+                }
+                None => return stand,
+            }
+        }
+    }
+
+    /// The location without the name that shapes explain best in its place; `None` where they explain none better. What
+    /// is left where `none` of the names stands is known.
+    fn without_name(
+        &self,
+        stand: &Location,
+        none: &Option<ShapeAnalysis>,
+        is_asked: impl Fn(&EffectNaming) -> bool,
+    ) -> Option<Location> {
+        let open: Vec<usize> = (0..stand.named.len()).filter(|&place| !is_asked(&stand.named[place])).collect();
+        let without = open.iter().map(|&place| {
+            let mut named = stand.named.clone();
+            let effect = named.remove(place);
+            let shapes = if open.len() == 1 { none.clone() } else { self.shapes(&named) };
+            Location { named, displaced: [stand.displaced.as_slice(), &[effect]].concat(), shapes }
+        });
+        let lowest = without.min_by(|one, other| height(&one.shapes).total_cmp(&height(&other.shapes)));
+        lowest.filter(|next| height(&next.shapes) + 2.0 * ALIKE < height(&stand.shapes))
+    }
+
     /// What speaks for an effect beside its probability: the evidence, and a size that is none by chance.
     fn is_supported(&self, effect: &EffectNaming) -> bool {
         let (id, _, only) = effect.term;

@@ -58,6 +58,12 @@ impl Weights {
         columns.iter_mut().flat_map(|column| column.iter_mut()).for_each(|x| *x *= scale);
     }
 
+    /// Applies the transpose of [`apply`](Self::apply) to a column of one record.
+    pub fn apply_transposed(&self, record: usize, column: &mut [f64]) {
+        self.whiteners[record].apply_transposed(column);
+        column.iter_mut().for_each(|x| *x *= self.scale[record]);
+    }
+
     /// Σ |W e|²/σ² of a residual.
     pub fn misfit(&self, residual: &[Vec<f64>]) -> f64 {
         let of = |(record, residual): (usize, &Vec<f64>)| {

@@ -54,6 +54,23 @@ pub struct Conditioned {
     log_n: f64,
 }
 
+/// Products of columns behind the unknowns of a structure: with these, with each other, and with the residual.
+#[derive(Debug, Clone)]
+pub struct Products {
+    /// With the unknowns, column by column.
+    pub cross: Vec<Vec<f64>>,
+    gram: Vec<Vec<f64>>,
+    gradient: Vec<f64>,
+}
+
+/// Product of two columns.
+pub fn product(one: &Column, other: &Column) -> f64 {
+    let pairs = one.iter().flat_map(|(record, values)| {
+        other.iter().filter(move |(own, _)| own == record).map(move |(_, own)| dot(own, values))
+    });
+    pairs.sum()
+}
+
 /// What shapes add to a [`Conditioned`].
 struct Extension {
     factor: Vec<Vec<f64>>,
@@ -117,8 +134,7 @@ impl Conditioned {
 
     /// −2 log p with white columns behind it; infinite where they are some of those before.
     pub fn height_of(&self, columns: &[Column]) -> f64 {
-        let extension = self.extension(columns);
-        extension.map_or(f64::INFINITY, |own| self.height_with(&own.solution, self.square_with(&own.solution)))
+        self.height_of_products(&self.products(columns))
     }
 
     fn square_with(&self, solution: &[f64]) -> f64 {
@@ -127,7 +143,7 @@ impl Conditioned {
 
     /// The structure with white columns behind it.
     pub fn extended(&self, columns: &[Column]) -> Option<Self> {
-        let extension = self.extension(columns)?;
+        let extension = self.extension(&self.products(columns))?;
         let mut next = self.clone();
         for (k, column) in columns.iter().enumerate() {
             for (record, values) in column {
@@ -141,32 +157,39 @@ impl Conditioned {
         Some(next)
     }
 
-    /// Rows of the factor, and of its solution, for white columns behind all others.
-    fn extension(&self, columns: &[Column]) -> Option<Extension> {
+    /// Products of white columns with the unknowns, with each other, and with the residual.
+    pub fn products(&self, columns: &[Column]) -> Products {
         let count = self.factor.len();
-        let mut matrix = Vec::with_capacity(columns.len());
-        let mut gradient = Vec::with_capacity(columns.len());
+        let mut all = Products { cross: Vec::new(), gram: Vec::new(), gradient: Vec::new() };
         for (k, column) in columns.iter().enumerate() {
-            let (mut row, mut with) = (vec![0.0; count + k + 1], 0.0);
+            let (mut cross, mut with) = (vec![0.0; count], 0.0);
             for (record, values) in column {
                 let block = &self.blocks[*record];
-                block.columns.iter().for_each(|(unknown, own)| row[*unknown] += dot(own, values));
+                block.columns.iter().for_each(|(unknown, own)| cross[*unknown] += dot(own, values));
                 with += dot(&block.residual, values);
             }
-            for (j, other) in columns[..=k].iter().enumerate() {
-                let pairs = column.iter().flat_map(|(record, values)| {
-                    other.iter().filter(move |(own, _)| own == record).map(move |(_, own)| dot(own, values))
-                });
-                row[count + j] = pairs.sum();
-            }
-            matrix.push(row);
-            gradient.push(with);
+            all.cross.push(cross);
+            all.gradient.push(with);
+            all.gram.push(columns[..=k].iter().map(|other| product(column, other)).collect());
         }
-        let factor = factor(&matrix, &self.factor)?;
-        let mut solution: Vec<f64> = Vec::with_capacity(columns.len());
+        all
+    }
+
+    /// −2 log p with columns of these products behind it; infinite where they are some of those before.
+    pub fn height_of_products(&self, products: &Products) -> f64 {
+        let extension = self.extension(products);
+        extension.map_or(f64::INFINITY, |own| self.height_with(&own.solution, self.square_with(&own.solution)))
+    }
+
+    /// Rows of the factor, and of its solution, for columns behind all others.
+    fn extension(&self, products: &Products) -> Option<Extension> {
+        let count = self.factor.len();
+        let rows = products.cross.iter().zip(&products.gram).map(|(cross, gram)| [cross.as_slice(), gram].concat());
+        let factor = factor(&rows.collect::<Vec<_>>(), &self.factor)?;
+        let mut solution: Vec<f64> = Vec::with_capacity(factor.len());
         for (k, row) in factor.iter().enumerate() {
             let before = dot(&row[..count], &self.solution) + dot(&row[count..count + k], &solution);
-            solution.push((gradient[k] - before) / row[count + k]);
+            solution.push((products.gradient[k] - before) / row[count + k]);
         }
         Some(Extension { factor, solution })
     }

@@ -199,8 +199,13 @@ impl<'a> Stand<'a> {
         let smooth = law.colour.waves.is_none().then(|| laws::smooth(self.point.theta[1].abs(), longest));
         let smooth =
             smooth.unwrap_or_default().par_iter().map(|law| self.under(law)).reduce(|| f64::INFINITY, f64::min);
-        let search =
-            Search { motions: &self.motions, laws: &self.laws, weights: &self.weights, structure: &self.structure };
+        let search = Search {
+            motions: &self.motions,
+            laws: &self.laws,
+            weights: &self.weights,
+            structure: &self.structure,
+            unknowns: self.linearised.linear.unknowns,
+        };
         let unit = UNIT / self.point.theta[0].max(LONGEST_TIME.recip());
         let (mut best, mut tried) = search.explain(unit);
         if 0.5 * (self.height - best.height) < BELIEVED {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use estimation::column::dot;
 use rayon::prelude::*;
 
-use super::conditioned::{Column, Conditioned};
+use super::conditioned::{Column, Conditioned, Products, product};
 use super::dictionary::{Shape, shapes};
 use super::laws::{RandomLaw, tried};
 use super::motion::Motion;
@@ -60,6 +60,8 @@ pub struct Search<'a> {
     pub weights: &'a [Weights],
     /// The structure under each; `None` where its unknowns cannot be told apart.
     pub structure: &'a [Option<Conditioned>],
+    /// Number of its unknowns.
+    pub unknowns: usize,
 }
 
 /// Sizes below which a moment is none.
@@ -146,20 +148,56 @@ impl Search<'_> {
         under.par_iter().enumerate().filter_map(height).min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or(NONE)
     }
 
-    /// The lowest height of every shape behind structures, under some laws.
-    fn scan(&self, under: &[Option<Conditioned>], laws: &[usize], library: &[Arc<Candidate>]) -> Vec<f64> {
+    /// The products of every shape with the structure, under some laws.
+    fn products(&self, laws: &[usize], library: &[Arc<Candidate>]) -> Vec<Vec<Products>> {
         let of = |chunk: &[Arc<Candidate>]| {
             let candidates: Vec<&Candidate> = chunk.iter().map(Arc::as_ref).collect();
-            let mut lowest = vec![f64::INFINITY; chunk.len()];
+            let mut all = vec![Vec::with_capacity(laws.len()); chunk.len()];
             for &law in laws {
-                let Some(structure) = &under[law] else { continue };
-                for (low, columns) in lowest.iter_mut().zip(self.white(law, &candidates)) {
-                    *low = low.min(structure.height_of(&columns));
-                }
+                let Some(structure) = &self.structure[law] else { continue };
+                let white = self.white(law, &candidates);
+                all.iter_mut().zip(white).for_each(|(own, columns)| own.push(structure.products(&columns)));
             }
-            lowest.into_iter().zip(chunk).map(|(low, own)| low + own.price).collect::<Vec<f64>>()
+            all
         };
         library.par_chunks(SIDE_BY_SIDE).flat_map_iter(of).collect()
+    }
+
+    /// The lowest height of every shape behind the structure and the shapes that `stand`, under some laws, from products
+    /// to which those with the shapes that stand are added.
+    fn scan(
+        &self,
+        stand: &[Arc<Candidate>],
+        under: &[Option<Conditioned>],
+        laws: &[usize],
+        library: &[Arc<Candidate>],
+        products: &mut [Vec<Products>],
+    ) -> Vec<f64> {
+        let laws: Vec<usize> = laws.iter().copied().filter(|law| self.structure[*law].is_some()).collect();
+        let behind: Vec<Vec<Column>> = laws.iter().map(|&law| self.weighted(law, stand)).collect();
+        let height = |(candidate, products): (&Arc<Candidate>, &mut Vec<Products>)| {
+            let mut lowest = f64::INFINITY;
+            for ((products, &law), behind) in products.iter_mut().zip(&laws).zip(&behind) {
+                for (cross, column) in products.cross.iter_mut().zip(&candidate.columns) {
+                    cross.truncate(self.unknowns);
+                    cross.extend(behind.iter().map(|other| product(column, other)));
+                }
+                let structure = under[law].as_ref();
+                lowest = lowest.min(structure.map_or(f64::INFINITY, |own| own.height_of_products(products)));
+            }
+            lowest + candidate.price
+        };
+        library.par_iter().zip(products).map(height).collect()
+    }
+
+    /// The columns of shapes after the inverse covariance of a law: their products with raw columns are those of white
+    /// ones.
+    fn weighted(&self, law: usize, shapes: &[Arc<Candidate>]) -> Vec<Column> {
+        let mut columns = self.white(law, &shapes.iter().map(Arc::as_ref).collect::<Vec<_>>()).concat();
+        for (record, values) in columns.iter_mut().flatten() {
+            self.weights[law].apply_transposed(*record, values);
+        }
+        columns
     }
 
     /// The best shapes of a scan: those of all, and those of some classes.
@@ -188,8 +226,9 @@ impl Search<'_> {
         let mut stand = Explanation { shapes: Vec::new(), height, law };
         let mut all = vec![stand.clone()];
         let mut under = self.structure.to_vec();
+        let mut products = self.products(&laws, &library);
         for _ in 0..ROUNDS {
-            let heights = self.scan(&under, &laws, &library);
+            let heights = self.scan(&stand.shapes, &under, &laws, &library, &mut products);
             let price: f64 = stand.shapes.iter().map(|own| own.price).sum();
             let with = |shape: Arc<Candidate>| {
                 let (height, law) = self.judged(&under, &[&shape]);
