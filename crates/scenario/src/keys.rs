@@ -168,5 +168,6 @@ mod tests {
         assert_eq!(of("sweep[].points[].label").unit, "text");
         assert_eq!(of("identifier[].method.output-error.iterations").unit, "whole number");
         assert_eq!(of("output.figures").unit, "list");
+        assert_eq!(of("recording.weather").unit, "none");
     }
 }

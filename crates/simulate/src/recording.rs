@@ -3,6 +3,7 @@
 use rand::rngs::ChaCha8Rng;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use trial::DeclaredWeather;
 use trial::degrees::Degrees;
 
 use crate::error::{self, Check, Expected};
@@ -34,6 +35,9 @@ pub struct Recording {
     /// Rate at which angles are rebuilt from orders; inf for a rudder that jumps.
     #[serde(default, rename = "assumed-rudder-rate-deg-s", with = "Degrees::<Option<f64>>")]
     pub assumed_rudder_rate: Option<f64>,
+    // It changes nothing else: a declaration may be wrong.
+    /// Weather that the record declares; left out, none is declared.
+    pub weather: Option<DeclaredWeather>,
 }
 
 /// What stands in the rudder column.
@@ -57,8 +61,15 @@ impl Default for Recording {
 impl Recording {
     /// The whole run with this time between rows, s.
     pub fn every(period: f64) -> Self {
-        let rudder = RudderSource::Feedback;
-        Self { period, duration: None, after_execute: None, offset: None, rudder, assumed_rudder_rate: None }
+        Self {
+            period,
+            duration: None,
+            after_execute: None,
+            offset: None,
+            rudder: RudderSource::Feedback,
+            assumed_rudder_rate: None,
+            weather: None,
+        }
     }
 
     /// Longest record that is taken for meant, s.

@@ -9,7 +9,7 @@ use ship::FirstOrder;
 use ship::first_order::State;
 use trial::degrees::Degrees;
 use trial::manoeuvre::Manoeuvre;
-use trial::{Origin, Trial};
+use trial::{Conditions, Origin, Trial};
 
 use crate::display::Display;
 use crate::disturbance::Disturbances;
@@ -394,7 +394,9 @@ impl Simulation {
         let StreamKey { cell, replicate, .. } = *key;
         let origin = Origin::Simulated { scenario: self.scenario.clone(), cell, replicate };
         let name = format!("{}-{cell}-{replicate}", self.scenario);
-        let mut trial = Trial::new(name, origin, written.columns)?.with_noise(self.sensors.declared_noise());
+        let conditions = Conditions { weather: self.recording.weather, ..Conditions::default() };
+        let trial = Trial::new(name, origin, written.columns)?.with_noise(self.sensors.declared_noise());
+        let mut trial = trial.with_conditions(conditions);
         if let Some(particulars) = self.vessel.particulars() {
             trial = trial.with_particulars(particulars);
         }

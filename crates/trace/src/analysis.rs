@@ -9,6 +9,7 @@ use identify::hull::HullEstimate;
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use ship::effects::{Effect, WaveYaw};
 use ship::{Regressor, Response};
 use trial::Trial;
 
@@ -130,7 +131,9 @@ pub fn watched(
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let candidates = candidates_of(&records, &trials, time, settings)?;
     let problem = FittedRecords::new(records, response.inverse_T, time);
-    let fulls = full::fit(&problem, &base, &candidates, settings.selection.allows("wave_yaw"));
+    let with_waves = settings.selection.allows(WaveYaw.id())
+        && !candidates::is_becalmed(&WaveYaw, None, &trials, &settings.selection);
+    let fulls = full::fit(&problem, &base, &candidates, with_waves);
     let (full, structures) =
         structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square());
     let members = structures.members();

@@ -55,6 +55,13 @@ pub fn manoeuvres<'a>(records: &'a [PreparedRecord], trials: &[Trial], time: f64
     }
 }
 
+/// Whether an effect of the weather, which nobody asked for, has no place: the record in which it would act declares a
+/// calm, or where it would act in all of them, every one.
+pub fn is_becalmed(effect: &dyn Effect, only: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
+    let is_calm = || only.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
+    effect.is_of_weather() && !selection.asks_for(effect.id()) && is_calm()
+}
+
 /// Every candidate these records allow, waves excepted, which are a kind of noise and no response. A moment that
 /// depends on time alone is one of every record.
 pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Arc<Term>> {
@@ -64,7 +71,7 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
             true => (0..records.len()).map(Some).collect(),
             false => vec![None],
         };
-        for only in places {
+        for only in places.into_iter().filter(|only| !is_becalmed(effect.as_ref(), *only, trials, selection)) {
             let about = manoeuvres(records, trials, time, &records[only.unwrap_or(0)]);
             let Some(Proposal { effect, priors }) = effect.proposal(&about) else { continue };
             candidates.push(Term { effect, only, priors, log_odds: 0.0 });
@@ -112,4 +119,55 @@ pub fn mean_square<'a>(
         count += values.len();
     }
     (sum > 0.0).then(|| sum / count as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use ship::effects::WaveYaw;
+    use trial::{Conditions, DeclaredWeather};
+
+    use super::*;
+    use crate::document::Outcome;
+    use crate::testing::{TrialPlan, record, ship};
+    use crate::{EffectId, Settings, trace};
+
+    fn trials() -> [Trial; 2] {
+        let trial = record(&ship(Vec::new()), TrialPlan::default());
+        let calm = Conditions { weather: Some(DeclaredWeather::Calm), ..Conditions::default() };
+        [trial.clone().with_conditions(calm), trial]
+    }
+
+    /// Effects of the weather among the candidates, with the record in which they act.
+    fn weather(trials: &[Trial], selection: &Selection) -> Vec<(&'static str, Option<usize>)> {
+        let records: Vec<PreparedRecord> = trials.iter().map(PreparedRecord::whole).collect();
+        let all = all(&records, trials, 13.0, selection);
+        assert!(all.iter().any(|term| term.effect.id() == "nonlinear_damping"));
+        let mut named: Vec<_> = all.iter().filter(|term| term.effect.is_of_weather()).map(|term| term.name()).collect();
+        named.dedup_by_key(|(id, _, only)| (*id, *only));
+        named.into_iter().map(|(id, _, only)| (id, only)).collect()
+    }
+
+    #[test]
+    fn in_a_calm_no_weather_is_looked_for_that_nobody_asked_for() {
+        let [calm, other] = trials();
+        let usual = Selection::default();
+        let [wind, drift, transient] = ["wind_moment", "moment_drift", "transient_disturbance"];
+        assert_eq!(weather(&[other.clone()], &usual), [wind, drift, transient].map(|id| (id, None)));
+        assert_eq!(weather(&[calm.clone()], &usual), []);
+        assert_eq!(weather(&[calm.clone(), other], &usual), [(wind, None), (drift, None), (transient, Some(1))]);
+        let asked = Selection { with: vec![EffectId::find(drift).expect("on the list")], ..usual };
+        assert_eq!(weather(&[calm], &asked), [(drift, None)]);
+    }
+
+    #[test]
+    fn a_trace_says_that_a_calm_is_declared() {
+        let [calm, _] = trials();
+        let settings = Settings { thorough: false, ..Settings::default() };
+        let analysis = trace(&[calm], &[], &settings).expect("a base");
+        for id in ["wind_moment", "moment_drift", "transient_disturbance", WaveYaw.id()] {
+            let entry = analysis.document.candidates.iter().find(|entry| entry.id == id).expect("on the list");
+            assert_eq!((entry.outcome, entry.forms.len()), (Outcome::NotObservable, 0), "{id}");
+            assert_eq!(entry.reason.as_deref(), Some("the record declares a calm (weather = \"none\")"), "{id}");
+        }
+    }
 }

@@ -12,7 +12,7 @@ use ship::{Particulars, Regressor};
 use trial::{Quantity, Trial};
 
 use crate::base::Base;
-use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME};
+use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME, is_becalmed};
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::document::*;
 use crate::fit::{FittedRecords, StructureFit};
@@ -274,12 +274,16 @@ impl TraceParts<'_> {
         let forms: Vec<FormEntry> = own.map(|one| self.form(one.name(), named)).collect();
         let is_sea = id == effects::WaveYaw.id();
         let sea = self.full.law.colour.waves.is_some();
-        let excluded = !self.settings.selection.allows(id);
+        let selection = &self.settings.selection;
+        let excluded = !selection.allows(id);
+        let mut known = selection.effects();
+        known.retain(|form| form.id() == id);
+        let becalmed = known.iter().any(|form| is_becalmed(form.as_ref(), None, self.trials, selection));
         let reason = match (forms.is_empty(), excluded) {
             (_, true) => Some("excluded on request"),
+            _ if becalmed => Some("the record declares a calm (weather = \"none\")"),
             (true, false) if !is_sea => {
-                let known = self.settings.selection.effects();
-                let needs = known.into_iter().filter(|form| form.id() == id).find_map(|form| form.needs());
+                let needs = known.iter().find_map(|form| form.needs());
                 Some(needs.map_or("the records leave no place for it", Regressor::lacking))
             }
             _ => None,
@@ -291,7 +295,7 @@ impl TraceParts<'_> {
             true => f64::from(u8::from(sea)),
             false => self.structures.of_any(|name| name.0 == id),
         };
-        let outcome = match (is_sea && !excluded, sea) {
+        let outcome = match (is_sea && !excluded && !becalmed, sea) {
             (true, true) => Outcome::Added,
             (true, false) => Outcome::Rejected,
             _ => best.map_or(Outcome::NotObservable, |best| best.outcome),

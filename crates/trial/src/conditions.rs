@@ -1,7 +1,7 @@
 //! What a trial was made with and in, as the form of MSC/Circ.1053, appendix 6, asks for it: particulars of the ship
 //! that no record holds, and the conditions of the trial with what the circular demands of them.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use ship::Particulars;
 use ship::vessel::prior::HullParticulars;
 use thiserror::Error;
@@ -27,6 +27,14 @@ pub enum Loading {
     Partial,
 }
 
+/// The weather that a trial declares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub enum DeclaredWeather {
+    /// A calm: neither wind nor waves nor any other moment from outside, as in a towing tank.
+    #[serde(rename = "none")]
+    Calm,
+}
+
 /// Particulars and conditions that a sidecar declares under `[form]`; SI units, `None` where nothing is declared. In
 /// brackets, what the key of a sidecar may be.
 ///
@@ -44,6 +52,9 @@ pub struct Conditions {
     /// Particulars of the hull at the trial, of [ship] and of this table; without [ship] length and speed are zero.
     #[serde(skip)]
     pub hull: HullParticulars,
+    /// Weather of the same sidecar.
+    #[serde(skip)]
+    pub weather: Option<DeclaredWeather>,
     /// Breadth of the ship; lengths are of the scale of [ship] length-m. (m)
     #[serde(rename = "beam-m")]
     pub beam: Option<f64>,
@@ -159,10 +170,14 @@ impl Conditions {
         other
     }
 
-    /// The key of a length that no ship has beside the others, and what was expected.
+    /// The key of a length that no ship has beside the others, or of a weather that is no calm beside a declared one, and
+    /// what was expected.
     pub(crate) fn contradiction(&self) -> Option<(&'static str, &'static str)> {
         let length = self.particulars.map(|own| own.length);
+        let calm = self.weather.map(|_| 1.0);
         let rules = [
+            ("wind-beaufort", self.wind_beaufort.map(f64::from), calm, "0 beside weather = \"none\", or nothing"),
+            ("sea-state", self.sea_state.map(f64::from), calm, "0 beside weather = \"none\", or nothing"),
             ("beam-m", self.beam, length, "a breadth below the length of [ship]"),
             ("draught-m", self.draught, self.water_depth, "a draught below water-depth-m"),
             ("draught-m", self.draught, self.beam, "a draught below beam-m"),
@@ -205,11 +220,12 @@ impl Conditions {
             None => unknown("the water depth in draughts", "more than 4 mean draughts"),
             Some(draughts) => (draughts <= FEWEST_DRAUGHTS).then_some(Shortcoming::Depth { draughts }),
         };
-        let wind = match self.wind_beaufort {
+        let calm = self.weather.map(|_| 0);
+        let wind = match self.wind_beaufort.or(calm) {
             None => unknown("the wind", "at most Beaufort 5"),
             Some(beaufort) => (beaufort > MOST_BEAUFORT).then_some(Shortcoming::Wind { beaufort }),
         };
-        let sea = match self.sea_state {
+        let sea = match self.sea_state.or(calm) {
             None => unknown("the sea state", "at most sea state 4"),
             Some(state) => (state > MOST_SEA_STATE).then_some(Shortcoming::Sea { state }),
         };
@@ -264,6 +280,13 @@ mod tests {
         assert!(said(|c| c.full_load_draught = Some(25.0)).contains("80 %"));
         assert!(said(|c| c.full_load_draught = None).contains("the loading is not known"));
         assert!(said(|c| c.declared_loading = Some(Loading::Partial)).contains("not at full load"));
+        let in_a_calm = Conditions {
+            weather: Some(DeclaredWeather::Calm),
+            wind_beaufort: None,
+            sea_state: None,
+            ..deep_and_calm()
+        };
+        assert_eq!(in_a_calm.shortcomings(), []);
         assert!(said(|c| c.trim = Some(-0.5)).contains("0.50 m by the bow"));
         let said = said(|c| (c.declared_loading, c.full_load_draught) = (Some(Loading::Full), Some(25.0)));
         assert!(said.contains("declared as \"full\""), "{said}");

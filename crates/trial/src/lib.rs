@@ -48,7 +48,7 @@ pub mod writer;
 pub mod zigzag;
 
 pub use channel::Channel;
-pub use conditions::{Conditions, Loading};
+pub use conditions::{Conditions, DeclaredWeather, Loading};
 pub use file::FileError;
 pub use manoeuvre::Manoeuvre;
 pub use quantity::Quantity;

@@ -12,7 +12,7 @@ use ship::{Particulars, Polyline};
 use thiserror::Error;
 
 use crate::channel::Channel;
-use crate::conditions::{Conditions, LONGEST_INTERVAL, Shortcoming};
+use crate::conditions::{Conditions, DeclaredWeather, LONGEST_INTERVAL, Shortcoming};
 use corners::RecordedRudder;
 use estimation::statistics::upper_median;
 
@@ -318,6 +318,11 @@ impl Trial {
     /// What is declared of ship and trial for the form of MSC/Circ.1053.
     pub fn conditions(&self) -> &Conditions {
         &self.conditions
+    }
+
+    /// Whether a calm is declared.
+    pub fn is_calm(&self) -> bool {
+        self.conditions.weather == Some(DeclaredWeather::Calm)
     }
 
     /// What is not, or not known to be, as MSC/Circ.1053 (2002), 2.2, asks for.

@@ -124,8 +124,10 @@ fn place(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
     place_of_key(document, table, key).or_else(|| Some(entry(document, table)?.span()))
 }
 
+/// The same of the key alone; one above the tables has none, "".
 fn place_of_key(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
-    Some(entry(entry(document, table)?.get_ref().as_table()?, key)?.span())
+    let keys = if table.is_empty() { document } else { entry(document, table)?.get_ref().as_table()? };
+    Some(entry(keys, key)?.span())
 }
 
 fn entry<'a, 'b>(table: &'a DeTable<'b>, wanted: &str) -> Option<&'a Spanned<DeValue<'b>>> {
@@ -138,6 +140,9 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
     let above_zero = number.is_some_and(|number| number > 0.0);
     let whole = |range: std::ops::RangeInclusive<i64>| value.as_integer().is_some_and(|whole| range.contains(&whole));
     Some(match (table, key, kind) {
+        ("", "weather", _) => {
+            (value.as_str() == Some("none"), "\"none\" for a calm; leave the key out of any other weather")
+        }
         ("ship", "x-g-m", _) => (number.is_some(), "a number of metres, positive forward of midship"),
         ("ship" | "form", _, "1") => (above_zero && number <= Some(1.0), "a number above 0, at most 1"),
         ("table", "time-step-s", _) | ("part", "every", _) | ("ship" | "noise", ..) => {
@@ -169,9 +174,10 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
 fn check_values(text: &str, document: &DeTable) -> Result<(), Fault> {
     let values: toml::Table = text.parse().map_err(syntax)?;
     for Key { key: name, value: kind, .. } in keys() {
-        let Some((table, key)) = name.split_once(' ') else { continue };
+        let (table, key) = name.split_once(' ').unwrap_or(("", &name));
         let table = table.trim_matches(['[', ']']);
-        let Some(value) = values.get(table).and_then(|table| table.get(key)) else { continue };
+        let value = if table.is_empty() { values.get(key) } else { values.get(table).and_then(|own| own.get(key)) };
+        let Some(value) = value else { continue };
         if let Some((false, expected)) = rule(table, key, &kind, value) {
             return Err(unfit(text, document, (table, key), expected));
         }
@@ -192,10 +198,11 @@ fn syntax(error: toml::de::Error) -> Fault {
 fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     let document = DeTable::parse(text).map_err(syntax)?.into_inner();
     check_values(text, &document)?;
-    let SidecarKeys { table, part, column, rudder, ship, noise, check, form } = toml::from_str(text).map_err(syntax)?;
+    let SidecarKeys { weather, table, part, column, rudder, ship, noise, check, form } =
+        toml::from_str(text).map_err(syntax)?;
     let header = table.header.unwrap_or(true);
     let columns = column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
-    let conditions = conditions(text, &document, ship, form.trimmed())?;
+    let conditions = conditions(text, &document, ship, Conditions { weather, ..form.trimmed() })?;
     let noise = Noise {
         heading: noise.heading_deg.map(from_deg),
         yaw_rate: noise.yaw_rate_deg_s.map(from_deg),
@@ -340,6 +347,9 @@ mod tests {
     #[test]
     fn faults_point_to_their_line() {
         let cases = [
+            ("weather = \"calm\"\n", 1, "`weather` is \"calm\", expected \"none\" for a calm; leave the key out"),
+            ("\nweather = 0\n", 2, "`weather` is 0"),
+            ("weather = \"none\"\n[form]\nsea-state = 2\n", 3, "`sea-state` is 2, expected 0 beside weather"),
             ("[table]\nskip-line = 4\n", 2, "unknown field `skip-line`"),
             ("[table]\nseparator = \"bar\"\n", 2, "unknown variant `bar`"),
             ("[table]\nheader = \n", 2, ""),

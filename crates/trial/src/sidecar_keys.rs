@@ -14,7 +14,7 @@ use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
 use toml::Spanned;
 
 use crate::cells::Separator;
-use crate::conditions::Conditions;
+use crate::conditions::{Conditions, DeclaredWeather};
 use crate::encoding::Encoding;
 
 // The tables of the file. Comments on fields are what `study list sidecar` and the JSON schema say of a key.
@@ -22,6 +22,8 @@ use crate::encoding::Encoding;
 #[derive(Deserialize, Default, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct SidecarKeys {
+    /// Declares a calm, as in a towing tank: a trace looks for no effect of weather. Stands above every table. (none)
+    pub weather: Option<DeclaredWeather>,
     #[serde(default)]
     pub table: TableKeys,
     #[serde(default)]
@@ -188,7 +190,7 @@ pub fn schema() -> Schema {
 /// A key of a sidecar.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Key {
-    /// Table and key.
+    /// Table and key; the key alone where it stands above the tables.
     pub key: String,
     /// What it may be.
     pub value: String,
@@ -201,16 +203,17 @@ pub fn keys() -> Vec<Key> {
     let schema = schema();
     let properties = |of: &serde_json::Value| of["properties"].as_object().cloned().unwrap_or_default();
     let mut keys = Vec::new();
-    for (table, own) in properties(schema.as_value()) {
-        let (table, own) = match own.get("items") {
-            Some(items) => (format!("[[{table}]]"), items),
-            None => (format!("[{table}]"), &own),
+    for (name, own) in properties(schema.as_value()) {
+        let (table, own) = match (own.get("items"), own.get("properties")) {
+            (Some(items), _) => (format!("[[{name}]] "), properties(items)),
+            (None, Some(_)) => (format!("[{name}] "), properties(&own)),
+            (None, None) => (String::new(), Map::from_iter([(name, own)])),
         };
-        for (key, own) in properties(own) {
+        for (key, own) in own {
             let said = own["description"].as_str().unwrap_or_default();
             let (meaning, value) = said.rsplit_once(" (").unwrap_or((said, ")"));
             let value = value.trim_end_matches(')').to_owned();
-            keys.push(Key { key: format!("{table} {key}"), value, meaning: meaning.to_owned() });
+            keys.push(Key { key: format!("{table}{key}"), value, meaning: meaning.to_owned() });
         }
     }
     let [key, value, meaning] = ["#", "text", "A remark, to the end of the line."].map(str::to_owned);

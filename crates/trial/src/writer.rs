@@ -1,7 +1,9 @@
-//! Writing a record as CSV under the column names of the contract, so that reading it gives the same record. What a
-//! table cannot hold (origin, declared noise, particulars) is not written.
+//! Writing a record as CSV under the column names of the contract, so that reading it gives the same record. Of what a
+//! table cannot hold, a sidecar has length and speed of the ship and the declared weather; the rest is not written.
 
 use std::io::Write;
+
+use ship::Particulars;
 
 use crate::channel::{Channel, TIME_COLUMN};
 use crate::record::Trial;
@@ -40,6 +42,15 @@ pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
     table.flush()
 }
 
+/// The sidecar of a record, as TOML: the calm that it declares, and length and speed of its ship. `None` where it has
+/// neither.
+pub fn sidecar(trial: &Trial) -> Option<String> {
+    let ship = |Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n");
+    let calm = trial.is_calm().then(|| String::from("weather = \"none\"\n"));
+    let text: String = calm.into_iter().chain(trial.particulars().map(ship)).collect();
+    (!text.is_empty()).then_some(text)
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
@@ -50,6 +61,7 @@ mod tests {
     use super::*;
     use crate::reader::read_bytes;
     use crate::record::{Columns, Origin};
+    use crate::{Conditions, DeclaredWeather, Sidecar};
 
     fn trial(without_heading: bool) -> Trial {
         let time: Vec<f64> = (0..200).map(|i| 1000.0 + 0.7 * f64::from(i) + 0.01 * f64::from(i % 3)).collect();
@@ -107,5 +119,16 @@ mod tests {
             }
             assert_eq!(back.unknown(), trial.unknown());
         }
+    }
+
+    #[test]
+    fn a_sidecar_has_the_ship_and_the_calm() {
+        let trial = trial(false);
+        assert_eq!(sidecar(&trial), None);
+        let particulars = Particulars { length: 7.0, speed: 1.18 };
+        let calm = Conditions { weather: Some(DeclaredWeather::Calm), ..Conditions::default() };
+        let text = sidecar(&trial.with_particulars(particulars).with_conditions(calm)).expect("a sidecar");
+        let back = Sidecar::parse(&text, Path::new("writer.trial.toml")).expect(&text).conditions;
+        assert_eq!((back.particulars, back.weather), (Some(particulars), Some(DeclaredWeather::Calm)));
     }
 }

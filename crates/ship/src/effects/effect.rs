@@ -208,6 +208,11 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
         false
     }
 
+    /// Whether wind, waves or another moment from outside make it, so that a calm is without it.
+    fn is_of_weather(&self) -> bool {
+        false
+    }
+
     /// Whether one of its parameters is an instant, which has as many places as a record is long.
     fn has_instant(&self) -> bool {
         false

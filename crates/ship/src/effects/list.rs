@@ -32,7 +32,19 @@ const fn row(
     parameters: &'static [Parameter],
     prior: ListedPrior,
 ) -> ListedEffect {
-    Row(ListedFormula { description: Description { id, form, equation, parameters }, acts, formula, prior })
+    let description = Description { id, form, equation, parameters };
+    Row(ListedFormula { description, acts, formula, prior, of_weather: false })
+}
+
+/// The row of a moment that the weather makes.
+const fn weather(
+    [id, form, equation]: [&'static str; 3],
+    formula: &'static str,
+    parameters: &'static [Parameter],
+    prior: ListedPrior,
+) -> ListedEffect {
+    let description = Description { id, form, equation, parameters };
+    Row(ListedFormula { description, acts: Places::MOMENT, formula, prior, of_weather: true })
 }
 
 /// No largest value but that of the parameter.
@@ -59,13 +71,13 @@ pub(super) static LIST: [ListedEffect; 22] = [
         &[Parameter::odd(["n11_over_T", "n₁₁/T", "1/rad"], [0.0, 0.2], [-1e3, 1e3])],
         |_| Some([0.0, 0.4, ANY])),
     // The moment of a moderate wind is that of 0.025 rad of rudder.
-    row(["wind_moment", "measured wind", "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)"],
-        (Places::MOMENT, "K_over_T * c_w * wind_speed * wind_speed * sin(wind_angle)"),
+    weather(["wind_moment", "measured wind", "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)"],
+        "K_over_T * c_w * wind_speed * wind_speed * sin(wind_angle)",
         &[Parameter::even(["c_w", "c_w", "rad s²/m²"], [0.0, 0.01], [-10.0, 10.0])],
         |about| Some([0.0, 0.05 / about.wind_square?, ANY])),
     // w sin 2(ψ_w − ψ): steady wind of unknown strength and direction.
-    row(["wind_moment", "steady wind", "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)"],
-        (Places::MOMENT, "K_over_T * (w_c * cos(2 * psi) + w_s * sin(2 * psi))"),
+    weather(["wind_moment", "steady wind", "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)"],
+        "K_over_T * (w_c * cos(2 * psi) + w_s * sin(2 * psi))",
         &[Parameter::odd(["w_c", "w_c", "rad"], [0.0, 0.02], [-0.6, 0.6]),
           Parameter::even(["w_s", "w_s", "rad"], [0.0, 0.02], [-0.6, 0.6])],
         |_| Some([0.0, 0.025, ANY])),
@@ -100,8 +112,8 @@ pub(super) static LIST: [ListedEffect; 22] = [
         &[Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])],
         |about| Some([0.0, 0.1 * about.time, ANY])),
     // The start of a record keeps the trend apart from δ_r.
-    row(["moment_drift", "linear trend", "T r' + r = K (δ + δ_r + m (t − t₀))"],
-        (Places::MOMENT, "K_over_T * m * (t - start)"),
+    weather(["moment_drift", "linear trend", "T r' + r = K (δ + δ_r + m (t − t₀))"],
+        "K_over_T * m * (t - start)",
         &[Parameter::odd(["m", "m", "rad/s"], [0.0, 7e-5], [-0.01, 0.01])],
         |about| Some([0.0, 0.02 / about.duration, ANY])),
     Rust(|| Arc::new(TransientDisturbance::Passing)),

@@ -66,6 +66,10 @@ impl Effect for TransientDisturbance {
         true
     }
 
+    fn is_of_weather(&self) -> bool {
+        true
+    }
+
     fn has_instant(&self) -> bool {
         true
     }

@@ -33,6 +33,10 @@ impl Effect for WaveYaw {
         Places::NONE
     }
 
+    fn is_of_weather(&self) -> bool {
+        true
+    }
+
     fn random_heading(&self, p: &[f64]) -> Option<NarrowBand> {
         (p[0] > 0.0).then(|| NarrowBand { sd: p[0], frequency: p[1], damping: p[2] })
     }

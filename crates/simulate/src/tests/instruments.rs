@@ -3,7 +3,7 @@
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use ship::angle::{from_deg, to_deg};
 use ship::{Input, Particulars};
-use trial::Channel;
+use trial::{Channel, DeclaredWeather};
 
 use super::{KEY, TestShip, zig_zag};
 use crate::disturbance::{GaussMarkov, Gusting, WaveSpectrum, Wind};
@@ -374,6 +374,16 @@ fn the_wind_a_ship_feels_is_the_wind_its_record_holds() {
         assert_abs_diff_eq!(*yaw_acceleration, 1e-3 * from - 0.05 * r, epsilon = 1e-15);
     }
     assert!(trial.channel(Channel::Speed).expect("the ship has a speed").iter().all(|speed| *speed == 6.0));
+}
+
+#[test]
+fn a_record_declares_the_weather_that_its_recording_says_and_is_the_same() {
+    let mut simulation = zig_zag(10.0, 20.0, 2.5, 300.0);
+    let silent = run(&simulation).trial;
+    simulation.recording.weather = Some(DeclaredWeather::Calm);
+    let calm = run(&simulation).trial;
+    assert_eq!((silent.is_calm(), calm.is_calm()), (false, true));
+    assert_eq!(silent.heading(), calm.heading());
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn list(scenario: &Scenario, tasks: &[Task], names: &[String], folder: &ResultFo
 /// First line of the description of the trials.
 const SCORE: &str = "# `study score ANSWERS.csv` scores answers to these trials that lie beside this file.\n";
 
-/// Writes the records of a trial, the sidecar of each where the ship has a length, and its truth.
+/// Writes the records of a trial, the sidecar of each where there is something to say in it, and its truth.
 fn write(scenario: &Scenario, task: Task, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
     for RecordFiles { name, table, sidecar, truth } in records(scenario, task, name)? {
         folder.write(&format!("{name}.csv"), table)?;

@@ -6,7 +6,6 @@ use campaign::task::Task;
 use scenario::Scenario;
 use scenario::failure::Failure;
 use scenario::problem::suggestion;
-use ship::Particulars;
 use simulate::Simulated;
 
 use crate::documents::truth::truth;
@@ -61,7 +60,7 @@ pub struct RecordFiles {
     pub name: String,
     /// The record, as CSV.
     pub table: Vec<u8>,
-    /// Its sidecar, where the ship has a length: the table does not hold it.
+    /// Its sidecar, where the ship has a length or a calm is declared: the table does not hold them.
     pub sidecar: Option<String>,
     /// What is true of it, as JSON.
     pub truth: String,
@@ -84,8 +83,7 @@ pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<Record
         trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
         let truth = truth(scenario, task, simulated, truths)?;
         let truth = serde_json::to_string(&truth).map_err(|error| error.to_string())? + "\n";
-        let sidecar = |Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n");
-        let sidecar = simulated.trial.particulars().map(sidecar);
+        let sidecar = trial::writer::sidecar(&simulated.trial);
         Ok(RecordFiles { name: part_name(name, number), table, sidecar, truth })
     };
     simulated.iter().enumerate().map(files).collect::<Result<_, String>>().map_err(refuse)

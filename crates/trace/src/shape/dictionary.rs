@@ -291,7 +291,7 @@ impl Shape {
             Self::Squall(at, length) => vec![(at, 0.012 * duration), (length, 0.016 * duration)],
             Self::Ramp(at, length) => vec![(at, 0.02 * duration), (length, 0.03 * duration)],
             Self::Period(cycles) => vec![(cycles, 0.15)],
-            Self::Harmonics(cycles) => vec![(cycles, 0.12)],
+            Self::Harmonics(cycles) => vec![(cycles, 0.07)],
             Self::Chirp(from, to) => vec![(from, 0.5), (to, 0.5)],
             _ => Vec::new(),
         }
@@ -424,7 +424,7 @@ pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
     };
     let periods = grid(1.5, 16.0, 0.33);
     all.extend(periods.iter().map(|&cycles| (Shape::Period(cycles), periods.len())));
-    let repeated = grid(2.0, (most / 3.0).min(10.0), 0.25);
+    let repeated = grid(2.0, (most / 3.0).min(10.0), 0.15);
     all.extend(repeated.iter().map(|&cycles| (Shape::Harmonics(cycles), repeated.len())));
     let ends = grid(1.5, 14.0, 1.0);
     for &from in &ends {

@@ -115,6 +115,7 @@ fn begin(path: &Path, separator: Separator, header: bool) -> String {
     format!(
         "# What the columns of {file} hold. Check every line; a line that begins with # says nothing to the program.\n\
          # `study list sidecar` lists what can be said, `study list columns` what a column can hold.\n\n\
+         # A trial with neither wind nor waves, as in a towing tank:\n# weather = \"none\"\n\n\
          [table]\nseparator = \"{separator}\"\n{header}"
     )
 }

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use approx::assert_abs_diff_eq;
+use ship::Particulars;
 use ship::angle::{from_deg, to_deg};
 
 use super::*;
@@ -390,4 +391,19 @@ fn a_rudder_later_than_the_log_is_long_is_an_error_of_the_sidecar() {
             "{message}"
         );
     }
+}
+
+/// What a sidecar says of the weather belongs to the record, whatever becomes of that.
+#[test]
+fn a_declared_calm_stays_with_the_record() {
+    let sidecar = "weather = \"none\"\n[ship]\nlength-m = 7.0\nspeed-m-s = 1.18\n";
+    assert!(!parse(simple()).expect("complete").trial.is_calm());
+    let trial = parse_with(simple(), sidecar).expect("complete").trial;
+    assert!(trial.is_calm() && trial.scaled_to(Particulars { length: 320.0, speed: 8.0 }).expect("a scale").is_calm());
+    let first = trial.time()[0];
+    assert!(trial.without(&[Channel::YawRate]).without_current([0.1; 2]).without_readings(&[first]).is_calm());
+    let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
+    let log = Log::of_bytes(Path::new("run.csv"), simple().as_bytes(), None, Some(&sidecar)).expect("complete");
+    let part = log.part(first, first + 50.0).expect("a part");
+    assert!(part.into_trial(None).expect("a record").trial.is_calm());
 }

@@ -64,6 +64,8 @@ pub(super) struct ListedFormula {
     pub(super) formula: &'static str,
     /// What is expected of every constant.
     pub(super) prior: ListedPrior,
+    /// Whether it is a moment of the weather.
+    pub(super) of_weather: bool,
 }
 
 /// Mean, standard deviation and largest value of every constant in records of some manoeuvres.
@@ -78,8 +80,8 @@ pub struct Formula {
     /// The measured channels that it needs.
     channels: Vec<Regressor>,
     of_record: OfRecord,
-    /// What is expected, of a formula of the list.
-    listed: Option<ListedPrior>,
+    /// Its row, of a formula of the list.
+    listed: Option<ListedFormula>,
     /// What is said of every constant behind the formula of a user.
     expected: Vec<Expectation>,
     /// Whether its moment is proportional to a constant: it is absent where all these are zero. The others are shapes.
@@ -132,7 +134,7 @@ impl Formula {
     /// When the row is no formula: a mistake of the list.
     pub(super) fn listed(row: &ListedFormula) -> Self {
         let program = parse::parse(row.formula, false).unwrap_or_else(|error| panic!("{error}"));
-        Self { acts: row.acts, listed: Some(row.prior), ..Self::of(program, row.description) }
+        Self { acts: row.acts, listed: Some(*row), ..Self::of(program, row.description) }
     }
 
     fn of(program: FormulaProgram, description: Description) -> Self {
@@ -234,8 +236,8 @@ impl Effect for Formula {
         let own = Self { of_record, ..self.clone() };
         let priors = match own.listed {
             None => own.found_priors(about)?,
-            Some(prior) => {
-                let [mean, sd, largest] = prior(about)?;
+            Some(row) => {
+                let [mean, sd, largest] = (row.prior)(about)?;
                 let parameters = own.description.parameters.iter();
                 parameters
                     .map(|own| Prior::normal(own, mean, sd).within([own.lowest, own.highest.min(largest)]))
@@ -274,6 +276,10 @@ impl Effect for Formula {
 
     fn is_of_time(&self) -> bool {
         self.has(FormulaSignal::Time)
+    }
+
+    fn is_of_weather(&self) -> bool {
+        self.listed.is_some_and(|row| row.of_weather)
     }
 
     /// A lateral way turns with the record.

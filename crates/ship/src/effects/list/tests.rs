@@ -91,3 +91,11 @@ fn rows_are_their_equations_to_the_last_bit() {
         }
     }
 }
+
+#[test]
+fn a_calm_is_without_wind_waves_and_moments_from_outside() {
+    let mut ids: Vec<&str> = ALL.iter().filter(|own| own.is_of_weather()).map(|own| own.id()).collect();
+    ids.dedup();
+    assert_eq!(ids, ["wind_moment", "moment_drift", "transient_disturbance", "wave_yaw"]);
+    assert!(!Formula::read("trend = c * t").expect("a formula").is_of_weather(), "nobody knows what a formula is of");
+}
