@@ -154,7 +154,7 @@ mod tests {
         let [wind, drift, transient] = ["wind_moment", "moment_drift", "transient_disturbance"];
         assert_eq!(weather(&[other.clone()], &usual), [wind, drift, transient].map(|id| (id, None)));
         assert_eq!(weather(&[calm.clone()], &usual), []);
-        assert_eq!(weather(&[calm.clone(), other], &usual), [(wind, None), (drift, None), (transient, Some(1))]);
+        assert_eq!(weather(&[calm.clone(), other], &usual), [(wind, None), (drift, Some(1)), (transient, Some(1))]);
         let asked = Selection { with: vec![EffectId::find(drift).expect("on the list")], ..usual };
         assert_eq!(weather(&[calm], &asked), [(drift, None)]);
     }
