@@ -61,15 +61,8 @@ impl Default for Recording {
 impl Recording {
     /// The whole run with this time between rows, s.
     pub fn every(period: f64) -> Self {
-        Self {
-            period,
-            duration: None,
-            after_execute: None,
-            offset: None,
-            rudder: RudderSource::Feedback,
-            assumed_rudder_rate: None,
-            weather: None,
-        }
+        let (rudder, weather) = (RudderSource::Feedback, None);
+        Self { period, duration: None, after_execute: None, offset: None, rudder, assumed_rudder_rate: None, weather }
     }
 
     /// Longest record that is taken for meant, s.

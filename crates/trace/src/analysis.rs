@@ -9,7 +9,6 @@ use identify::hull::HullEstimate;
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use ship::effects::{Effect, WaveYaw};
 use ship::{Regressor, Response};
 use trial::Trial;
 
@@ -131,9 +130,7 @@ pub fn watched(
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let candidates = candidates_of(&records, &trials, time, settings)?;
     let problem = FittedRecords::new(records, response.inverse_T, time);
-    let with_waves = settings.selection.allows(WaveYaw.id())
-        && !candidates::is_becalmed(&WaveYaw, None, &trials, &settings.selection);
-    let fulls = full::fit(&problem, &base, &candidates, with_waves);
+    let fulls = full::fit(&problem, &base, &candidates, candidates::has_waves(&trials, &settings.selection));
     let (full, structures) =
         structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square());
     let members = structures.members();

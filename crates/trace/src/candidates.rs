@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ship::effects::{Backlash, Effect, Manoeuvres, Proposal, SecondOrder, SteeringLag};
+use ship::effects::{Backlash, Effect, Manoeuvres, Proposal, SecondOrder, SteeringLag, WaveYaw};
 use ship::{Polyline, Regressor};
 use trial::Trial;
 
@@ -60,6 +60,11 @@ pub fn manoeuvres<'a>(records: &'a [PreparedRecord], trials: &[Trial], time: f64
 pub fn is_becalmed(effect: &dyn Effect, only: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
     let is_calm = || only.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
     effect.is_of_weather() && !selection.asks_for(effect.id()) && is_calm()
+}
+
+/// Whether waves are looked for among the colours of the noise.
+pub fn has_waves(trials: &[Trial], selection: &Selection) -> bool {
+    selection.allows(WaveYaw.id()) && !is_becalmed(&WaveYaw, None, trials, selection)
 }
 
 /// Every candidate these records allow, waves excepted, which are a kind of noise and no response. A moment that
@@ -123,7 +128,6 @@ pub fn mean_square<'a>(
 
 #[cfg(test)]
 mod tests {
-    use ship::effects::WaveYaw;
     use trial::{Conditions, DeclaredWeather};
 
     use super::*;

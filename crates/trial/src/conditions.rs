@@ -170,8 +170,8 @@ impl Conditions {
         other
     }
 
-    /// The key of a length that no ship has beside the others, or of a weather that is no calm beside a declared one, and
-    /// what was expected.
+    /// The key of a length that no ship has beside the others, or of a weather beside a declared calm, and what was
+    /// expected.
     pub(crate) fn contradiction(&self) -> Option<(&'static str, &'static str)> {
         let length = self.particulars.map(|own| own.length);
         let calm = self.weather.map(|_| 1.0);
