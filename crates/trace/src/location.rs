@@ -11,7 +11,7 @@ use crate::full::Full;
 use crate::model::{Term, TermName};
 use crate::naming::{EffectNaming, named};
 use crate::settings::Settings;
-use crate::shape::{self, ALIKE, ShapeAnalysis};
+use crate::shape::{self, ALIKE, BELIEVED, ShapeAnalysis};
 use crate::structures::Structures;
 
 /// Probability of a size as far from neutral by chance, above which an effect is not named.
@@ -62,14 +62,26 @@ pub fn locate(
     }
     // Several names may stand where none is there, each in the place of a part of a shape.
     let none = among.shapes(&asked);
-    if height(&none) + 2.0 * ALIKE < height(&all) {
+    if is_better(&none, &all) {
         return among.with_names(Location { named: asked, displaced: open, shapes: none });
     }
-    let mut stand = Location { named: [asked, open].concat(), displaced: Vec::new(), shapes: all };
+    let mut stand = Location { named: [asked.as_slice(), &open].concat(), displaced: Vec::new(), shapes: all };
     while let Some(next) = among.without_name(&stand, &none, is_asked) {
         stand = next;
     }
+    // Shapes beside names that a random moment replaces are held against that moment as well.
+    let alone = none.as_ref().map_or(f64::INFINITY, |own| own.alone);
+    if stand.is_located() && alone < height(&stand.shapes) + 2.0 * BELIEVED {
+        return Location { named: asked, displaced: open, shapes: none };
+    }
     stand
+}
+
+/// Whether what is left without a name is explained better than what is left with it: shapes by more than both are
+/// alike, a random law by anything.
+fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> bool {
+    let is_shape = without.as_ref().is_some_and(ShapeAnalysis::is_located);
+    height(without) + if is_shape { 2.0 * ALIKE } else { 0.0 } < height(with)
 }
 
 /// −2 log p of the best explanation.
@@ -113,7 +125,7 @@ impl NamedStructures<'_> {
             Location { named, displaced: [stand.displaced.as_slice(), &[effect]].concat(), shapes }
         });
         let lowest = without.min_by(|one, other| height(&one.shapes).total_cmp(&height(&other.shapes)));
-        lowest.filter(|next| height(&next.shapes) + 2.0 * ALIKE < height(&stand.shapes))
+        lowest.filter(|next| is_better(&next.shapes, &stand.shapes))
     }
 
     /// What speaks for an effect beside its probability: the evidence, and a size that is none by chance.

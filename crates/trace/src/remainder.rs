@@ -85,7 +85,9 @@ impl Remainder {
         let is_chance = shapes.is_none_or(|own| are_noise(&with_values(innovations, &own.innovations)));
         let is_smooth = shapes.is_some_and(|own| own.is_smooth);
         let is_large = !is_small && (after / before).sqrt() >= UNEXPLAINED;
-        let is_unexplained = is_large && (is_smooth || !is_chance);
+        // In a calm nothing turns the ship at random.
+        let is_calm = shapes.is_some_and(|own| own.moment.is_some()) && trials.iter().all(Trial::is_calm);
+        let is_unexplained = is_large && (is_smooth || !is_chance || is_calm);
         let signature = (is_unexplained || location.is_located()).then(|| worst(identification, trials)).flatten();
         Self { holds, is_founded, is_unexplained, signature }
     }

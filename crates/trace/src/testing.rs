@@ -87,6 +87,20 @@ pub fn of_columns(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial 
     Trial::new("made up", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
 }
 
+/// A record with the answer of the base to a moment, rad of rudder, over time, s.
+pub fn moved(trial: &Trial, moment: impl Fn(f64) -> f64) -> Trial {
+    let [mut heading, mut rate, h] = [0.0, 0.0, 0.02];
+    let mut measured = trial.heading().to_vec();
+    for (row, value) in measured.iter_mut().enumerate() {
+        for step in 0..if row > 0 { 50 } else { 0 } {
+            rate += h * (BASE[1] * moment(trial.time()[row - 1] + h * f64::from(step)) - BASE[0] * rate);
+            heading += h * rate;
+        }
+        *value += heading;
+    }
+    of_columns(trial.time().to_vec(), measured, trial.rudder().to_vec())
+}
+
 /// A base in a moment that walks: `level` is the standard deviation, deg, that a ship without damping would have at the
 /// end of 300 s.
 pub fn wandering(level: f64, seed: u64) -> Trial {

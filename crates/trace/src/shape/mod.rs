@@ -74,10 +74,12 @@ pub struct ShapeAnalysis {
     pub losses: Vec<f64>,
     /// Gain of the best, nats.
     pub gain: f64,
+    /// −2 log p under the best law without any shape.
+    pub alone: f64,
     /// Whether a smooth moment explains it better than any random law, where no shape does.
     pub is_smooth: bool,
     /// The random moment beside the best as a rudder angle, rad: its root mean square over the longest record; of a white
-    /// moment that of its mean over T.
+    /// moment that of its mean over L/U.
     pub moment: Option<f64>,
     /// Standard deviations of the white noise of a row of the records, rad.
     pub heading_sd: Vec<f64>,
@@ -223,9 +225,10 @@ impl<'a> Stand<'a> {
                 search::square_left(&self.linearised.linear, &best.shapes, &step) / self.linearised.rows() as f64
             }),
             heading_sd: self.point.sd.iter().map(|sd| sd * whole.sd()).collect(),
-            moment: self.moment(&best, whole.sd(), longest),
+            moment: self.moment(&best, whole.sd(), [longest, problem.time]),
             alike: tried,
             gain: 0.5 * (self.height - best.height),
+            alone: self.height,
             is_smooth: best.shapes.is_empty() && 0.5 * (self.height - smooth) >= SMOOTH,
             innovations: whole.innovations(),
             best,
@@ -233,14 +236,17 @@ impl<'a> Stand<'a> {
     }
 
     /// The random moment of an explanation whose white noise has a standard deviation in units of that of the records.
-    fn moment(&self, best: &Explanation, sd: f64, longest: f64) -> Option<f64> {
+    fn moment(&self, best: &Explanation, sd: f64, [longest, time]: [f64; 2]) -> Option<f64> {
         let law = &self.laws[best.law];
         let (kind, _) = law.colour.wander.filter(|_| law.is_moment())?;
         let spread = match kind {
             CorrelatedNoise::Walk => (0.5 * longest).sqrt(),
-            CorrelatedNoise::White => self.point.theta[0].max(longest.recip()).sqrt(),
+            CorrelatedNoise::White => time.sqrt().recip(),
             _ => 1.0,
         };
         Some(law.size * sd * self.point.sd.iter().copied().fold(0.0, f64::max) * spread)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,212 @@
+//! Shapes on records of known truth.
+
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+use estimation::column::dot;
+use nalgebra::{DMatrix, DVector};
+use ship::angle::{from_deg, to_deg};
+use ship::effects::{Effect, Formula};
+use trial::Trial;
+
+use super::conditioned::{Conditioned, LinearisedStructure};
+use super::dictionary::{Power, Signal, shapes};
+use super::*;
+use crate::base::Base;
+use crate::candidates::ship_time;
+use crate::fit::Effort;
+use crate::full::start;
+use crate::linear::{HeadingSensitivities, Linear};
+use crate::model::Structure;
+use crate::noise::RecordNoise;
+use crate::record::PreparedRecord;
+use crate::testing::{BASE, TrialPlan, moved, of_columns, record, ship, wandering};
+
+/// Heading noise of the records, deg.
+const NOISE_DEG: f64 = 0.1;
+
+fn plan(seed: u64) -> TrialPlan {
+    TrialPlan { noise_deg: NOISE_DEG, seed, ..TrialPlan::default() }
+}
+
+/// A first-order ship in a moment (deg of rudder) over time (s).
+fn in_moment(seed: u64, moment_deg: impl Fn(f64) -> f64) -> Trial {
+    moved(&record(&ship(Vec::new()), plan(seed)), |t| from_deg(moment_deg(t)))
+}
+
+/// A ship with a moment as a formula, whose coefficient is `c`.
+fn with_formula(formula: &str, c: f64) -> Trial {
+    let effect: Arc<dyn Effect> = Formula::read(formula).expect("a formula");
+    record(&ship(vec![(effect, vec![c])]), plan(5))
+}
+
+/// What the base leaves of records.
+fn analysed(trials: &[Trial]) -> ShapeAnalysis {
+    let base = Base::of(trials).expect("a base");
+    let response = base.estimate.response;
+    let time = ship_time(trials, response.K_over_T);
+    let records = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
+    let problem = FittedRecords::new(records, response.inverse_T, time);
+    let law = NoiseLaw::white(trials.len(), base.mean_square());
+    let structure = Structure::base(trials.len(), time);
+    let theta = start(&structure, &response, std::iter::empty());
+    let fit = problem.fit(&structure, theta, base.initial(), &problem.weights(&law), Effort::FINE);
+    analysis(&problem, &fit, &law).expect("an analysis")
+}
+
+/// The clearest shape with its record.
+fn clearest(analysis: &ShapeAnalysis) -> (Shape, Option<usize>) {
+    let named = analysis.named(|_| 300.0);
+    named.first().map(|own| (own.candidate.shape, own.candidate.only)).expect("a shape")
+}
+
+#[test]
+fn moments_that_depend_on_time_are_located() {
+    let step = analysed(&[in_moment(1, |t| if t > 150.0 { 1.0 } else { 0.0 })]);
+    let (shape, _) = clearest(&step);
+    assert!(step.is_located() && shape.dependence() == Dependence::Time, "{shape:?}");
+    assert!(shape.span(300.0).is_some_and(|[from, _]| (from - 150.0).abs() < 6.0), "{shape:?}");
+    let size = step.named(|_| 300.0)[0].size;
+    assert!((to_deg(size) - 0.5_f64.sqrt()).abs() < 0.15, "{} deg", to_deg(size));
+
+    let periodic = analysed(&[in_moment(2, |t| (TAU * t / 70.0).sin())]);
+    assert!(matches!(clearest(&periodic).0, Shape::Period(cycles) if (300.0 / cycles - 70.0).abs() < 3.0));
+
+    let squalls = analysed(&[in_moment(3, |t| {
+        let squall =
+            |middle: f64| if (t - middle).abs() < 15.0 { (PI * (t - middle) / 30.0).cos().powi(2) } else { 0.0 };
+        6.0 * (squall(90.0) - squall(210.0))
+    })]);
+    let spans: Vec<[f64; 2]> =
+        squalls.named(|_| 300.0).iter().filter_map(|own| own.candidate.shape.span(300.0)).collect();
+    let is_held = |middle: f64| spans.iter().any(|[from, until]| (from..=until).contains(&&middle));
+    assert!(is_held(90.0) && is_held(210.0), "{spans:?}");
+}
+
+#[test]
+fn moments_of_the_motion_are_located() {
+    let cases = [
+        ("bank = c * y", 1.5e-4, Dependence::Way),
+        ("tug = c * max(psi, 0)", 0.15, Dependence::Heading),
+        ("cubic = c * psi^3", 3.0, Dependence::Heading),
+    ];
+    for (formula, c, dependence) in cases {
+        let analysis = analysed(&[with_formula(formula, c)]);
+        assert!(analysis.is_located(), "{formula}: {}", analysis.gain);
+        assert_eq!(clearest(&analysis).0.dependence(), dependence, "{formula}");
+    }
+}
+
+/// Instruments leave nothing; a moment that walks is a random moment of its size, and no shape.
+#[test]
+fn chance_is_no_shape() {
+    for seed in 1..4 {
+        let calm = analysed(&[in_moment(seed, |_| 0.0)]);
+        assert!(!calm.is_located() && calm.moment.is_none() && !calm.is_smooth, "{calm:?}");
+        assert!((to_deg(calm.heading_sd[0]) / NOISE_DEG - 1.0).abs() < 0.15, "{:?}", calm.heading_sd);
+        let walk = analysed(&[wandering(30.0, seed)]);
+        // 30 deg at the end of 300 s without damping: a walk of √(20/300⁵) 30 deg/s² √s, over K/T as a rudder angle.
+        let size = 30.0 * (20.0 / 300f64.powi(5)).sqrt() / BASE[1] * 150f64.sqrt();
+        let ratio = to_deg(walk.moment.expect("a random moment")) / size;
+        assert!(!walk.is_located() && (0.4..2.5).contains(&ratio), "{ratio} {:?}", walk.best);
+    }
+}
+
+/// A moment of one record is none of another; K and T that change are found where they do.
+#[test]
+fn shapes_of_time_belong_to_their_record() {
+    let others = [in_moment(7, |_| 0.0), in_moment(8, |t| if t > 120.0 { 1.5 } else { 0.0 })];
+    let analysis = analysed(&others);
+    let (shape, only) = clearest(&analysis);
+    assert_eq!((only, shape.is_of_time()), (Some(1), true), "{shape:?}");
+}
+
+/// −2 log p by dense matrices: (n − p) log s² + log det(XᵀX) + price, and with one column more.
+#[test]
+fn heights_are_those_of_dense_matrices() {
+    let rows = 40;
+    let column = |k: usize| (0..rows).map(|row| (0.3 * (k * row + row) as f64).sin() + 0.1 * k as f64).collect();
+    let columns: Vec<Vec<f64>> = (1..5).map(column).collect();
+    let residual: Vec<f64> = (0..rows).map(|row| 0.02 * (1.7 * row as f64).cos() + 0.01 * columns[3][row]).collect();
+    let block =
+        HeadingSensitivities { residual: residual.clone(), columns: (0..).zip(columns[..3].to_vec()).collect() };
+    let structure = LinearisedStructure {
+        linear: Linear { blocks: vec![block], unknowns: 3 },
+        integrated: 2,
+        prior: vec![(0.0, 0.0); 2],
+        sizes: vec![0.7],
+    };
+    let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
+    let made = of_columns(time, residual.clone(), vec![0.0; rows]);
+    let noise = RecordNoise::new(&PreparedRecord::whole(&made), 0.1, 40.0, 1);
+    let weights = Weights { whiteners: vec![noise.whitener(&NoiseColour::WHITE)], scale: vec![10.0] };
+    let (log_n, freedom) = ((rows as f64).ln(), rows as f64 - 2.0);
+    let dense = |count: usize| {
+        let x = DMatrix::from_fn(rows, count, |i, k| 10.0 * columns[k][i]);
+        let e = DVector::from_fn(rows, |i, _| 10.0 * residual[i]);
+        let matrix = x.transpose() * &x;
+        let step = matrix.clone().cholesky().expect("independent").solve(&(x.transpose() * &e));
+        let variance = (&e - &x * &step).norm_squared() / freedom;
+        let integrated = matrix.view((0, 0), (2, 2)).determinant();
+        // The t value of a coefficient behind those before it, from where it is neutral.
+        let price = |k: usize, away: f64| {
+            let before = x.columns(0, k).into_owned();
+            let own = x.column(k).into_owned();
+            let inverse = (before.transpose() * &before).try_inverse().expect("independent");
+            let alone = &own - &before * (inverse * (before.transpose() * &own));
+            let later: f64 = (k + 1..count).map(|j| step[j] * alone.dot(&x.column(j))).sum();
+            let c = (step[k] + away) * alone.norm() + later / alone.norm();
+            log_n.max((c * c / variance).ln_1p()) + 1.0
+        };
+        let paid = price(2, 0.7) + if count > 3 { price(3, 0.0) } else { 0.0 };
+        freedom * variance.ln() - 2.0 * rows as f64 * 10f64.ln() + integrated.ln() + log_n + paid
+    };
+    let own = Conditioned::new(&structure, &weights, 1).expect("independent");
+    assert!((own.height() - dense(3)).abs() < 1e-8, "{} {}", own.height(), dense(3));
+    let mut white = vec![vec![(0, columns[3].clone())]];
+    white[0][0].1.iter_mut().for_each(|x| *x *= 10.0);
+    let with = own.extended(&white).expect("independent");
+    assert!((own.height_of(&white) - dense(4)).abs() < 1e-8 && (with.height() - dense(4)).abs() < 1e-8);
+    assert!((with.step()[3] - 0.01).abs() < 0.01 && own.height_of(&[vec![(0, vec![0.0; rows])]]).is_infinite());
+    let left = with.innovations();
+    assert!((dot(&left[0], &left[0]) - freedom).abs() < 1e-8);
+}
+
+/// The sizes of the laws are those of the moments in their filters.
+#[test]
+fn laws_have_the_sizes_they_say() {
+    let (gain, longest) = (BASE[1], 300.0);
+    let all = laws::all(gain, longest, 1.0, None);
+    assert_eq!(all.len(), 1 + 7 + 17 + 3 * 6 + 4 * 6 + 4 * 4);
+    for law in all.iter().filter(|law| law.is_moment()) {
+        let (kind, level) = law.colour.wander.expect("a moment");
+        let size = kind.size(level, longest) / gain;
+        assert!((size / law.size - 1.0).abs() < 1e-9, "{kind:?} {size} {}", law.size);
+    }
+    // Beside known waves no others are looked for, and rows far apart show none of the short ones.
+    let sea = Some(ship::narrow_band::NarrowBand { sd: 1.0, frequency: 0.7, damping: 0.1 });
+    assert!(laws::all(gain, longest, 1.0, sea).iter().all(|law| law.colour.waves == sea));
+    assert_eq!(laws::all(gain, longest, 3.0, None).len(), all.len() - 2 * 4);
+    let walk = all.iter().position(|law| law.size > 0.09 && law.size < 0.11 && law.freedom == 1).expect("a law");
+    let tried = laws::tried(&all, walk);
+    assert!(tried.contains(&0) && tried.contains(&walk) && tried.len() < 16, "{tried:?}");
+}
+
+#[test]
+fn shapes_can_be_moved_and_typed() {
+    let all = shapes([300.0, 1.0], 1.0);
+    assert!(all.len() > 600, "{}", all.len());
+    for (shape, _) in &all {
+        if let Some(formula) = shape.formula() {
+            assert!(Formula::read(&format!("located = {formula}")).is_ok(), "{formula}");
+        }
+        for place in 0..shape.place_count() {
+            let back = shape.moved(place, 1.0, [300.0, 1.0]).and_then(|own| own.moved(place, -1.0, [300.0, 1.0]));
+            assert!(back.is_some_and(|back| back.words([0.0, 300.0]) == shape.words([0.0, 300.0])), "{shape:?}");
+        }
+    }
+    let tug = Shape::Powers(Dependence::Heading, (Signal::Heading, Power::Positive), None);
+    assert_eq!(tug.formula().as_deref(), Some("c * max(psi, 0)"));
+    assert_eq!(Shape::Pulse(91.0, 24.0).words([0.0, 300.0]), "moment from 91 to 115 s");
+    assert_eq!(Shape::Pulse(91.0, 2.0).moved(1, -1.0, [300.0, 1.0]), None);
+}
