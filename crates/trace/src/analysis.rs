@@ -27,6 +27,7 @@ use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::remainder::{Innovations, Remainder, innovations, squares};
 use crate::report;
+use crate::rudder;
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
 use crate::structures::{self, Structures};
@@ -85,7 +86,8 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 
 /// Analyses records of one ship. `validation` records only judge: nothing else depends on them.
 ///
-/// Readings of the compass that belong to no ship are left out of all records, and listed. Fails when a setting is out
+/// Readings of the compass that belong to no ship are left out of all records, and listed; a rudder with errors of its
+/// instrument is replaced by the one behind its readings. Fails when a setting is out
 /// of its range, when an effect that was asked for cannot be in the model, and when the base cannot be fitted or
 /// replayed.
 ///
@@ -122,8 +124,10 @@ pub fn watched(
     watcher: &dyn Watcher,
 ) -> Result<Analysis, TraceError> {
     settings.check()?;
-    let (trials, outliers) = without_spikes(trials);
-    let (validation, _) = without_spikes(validation);
+    let (trials, rudder_errors) = rudder::without_noise(trials);
+    let (validation, _) = rudder::without_noise(validation);
+    let (trials, outliers) = without_spikes(&trials);
+    let (validation, _) = without_spikes(&validation);
     let base = Base::of(&trials)?;
     let response = base.estimate.response;
     let time = candidates::ship_time(&trials, response.K_over_T);
@@ -131,6 +135,7 @@ pub fn watched(
     let candidates = candidates_of(&records, &trials, time, settings)?;
     let problem = FittedRecords::new(records, response.inverse_T, time);
     let fulls = full::fit(&problem, &base, &candidates, candidates::has_waves(&trials, &settings.selection));
+    let fulls = rudder::beside(fulls, &problem, response.K_over_T, &rudder_errors);
     let (full, structures) =
         structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square());
     let members = structures.members();
@@ -160,6 +165,7 @@ pub fn watched(
         remainder: &remainder,
         location: &location,
         outliers: &outliers,
+        rudder_errors: &rudder_errors,
         no_nearer,
         problem: &problem,
     };

@@ -378,6 +378,9 @@ pub struct RecordNoiseEntry {
     pub waves_frequency_rad_s: Option<f64>,
     /// Whether the innovations are white, of one variance, and without a surprise.
     pub describes_what_is_left: bool,
+    /// Standard deviation of the error of a reading of the rudder, where it is noise of the instrument.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rudder_sd_deg: Option<f64>,
     /// Times of readings of the compass that belong to no ship and were left out.
     pub outliers_s: Vec<f64>,
 }

@@ -25,6 +25,7 @@ pub mod record;
 mod remainder;
 pub mod replay_errors;
 mod report;
+mod rudder;
 pub mod selection;
 pub mod settings;
 pub mod shape;

@@ -22,6 +22,7 @@ use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::EffectNaming;
 use crate::noise::CorrelatedNoise;
 use crate::remainder::{Remainder, squares};
+use crate::rudder::RudderError;
 use crate::settings::Settings;
 use crate::shape::{Candidate, NamedShape};
 use crate::signature::Signature;
@@ -54,6 +55,8 @@ pub struct TraceParts<'a> {
     pub location: &'a Location,
     /// Readings that were left out of the fitted records, s.
     pub outliers: &'a [Vec<f64>],
+    /// Errors of the rudders of the fitted records.
+    pub rudder_errors: &'a [Option<RudderError>],
     /// Whether the structures replay the fitted records no nearer than the base.
     pub no_nearer: bool,
     /// The records as they were fitted.
@@ -450,6 +453,7 @@ impl TraceParts<'_> {
                 waves_sd_deg: law.colour.waves.map(|sea| to_deg(sea.sd * variance.sqrt())),
                 waves_frequency_rad_s: law.colour.waves.map(|sea| sea.frequency),
                 describes_what_is_left: self.remainder.holds,
+                rudder_sd_deg: self.rudder_errors[number].map(|error| to_deg(error.sd)),
                 outliers_s: self.outliers[number].clone(),
             }
         };

@@ -1,0 +1,254 @@
+//! Errors of the recorded rudder: white noise of its feedback, and angles that are rounded.
+//!
+//! δ_i = δ(t_i) + ν_i, ν white with the standard deviation s, rad. The noise stands in the regressor: an effect that is
+//! flat at large or small angles takes it away and seems to explain it. A gear moves a rudder in rests and strokes of one
+//! rate, which readings show far better than each of them is ([`pieces`]), so δ becomes these. What is left is what no
+//! smoothing takes away, ∫ν dt over a stroke, with the variance (s h)² for each of its rows of length h: to the ship it
+//! is a white yaw moment of the intensity K²/T² times [`RudderError::intensity`], and no law holds less.
+//!
+//! s is 1.4826 median |δ_(i−1) − 2 δ_i + δ_(i+1)|/√6, which few corners do not move, and then that of the readings about
+//! the pieces. Angles rounded to q have the error q²/12; what of it the readings about a stroke do not show is the same
+//! in all its rows.
+//!
+//! A record stays as it is where s is below 0.05 deg, where the rudder has no few pieces (waves, an autopilot), and where
+//! the recorded rudder explains the heading better, because then it is what the rudder did. It fails where a rough
+//! motion of the rudder is too small to be seen in the heading, which takes it for noise, and says nothing of a constant
+//! error of all angles, such as that of rounded rests.
+
+mod pieces;
+
+use std::borrow::Cow;
+
+use estimation::statistics::median;
+use identify::{Identifier, maximum_likelihood};
+use rayon::prelude::*;
+use ship::angle::{from_deg, to_deg};
+use trial::{Channel, Columns, Trial};
+
+use crate::fit::FittedRecords;
+use crate::full::Full;
+use crate::noise::CorrelatedNoise;
+use pieces::Piece;
+
+/// Smallest standard deviation that is looked at, deg.
+const SMALLEST: f64 = 0.05;
+
+/// Rows for every piece at least: a rudder with more pieces is no gear that rests.
+const ROWS_PER_PIECE: usize = 5;
+
+/// Gain in the log of the likelihood from which the recorded rudder is believed.
+const BELIEVED: f64 = 2.0;
+
+/// Unit in which angles are looked at for a common divisor, deg, and the largest that is a rounding.
+const UNIT: f64 = 0.05;
+const COARSEST: f64 = 2.0;
+
+/// The error of the rudder of one record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RudderError {
+    /// Standard deviation of a reading, rad.
+    pub sd: f64,
+    /// Variance that the integral of the error gains in a second, rad² s.
+    pub intensity: f64,
+}
+
+/// Records with the rudder behind the readings, and the errors of these; as they are where there are none.
+pub fn without_noise(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<RudderError>>) {
+    let read: Vec<Option<(Trial, RudderError)>> = trials.par_iter().map(smoothed).collect();
+    let errors: Vec<Option<RudderError>> = read.iter().map(|one| one.as_ref().map(|(_, error)| *error)).collect();
+    let kept = match errors.iter().all(Option::is_none) {
+        true => Cow::Borrowed(trials),
+        false => trials.iter().zip(read).map(|(trial, read)| read.map_or_else(|| trial.clone(), |own| own.0)).collect(),
+    };
+    (kept, errors)
+}
+
+/// The record with the rudder behind its readings, where they have an error.
+fn smoothed(trial: &Trial) -> Option<(Trial, RudderError)> {
+    let (time, angle) = (trial.time(), trial.rudder());
+    let quantum = quantum(angle);
+    let rounding = quantum / 12f64.sqrt();
+    let sd = roughness(time, angle).max(rounding);
+    if to_deg(sd) < SMALLEST {
+        return None;
+    }
+    let pieces = pieces::pieces(time, angle, sd);
+    if pieces.len() * ROWS_PER_PIECE > time.len() {
+        return None;
+    }
+    let path: Vec<f64> =
+        pieces.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t))).collect();
+    let error = error_of(time, (angle, &path), &pieces, rounding);
+    let clean = with_rudder(trial, path)?;
+    let is_nearer = log_likelihood(trial)? > log_likelihood(&clean)? + BELIEVED;
+    match (is_nearer, quantum > 0.0) {
+        (false, _) => Some((clean, error)),
+        (true, true) => Some((trial.clone(), error)),
+        (true, false) => None,
+    }
+}
+
+/// Standard deviation of the white noise of angles, rad, from the second differences of even rows.
+fn roughness(time: &[f64], angle: &[f64]) -> f64 {
+    let is_even = |t: &[f64]| ((t[2] - t[1]) / (t[1] - t[0]) - 1.0).abs() < 0.1;
+    let triples = time.windows(3).zip(angle.windows(3)).filter(|(t, _)| is_even(t));
+    let mut bends: Vec<f64> = triples.map(|(_, own)| (own[0] - 2.0 * own[1] + own[2]).abs()).collect();
+    median(&mut bends).map_or(0.0, |bend| 1.4826 * bend / 6f64.sqrt())
+}
+
+/// What all angles are multiples of, rad; 0 where they are none of a coarse number, or where it is the step of a stroke.
+fn quantum(angle: &[f64]) -> f64 {
+    let units = |angle: f64| to_deg(angle) / UNIT;
+    if angle.iter().any(|own| (units(*own) - units(*own).round()).abs() > 1e-3) {
+        return 0.0;
+    }
+    let steps = angle.windows(2).map(|pair| (units(pair[1]).round() - units(pair[0]).round()).abs() as u64);
+    let (divisor, largest) = steps.fold((0, 0), |(divisor, largest), step| (gcd(divisor, step), step.max(largest)));
+    let quantum = UNIT * divisor as f64;
+    if largest >= 2 * divisor && quantum <= COARSEST { from_deg(quantum) } else { 0.0 }
+}
+
+fn gcd(one: u64, other: u64) -> u64 {
+    if other == 0 { one } else { gcd(other, one % other) }
+}
+
+/// The error of readings about the rudder behind them.
+fn error_of(time: &[f64], (angle, path): (&[f64], &[f64]), pieces: &[Piece], rounding: f64) -> RudderError {
+    let square = |from: usize, to: usize| -> f64 { (from..to).map(|row| (angle[row] - path[row]).powi(2)).sum() };
+    let unknowns: usize = pieces.iter().map(|piece| if piece.is_stroke { 2 } else { 1 }).sum();
+    let variance = square(0, time.len()) / time.len().saturating_sub(unknowns).max(1) as f64;
+    let last = time.len() - 1;
+    let length = |row: usize| 0.5 * (time[(row + 1).min(last)] - time[row.saturating_sub(1)]);
+    let hold: f64 = std::env::var("HOLD").ok().and_then(|x| x.parse().ok()).unwrap_or(1.0);
+    let mut grown = 0.0;
+    for piece in pieces {
+        let lengths = (piece.from..piece.to).map(length);
+        let squares: f64 = lengths.clone().map(|h| h * h).sum();
+        grown += variance * squares * if piece.is_stroke { 1.0 } else { hold };
+        if piece.is_stroke && rounding > 0.0 {
+            let hidden = rounding * rounding - square(piece.from, piece.to) / piece.rows() as f64;
+            grown += hidden.max(0.0) * lengths.sum::<f64>().powi(2);
+        }
+    }
+    RudderError { sd: variance.sqrt().max(rounding), intensity: grown / (time[last] - time[0]) }
+}
+
+/// The record with another rudder.
+fn with_rudder(trial: &Trial, rudder: Vec<f64>) -> Option<Trial> {
+    let is_read = |channel: Channel| channel != Channel::Heading || !trial.heading_from_yaw_rate();
+    let kept = trial.channels().filter(|(channel, _)| is_read(*channel));
+    let mut channels: std::collections::BTreeMap<_, _> = kept.map(|(own, values)| (own, values.to_vec())).collect();
+    channels.insert(Channel::Rudder, rudder);
+    let columns = Columns { time: trial.time().to_vec(), channels, unknown: trial.unknown().to_vec() };
+    let other = Trial::new(trial.name(), trial.origin().clone(), columns).ok()?;
+    let other = other.with_noise(trial.noise()).with_conditions(trial.conditions().clone());
+    let other = other.with_rejected(trial.rejected().to_vec());
+    Some(match trial.particulars() {
+        Some(particulars) => other.with_particulars(particulars),
+        None => other,
+    })
+}
+
+/// Log of the largest likelihood of a record with a random moment beside its rudder.
+fn log_likelihood(trial: &Trial) -> Option<f64> {
+    let settings = maximum_likelihood::Settings {
+        rudder: maximum_likelihood::RudderChoice::None,
+        ..maximum_likelihood::Settings::default()
+    };
+    let method = settings.build().expect("default settings are valid");
+    method.identify(std::slice::from_ref(trial)).ok()?.diagnostic("log_likelihood")
+}
+
+/// Laws of the noise that hold no less than the errors of the rudder.
+pub fn beside(fulls: Vec<Full>, problem: &FittedRecords, gain: f64, errors: &[Option<RudderError>]) -> Vec<Full> {
+    if errors.iter().all(Option::is_none) {
+        return fulls;
+    }
+    let unit = CorrelatedNoise::White.size(1.0, problem.longest()).powi(2);
+    let mut kept: Vec<Full> = Vec::new();
+    for full in fulls {
+        let intensities = errors.iter().map(|error| error.map_or(0.0, |error| error.intensity));
+        let levels = intensities.zip(&full.law.variance).map(|(own, variance)| gain * gain * own / (unit * variance));
+        let least = levels.sum::<f64>() / errors.len() as f64;
+        let mut white = full.clone();
+        let mut keep = |full: Full| {
+            if kept.iter().all(|other| !other.law.is_alike(&full.law)) {
+                kept.push(full);
+            }
+        };
+        let level = match full.law.colour.wander {
+            Some((CorrelatedNoise::White, level)) => level.max(least),
+            Some(_) => {
+                keep(full);
+                least
+            }
+            None => least,
+        };
+        white.law.colour.wander = Some((CorrelatedNoise::White, level));
+        keep(white);
+    }
+    kept
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::testing::{TrialPlan, of_columns, record, ship};
+    use rand::{SeedableRng, rngs::ChaCha8Rng};
+    use rand_distr::{Distribution, Normal};
+
+    /// Strokes of 2.5 deg/s between ±10 deg, off the rows: times, s, and angles, rad.
+    pub(crate) fn strokes(rows: usize) -> (Vec<f64>, Vec<f64>) {
+        let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
+        let angle = |t: &f64| {
+            let (lap, sign) = ((t + 3.37) % 43.7, if ((t + 3.37) / 43.7) as usize % 2 == 0 { 1.0 } else { -1.0 });
+            from_deg(sign * (2.5 * lap - 10.0).min(10.0))
+        };
+        (time.clone(), time.iter().map(angle).collect())
+    }
+
+    /// The same with white noise of a standard deviation in degrees.
+    pub(crate) fn noisy(angle: &[f64], sd_deg: f64) -> Vec<f64> {
+        let mut generator = ChaCha8Rng::seed_from_u64(7);
+        let noise = Normal::new(0.0, from_deg(sd_deg)).expect("a standard deviation");
+        angle.iter().map(|own| own + noise.sample(&mut generator)).collect()
+    }
+
+    fn trial_with(of_rudder: impl Fn(&[f64]) -> Vec<f64>) -> (Trial, Trial) {
+        let clean = record(&ship(Vec::new()), TrialPlan::default());
+        let read = of_columns(clean.time().to_vec(), clean.heading().to_vec(), of_rudder(clean.rudder()));
+        (clean, read)
+    }
+
+    #[test]
+    fn a_clean_rudder_stays() {
+        let (clean, _) = trial_with(<[f64]>::to_vec);
+        let trials = [clean];
+        let (kept, errors) = without_noise(&trials);
+        assert!(matches!(kept, Cow::Borrowed(_)) && errors == [None]);
+    }
+
+    #[test]
+    fn noise_of_the_rudder_has_its_size() {
+        for sd in [0.1, 0.3] {
+            let (clean, read) = trial_with(|rudder| noisy(rudder, sd));
+            let (kept, errors) = without_noise(std::slice::from_ref(&read));
+            let error = errors[0].expect("noise");
+            assert!((to_deg(error.sd) / sd - 1.0).abs() < 0.15, "{sd}: {error:?}");
+            let off = |trial: &Trial| -> f64 {
+                trial.rudder().iter().zip(clean.rudder()).map(|(one, other)| (one - other).powi(2)).sum()
+            };
+            assert!(off(&kept[0]) < 0.15 * off(&read), "{} {}", off(&kept[0]), off(&read));
+        }
+    }
+
+    #[test]
+    fn whole_degrees_are_an_error_and_a_step_is_not() {
+        let (_, clean) = strokes(300);
+        let rounded: Vec<f64> = clean.iter().map(|own| from_deg(to_deg(*own).round())).collect();
+        assert!((to_deg(quantum(&rounded)) - 1.0).abs() < 1e-9);
+        assert_eq!(quantum(&clean), 0.0);
+        let stepped: Vec<f64> = (0..40).map(|row| from_deg((2.5 * f64::from(row) - 10.0).min(10.0))).collect();
+        assert_eq!(quantum(&stepped), 0.0);
+    }
+}

@@ -1,0 +1,217 @@
+//! A rudder as a gear moves it: rests and strokes of one rate, fitted to readings with white noise.
+//!
+//! δ(t) = δ_k + ρ_k (t − t_k) in piece k, ρ_k = 0 in a rest. The pieces are those of the least
+//! Σ (δ_i − δ(t_i))²/s² + price, where a rest costs 2 log n and a stroke 3 log n (optimal partitioning with pruning;
+//! Jackson et al. 2005, Killick et al. 2012; prices as Schwarz 1978). Levels of rests, and rates of strokes, that the
+//! noise does not tell apart are those of one gear and become their mean; a stroke meets a rest where their lines do.
+
+/// Fewest readings of a stroke.
+const STROKE: usize = 3;
+
+/// Fewest readings of a piece whose end is moved to where it meets the next.
+const MOVABLE: usize = 2;
+
+/// How often ends and gear are found in turn.
+const ROUNDS: usize = 3;
+
+/// A rest or a stroke.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// First row.
+    pub from: usize,
+    /// Row behind the last.
+    pub to: usize,
+    /// Mean time of its rows, s.
+    time: f64,
+    /// Angle at that time, rad.
+    angle: f64,
+    /// Rate, rad/s.
+    rate: f64,
+    /// Σ (t − t_k)², s².
+    spread: f64,
+    /// Whether the rudder moves.
+    pub is_stroke: bool,
+}
+
+impl Piece {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.to - self.from
+    }
+
+    /// Angle at a time, rad.
+    pub fn at(&self, time: f64) -> f64 {
+        self.angle + self.rate * (time - self.time)
+    }
+
+    /// The line through some rows by least squares; level where the rudder rests.
+    fn of(time: &[f64], angle: &[f64], (from, to): (usize, usize), is_stroke: bool) -> Self {
+        let rows = (to - from) as f64;
+        let mean = |values: &[f64]| values[from..to].iter().sum::<f64>() / rows;
+        let (at, level) = (mean(time), mean(angle));
+        let pairs = || time[from..to].iter().zip(&angle[from..to]);
+        let spread: f64 = pairs().map(|(t, _)| (t - at).powi(2)).sum();
+        let product: f64 = pairs().map(|(t, delta)| (t - at) * (delta - level)).sum();
+        let rate = if is_stroke { product / spread } else { 0.0 };
+        Self { from, to, time: at, angle: level, rate, spread, is_stroke }
+    }
+}
+
+/// Sums of the rows before a row: of 1 (t t²) and δ (δ t, δ²).
+type Sums = [f64; 5];
+
+/// Squares that a level and a line leave of the rows between two sums.
+fn left(one: &Sums, other: &Sums, rows: f64) -> [f64; 2] {
+    let [t, tt, y, ty, yy] = std::array::from_fn(|k| other[k] - one[k]);
+    let (level, spread, product) = (yy - y * y / rows, tt - t * t / rows, ty - t * y / rows);
+    let line = if spread > 0.0 { level - product * product / spread } else { level };
+    [level.max(0.0), line.max(0.0)]
+}
+
+/// The pieces of least squares and price: first rows, rows behind the last, and whether each is a stroke.
+fn partition(time: &[f64], angle: &[f64], sd: f64) -> Vec<(usize, usize, bool)> {
+    let rows = time.len();
+    let price = (rows as f64).ln();
+    let mut sums: Vec<Sums> = vec![[0.0; 5]];
+    for (t, y) in time.iter().map(|t| t - time[0]).zip(angle.iter().map(|y| (y - angle[0]) / sd)) {
+        let last = sums[sums.len() - 1];
+        let own = [t, t * t, y, t * y, y * y];
+        sums.push(std::array::from_fn(|k| last[k] + own[k]));
+    }
+    let mut best = vec![(0.0, 0, false)];
+    let mut open: Vec<usize> = Vec::new();
+    for end in 1..=rows {
+        open.push(end - 1);
+        let squares: Vec<[f64; 2]> =
+            open.iter().map(|&from| left(&sums[from], &sums[end], (end - from) as f64)).collect();
+        let mut lowest = (f64::INFINITY, 0, false);
+        for (&from, [level, line]) in open.iter().zip(&squares) {
+            let rest = best[from].0 + level + 2.0 * price;
+            let stroke = best[from].0 + line + 3.0 * price;
+            if rest < lowest.0 {
+                lowest = (rest, from, false);
+            }
+            if end - from >= STROKE && stroke < lowest.0 {
+                lowest = (stroke, from, true);
+            }
+        }
+        best.push(lowest);
+        // What is no better without a price is never better.
+        let mut squares = squares.into_iter();
+        open.retain(|&from| squares.next().is_some_and(|[_, line]| best[from].0 + line < lowest.0));
+    }
+    let mut pieces = Vec::new();
+    let mut end = rows;
+    while end > 0 {
+        let (_, from, is_stroke) = best[end];
+        pieces.push((from, end, is_stroke));
+        end = from;
+    }
+    pieces.reverse();
+    pieces
+}
+
+/// Values with weights (one over their variance), where those that their errors do not tell apart are their mean.
+fn pooled(values: &[(f64, f64)], price: f64) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&one, &other| values[one].0.total_cmp(&values[other].0));
+    let mut groups: Vec<(f64, f64, Vec<usize>)> = order.iter().map(|&k| (values[k].0, values[k].1, vec![k])).collect();
+    loop {
+        let apart = |pair: &[(f64, f64, Vec<usize>)]| {
+            (pair[1].0 - pair[0].0).powi(2) * pair[0].1 * pair[1].1 / (pair[0].1 + pair[1].1)
+        };
+        let nearest = groups.windows(2).map(apart).enumerate().min_by(|one, other| one.1.total_cmp(&other.1));
+        let Some((place, _)) = nearest.filter(|(_, apart)| *apart < price) else { break };
+        let (value, weight, members) = groups.remove(place + 1);
+        let into = &mut groups[place];
+        into.0 = (into.0 * into.1 + value * weight) / (into.1 + weight);
+        into.1 += weight;
+        into.2.extend(members);
+    }
+    let mut pooled = vec![0.0; values.len()];
+    groups.iter().for_each(|(value, _, members)| members.iter().for_each(|&k| pooled[k] = *value));
+    pooled
+}
+
+/// Gives rests and strokes the levels and rates of a gear.
+fn by_gear(pieces: &mut [Piece], sd: f64, price: f64) {
+    let weight = 1.0 / (sd * sd);
+    let rests: Vec<usize> = (0..pieces.len()).filter(|&k| !pieces[k].is_stroke && pieces[k].rows() > 1).collect();
+    let levels: Vec<(f64, f64)> = rests.iter().map(|&k| (pieces[k].angle, pieces[k].rows() as f64 * weight)).collect();
+    rests.iter().zip(pooled(&levels, price)).for_each(|(&k, level)| pieces[k].angle = level);
+    let strokes: Vec<usize> = (0..pieces.len()).filter(|&k| pieces[k].is_stroke).collect();
+    let rates: Vec<(f64, f64)> = strokes.iter().map(|&k| (pieces[k].rate.abs(), pieces[k].spread * weight)).collect();
+    for (&k, rate) in strokes.iter().zip(pooled(&rates, price)) {
+        pieces[k].rate = rate.copysign(pieces[k].rate);
+    }
+}
+
+/// The row at which a piece ends and the next begins: where their lines meet, if that is near to where it was.
+fn meeting(time: &[f64], one: &Piece, other: &Piece) -> usize {
+    let bend = one.rate - other.rate;
+    let near = 2 * MOVABLE;
+    if one.is_stroke == other.is_stroke || one.rows() < near || other.rows() < near {
+        return one.to;
+    }
+    let met = time[one.to] + (other.at(time[one.to]) - one.at(time[one.to])) / bend;
+    let row = time.partition_point(|t| *t < met);
+    if row.abs_diff(one.to) <= MOVABLE { row } else { one.to }
+}
+
+/// The pieces of a rudder (s, rad) whose readings have noise of a standard deviation `sd`, rad.
+pub fn pieces(time: &[f64], angle: &[f64], sd: f64) -> Vec<Piece> {
+    let mut parts = partition(time, angle, sd);
+    let price = (time.len() as f64).ln();
+    for round in 0.. {
+        let mut all: Vec<Piece> =
+            parts.iter().map(|&(from, to, is_stroke)| Piece::of(time, angle, (from, to), is_stroke)).collect();
+        by_gear(&mut all, sd, price);
+        let ends: Vec<usize> = all.windows(2).map(|pair| meeting(time, &pair[0], &pair[1])).collect();
+        let is_settled = ends.iter().zip(&parts).all(|(end, part)| *end == part.1);
+        if is_settled || round == ROUNDS {
+            return all;
+        }
+        for (k, end) in ends.into_iter().enumerate() {
+            (parts[k].1, parts[k + 1].0) = (end, end);
+        }
+    }
+    unreachable!("the last round returns")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rudder::tests::{noisy, strokes};
+
+    #[test]
+    fn rests_and_strokes_are_those_of_the_gear() {
+        let (time, clean) = strokes(400);
+        let read = noisy(&clean, 0.3);
+        let found = pieces(&time, &read, 0.3_f64.to_radians());
+        let rates: Vec<f64> = found.iter().filter(|piece| piece.is_stroke).map(|piece| piece.rate.abs()).collect();
+        assert!(rates.len() > 5 && rates.iter().all(|rate| (rate - rates[0]).abs() < 1e-12), "{rates:?}");
+        assert!((rates[0].to_degrees() - 2.5).abs() < 0.1, "{rates:?}");
+        let path = found.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t)));
+        let left = |values: &mut dyn Iterator<Item = f64>| -> f64 {
+            values.zip(&clean).map(|(value, clean)| (value - clean).powi(2)).sum::<f64>().sqrt()
+        };
+        assert!(left(&mut path.into_iter()) < 0.25 * left(&mut read.iter().copied()));
+    }
+
+    #[test]
+    fn what_noise_does_not_tell_apart_is_one() {
+        let mean = pooled(&[(1.0, 4.0), (3.0, 4.0), (1.1, 4.0)], 2.0);
+        assert_eq!((mean[0], mean[0], mean[1]), (mean[2], 0.5 * (1.0 + 1.1), 3.0));
+    }
+
+    /// A jump is no stroke, and a single reading stays what it is.
+    #[test]
+    fn a_helm_that_jumps_has_rests_alone() {
+        let time: Vec<f64> = (0..60).map(f64::from).collect();
+        let angle: Vec<f64> = (0..60).map(|row| if row == 31 { 0.2 } else { 0.1 * f64::from(row / 20) }).collect();
+        let found = pieces(&time, &angle, 0.003);
+        assert!(found.iter().all(|piece| !piece.is_stroke), "{found:?}");
+        let path = found.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t)));
+        assert!(path.zip(&angle).all(|(path, angle)| (path - angle).abs() < 1e-12));
+    }
+}
