@@ -27,7 +27,9 @@ use trial::{Channel, Columns, Trial};
 
 use crate::fit::FittedRecords;
 use crate::full::Full;
+use crate::law;
 use crate::noise::CorrelatedNoise;
+use crate::weights::NoiseLaw;
 use pieces::Piece;
 
 /// Smallest standard deviation that is looked at, deg.
@@ -35,6 +37,10 @@ const SMALLEST: f64 = 0.05;
 
 /// Rows for every piece at least: a rudder with more pieces is no gear that rests.
 const ROWS_PER_PIECE: usize = 5;
+
+/// Autocorrelation, of so many lags, from which what is about the pieces is a motion.
+const LASTING: f64 = 0.15;
+const LAGS: usize = 10;
 
 /// Gain in the log of the likelihood from which the recorded rudder is believed.
 const BELIEVED: f64 = 2.0;
@@ -78,7 +84,7 @@ fn smoothed(trial: &Trial) -> Option<(Trial, RudderError)> {
     }
     let path: Vec<f64> =
         pieces.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t))).collect();
-    let error = error_of(time, (angle, &path), &pieces, rounding);
+    let error = error_of(time, (angle, &path), &pieces, rounding)?;
     let clean = with_rudder(trial, path)?;
     let is_nearer = log_likelihood(trial)? > log_likelihood(&clean)? + BELIEVED;
     match (is_nearer, quantum > 0.0) {
@@ -112,25 +118,36 @@ fn gcd(one: u64, other: u64) -> u64 {
     if other == 0 { one } else { gcd(other, one % other) }
 }
 
-/// The error of readings about the rudder behind them.
-fn error_of(time: &[f64], (angle, path): (&[f64], &[f64]), pieces: &[Piece], rounding: f64) -> RudderError {
+/// Whether a reading of a rest is seen in those after it.
+fn lasts(left: &[f64]) -> bool {
+    let products =
+        |lag: usize| left.iter().zip(&left[lag.min(left.len())..]).map(|(one, other)| one * other).sum::<f64>();
+    let chance = 4.0 / (left.len() as f64).sqrt();
+    (1..=LAGS).any(|lag| products(lag).abs() > LASTING.max(chance) * products(0))
+}
+
+/// The error of readings about the rudder behind them; `None` where it is no noise but a motion that lasts.
+fn error_of(time: &[f64], (angle, path): (&[f64], &[f64]), pieces: &[Piece], rounding: f64) -> Option<RudderError> {
+    let left: Vec<f64> = angle.iter().zip(path).map(|(angle, path)| angle - path).collect();
+    if rounding == 0.0 && lasts(&left) {
+        return None;
+    }
     let square = |from: usize, to: usize| -> f64 { (from..to).map(|row| (angle[row] - path[row]).powi(2)).sum() };
     let unknowns: usize = pieces.iter().map(|piece| if piece.is_stroke { 2 } else { 1 }).sum();
     let variance = square(0, time.len()) / time.len().saturating_sub(unknowns).max(1) as f64;
     let last = time.len() - 1;
     let length = |row: usize| 0.5 * (time[(row + 1).min(last)] - time[row.saturating_sub(1)]);
-    let hold: f64 = std::env::var("HOLD").ok().and_then(|x| x.parse().ok()).unwrap_or(1.0);
     let mut grown = 0.0;
     for piece in pieces {
         let lengths = (piece.from..piece.to).map(length);
         let squares: f64 = lengths.clone().map(|h| h * h).sum();
-        grown += variance * squares * if piece.is_stroke { 1.0 } else { hold };
+        grown += variance * squares;
         if piece.is_stroke && rounding > 0.0 {
             let hidden = rounding * rounding - square(piece.from, piece.to) / piece.rows() as f64;
             grown += hidden.max(0.0) * lengths.sum::<f64>().powi(2);
         }
     }
-    RudderError { sd: variance.sqrt().max(rounding), intensity: grown / (time[last] - time[0]) }
+    Some(RudderError { sd: variance.sqrt().max(rounding), intensity: grown / (time[last] - time[0]) })
 }
 
 /// The record with another rudder.
@@ -159,37 +176,42 @@ fn log_likelihood(trial: &Trial) -> Option<f64> {
     method.identify(std::slice::from_ref(trial)).ok()?.diagnostic("log_likelihood")
 }
 
+/// Fall of −2 log of the likelihood from which another noise is believed beside errors of the rudder.
+const OTHER: f64 = 10.0;
+
 /// Laws of the noise that hold no less than the errors of the rudder.
+///
+/// These are a white moment, and no other takes its place that does not explain the records far better.
 pub fn beside(fulls: Vec<Full>, problem: &FittedRecords, gain: f64, errors: &[Option<RudderError>]) -> Vec<Full> {
     if errors.iter().all(Option::is_none) {
         return fulls;
     }
     let unit = CorrelatedNoise::White.size(1.0, problem.longest()).powi(2);
-    let mut kept: Vec<Full> = Vec::new();
-    for full in fulls {
+    let least = |law: &NoiseLaw| {
         let intensities = errors.iter().map(|error| error.map_or(0.0, |error| error.intensity));
-        let levels = intensities.zip(&full.law.variance).map(|(own, variance)| gain * gain * own / (unit * variance));
-        let least = levels.sum::<f64>() / errors.len() as f64;
-        let mut white = full.clone();
-        let mut keep = |full: Full| {
-            if kept.iter().all(|other| !other.law.is_alike(&full.law)) {
-                kept.push(full);
-            }
-        };
-        let level = match full.law.colour.wander {
-            Some((CorrelatedNoise::White, level)) => level.max(least),
-            Some(_) => {
-                keep(full);
-                least
-            }
-            None => least,
-        };
-        white.law.colour.wander = Some((CorrelatedNoise::White, level));
-        keep(white);
+        let levels = intensities.zip(&law.variance).map(|(own, variance)| gain * gain * own / (unit * variance));
+        levels.sum::<f64>() / errors.len() as f64
+    };
+    let of = |full: Full| {
+        let asked = |kind| law::of(problem, &full.fit, &full.law.variance, false, &[kind]);
+        let white = asked(CorrelatedNoise::White);
+        let kind = full.law.colour.wander.map(|(kind, _)| kind).filter(|kind| *kind != CorrelatedNoise::White);
+        let is_other = kind.is_some_and(|kind| asked(kind).height + OTHER < white.height);
+        let level = white.law.colour.wander.map_or(0.0, |(_, level)| level);
+        let mut law = white.law;
+        law.colour.waves = full.law.colour.waves;
+        law.colour.wander = Some((CorrelatedNoise::White, level.max(least(&law))));
+        let white = Full { law, ..full.clone() };
+        [Some(white), is_other.then_some(full)]
+    };
+    let mut kept: Vec<Full> = Vec::new();
+    for full in fulls.into_iter().flat_map(of).flatten() {
+        if kept.iter().all(|other| !other.law.is_alike(&full.law)) {
+            kept.push(full);
+        }
     }
     kept
 }
-
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
