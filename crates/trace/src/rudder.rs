@@ -32,6 +32,9 @@ use crate::noise::CorrelatedNoise;
 use crate::weights::NoiseLaw;
 use pieces::Piece;
 
+/// Standard deviation of normal numbers over the median of their magnitudes.
+const NORMAL: f64 = 1.4826;
+
 /// Smallest standard deviation that is looked at, deg.
 const SMALLEST: f64 = 0.05;
 
@@ -99,7 +102,7 @@ fn roughness(time: &[f64], angle: &[f64]) -> f64 {
     let is_even = |t: &[f64]| ((t[2] - t[1]) / (t[1] - t[0]) - 1.0).abs() < 0.1;
     let triples = time.windows(3).zip(angle.windows(3)).filter(|(t, _)| is_even(t));
     let mut bends: Vec<f64> = triples.map(|(_, own)| (own[0] - 2.0 * own[1] + own[2]).abs()).collect();
-    median(&mut bends).map_or(0.0, |bend| 1.4826 * bend / 6f64.sqrt())
+    median(&mut bends).map_or(0.0, |bend| NORMAL * bend / 6f64.sqrt())
 }
 
 /// What all angles are multiples of, rad; 0 where they are none of a coarse number, or where it is the step of a stroke.
@@ -147,7 +150,8 @@ fn error_of(time: &[f64], (angle, path): (&[f64], &[f64]), pieces: &[Piece], rou
             grown += hidden.max(0.0) * lengths.sum::<f64>().powi(2);
         }
     }
-    Some(RudderError { sd: variance.sqrt().max(rounding), intensity: grown / (time[last] - time[0]) })
+    let error = RudderError { sd: variance.sqrt().max(rounding), intensity: grown / (time[last] - time[0]) };
+    (grown > 0.0).then_some(error)
 }
 
 /// The record with another rudder.
@@ -197,9 +201,9 @@ pub fn beside(fulls: Vec<Full>, problem: &FittedRecords, gain: f64, errors: &[Op
         let white = asked(CorrelatedNoise::White);
         let kind = full.law.colour.wander.map(|(kind, _)| kind).filter(|kind| *kind != CorrelatedNoise::White);
         let is_other = kind.is_some_and(|kind| asked(kind).height + OTHER < white.height);
-        let level = white.law.colour.wander.map_or(0.0, |(_, level)| level);
-        let mut law = white.law;
-        law.colour.waves = full.law.colour.waves;
+        // Waves are sized in the noise beside them.
+        let mut law = if full.law.colour.waves.is_some() { full.law.clone() } else { white.law };
+        let level = law.colour.wander.filter(|(kind, _)| *kind == CorrelatedNoise::White).map_or(0.0, |own| own.1);
         law.colour.wander = Some((CorrelatedNoise::White, level.max(least(&law))));
         let white = Full { law, ..full.clone() };
         [Some(white), is_other.then_some(full)]
@@ -223,7 +227,8 @@ pub(crate) mod tests {
     pub(crate) fn strokes(rows: usize) -> (Vec<f64>, Vec<f64>) {
         let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
         let angle = |t: &f64| {
-            let (lap, sign) = ((t + 3.37) % 43.7, if ((t + 3.37) / 43.7) as usize % 2 == 0 { 1.0 } else { -1.0 });
+            let laps = (t + 3.37) / 43.7;
+            let (lap, sign) = (43.7 * laps.fract(), if (laps as usize).is_multiple_of(2) { 1.0 } else { -1.0 });
             from_deg(sign * (2.5 * lap - 10.0).min(10.0))
         };
         (time.clone(), time.iter().map(angle).collect())
