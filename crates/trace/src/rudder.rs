@@ -49,7 +49,7 @@ const LAGS: usize = 10;
 const BELIEVED: f64 = 2.0;
 
 /// Unit in which angles are looked at for a common divisor, deg, and the largest that is a rounding.
-const UNIT: f64 = 0.05;
+const UNIT: f64 = 0.5;
 const COARSEST: f64 = 2.0;
 
 /// The error of the rudder of one record.
@@ -105,16 +105,18 @@ fn roughness(time: &[f64], angle: &[f64]) -> f64 {
     median(&mut bends).map_or(0.0, |bend| NORMAL * bend / 6f64.sqrt())
 }
 
-/// What all angles are multiples of, rad; 0 where they are none of a coarse number, or where it is the step of a stroke.
+/// What all angles are multiples of, rad; 0 where they are none of a coarse number, and where every stroke begins at a
+/// row with its whole step, which an exact rudder of even numbers does.
 fn quantum(angle: &[f64]) -> f64 {
-    let units = |angle: f64| to_deg(angle) / UNIT;
-    if angle.iter().any(|own| (units(*own) - units(*own).round()).abs() > 1e-3) {
+    let units: Vec<f64> = angle.iter().map(|own| to_deg(*own) / UNIT).collect();
+    if units.iter().any(|own| (own - own.round()).abs() > 1e-3) {
         return 0.0;
     }
-    let steps = angle.windows(2).map(|pair| (units(pair[1]).round() - units(pair[0]).round()).abs() as u64);
-    let (divisor, largest) = steps.fold((0, 0), |(divisor, largest), step| (gcd(divisor, step), step.max(largest)));
+    let steps: Vec<i64> = units.windows(2).map(|pair| pair[1].round() as i64 - pair[0].round() as i64).collect();
+    let begins_between = steps.windows(3).any(|own| own[0] == 0 && own[1] * own[2] > 0 && own[1].abs() < own[2].abs());
+    let divisor = steps.iter().fold(0, |divisor, step| gcd(divisor, step.unsigned_abs()));
     let quantum = UNIT * divisor as f64;
-    if largest >= 2 * divisor && quantum <= COARSEST { from_deg(quantum) } else { 0.0 }
+    if begins_between && quantum <= COARSEST { from_deg(quantum) } else { 0.0 }
 }
 
 fn gcd(one: u64, other: u64) -> u64 {
@@ -275,7 +277,7 @@ pub(crate) mod tests {
         let rounded: Vec<f64> = clean.iter().map(|own| from_deg(to_deg(*own).round())).collect();
         assert!((to_deg(quantum(&rounded)) - 1.0).abs() < 1e-9);
         assert_eq!(quantum(&clean), 0.0);
-        let stepped: Vec<f64> = (0..40).map(|row| from_deg((2.5 * f64::from(row) - 10.0).min(10.0))).collect();
-        assert_eq!(quantum(&stepped), 0.0);
+        let gear = |rate: f64| (0..40).map(move |row| from_deg((rate * f64::from(row) - 15.0).clamp(-10.0, 10.0)));
+        assert_eq!([2.5, 5.0].map(|rate| quantum(&gear(rate).collect::<Vec<f64>>())), [0.0; 2]);
     }
 }
