@@ -10,10 +10,11 @@
 //! the pieces. Angles rounded to q have the error q²/12; what of it the readings about a stroke do not show is the same
 //! in all its rows.
 //!
-//! A record stays as it is where s is below 0.05 deg, where the rudder has no few pieces (waves, an autopilot), and where
-//! the recorded rudder explains the heading better, because then it is what the rudder did. It fails where a rough
-//! motion of the rudder is too small to be seen in the heading, which takes it for noise, and says nothing of a constant
-//! error of all angles, such as that of rounded rests.
+//! A record stays as it is where s is below 0.05 deg and angles are rounded to less than 0.5 deg, where the rudder has
+//! no few pieces (waves, an autopilot) or what is about them lasts, and where the recorded rudder explains the heading
+//! better, because then it is what the rudder did. It fails where a rough motion of the rudder is too small to be seen
+//! in the heading, which takes it for noise, where the noise has a memory, and says nothing of a constant error of all
+//! angles, such as that of rounded rests.
 
 mod pieces;
 
