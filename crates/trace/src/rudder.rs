@@ -273,6 +273,15 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn nothing_is_named_for_noise_of_the_rudder() {
+        let (_, read) = trial_with(|rudder| noisy(rudder, 0.3));
+        let settings = crate::Settings { thorough: false, ..crate::Settings::default() };
+        let analysis = crate::trace(&[read], &[], &settings).expect("a base");
+        assert!(analysis.document.effects.is_empty(), "{:?}", analysis.document.effects);
+        assert!(analysis.document.noise[0].rudder_sd_deg.is_some_and(|sd| (sd - 0.3).abs() < 0.05));
+    }
+
+    #[test]
     fn whole_degrees_are_an_error_and_a_step_is_not() {
         let (_, clean) = strokes(300);
         let rounded: Vec<f64> = clean.iter().map(|own| from_deg(to_deg(*own).round())).collect();
