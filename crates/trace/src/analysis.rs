@@ -142,7 +142,7 @@ pub fn watched(
     let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, (&full.law, &members), hulls, settings.thorough, time);
     let (mut identification, mut no_nearer) = fit(&[])?;
     let location = locate(&problem, &full, &structures, &candidates, settings);
-    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &location);
+    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, (&location, &rudder_errors));
     let hulls = hulls::fit(&trials, settings, &identification, &remainder);
     if !hulls.is_empty() {
         (identification, no_nearer) = fit(&hulls)?;

@@ -10,12 +10,16 @@ use crate::fit::{Effort, FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::model::{Term, TermName};
 use crate::naming::{EffectNaming, named};
+use crate::rudder::RudderError;
 use crate::settings::Settings;
-use crate::shape::{self, ALIKE, BELIEVED, ShapeAnalysis};
+use crate::shape::{self, ALIKE, BELIEVED, RandomMoment, ShapeAnalysis};
 use crate::structures::Structures;
 
 /// Probability of a size as far from neutral by chance, above which an effect is not named.
 const BY_CHANCE: f64 = 0.05;
+
+/// A white moment of less than so many times the density of the errors of the rudder is these.
+const OF_RUDDER: f64 = 4.0;
 
 /// What is named, and what is left beside it.
 #[derive(Debug, Clone)]
@@ -29,6 +33,14 @@ pub struct Location {
 }
 
 impl Location {
+    /// The random moment beside the names and shapes; none where errors of the rudders are one as large.
+    pub fn moment(&self, errors: &[Option<RudderError>]) -> Option<RandomMoment> {
+        let moment = self.shapes.as_ref()?.moment?;
+        let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
+        let is_of_rudder = moment.white.is_some_and(|density| density < OF_RUDDER * instrument);
+        (!is_of_rudder).then_some(moment)
+    }
+
     /// Whether shapes are believed.
     pub fn is_located(&self) -> bool {
         self.shapes.as_ref().is_some_and(ShapeAnalysis::is_located)

@@ -9,6 +9,7 @@ use crate::full::Full;
 use crate::location::Location;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayErrors;
+use crate::rudder::RudderError;
 use crate::signature::{Signature, signature};
 use crate::structures::Structures;
 use crate::weights::NoiseLaw;
@@ -67,7 +68,7 @@ impl Remainder {
         structures: &Structures,
         identification: &[RecordComparison],
         trials: &[Trial],
-        location: &Location,
+        (location, rudder_errors): (&Location, &[Option<RudderError>]),
     ) -> Self {
         let Some(best) = structures.all.first() else {
             return Self { holds: true, is_founded: true, is_unexplained: false, signature: None };
@@ -86,7 +87,7 @@ impl Remainder {
         let is_smooth = shapes.is_some_and(|own| own.is_smooth);
         let is_large = !is_small && (after / before).sqrt() >= UNEXPLAINED;
         // In a calm nothing turns the ship at random.
-        let is_calm = shapes.is_some_and(|own| own.moment.is_some()) && trials.iter().all(Trial::is_calm);
+        let is_calm = location.moment(rudder_errors).is_some() && trials.iter().all(Trial::is_calm);
         let is_unexplained = is_large && (is_smooth || !is_chance || is_calm);
         let signature = (is_unexplained || location.is_located()).then(|| worst(identification, trials)).flatten();
         Self { holds, is_founded, is_unexplained, signature }

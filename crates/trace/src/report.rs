@@ -354,7 +354,7 @@ impl TraceParts<'_> {
     /// The random moment beside what is named and located, and its share of the heading error of the replays.
     fn disturbance(&self) -> Option<DisturbanceEntry> {
         let shapes = self.location.shapes.as_ref()?;
-        let rudder_deg = to_deg(shapes.moment?);
+        let rudder_deg = to_deg(self.location.moment(self.rudder_errors)?.rudder);
         let [_, after] = squares(self.identification);
         let rows = || self.identification.iter().map(|one| one.after.errors.rows as f64);
         let of_row = self.problem.records.iter().zip(&shapes.heading_sd);

@@ -61,6 +61,15 @@ const SMALLEST_LOSS: f64 = 0.25;
 /// A moment that sets in within this share of a record from the change of a ship belongs to the change.
 const BESIDE: f64 = 0.1;
 
+/// A random moment, as a rudder angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RandomMoment {
+    /// Its root mean square over the longest record, of a white moment that of its mean over L/U, rad.
+    pub rudder: f64,
+    /// Spectral density of a white one, rad² s.
+    pub white: Option<f64>,
+}
+
 /// What is behind the error of a structure.
 #[derive(Debug, Clone)]
 pub struct ShapeAnalysis {
@@ -78,9 +87,8 @@ pub struct ShapeAnalysis {
     pub alone: f64,
     /// Whether a smooth moment explains it better than any random law, where no shape does.
     pub is_smooth: bool,
-    /// The random moment beside the best as a rudder angle, rad: its root mean square over the longest record; of a white
-    /// moment that of its mean over L/U.
-    pub moment: Option<f64>,
+    /// The random moment beside the best.
+    pub moment: Option<RandomMoment>,
     /// Standard deviations of the white noise of a row of the records, rad.
     pub heading_sd: Vec<f64>,
     /// Mean square of the heading error that the shapes leave, rad²; `None` without any.
@@ -236,15 +244,15 @@ impl<'a> Stand<'a> {
     }
 
     /// The random moment of an explanation whose white noise has a standard deviation in units of that of the records.
-    fn moment(&self, best: &Explanation, sd: f64, [longest, time]: [f64; 2]) -> Option<f64> {
+    fn moment(&self, best: &Explanation, sd: f64, [longest, time]: [f64; 2]) -> Option<RandomMoment> {
         let law = &self.laws[best.law];
         let (kind, _) = law.colour.wander.filter(|_| law.is_moment())?;
-        let spread = match kind {
-            CorrelatedNoise::Walk => (0.5 * longest).sqrt(),
-            CorrelatedNoise::White => time.sqrt().recip(),
-            _ => 1.0,
-        };
-        Some(law.size * sd * self.point.sd.iter().copied().fold(0.0, f64::max) * spread)
+        let size = law.size * sd * self.point.sd.iter().copied().fold(0.0, f64::max);
+        Some(match kind {
+            CorrelatedNoise::White => RandomMoment { rudder: size / time.sqrt(), white: Some(size * size) },
+            CorrelatedNoise::Walk => RandomMoment { rudder: size * (0.5 * longest).sqrt(), white: None },
+            _ => RandomMoment { rudder: size, white: None },
+        })
     }
 }
 
