@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use ::trace::Verdict;
 use serde::{Deserialize, Serialize};
 
-use crate::rows::{StudyRow, TraceAnswer};
+use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::statistics::{Statistic, share};
 use scenario::HULL;
 
@@ -36,7 +36,8 @@ pub struct TraceSummary {
     pub silent: u64,
     /// Trials in which every missing effect is in one of the groups named.
     pub complete: u64,
-    /// Trials in which a group was named that holds no missing effect.
+    /// Trials in which a group was named that holds no missing effect; of a hull, of which nobody knows what it lacks,
+    /// one of nothing but weather that there is not.
     pub wrong: u64,
     /// Trials in which exactly what is missing was named: all of it and nothing else, or nothing where nothing is.
     pub exact: u64,
@@ -76,6 +77,10 @@ impl AddAssign for CalibrationBin {
 static EFFECT_IDS: LazyLock<BTreeSet<&'static str>> =
     LazyLock::new(|| ship::effects::all().iter().map(|effect| effect.id()).collect());
 
+static WEATHER_IDS: LazyLock<BTreeSet<&'static str>> = LazyLock::new(|| {
+    ship::effects::all().iter().filter(|effect| effect.is_of_weather()).map(|effect| effect.id()).collect()
+});
+
 /// Identifiers of all effects, each once, sorted.
 pub fn effect_ids() -> impl Iterator<Item = &'static str> {
     EFFECT_IDS.iter().copied()
@@ -92,9 +97,9 @@ impl TraceSummary {
         self.share_of(self.exact)
     }
 
-    /// Share of trials in which something was named that is not missing; `None` for a hull.
+    /// Share of trials in which something was named that is not missing; for a hull an effect of weather.
     pub fn wrong_share(&self) -> Option<Statistic> {
-        self.share_of(self.wrong)
+        share(self.wrong, self.trials)
     }
 
     /// A share of the trials; `None` for a hull, of which nobody knows what it lacks.
@@ -157,7 +162,11 @@ impl TraceTally {
         let aliases: BTreeSet<&str> = aliases.map(|effect| &*effect.id).collect();
         aliases.into_iter().for_each(|id| *summary.aliases.entry(id.to_owned()).or_default() += 1);
         let complete = missing.iter().all(|id| right.iter().any(|effect| effect.holds(id)));
-        summary.wrong += u64::from(!wrong.is_empty());
+        let is_weather = |effect: &&NamedEffect| {
+            let ids = std::iter::once(&effect.id).chain(&effect.aliases);
+            ids.into_iter().all(|id| WEATHER_IDS.contains(&**id))
+        };
+        summary.wrong += u64::from(wrong.iter().any(|effect| !summary.is_hull() || is_weather(effect)));
         summary.complete += u64::from(complete && !missing.is_empty());
         summary.exact += u64::from(complete && wrong.is_empty());
         if answer.margin.is_some_and(|margin| margin > CLEAR) {
@@ -185,7 +194,6 @@ impl TraceTally {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::NamedEffect;
 
     /// The summary of traces that name effects, each with its aliases, where some are missing.
     fn summary(missing: &[&str], trials: &[&[&[&str]]]) -> TraceSummary {
@@ -228,6 +236,16 @@ mod tests {
         assert_eq!(summary.calibration[0], CalibrationBin { effects: others, present: 0, sum: 0.0 });
         assert_eq!(summary.calibration[6], CalibrationBin { effects: 1, present: 1, sum: 0.97 });
         assert_eq!(summary.calibration.iter().map(|range| range.effects).sum::<u64>(), others + 1);
+    }
+
+    /// What a hull lacks nobody knows, but in a calm it is no weather.
+    #[test]
+    fn weather_is_wrong_of_a_hull_in_a_calm() {
+        let trials: [&[&[&str]]; 4] =
+            [&[&["speed_loss"]], &[&["wind_moment", "speed_loss"]], &[&["wind_moment"]], &[&["moment_drift"], &["a"]]];
+        let summary = summary(&[HULL], &trials);
+        assert_eq!((summary.wrong, summary.exact_share()), (2, None));
+        assert_eq!(summary.wrong_share().map(|share| share.value), Some(0.5));
     }
 
     #[test]

@@ -123,7 +123,8 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let confusion = |(number, (group, map)): (usize, (String, _))| {
         let rows = match are_hulls {
             true => {
-                "A row is a hull, of which nobody knows what a first-order response lacks: no cell is right or wrong."
+                "A row is a hull in a calm: effects of weather (wind, waves, drift, a moment for a while) are wrong names; \
+                 of the others nobody knows."
             }
             false => "A row is what the trials lack; an alias counts for its own name only.",
         };

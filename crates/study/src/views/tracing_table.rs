@@ -99,7 +99,7 @@ pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
     let mut table = Table::new(columns);
     let kind = |line: &TraceSummary| match line.missing.len() {
         0 => "nothing missing",
-        _ if line.wrong_share().is_none() => "a hull",
+        _ if line.is_hull() => "a hull",
         1 => "one effect missing",
         _ => "several effects missing",
     };

@@ -11,6 +11,7 @@ mod motion;
 mod point;
 mod search;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -131,19 +132,17 @@ impl ShapeAnalysis {
         all
     }
 
-    /// What the records cannot tell from the best, in words: other dependences, and other moments of the same one.
+    /// What the records cannot tell from the best, in words: moments of other classes that explain the records as well.
     pub fn alternatives(&self, span: impl Fn(Option<usize>) -> [f64; 2]) -> Vec<String> {
-        let words = |own: &Explanation| {
-            let shapes = own.shapes.iter().map(|shape| shape.shape.words(span(shape.only)));
-            shapes.collect::<Vec<_>>().join(" and ")
-        };
-        let classes = |own: &Explanation| own.shapes.iter().map(|shape| shape.shape.class()).collect::<Vec<usize>>();
+        let classes =
+            |own: &Explanation| own.shapes.iter().map(|shape| shape.shape.class()).collect::<BTreeSet<usize>>();
         let mut seen = vec![classes(&self.best)];
         let mut all = Vec::new();
         for other in &self.alike {
             let own = classes(other);
-            if !seen.contains(&own) {
-                all.push(words(other));
+            if seen.iter().all(|seen| !own.is_subset(seen) && !own.is_superset(seen)) {
+                let words = other.shapes.iter().map(|shape| shape.shape.words(span(shape.only)));
+                all.push(words.collect::<Vec<_>>().join(" and "));
                 seen.push(own);
             }
         }
