@@ -26,9 +26,10 @@ fn main() -> ExitCode {
 
 fn write(results: &Path) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(results)?;
-    let outcomes = run(&truths::ALL, &NOISES_DEG, REPLICATES);
-    let figure = chart::outcomes(&truths::ALL, &outcomes);
+    let truths = truths::all();
+    let outcomes = run(&truths, &NOISES_DEG, REPLICATES);
+    let figure = chart::outcomes(&truths, &outcomes);
     fs::write(results.join(format!("{}.png", figure.stem)), figure.plot.draw(&Theme::screen()).png()?)?;
-    fs::write(results.join("outcomes.csv"), page::csv(&truths::ALL, &outcomes))?;
-    Ok(fs::write(results.join("README.md"), page::markdown(&truths::ALL, &outcomes))?)
+    fs::write(results.join("outcomes.csv"), page::csv(&truths, &outcomes))?;
+    Ok(fs::write(results.join("README.md"), page::markdown(&truths, &outcomes))?)
 }

@@ -9,41 +9,33 @@ use super::judged::Judgement;
 use super::truths::{Kind, Truth};
 
 /// What was said, in the order of the columns.
-const SAID: [(&str, &[Judgement]); 7] = [
-    ("named right", &[Judgement::Right]),
-    ("placed in time", &[Judgement::Located]),
-    ("called unexplained", &[Judgement::Unexplained]),
-    ("called complete", &[Judgement::Clean]),
-    ("named an alias", &[Judgement::Alias]),
-    ("taken for noise", &[Judgement::Noise]),
-    ("named wrong", &[Judgement::Wrong, Judgement::Elsewhere]),
+const SAID: [(&str, Judgement); 8] = [
+    ("named right", Judgement::Right),
+    ("located right", Judgement::Located),
+    ("unexplained", Judgement::Unexplained),
+    ("disturbed", Judgement::Disturbed),
+    ("clean", Judgement::Clean),
+    ("alias", Judgement::Alias),
+    ("located elsewhere", Judgement::Elsewhere),
+    ("wrong", Judgement::Wrong),
 ];
-
-/// Whether that is right to say of a ship.
-fn is_right(judgement: Judgement, kind: &Kind) -> bool {
-    match kind {
-        Kind::Listed { .. } => judgement == Judgement::Right,
-        Kind::Unlisted { .. } => matches!(judgement, Judgement::Located | Judgement::Unexplained),
-        Kind::Nothing => judgement == Judgement::Clean,
-    }
-}
 
 /// A row for every ship, a column for everything that was said.
 pub fn outcomes(truths: &[Truth], outcomes: &[Outcome]) -> PageFigure {
     let of_ship = |ship| outcomes.iter().filter(move |own| own.ship == ship);
-    let cell = |ship: usize, said: &[Judgement]| {
-        let count = of_ship(ship).filter(|own| said.contains(&own.judgement)).count();
+    let cell = |ship: usize, said: Judgement| {
+        let count = of_ship(ship).filter(|own| own.judgement == said).count();
         let share = share(count as u64, of_ship(ship).count() as u64).map(|own| own.times(100.0));
         MapCell {
             value: share.map(|own| own.value),
             interval: share.and_then(|own| own.ci95),
-            outline: is_right(said[0], &truths[ship].kind).then_some(Outline::Right),
+            outline: said.is_right(&truths[ship].kind).then_some(Outline::Right),
         }
     };
-    let cells = (0..truths.len()).map(|ship| SAID.iter().map(|(_, said)| cell(ship, said)).collect());
+    let cells = (0..truths.len()).map(|ship| SAID.iter().map(|(_, said)| cell(ship, *said)).collect());
     let right = |is_of: fn(&Kind) -> bool| {
         let own = outcomes.iter().filter(|own| is_of(&truths[own.ship].kind));
-        let judged: Vec<bool> = own.map(|own| is_right(own.judgement, &truths[own.ship].kind)).collect();
+        let judged: Vec<bool> = own.map(|own| own.judgement.is_right(&truths[own.ship].kind)).collect();
         format!("right in {} of {}", judged.iter().filter(|own| **own).count(), judged.len())
     };
     let listed = right(|kind| matches!(kind, Kind::Listed { .. }));
@@ -57,7 +49,7 @@ pub fn outcomes(truths: &[Truth], outcomes: &[Outcome]) -> PageFigure {
                 let kind = match truth.kind {
                     Kind::Listed { .. } => "known",
                     Kind::Unlisted { .. } => "unknown",
-                    Kind::Nothing => "nothing missing",
+                    Kind::Nothing { .. } => "nothing missing",
                 };
                 format!("{kind}: {}", truth.name).replace(" %", "\u{a0}%")
             })
@@ -66,10 +58,10 @@ pub fn outcomes(truths: &[Truth], outcomes: &[Outcome]) -> PageFigure {
         panels: vec![(None, cells.collect())],
         note: Some(String::from(
             "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on no \
-             list. Alias: not to be told from the truth.",
+             list. Alias: not to be told from the truth. Elsewhere: by another dependence, or at another time.",
         )),
     };
-    let caption = "What was said of every ship, both noises together, with 95 % intervals (Wilson). A wrong name is an effect \
-                   of the ship, or one of time away from every change.";
+    let caption = "What was said of every ship, both noises together, with 95 % intervals (Wilson). Wrong is a name that \
+                   is not right, and of a ship that lacks nothing also a located moment.";
     PageFigure::new("outcomes", caption, Plot::Cells(map))
 }

@@ -25,7 +25,7 @@ const SEED: u64 = 10;
 pub const NOISES_DEG: [f64; 2] = [0.05, 0.1];
 
 /// Trials of a ship at one noise.
-pub const REPLICATES: u64 = 24;
+pub const REPLICATES: u64 = 8;
 
 /// One trial of one ship.
 #[derive(Debug, Clone)]
@@ -65,12 +65,12 @@ pub fn run(truths: &[Truth], noises_deg: &[f64], replicates: u64) -> Vec<Outcome
     all.into_par_iter().map(traced).collect()
 }
 
-/// Sum of squares, rad², by which the nearest first-order response misses the records of a ship without noise.
+/// Sum of squares, rad², by which the nearest first-order response misses the records of a ship without noise and chance.
 ///
 /// # Panics
 /// When the ship has no base: a mistake of this study.
 pub fn square_to_first_order(truth: &Truth) -> f64 {
-    let records = records::of(truth, 0.0, StreamKey::default());
+    let records = records::of(&truth.without_chance(), 0.0, StreamKey::default());
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let base = method.identify(&records).expect("a zig-zag has a base");
     let rms = base.diagnostic("heading_rmse_deg").expect("it is reported");

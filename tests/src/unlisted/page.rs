@@ -7,11 +7,12 @@ use campaign::statistics::share;
 use report::number::{MISSING, fixed, significant};
 use report::{PageFigure, Table, TableColumn};
 use ship::angle::to_deg;
+use trace::document::LocatedEntry;
 
-use super::Outcome;
 use super::chart;
-use super::judged::{Judgement, NEAR, Named};
-use super::truths::{Kind, Truth};
+use super::judged::{Answer, Judgement, NEAR, NEAR_PERIOD, Named};
+use super::truths::{Kind, Times, Truth};
+use super::{NOISES_DEG, Outcome, REPLICATES};
 
 /// The command that makes the page.
 pub const COMMAND: &str = "cargo run --release -p kempf-tests --bin unlisted -- results/published/unlisted";
@@ -45,8 +46,12 @@ pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
         TableColumn::left("named"),
         TableColumn::left("aliases"),
         TableColumn::left("times").unit("s"),
-        TableColumn::left("noise named"),
-        TableColumn::left("shape without a name"),
+        TableColumn::left("depends on"),
+        TableColumn::left("form"),
+        TableColumn::left("nats"),
+        TableColumn::left("from").unit("s"),
+        TableColumn::left("until").unit("s"),
+        TableColumn::decimal("moment").unit("deg"),
         TableColumn::decimal("heading before").unit("deg"),
         TableColumn::decimal("heading after").unit("deg"),
     ]);
@@ -56,6 +61,11 @@ pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
             let all = answer.map_or(&[][..], |answer| &answer.named);
             all.iter().map(of).collect::<Vec<_>>().join("; ")
         };
+        let shape = |of: &dyn Fn(&LocatedEntry) -> String| {
+            let all = answer.map_or(&[][..], |answer| &answer.located);
+            all.iter().map(of).collect::<Vec<_>>().join("; ")
+        };
+        let time = |time: Option<f64>| time.map_or_else(String::new, |time| fixed(time, 1));
         let heading = |side: usize| answer.map_or(f64::NAN, |answer| to_deg(answer.heading[side]));
         table.push([
             truths[outcome.ship].name.to_owned(),
@@ -66,9 +76,13 @@ pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
             answer.map_or("", |answer| answer.verdict.as_str()).to_owned(),
             text(&label),
             text(&|named| named.aliases.join("|")),
-            text(&|named| named.time.map_or_else(String::new, |time| fixed(time, 1))),
-            answer.map_or("", |answer| if answer.noise { "yes" } else { "no" }).to_owned(),
-            answer.and_then(|answer| answer.shape.clone()).unwrap_or_default(),
+            text(&|named| time(named.time)),
+            shape(&|entry| entry.depends_on.clone()),
+            shape(&|entry| entry.form.clone()),
+            shape(&|entry| fixed(entry.nats, 1)),
+            shape(&|entry| time(entry.from_s)),
+            shape(&|entry| time(entry.until_s)),
+            answer.and_then(|answer| answer.disturbance_deg).map_or_else(String::new, |own| significant(own, 3)),
             significant(heading(0), 4),
             significant(heading(1), 4),
         ]);
@@ -93,7 +107,7 @@ impl Group {
         match truth.kind {
             Kind::Listed { .. } => Self::Listed,
             Kind::Unlisted { .. } => Self::Unlisted,
-            Kind::Nothing => Self::Nothing,
+            Kind::Nothing { .. } => Self::Nothing,
         }
     }
 
@@ -106,48 +120,53 @@ impl Group {
     }
 }
 
-/// Judgements that a column of a table counts.
-type Counted = (&'static str, &'static [Judgement]);
+/// The judgement that a column of a table counts.
+type Counted = (&'static str, Judgement);
 
-const LISTED: [Counted; 6] = [
-    ("right", &[Judgement::Right]),
-    ("alias", &[Judgement::Alias]),
-    ("wrong", &[Judgement::Wrong]),
-    ("nothing, unexplained", &[Judgement::Unexplained]),
-    ("nothing, noise", &[Judgement::Noise]),
-    ("nothing, clean", &[Judgement::Clean]),
+const LISTED: [Counted; 7] = [
+    ("right", Judgement::Right),
+    ("alias", Judgement::Alias),
+    ("wrong", Judgement::Wrong),
+    ("located instead", Judgement::Elsewhere),
+    ("unexplained", Judgement::Unexplained),
+    ("disturbed", Judgement::Disturbed),
+    ("clean", Judgement::Clean),
 ];
 
-const UNLISTED: [Counted; 8] = [
-    ("right", &[Judgement::Located, Judgement::Unexplained]),
-    ("located", &[Judgement::Located]),
-    ("unexplained", &[Judgement::Unexplained]),
-    ("alias", &[Judgement::Alias]),
-    ("wrong", &[Judgement::Wrong]),
-    ("elsewhere", &[Judgement::Elsewhere]),
-    ("noise", &[Judgement::Noise]),
-    ("clean", &[Judgement::Clean]),
+const UNLISTED: [Counted; 7] = [
+    ("located", Judgement::Located),
+    ("unexplained", Judgement::Unexplained),
+    ("alias", Judgement::Alias),
+    ("wrong", Judgement::Wrong),
+    ("elsewhere", Judgement::Elsewhere),
+    ("disturbed", Judgement::Disturbed),
+    ("clean", Judgement::Clean),
 ];
 
 const NOTHING: [Counted; 4] = [
-    ("right", &[Judgement::Clean]),
-    ("wrong", &[Judgement::Wrong]),
-    ("unexplained", &[Judgement::Unexplained]),
-    ("noise", &[Judgement::Noise]),
+    ("clean", Judgement::Clean),
+    ("disturbed", Judgement::Disturbed),
+    ("unexplained", Judgement::Unexplained),
+    ("wrong", Judgement::Wrong),
 ];
 
-const TEXT_LISTED: &str = "*right*: the group of the truth was named and nothing else; *alias*: the trace says that \
-    it cannot tell what it named from the group of the truth, or what it named counts as such; *wrong*: another name, \
-    alone or beside the right one; *nothing*: no name, the record called unexplained, clean with a random moment that \
-    describes what is left, or clean.";
+const TEXT_LISTED: &str = "*Right*: the group of the truth was named and no other; *alias*: the trace says that it \
+    cannot tell what it named or located from the group of the truth, or what it named counts as such; *wrong*: \
+    another name, alone or beside the right one; *located instead*: no name, but a moment that depends on something; \
+    *unexplained*, *disturbed* and *clean*: neither a name nor a located moment, under that verdict; *and more*: right, \
+    with a moment located beside the name.";
 
-const TEXT_UNLISTED: &str = "*right*: *located* or *unexplained*; *located*: nothing but effects of time near a change \
-    and shapes without a name; *unexplained*: called so, and no effect of the ship named; *alias*: an effect of the \
-    ship that the trace cannot tell from one of time; *wrong*: an effect of the ship; *elsewhere*: an effect of time \
-    away from every change, or without an instant; *noise*: clean with a random moment that describes what is left, \
-    which is not counted as right; *clean*: clean without one.";
+const TEXT_UNLISTED: &str = "*Right* is *located* or *unexplained*. *Located*: a moment with the dependence of the \
+    truth, and near a change or with a period where the truth has one; or nothing but names of effects of time, all \
+    near a change; *unexplained*: called so, with neither a name nor a located moment; *alias*: an effect of the ship \
+    that the trace cannot tell from one of time; *wrong*: an effect of the ship, whatever is located beside it; \
+    *elsewhere*: a moment with another dependence or at another time, or an effect of time away from every change; \
+    *disturbed*: nothing but a random moment, which is not right; *clean*: nothing; *and more*: located, with another \
+    moment beside it that is not right. The list of effects has a moment that stays and a moment for a while, with \
+    smooth edges: of them a name near a change is as good as a located moment.";
 
-const TEXT_NOTHING: &str = "*right*: clean and nothing named; *wrong*: a name; *noise*: clean with a random moment.";
+const TEXT_NOTHING: &str = "*Right* is *clean*, and *disturbed* where chance turns the ship or its recorded rudder; \
+    *wrong*: a name or a located moment.";
 
 /// What came out, in counts.
 fn finding(truths: &[Truth], outcomes: &[Outcome]) -> String {
@@ -156,7 +175,7 @@ fn finding(truths: &[Truth], outcomes: &[Outcome]) -> String {
         let count = of.iter().filter(|outcome| judgements.contains(&outcome.judgement)).count();
         with_interval(count, of.len())
     };
-    use Judgement::{Alias, Clean, Elsewhere, Located, Noise, Right, Unexplained, Wrong};
+    use Judgement::{Alias, Clean, Disturbed, Elsewhere, Located, Right, Unexplained, Wrong};
     let sentences = [
         format!(
             "Listed physics in another formula is named by its group in {}, as an alias in {}, by a wrong name in {}, \
@@ -164,40 +183,40 @@ fn finding(truths: &[Truth], outcomes: &[Outcome]) -> String {
             counted(Group::Listed, &[Right]),
             counted(Group::Listed, &[Alias]),
             counted(Group::Listed, &[Wrong]),
-            counted(Group::Listed, &[Unexplained, Noise, Clean]),
+            counted(Group::Listed, &[Elsewhere, Unexplained, Disturbed, Clean]),
         ),
         format!(
-            "What is on no list is located or called unexplained in {}; an effect of the ship is named in {}, and one \
-             that cannot be told from an effect of time in {}; an effect of time away from every change is named in \
-             {}; nothing but noise in {}; it is called clean in {}.",
-            counted(Group::Unlisted, &[Located, Unexplained]),
+            "What is on no list is located by what it depends on, and when, in {}, and called unexplained in {}; an \
+             effect of the ship is named in {}, and one that cannot be told from an effect of time in {}; another \
+             dependence or time is given in {}; nothing but a random moment in {}; it is called clean in {}.",
+            counted(Group::Unlisted, &[Located]),
+            counted(Group::Unlisted, &[Unexplained]),
             counted(Group::Unlisted, &[Wrong]),
             counted(Group::Unlisted, &[Alias]),
             counted(Group::Unlisted, &[Elsewhere]),
-            counted(Group::Unlisted, &[Noise]),
+            counted(Group::Unlisted, &[Disturbed]),
             counted(Group::Unlisted, &[Clean]),
         ),
-        mostly_right(truths, outcomes),
-        format!("Where nothing is missing, something is named in {}.", counted(Group::Nothing, &[Wrong])),
+        hardly_right(truths, outcomes),
+        format!("Where nothing is missing, something is named or located in {}.", counted(Group::Nothing, &[Wrong])),
     ];
     let failed = outcomes.iter().filter(|outcome| outcome.judgement == Judgement::Failed).count();
     let failed = if failed > 0 { format!(" {failed} trials have no trace.") } else { String::new() };
     wrapped(&(sentences.join(" ") + &failed))
 }
 
-/// The ships on no list of which a trace is right in more than half of the trials.
-fn mostly_right(truths: &[Truth], outcomes: &[Outcome]) -> String {
-    let right = |outcome: &&Outcome| [Judgement::Located, Judgement::Unexplained].contains(&outcome.judgement);
+/// The ships on no list of which a trace is right in no more than half of the trials.
+fn hardly_right(truths: &[Truth], outcomes: &[Outcome]) -> String {
+    let is_right = |outcome: &&Outcome| outcome.judgement.is_right(&truths[outcome.ship].kind);
     let cells = outcomes.chunk_by(|one, other| one.ship == other.ship);
     let cells = cells.filter(|cell| Group::of(&truths[cell[0].ship]) == Group::Unlisted);
-    let (most, others): (Vec<_>, Vec<_>) = cells.partition(|cell| 2 * cell.iter().filter(right).count() > cell.len());
-    let count = |cells: &[&[Outcome]]| {
-        let all = || cells.iter().copied().flatten();
-        format!("{} of {} trials", all().filter(right).count(), all().count())
-    };
-    let names: Vec<&str> = most.iter().map(|cell| truths[cell[0].ship].name).collect();
+    let names = cells.filter_map(|cell| {
+        let count = cell.iter().filter(is_right).count();
+        (2 * count <= cell.len()).then(|| format!("{} ({count} of {})", truths[cell[0].ship].name, cell.len()))
+    });
+    let names: Vec<String> = names.collect();
     let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-    format!("Mostly right there: {names} ({}); of the others {} are.", count(&most), count(&others))
+    format!("Right there in no more than half of the trials: {names}.")
 }
 
 /// How records are made and judged.
@@ -210,10 +229,14 @@ fn how() -> String {
          rows of 1 s, and traced with the usual settings. *Likelihood ratio*: twice the logarithm of that of the truth \
          against the nearest first-order response, on average over the noise. *Before* and *after*: heading error of \
          the recorded rudder replayed through the nearest first-order response and through the final model, as a \
-         multiple of the noise, in the median trial; where a random moment was named, the final model is replayed \
-         without it, and may be further from the record than the nearest response. Near a change is within {NEAR} s of \
-         it: an instant chosen at random is near one change of a record in 13 % of all cases, near one of two in 27 %. \
-         Every trial has a line in [outcomes.csv](outcomes.csv)."
+         multiple of the noise, in the median trial; the final model is replayed without random and located moments. \
+         *Moment*: the random moment beside what is named and located, in the median trial that has one. Near a change \
+         is within {NEAR} s of it, by the beginning, the end or the middle of a moment: a beginning chosen at random is \
+         near one change of a record in 13 % of all cases, near one of two in 27 %. A period is right within {} % of \
+         those of the truth, or as two or three times one, where its harmonics are located with it. There are \
+         {REPLICATES} trials of every ship at each of {} noises. Every trial has a line in [outcomes.csv](outcomes.csv).",
+        100.0 * NEAR_PERIOD,
+        NOISES_DEG.len(),
     );
     format!("{made}\n\n```text\n{COMMAND}\n```\n\n{}", wrapped(&records))
 }
@@ -229,9 +252,11 @@ fn table(truths: &[Truth], outcomes: &[Outcome], group: Group, counted: &[Counte
     ];
     columns.extend(counted.iter().map(|(heading, _)| TableColumn::right(*heading)));
     columns.extend([
+        TableColumn::right("and more"),
         TableColumn::decimal("before").unit("× noise"),
         TableColumn::decimal("after").unit("× noise"),
-        TableColumn::left("named"),
+        TableColumn::decimal("moment").unit("deg"),
+        TableColumn::left("named and located"),
     ]);
     let mut table = Table::new(columns);
     for cell in outcomes.chunk_by(|one, other| (one.ship, one.noise_deg) == (other.ship, other.noise_deg)) {
@@ -239,21 +264,24 @@ fn table(truths: &[Truth], outcomes: &[Outcome], group: Group, counted: &[Counte
         if Group::of(truth) != group {
             continue;
         }
-        let count = |judgements: &[Judgement]| cell.iter().filter(|one| judgements.contains(&one.judgement)).count();
-        let median = |side: usize| {
-            let answers = cell.iter().filter_map(|outcome| outcome.answer.as_ref());
-            let mut errors: Vec<f64> = answers.map(|answer| to_deg(answer.heading[side]) / noise_deg).collect();
-            estimation::statistics::median(&mut errors).unwrap_or(f64::NAN)
+        let count = |is_of: &dyn Fn(&Outcome) -> bool| cell.iter().filter(|outcome| is_of(outcome)).count();
+        let is_right = |outcome: &Outcome| outcome.judgement.is_right(&truth.kind);
+        let says_more = |outcome: &Outcome| outcome.answer.as_ref().is_some_and(|own| own.says_more(&truth.kind));
+        let median = |of: &dyn Fn(&Answer) -> Option<f64>| {
+            let mut all: Vec<f64> = cell.iter().filter_map(|outcome| of(outcome.answer.as_ref()?)).collect();
+            significant(estimation::statistics::median(&mut all).unwrap_or(f64::NAN), 3)
         };
+        let error = |side: usize| median(&|answer| Some(to_deg(answer.heading[side]) / noise_deg));
         let mut row = vec![
             truth.name.to_owned(),
             noise_deg.to_string(),
             fixed(cell[0].ratio, 0),
             cell.len().to_string(),
-            percent(count(counted[0].1), cell.len()),
+            percent(count(&is_right), cell.len()),
         ];
-        row.extend(counted.iter().map(|(_, judgements)| count(judgements).to_string()));
-        row.extend([significant(median(0), 3), significant(median(1), 3), names(cell)]);
+        row.extend(counted.iter().map(|(_, said)| count(&|outcome| outcome.judgement == *said).to_string()));
+        row.push(count(&|outcome| is_right(outcome) && says_more(outcome)).to_string());
+        row.extend([error(0), error(1), median(&|answer| answer.disturbance_deg), names(cell)]);
         table.push(row);
     }
     table
@@ -266,24 +294,38 @@ fn equations(truths: &[Truth]) -> Table {
         let right = match truth.kind {
             Kind::Listed { right, alias: [] } => right.join(", "),
             Kind::Listed { right, alias } => format!("{}; as an alias {}", right.join(", "), alias.join(", ")),
-            Kind::Unlisted { changes: [] } => "unexplained, or a shape without a name".to_owned(),
-            Kind::Unlisted { changes } => {
-                let changes: Vec<String> = changes.iter().map(|change| format!("{change} s")).collect();
-                format!("unexplained, or an effect of time at {}", changes.join(" or "))
+            Kind::Unlisted { depends_on, times } => {
+                let when = match times {
+                    Times::Always => String::new(),
+                    Times::Instants(changes) => {
+                        let changes: Vec<String> = changes.iter().map(|change| format!("{change} s")).collect();
+                        format!(", at {}", changes.join(" or "))
+                    }
+                    Times::Periods([from, to]) if from == to => format!(", with a period of {from} s"),
+                    Times::Periods([from, to]) => format!(", with periods from {from} to {to} s"),
+                };
+                format!("depends on {}{when}; or unexplained", depends_on.as_str())
             }
-            Kind::Nothing => "clean".to_owned(),
+            Kind::Nothing { disturbed: false } => "clean".to_owned(),
+            Kind::Nothing { disturbed: true } => "clean or disturbed".to_owned(),
         };
         table.push([truth.name.to_owned(), truth.equation.to_owned(), right]);
     }
     table
 }
 
-/// What was named in some trials and how often, the most frequent first.
+/// What was named and located in some trials and how often, the most frequent first.
 fn names(cell: &[Outcome]) -> String {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    for answer in cell.iter().filter_map(|outcome| outcome.answer.as_ref()).filter(|answer| !answer.named.is_empty()) {
-        let labels: Vec<String> = answer.named.iter().map(label).collect();
-        *counts.entry(labels.join(" + ")).or_default() += 1;
+    for answer in cell.iter().filter_map(|outcome| outcome.answer.as_ref()) {
+        let mut dependences: Vec<&str> = answer.located.iter().map(|entry| entry.depends_on.as_str()).collect();
+        dependences.sort_unstable();
+        dependences.dedup();
+        let dependences = dependences.iter().map(|dependence| format!("depends on {dependence}"));
+        let labels: Vec<String> = answer.named.iter().map(label).chain(dependences).collect();
+        if !labels.is_empty() {
+            *counts.entry(labels.join(" + ")).or_default() += 1;
+        }
     }
     let mut counts: Vec<_> = counts.into_iter().collect();
     counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));

@@ -33,8 +33,9 @@ pub fn of(truth: &Truth, noise_deg: f64, key: StreamKey) -> Vec<Trial> {
 fn zig_zag(truth: &Truth, angle_deg: f64, noise_deg: f64, key: StreamKey, number: u32) -> Trial {
     let (angle, travel, noise) = (from_deg(angle_deg), from_deg(RUDDER_RATE_DEG), from_deg(noise_deg));
     let mut generator = key.indexed(Purpose::Heading, number);
-    let mut motion = Motion { rate: 0.0, heading: 0.0, own: truth.approach };
+    let mut motion = Motion { rate: 0.0, heading: 0.0, state: truth.approach };
     let (mut heading, mut rudder, mut order) = (Vec::with_capacity(ROWS), vec![0.0], 0.0);
+    let walk = walk(truth, key, number);
     for row in 0..ROWS {
         let draw: f64 = StandardNormal.sample(&mut generator);
         let read = (truth.shown)(motion) + noise * draw;
@@ -46,10 +47,15 @@ fn zig_zag(truth: &Truth, angle_deg: f64, noise_deg: f64, key: StreamKey, number
         }
         rudder.push(rudder[row] + (order - rudder[row]).clamp(-travel, travel));
         for step in 0..STEPS {
-            motion = advanced(truth, row as f64 + step as f64 / STEPS as f64, motion, &rudder);
+            motion = advanced(truth, row as f64 + step as f64 / STEPS as f64, motion, [&rudder, &walk]);
         }
     }
-    rudder.truncate(ROWS);
+    let mut generator = key.indexed(Purpose::Rudder, number);
+    let mut shown = |(row, rudder): (usize, f64)| {
+        let draw: f64 = StandardNormal.sample(&mut generator);
+        (truth.rudder_gain)(row as f64) * rudder + from_deg(truth.rudder_noise_deg) * draw
+    };
+    let rudder = rudder.into_iter().take(ROWS).enumerate().map(&mut shown).collect();
     let time = (0..ROWS).map(|row| row as f64).collect();
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
     let origin = Origin::Simulated { scenario: "unlisted".into(), cell: key.cell, replicate: key.replicate };
@@ -57,25 +63,38 @@ fn zig_zag(truth: &Truth, angle_deg: f64, noise_deg: f64, key: StreamKey, number
     Trial::new(&name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a zig-zag is a record")
 }
 
-/// The motion one step later, by the classical method of Runge and Kutta.
-fn advanced(truth: &Truth, t: f64, motion: Motion, rudder: &[f64]) -> Motion {
+/// The random walk of the moment as a rudder angle at every row and one more, rad.
+fn walk(truth: &Truth, key: StreamKey, number: u32) -> Vec<f64> {
+    let mut generator = key.indexed(Purpose::RandomWalk, number);
+    let mut moment = 0.0;
+    let next = |_| {
+        let draw: f64 = StandardNormal.sample(&mut generator);
+        moment += from_deg(truth.walk_deg) * draw;
+        moment
+    };
+    (0..=ROWS).map(next).collect()
+}
+
+/// The motion one step later, by the classical method of Runge and Kutta, under a rudder and a moment at rows.
+fn advanced(truth: &Truth, t: f64, motion: Motion, [rudder, moment]: [&[f64]; 2]) -> Motion {
     let h = 1.0 / STEPS as f64;
-    let rates = |after: f64, x: Motion| (truth.rates)(t + after, x, at(rudder, t + after - truth.dead_time));
+    let felt = |t: f64| at(rudder, t) + at(moment, t);
+    let rates = |after: f64, x: Motion| (truth.rates)(t + after, x, &felt);
     let moved = |by: f64, rates: Motion| Motion {
         rate: motion.rate + by * rates.rate,
         heading: motion.heading + by * rates.heading,
-        own: motion.own + by * rates.own,
+        state: motion.state + by * rates.state,
     };
     let k1 = rates(0.0, motion);
     let k2 = rates(0.5 * h, moved(0.5 * h, k1));
     let k3 = rates(0.5 * h, moved(0.5 * h, k2));
     let k4 = rates(h, moved(h, k3));
     let mean = |of: fn(Motion) -> f64| (of(k1) + 2.0 * of(k2) + 2.0 * of(k3) + of(k4)) / 6.0;
-    moved(h, Motion { rate: mean(|x| x.rate), heading: mean(|x| x.heading), own: mean(|x| x.own) })
+    moved(h, Motion { rate: mean(|x| x.rate), heading: mean(|x| x.heading), state: mean(|x| x.state) })
 }
 
-/// The rudder at a time, s, from its values at rows; amidships before the first.
-fn at(rudder: &[f64], t: f64) -> f64 {
-    let row = (t.max(0.0) as usize).min(rudder.len() - 2);
-    rudder[row] + (t.max(0.0) - row as f64) * (rudder[row + 1] - rudder[row])
+/// A value at a time, s, from those at rows; that of the first row before it.
+fn at(rows: &[f64], t: f64) -> f64 {
+    let row = (t.max(0.0) as usize).min(rows.len() - 2);
+    rows[row] + (t.max(0.0) - row as f64) * (rows[row + 1] - rows[row])
 }
