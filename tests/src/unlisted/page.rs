@@ -38,6 +38,7 @@ pub fn markdown(truths: &[Truth], outcomes: &[Outcome]) -> String {
 pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
     let mut table = Table::new([
         TableColumn::left("truth"),
+        TableColumn::left("group"),
         TableColumn::decimal("noise").unit("deg"),
         TableColumn::right("trial"),
         TableColumn::decimal("likelihood ratio"),
@@ -69,6 +70,7 @@ pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
         let heading = |side: usize| answer.map_or(f64::NAN, |answer| to_deg(answer.heading[side]));
         table.push([
             truths[outcome.ship].name.to_owned(),
+            Group::of(&truths[outcome.ship]).title().to_owned(),
             outcome.noise_deg.to_string(),
             outcome.replicate.to_string(),
             fixed(outcome.ratio, 1),

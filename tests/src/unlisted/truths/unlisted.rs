@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use ship::angle::{from_deg, to_deg};
+use ship::angle::to_deg;
 use trace::shape::Dependence;
 
 use super::{A, FIRST_ORDER, Kind, Motion, Times, Truth, moved, steered, turning};
@@ -49,9 +49,9 @@ pub const OF_SHIP: [Truth; 6] = [
     },
     Truth {
         name: "bank by the square of the way",
-        equation: "T r' + r = K (δ + δ_r + c y²), y' = 7 m/s sin ψ, c = 1.2 deg per (100 m)²",
+        equation: "T r' + r = K (δ + δ_r + c y²), y' = 7 m/s sin ψ, c = 1.6 deg per (100 m)²",
         kind: depends_on(Dependence::Way),
-        rates: |t, x, rudder| aside(x, rudder(t), 1.2e-4 * x.state * x.state),
+        rates: |t, x, rudder| aside(x, rudder(t), 1.6e-4 * x.state * x.state),
         ..FIRST_ORDER
     },
     Truth {
@@ -63,9 +63,9 @@ pub const OF_SHIP: [Truth; 6] = [
     },
     Truth {
         name: "moment with ψ³",
-        equation: "T r' + r = K (δ + δ_r − c ψ³), c = 0.8 deg per (10 deg)³",
+        equation: "T r' + r = K (δ + δ_r − c ψ³), c = 2 deg per (10 deg)³",
         kind: depends_on(Dependence::Heading),
-        rates: |t, x, rudder| moved(x, rudder(t), -8e-4 * to_deg(x.heading).powi(3)),
+        rates: |t, x, rudder| moved(x, rudder(t), -2e-3 * to_deg(x.heading).powi(3)),
         ..FIRST_ORDER
     },
     Truth {
@@ -153,9 +153,9 @@ pub const OF_TIME: [Truth; 12] = [
     },
     Truth {
         name: "ramp of the moment",
-        equation: "T r' + r = K (δ + δ_r + m(t)), m rises from 0 to 0.4 deg from 100 to 160 s",
+        equation: "T r' + r = K (δ + δ_r + m(t)), m rises from 0 to 0.6 deg from 100 to 160 s",
         kind: at(&RAMP),
-        rates: |t, x, rudder| moved(x, rudder(t), 0.4 * ((t - RAMP[0]) / (RAMP[1] - RAMP[0])).clamp(0.0, 1.0)),
+        rates: |t, x, rudder| moved(x, rudder(t), 0.6 * ((t - RAMP[0]) / (RAMP[1] - RAMP[0])).clamp(0.0, 1.0)),
         ..FIRST_ORDER
     },
     Truth {
@@ -167,26 +167,26 @@ pub const OF_TIME: [Truth; 12] = [
     },
     Truth {
         name: "two swells",
-        equation: "T r' + r = K (δ + δ_r + m (sin(2π t/70 s) + 0.7 sin(2π t/40 s))), m = 1.1 deg",
+        equation: "T r' + r = K (δ + δ_r + m (sin(2π t/70 s) + 0.7 sin(2π t/40 s))), m = 2.2 deg",
         kind: with_periods(40.0, 70.0),
-        rates: |t, x, rudder| moved(x, rudder(t), 1.1 * ((TAU * t / 70.0).sin() + 0.7 * (TAU * t / 40.0).sin())),
+        rates: |t, x, rudder| moved(x, rudder(t), 2.2 * ((TAU * t / 70.0).sin() + 0.7 * (TAU * t / 40.0).sin())),
         ..FIRST_ORDER
     },
     Truth {
         name: "chirp",
-        equation: "T r' + r = K (δ + δ_r + m sin φ), φ'/2π from 1/120 Hz to 1/40 Hz in 300 s, m = 1.1 deg",
+        equation: "T r' + r = K (δ + δ_r + m sin φ), φ'/2π from 1/120 Hz to 1/40 Hz in 300 s, m = 2.3 deg",
         kind: with_periods(40.0, 120.0),
         rates: |t, x, rudder| {
             let turns = t / 120.0 + 0.5 * (1.0 / 40.0 - 1.0 / 120.0) * t * t / DURATION;
-            moved(x, rudder(t), 1.1 * (TAU * turns).sin())
+            moved(x, rudder(t), 2.3 * (TAU * turns).sin())
         },
         ..FIRST_ORDER
     },
     Truth {
         name: "sawtooth",
-        equation: "T r' + r = K (δ + δ_r + m(t)), m from −1.5 to 1.5 deg in every 75 s",
+        equation: "T r' + r = K (δ + δ_r + m(t)), m from −3 to 3 deg in every 75 s",
         kind: with_periods(75.0, 75.0),
-        rates: |t, x, rudder| moved(x, rudder(t), 3.0 * (t / 75.0).fract() - 1.5),
+        rates: |t, x, rudder| moved(x, rudder(t), 6.0 * (t / 75.0).fract() - 3.0),
         ..FIRST_ORDER
     },
 ];
