@@ -57,11 +57,11 @@ pub fn outcomes(truths: &[Truth], outcomes: &[Outcome]) -> PageFigure {
         shades: Shades::Shares,
         panels: vec![(None, cells.collect())],
         note: Some(String::from(
-            "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on no \
-             list. Alias: not to be told from the truth. Elsewhere: by another dependence, or at another time.",
+            "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on \
+             no list. Alias: not to be told from the truth. Elsewhere: by another dependence, or at another time.",
         )),
     };
-    let caption = "What was said of every ship, both noises together, with 95 % intervals (Wilson). Wrong is a name that \
-                   is not right, and of a ship that lacks nothing also a located moment.";
+    let caption = "What was said of every ship, both noises together, with 95 % intervals (Wilson). Wrong is a name \
+                   that is not right, and of a ship that lacks nothing also a located moment.";
     PageFigure::new("outcomes", caption, Plot::Cells(map))
 }

@@ -65,7 +65,8 @@ pub fn run(truths: &[Truth], noises_deg: &[f64], replicates: u64) -> Vec<Outcome
     all.into_par_iter().map(traced).collect()
 }
 
-/// Sum of squares, rad², by which the nearest first-order response misses the records of a ship without noise and chance.
+/// Sum of squares, rad², by which the nearest first-order response misses the records of a ship without noise and
+/// chance.
 ///
 /// # Panics
 /// When the ship has no base: a mistake of this study.

@@ -155,8 +155,8 @@ const NOTHING: [Counted; 4] = [
 const TEXT_LISTED: &str = "*Right*: the group of the truth was named and no other; *alias*: the trace says that it \
     cannot tell what it named or located from the group of the truth, or what it named counts as such; *wrong*: \
     another name, alone or beside the right one; *located instead*: no name, but a moment that depends on something; \
-    *unexplained*, *disturbed* and *clean*: neither a name nor a located moment, under that verdict; *and more*: right, \
-    with a moment located beside the name.";
+    *unexplained*, *disturbed* and *clean*: neither a name nor a located moment, under that verdict; *and more*: \
+    right, with a moment located beside the name.";
 
 const TEXT_UNLISTED: &str = "*Right* is *located* or *unexplained*. *Located*: a moment with the dependence of the \
     truth, and near a change or with a period where the truth has one; or nothing but names of effects of time, all \
@@ -233,10 +233,11 @@ fn how() -> String {
          the recorded rudder replayed through the nearest first-order response and through the final model, as a \
          multiple of the noise, in the median trial; the final model is replayed without random and located moments. \
          *Moment*: the random moment beside what is named and located, in the median trial that has one. Near a change \
-         is within {NEAR} s of it, by the beginning, the end or the middle of a moment: a beginning chosen at random is \
-         near one change of a record in 13 % of all cases, near one of two in 27 %. A period is right within {} % of \
-         those of the truth, or as two or three times one, where its harmonics are located with it. There are \
-         {REPLICATES} trials of every ship at each of {} noises. Every trial has a line in [outcomes.csv](outcomes.csv).",
+         is within {NEAR} s of it, by the beginning, the end or the middle of a moment: a beginning chosen at random \
+         is near one change of a record in 13 % of all cases, near one of two in 27 %. A period is right within {} % \
+         of those of the truth, or as two or three times one, where its harmonics are located with it. There are \
+         {REPLICATES} trials of every ship at each of {} noises. Every trial has a line in \
+         [outcomes.csv](outcomes.csv).",
         100.0 * NEAR_PERIOD,
         NOISES_DEG.len(),
     );
