@@ -24,6 +24,7 @@ use crate::hulls;
 use crate::leave_one_out::leave_one_out;
 use crate::location::locate;
 use crate::model::Term;
+use crate::noise::CorrelatedNoise;
 use crate::record::PreparedRecord;
 use crate::remainder::{Innovations, Remainder, innovations, squares};
 use crate::report;
@@ -134,10 +135,22 @@ pub fn watched(
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let candidates = candidates_of(&records, &trials, time, settings)?;
     let problem = FittedRecords::new(records, response.inverse_T, time);
-    let fulls = full::fit(&problem, &base, &candidates, candidates::has_waves(&trials, &settings.selection));
-    let fulls = rudder::beside(fulls, &problem, response.K_over_T, &rudder_errors);
-    let (full, structures) =
-        structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square());
+    let has_waves = candidates::has_waves(&trials, &settings.selection);
+    let weighed = |kinds: &[CorrelatedNoise]| {
+        let fulls = full::fit(&problem, &base, &candidates, has_waves, kinds);
+        let fulls = rudder::beside(fulls, &problem, response.K_over_T, &rudder_errors);
+        structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square())
+    };
+    let kinds: Vec<CorrelatedNoise> = CorrelatedNoise::all().collect();
+    let (mut full, mut structures) = weighed(&kinds);
+    if trials.iter().all(Trial::is_calm) && full.law.is_random_moment() {
+        // In a calm nothing turns the ship at random: a ship that replays the records nearer is believed.
+        let of_heading: Vec<CorrelatedNoise> = kinds.into_iter().filter(|kind| kind.is_of_heading()).collect();
+        let other = weighed(&of_heading);
+        if other.1.mean_square_of_ship() < structures.mean_square_of_ship() {
+            (full, structures) = other;
+        }
+    }
     let members = structures.members();
     let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, (&full.law, &members), hulls, settings.thorough, time);
     let (mut identification, mut no_nearer) = fit(&[])?;

@@ -30,19 +30,24 @@ pub struct Full {
 
 /// Fits the full model, once for every noise that may be the right one: that of all which stands still in time, that
 /// beside moments that come at an instant, where one of these is a random moment that of an error of the heading, and
-/// that of a base to which nothing is added.
-pub fn fit(problem: &FittedRecords, base: &Base, candidates: &[Arc<Term>], with_waves: bool) -> Vec<Full> {
+/// that of a base to which nothing is added. The noise is one of some `kinds`.
+pub fn fit(
+    problem: &FittedRecords,
+    base: &Base,
+    candidates: &[Arc<Term>],
+    with_waves: bool,
+    kinds: &[CorrelatedNoise],
+) -> Vec<Full> {
     let (late, known): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) =
         candidates.iter().filter(|one| !is_variant(one.effect.as_ref())).partition(|one| one.effect.has_instant());
     let own = Structure::base(problem.records.len(), problem.time);
     let structure = own.of(known.into_iter().cloned().collect());
     let first = NoiseLaw::white(problem.records.len(), (FIRST * FIRST) * base.mean_square());
     let fit = physics(problem, base, &structure, &problem.weights(&first));
-    let all: Vec<CorrelatedNoise> = CorrelatedNoise::all().collect();
     let ask = |fit: &StructureFit, from: &NoiseLaw, kinds: &[CorrelatedNoise]| {
         law::of(problem, fit, &from.variance, with_waves, kinds)
     };
-    let lasting = ask(&fit, &first, &all);
+    let lasting = ask(&fit, &first, kinds);
 
     // Moments that come at an instant enter where they explain most beside everything else.
     let (mut theta, mut terms) = (fit.theta.clone(), structure.terms.clone());
@@ -60,9 +65,9 @@ pub fn fit(problem: &FittedRecords, base: &Base, candidates: &[Arc<Term>], with_
     };
     let known_law = lasting.law.clone();
     let whole = of(&known_law);
-    let beside = ask(&whole, &lasting.law, &all);
+    let beside = ask(&whole, &lasting.law, kinds);
     let mut laws = vec![beside];
-    let of_heading: Vec<CorrelatedNoise> = CorrelatedNoise::all().filter(|kind| kind.is_of_heading()).collect();
+    let of_heading: Vec<CorrelatedNoise> = kinds.iter().copied().filter(|kind| kind.is_of_heading()).collect();
     if !laws[0].law.is_alike(&lasting.law) {
         laws.push(lasting);
     }
@@ -74,7 +79,7 @@ pub fn fit(problem: &FittedRecords, base: &Base, candidates: &[Arc<Term>], with_
         .into_par_iter()
         .map(|ChosenLaw { law, waves_gain, .. }| Full { fit: fitted(&law), law, waves_gain })
         .collect();
-    let nothing = nothing(problem, base, with_waves, &all);
+    let nothing = nothing(problem, base, with_waves, kinds);
     if fulls.iter().all(|full| !full.law.is_alike(&nothing.law)) {
         fulls.push(nothing);
     }

@@ -82,8 +82,8 @@ pub fn locate(
         stand = next;
     }
     // Shapes beside names that a random moment replaces are held against that moment as well.
-    let alone = none.as_ref().map_or(f64::INFINITY, |own| own.alone);
-    if stand.is_located() && alone < height(&stand.shapes) + 2.0 * BELIEVED {
+    let [alone, power] = none.as_ref().map_or([f64::INFINITY, 1.0], |own| [own.alone, own.power]);
+    if stand.is_located() && power * (alone - height(&stand.shapes)) < 2.0 * BELIEVED {
         return Location { named: asked, displaced: open, shapes: none };
     }
     stand
@@ -93,7 +93,8 @@ pub fn locate(
 /// alike, a random law by anything.
 fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> bool {
     let is_shape = without.as_ref().is_some_and(ShapeAnalysis::is_located);
-    height(without) + if is_shape { 2.0 * ALIKE } else { 0.0 } < height(with)
+    let power = without.as_ref().map_or(1.0, |own| own.power);
+    power * (height(with) - height(without)) > if is_shape { 2.0 * ALIKE } else { 0.0 }
 }
 
 /// −2 log p of the best explanation.

@@ -83,7 +83,10 @@ impl Remainder {
             full.law.variance.iter().zip(&problem.records).map(|(own, record)| own * record.full_readings as f64);
         let is_small = after / rows < SMALL * SMALL * white.fold(0.0, f64::max);
         let shapes = location.shapes.as_ref();
-        let is_chance = shapes.is_none_or(|own| are_noise(&with_values(innovations, &own.innovations)));
+        let is_chance = match shapes {
+            Some(own) if own.is_located() || !holds => are_noise(&with_values(innovations, &own.innovations)),
+            _ => holds,
+        };
         let is_smooth = shapes.is_some_and(|own| own.is_smooth);
         let is_large = !is_small && (after / before).sqrt() >= UNEXPLAINED;
         // In a calm nothing turns the ship at random.

@@ -86,6 +86,9 @@ pub struct ShapeAnalysis {
     pub gain: f64,
     /// −2 log p under the best law without any shape.
     pub alone: f64,
+    /// Power to which the likelihood is raised: below one where the noise holds the error of a model. Gain and losses
+    /// hold it, heights do not.
+    pub power: f64,
     /// Whether a smooth moment explains it better than any random law, where no shape does.
     pub is_smooth: bool,
     /// The random moment beside the best.
@@ -217,11 +220,16 @@ impl<'a> Stand<'a> {
         };
         let unit = UNIT / self.point.theta[0].max(LONGEST_TIME.recip());
         let (mut best, mut tried) = search.explain(unit);
-        if 0.5 * (self.height - best.height) < BELIEVED {
+        let rows = self.linearised.linear.blocks.iter().map(|block| block.residual.len() as f64);
+        let power = rows.zip(&law.power).map(|(rows, power)| rows * power).sum::<f64>() / self.linearised.rows() as f64;
+        if 0.5 * power * (self.height - best.height) < BELIEVED {
             best = Explanation { shapes: Vec::new(), height: self.height, law: self.law };
         }
-        tried.retain(|other| other.shapes.len() <= best.shapes.len() && other.height < best.height + 2.0 * ALIKE);
-        let losses = (0..best.shapes.len()).map(|place| 0.5 * (search.without(&best, place).height - best.height));
+        tried.retain(|other| {
+            other.shapes.len() <= best.shapes.len() && power * (other.height - best.height) < 2.0 * ALIKE
+        });
+        let losses =
+            (0..best.shapes.len()).map(|place| 0.5 * power * (search.without(&best, place).height - best.height));
         let losses = losses.collect();
         let whole = search.whole(&best)?;
         let step = whole.step();
@@ -234,9 +242,10 @@ impl<'a> Stand<'a> {
             heading_sd: self.point.sd.iter().map(|sd| sd * whole.sd()).collect(),
             moment: self.moment(&best, whole.sd(), [longest, problem.time]),
             alike: tried,
-            gain: 0.5 * (self.height - best.height),
+            gain: 0.5 * power * (self.height - best.height),
+            power,
             alone: self.height,
-            is_smooth: best.shapes.is_empty() && 0.5 * (self.height - smooth) >= SMOOTH,
+            is_smooth: best.shapes.is_empty() && 0.5 * power * (self.height - smooth) >= SMOOTH,
             innovations: whole.innovations(),
             best,
         })

@@ -80,7 +80,7 @@ impl Structures {
     }
 
     /// Mean square of what the most probable structure leaves that has nothing but the ship in it, rad².
-    pub(super) fn mean_square_of_ship(&self) -> f64 {
+    pub fn mean_square_of_ship(&self) -> f64 {
         let is_ship = |one: &&WeighedStructure| one.fit.structure.terms.iter().all(|term| !term.effect.is_of_time());
         let residual = self.all.iter().find(is_ship).into_iter().flat_map(|best| best.fit.residual.iter().flatten());
         let (sum, rows) = residual.fold((0.0, 0.0), |(sum, rows), e| (sum + e * e, rows + 1.0));
