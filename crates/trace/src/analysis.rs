@@ -161,7 +161,7 @@ pub fn watched(
         (identification, no_nearer) = fit(&hulls)?;
     }
     let unseen = AveragedModel { members: &members, hulls: &hulls, law: &full.law, known: None, time };
-    let judged = unseen.all_compared(&validation, &response)?;
+    let judged = unseen.all_compared(&validation, &response, settings.thorough)?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let folds = is_folded.then(|| leave_one_out(&trials, &problem, (&full, &structures), &hulls, watcher));
     let left_out = folds.unwrap_or_default();

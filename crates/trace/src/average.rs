@@ -45,6 +45,13 @@ pub struct AverageReplay {
     pub windows: [Option<Vec<f64>>; HORIZONS.len()],
 }
 
+impl AverageReplay {
+    /// Whether one of the members runs away.
+    pub fn runs_away(&self) -> bool {
+        runs_away(&self.members.iter().map(Replay::rms).collect::<Vec<f64>>())
+    }
+}
+
 impl AveragedModel<'_> {
     /// Weight of one hull, and of all structures.
     pub fn share(&self) -> f64 {
@@ -101,14 +108,19 @@ impl Average {
     }
 }
 
+/// Whether one of some errors is of a replay that runs away.
+fn runs_away(errors: &[f64]) -> bool {
+    let mut sorted = errors.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() - 1] > RUNS_AWAY * sorted[sorted.len() / 2]
+}
+
 /// Mean, or weighted median where one member runs away.
 fn combination<'a>(weights: &'a [f64], errors: &[f64]) -> Option<impl Fn(&[&[f64]]) -> Vec<f64> + use<'a>> {
     if weights.is_empty() {
         return None;
     }
-    let mut sorted = errors.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let runs_away = sorted[sorted.len() - 1] > RUNS_AWAY * sorted[sorted.len() / 2];
+    let runs_away = runs_away(errors);
     let total: f64 = weights.iter().sum();
     Some(move |columns: &[&[f64]]| {
         let rows = columns[0].len();

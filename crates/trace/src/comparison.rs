@@ -1,5 +1,5 @@
 //! Models against records: errors of the recorded rudder replayed, before and after, on the records that were fitted
-//! and on others. Nothing is fitted here but initial states.
+//! and on others. Nothing is fitted here but initial states, and moments where errors with them are beside the plain ones.
 
 use estimation::statistics::wilson;
 use identify::replay::{Replay, replay};
@@ -10,6 +10,7 @@ use trial::Trial;
 use crate::average::{Average, AverageReplay, AveragedModel};
 use crate::band;
 use crate::record::PreparedRecord;
+use crate::record_moment::RecordMoment;
 use crate::replay_errors::{HORIZONS, ReplayErrors, overshoot_error, root_mean_square};
 use crate::settings::TraceError;
 
@@ -119,19 +120,29 @@ pub fn before(
 }
 
 impl AveragedModel<'_> {
-    /// Base and average on a record that neither was fitted to.
-    pub fn compared(&self, trial: &Trial, base: &FirstOrder) -> Result<RecordComparison, TraceError> {
+    /// Base and average on a record that neither was fitted to; where it is `thorough`, with moments of the record as
+    /// well.
+    pub fn compared(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
         let record = PreparedRecord::whole(trial);
-        let before = before(trial, &record, base, true)?;
+        let mut before = before(trial, &record, base, true)?;
         let mut starts = starts(trial, base);
         starts.push(before.replay.initial());
-        let after = self.on(trial, &record, &starts, true)?;
+        let mut after = self.on(trial, &record, &starts, true)?;
+        if let Some(moment) = thorough.then(|| RecordMoment::new(&record, base)).flatten() {
+            before.errors.with_moment = Some(moment.of_base(&before.replay));
+            after.errors.with_moment = Some(moment.of_average(&self.average(), &after.replay));
+        }
         Ok(RecordComparison { before, after })
     }
 
     /// The same on several.
-    pub fn all_compared(&self, trials: &[Trial], base: &FirstOrder) -> Result<Vec<RecordComparison>, TraceError> {
-        trials.par_iter().map(|trial| self.compared(trial, base)).collect()
+    pub fn all_compared(
+        &self,
+        trials: &[Trial],
+        base: &FirstOrder,
+        thorough: bool,
+    ) -> Result<Vec<RecordComparison>, TraceError> {
+        trials.par_iter().map(|trial| self.compared(trial, base, thorough)).collect()
     }
 
     /// Replays the average on a record from initial states near the `starts`.
@@ -170,6 +181,7 @@ fn result(trial: &Trial, replay: Replay, windows: [Option<Vec<f64>>; HORIZONS.le
         yaw_rate,
         overshoot: if thorough { overshoot_error(trial, &replay) } else { None },
         horizon: windows.map(|residual| root_mean_square(&finite(&residual?))),
+        with_moment: None,
     };
     ReplayResult { replay, errors, band: None }
 }

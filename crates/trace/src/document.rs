@@ -332,6 +332,12 @@ pub struct ErrorsEntry {
     pub band_coverage_95: Option<f64>,
     /// Mean width of that band.
     pub band_width_95_deg: Option<f64>,
+    /// Full replay with a rudder bias of the record fitted, where the record was not fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_own_bias_deg: Option<f64>,
+    /// The same with a moment of the record as a rudder angle: straight between five evenly spaced instants.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_own_moment_deg: Option<f64>,
 }
 
 /// Residual before and after.
@@ -452,6 +458,8 @@ impl From<&ReplayResult> for ErrorsEntry {
             horizon_rmse_deg: horizon.map(|(length, error)| (format!("{length:.0}"), error.map(to_deg))).collect(),
             band_coverage_95: on.coverage().map(|own| own.share()),
             band_width_95_deg: on.width().map(to_deg),
+            with_own_bias_deg: errors.with_moment.map(|with| to_deg(with.bias)),
+            with_own_moment_deg: errors.with_moment.map(|with| to_deg(with.slow)),
         }
     }
 }

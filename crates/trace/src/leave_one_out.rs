@@ -53,7 +53,7 @@ pub fn leave_one_out(
             .collect();
         let hulls = hulls::refitted(hulls, &without(trials, left));
         let unseen = AveragedModel { members: &members, hulls: &hulls, law: &law, known: None, time: problem.time };
-        unseen.compared(&trials[left], &base.estimate.response).ok()
+        unseen.compared(&trials[left], &base.estimate.response, true).ok()
     };
     let watched = |left: usize| {
         let found = (!watcher.is_asked_to_stop()).then(|| fold(left));

@@ -22,6 +22,7 @@ pub mod naming;
 pub mod noise;
 pub mod prospects;
 pub mod record;
+pub mod record_moment;
 mod remainder;
 pub mod replay_errors;
 mod report;

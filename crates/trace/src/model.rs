@@ -286,3 +286,39 @@ pub fn headings<R: EffectReal>(
         }
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use ship::effects::{all, listed};
+
+    use super::*;
+
+    /// Of what was fitted, another record sees the base and the effects of the ship: no moment of time, whether it is of
+    /// one of several records or of the only one, and no deviation of the rudder bias.
+    #[test]
+    fn nothing_of_one_record_is_replayed_on_another() {
+        let damping = listed("nonlinear_damping", "r³");
+        let of_time: Vec<_> = all().into_iter().filter(|effect| effect.is_of_time()).collect();
+        assert!(["moment_drift", "transient_disturbance"].iter().all(|id| of_time.iter().any(|own| own.id() == *id)));
+        for (records, only) in [(1, None), (2, Some(0)), (2, Some(1))] {
+            let term = |effect: &Arc<dyn Effect>| {
+                let priors = effect.parameters().iter().map(|own| Prior::normal(own, 0.0, 1.0)).collect();
+                let only = only.filter(|_| effect.is_of_time());
+                Arc::new(Term { effect: Arc::clone(effect), only, priors, log_odds: 0.0 })
+            };
+            let terms: Vec<_> = of_time.iter().chain([&damping]).map(term).collect();
+            let structure = Structure::base(records, 13.0).of(terms);
+            let theta: Vec<f64> = (0..structure.count()).map(|place| 0.01 * (1 + place) as f64).collect();
+            let last = theta[theta.len() - 1];
+            let (alone, values) = structure.alone(None, &theta);
+            for ship in [structure.response(None, &theta), alone.response(None, &values)] {
+                assert_eq!(ship.parameters(), [theta[0], theta[1], theta[2], last]);
+            }
+            let seen = structure.response(Some(only.unwrap_or(0)), &theta);
+            assert_eq!(
+                (seen.model().effects().len(), seen.parameters()[2] > theta[2]),
+                (of_time.len() + 1, records > 1)
+            );
+        }
+    }
+}

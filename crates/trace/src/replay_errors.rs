@@ -14,6 +14,7 @@ use trial::{Channel, Columns, Trial, ZigZag};
 
 use crate::model::step;
 use crate::record::PreparedRecord;
+use crate::record_moment::MomentErrors;
 
 /// Steps of the solver per shortest time constant: the heading is then exact to 10⁻⁵ of the response.
 const SOLVER_STEPS: f64 = 4.0;
@@ -48,6 +49,8 @@ pub struct ReplayErrors {
     /// Root mean square heading error of replays restarted every so many seconds, rad; `None` when the windows hold too
     /// few headings.
     pub horizon: [Option<f64>; HORIZONS.len()],
+    /// The heading error with a moment of the record fitted, on records that were not fitted.
+    pub with_moment: Option<MomentErrors>,
 }
 
 /// Replays a record whole from the best initial state near one of the `starts`. `None` when no replay is finite.

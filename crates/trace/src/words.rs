@@ -260,6 +260,8 @@ mod tests {
             horizon_rmse_deg: BTreeMap::from([(WINDOW.to_owned(), window[when])]),
             band_coverage_95: None,
             band_width_95_deg: None,
+            with_own_bias_deg: None,
+            with_own_moment_deg: None,
         };
         BeforeAfter { file: String::new(), before: own(0), after: own(1) }
     }

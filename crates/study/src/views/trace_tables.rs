@@ -64,7 +64,10 @@ pub fn effects(document: &TraceDocument) -> Table {
 pub fn errors(records: &[RecordErrors]) -> Table {
     let horizons = HORIZONS.map(|length| format!(".every {length:.0} s [deg]")).join(" | ");
     let rest = ".yaw rate [deg/s] | .overshoots [deg] | .after/before | .band covers [%] | .band width [deg]";
-    let mut table = Table::headed(&format!("record | use | model | .heading [deg] | {horizons} | {rest}"));
+    let mut judged = records.iter().flat_map(|one| [&one.errors.before, &one.errors.after]);
+    let with_moments = judged.any(|own| own.with_own_bias_deg.or(own.with_own_moment_deg).is_some());
+    let moments = if with_moments { " | .own bias [deg] | .own moment [deg]" } else { "" };
+    let mut table = Table::headed(&format!("record | use | model | .heading [deg]{moments} | {horizons} | {rest}"));
     let three = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 3);
     for RecordErrors { name, used, errors } in records {
         let ratio = errors.after.heading_rmse_deg / errors.before.heading_rmse_deg;
@@ -73,6 +76,8 @@ pub fn errors(records: &[RecordErrors]) -> Table {
             let head = if model == "before" { [*name, *used] } else { ["", ""] };
             let mut cells = [head[0], head[1], model].map(String::from).to_vec();
             cells.push(three(Some(own.heading_rmse_deg)));
+            let moments = [own.with_own_bias_deg, own.with_own_moment_deg].map(three);
+            cells.extend(with_moments.then_some(moments).into_iter().flatten());
             cells.extend(HORIZONS.map(|length| three(horizon(own, length))));
             cells.extend([own.yaw_rate_rmse_deg_s, own.overshoot_error_deg].map(three));
             cells.push(optional(ratio, 2));
