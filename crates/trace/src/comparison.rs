@@ -1,5 +1,5 @@
 //! Models against records: errors of the recorded rudder replayed, before and after, on the records that were fitted
-//! and on others. Nothing is fitted here but initial states, and moments where errors with them are beside the plain ones.
+//! and on others. Nothing is fitted here but initial states, and moments of the record beside the plain errors.
 
 use estimation::statistics::wilson;
 use identify::replay::{Replay, replay};

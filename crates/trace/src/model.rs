@@ -293,8 +293,8 @@ mod tests {
 
     use super::*;
 
-    /// Of what was fitted, another record sees the base and the effects of the ship: no moment of time, whether it is of
-    /// one of several records or of the only one, and no deviation of the rudder bias.
+    /// Of what was fitted, another record sees the base and the effects of the ship: no moment of time, whether it is
+    /// of one of several records or of the only one, and no deviation of the rudder bias.
     #[test]
     fn nothing_of_one_record_is_replayed_on_another() {
         let damping = listed("nonlinear_damping", "r³");

@@ -1,8 +1,8 @@
 //! What is left of a replay where a moment of the record is fitted beside its initial state: a constant one, which is a
-//! rudder bias, or a slow one. It tells the weather and the trim of a record from a ship that is not the model.
+//! rudder bias, or a slow one. What is gone then can be of the weather or the trim of that record.
 //!
-//! A moment is an equivalent rudder angle and is added to the rudder. The base is linear in it, so that one least-squares
-//! solution is exact; an average is replayed with the moment that the answers of the base ask for, a few times over.
+//! A moment is an equivalent rudder angle and is added to the rudder. The base is linear in it: one solution of least
+//! squares is exact. An average is replayed with the moment that the answers of the base ask for, a few times over.
 
 use identify::replay::Replay;
 use nalgebra::{DMatrix, DVector};
@@ -140,8 +140,8 @@ fn interval(record: &PreparedRecord) -> f64 {
     record.duration() / (INSTANTS - 1) as f64
 }
 
-/// Heading of the base at the observed rows for a unit initial heading, a unit initial yaw rate, and a unit rudder angle
-/// at every instant.
+/// Heading of the base at the observed rows for a unit initial heading, a unit initial yaw rate, and a unit rudder
+/// angle at every instant.
 fn headings(record: &PreparedRecord, base: &FirstOrder) -> DMatrix<f64> {
     let mut columns = DMatrix::from_element(record.observed.len(), 2 + INSTANTS, 1.0);
     let mut states = [State::default(); 1 + INSTANTS];
@@ -204,7 +204,7 @@ mod tests {
         }
     }
 
-    /// A drift that is traced stays in its record, and the bias or the slow moment of another one is seen for what it is.
+    /// A drift that is traced stays in its record, and bias or slow moment of another one are seen for what they are.
     #[test]
     fn a_moment_of_the_record_is_no_error_of_the_ship() {
         let drifting = [moved(&plain(1, 10.0), |t| 1e-4 * t)];

@@ -118,9 +118,9 @@ fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
 
 const JUDGED: &str = "Nothing but the initial state is fitted to a record here. *Held out*: the record took no part in the \
                       analysis. *Left out*: base and model are fitted to the other records. In the table of every \
-                      record, *own bias* is the heading error where a rudder bias of that record is fitted too, and *own \
-                      moment* where this is a slow yaw moment, straight between five instants: an error that is gone \
-                      there is of its weather or trim, and one that stays is of the ship.";
+                      record, *own bias* is the heading error where a rudder bias of that record is fitted too, and \
+                      *own moment* where this is a slow yaw moment, straight between five instants: what is gone \
+                      there can be of its weather or trim.";
 
 const ERRORS: &str = "*Heading*: the recorded rudder replayed over the whole record. *Every 20 s*: the replay begins anew so \
                       often. *After/before* is the ratio of the errors of the whole replay. ΔBIC, below, weighs every \

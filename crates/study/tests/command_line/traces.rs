@@ -25,7 +25,7 @@ fn with_effect(effect: Arc<dyn Effect>, values: &[f64]) -> Ship {
 
 /// What the contract says beyond the schema, to which every run of these tests is held.
 fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
-    assert_eq!(json["schema"], "trace/3");
+    assert_eq!(json["schema"], "trace/4");
     assert!(json["headline"].as_str().is_some_and(|text| text.ends_with('.')), "{}", json["headline"]);
     for key in ["K_per_s", "T_s", "delta_r_deg"] {
         assert!(json["base"][key]["value"].is_f64() && json["base"][key]["sd"].is_f64(), "{key}");
@@ -48,6 +48,12 @@ fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
         let coverage = record["after"]["band_coverage_95"].as_f64();
         assert!(coverage.is_some_and(|share| (0.0..=1.0).contains(&share)), "{record}");
         assert!(record["after"]["band_width_95_deg"].as_f64().is_some_and(|width| width > 0.0), "{record}");
+    }
+    for (key, is_unseen) in [(fitted, false), (judged, true)] {
+        let mut errors = json.pointer(key).and_then(Value::as_array).into_iter().flatten();
+        let is_there = |name: &str, on: &Value| on[name].is_f64() == is_unseen;
+        let names = ["with_own_bias_deg", "with_own_moment_deg"];
+        assert!(errors.all(|on| names.iter().all(|name| ["before", "after"].iter().all(|at| is_there(name, &on[at])))));
     }
     assert!(json["next_trial"].as_str().is_some_and(|text| !text.is_empty()));
     assert!(json["model"]["parameters"].as_array().is_some_and(|all| all.len() >= 3));
