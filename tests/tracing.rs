@@ -348,11 +348,10 @@ fn what_no_candidate_carries_is_seen() {
     let vessel = Vessel::hull(Arc::new(NearABank { response: ship(Vec::new()) }));
     let analysis = analysed(&[run(&steered(vessel, 10.0), 6)], &[]);
     let document = &analysis.document;
-    let noise = &document.noise[0];
-    let is_noise = noise.moment != "none" || noise.heading_wander.is_some();
-    assert!(document.verdict != Verdict::Clean || is_noise, "{noise:?}");
-    assert_eq!(document.unexplained.present, document.unexplained.signature.is_some());
-    assert_eq!(document.unexplained.present, document.verdict == Verdict::Unexplained);
+    assert_eq!(document.verdict, Verdict::Located, "{}", document.headline);
+    assert_eq!(document.located[0].depends_on, "way to one side", "{:?}", document.located);
+    assert!(document.unexplained.signature.is_some() && !document.unexplained.present && document.effects.is_empty());
+    assert!(document.headline.starts_with("What is missing depends on way to one side (moment with "));
 }
 
 /// Stall at one amplitude is a smaller K: not observable. At two it is seen, and the next trial says so beforehand.

@@ -28,7 +28,7 @@ use crate::noise::CorrelatedNoise;
 use crate::record::PreparedRecord;
 use crate::remainder::{Innovations, Remainder, innovations, squares};
 use crate::report;
-use crate::rudder;
+use crate::rudder::{self, RudderError};
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
 use crate::structures::{self, Structures};
@@ -126,46 +126,29 @@ pub fn watched(
 ) -> Result<Analysis, TraceError> {
     settings.check()?;
     let (trials, rudder_errors) = rudder::without_noise(trials);
-    let (validation, _) = rudder::without_noise(validation);
     let (trials, outliers) = without_spikes(&trials);
-    let (validation, _) = without_spikes(&validation);
+    let validation = without_spikes(&rudder::without_noise(validation).0).0.into_owned();
     let base = Base::of(&trials)?;
     let response = base.estimate.response;
     let time = candidates::ship_time(&trials, response.K_over_T);
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let candidates = candidates_of(&records, &trials, time, settings)?;
     let problem = FittedRecords::new(records, response.inverse_T, time);
-    let has_waves = candidates::has_waves(&trials, &settings.selection);
-    let weighed = |kinds: &[CorrelatedNoise]| {
-        let fulls = full::fit(&problem, &base, &candidates, has_waves, kinds);
-        let fulls = rudder::beside(fulls, &problem, response.K_over_T, &rudder_errors);
-        structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square())
-    };
-    let kinds: Vec<CorrelatedNoise> = CorrelatedNoise::all().collect();
-    let (mut full, mut structures) = weighed(&kinds);
-    if trials.iter().all(Trial::is_calm) && full.law.is_random_moment() {
-        // In a calm nothing turns the ship at random: a ship that replays the records nearer is believed.
-        let of_heading: Vec<CorrelatedNoise> = kinds.into_iter().filter(|kind| kind.is_of_heading()).collect();
-        let other = weighed(&of_heading);
-        if other.1.mean_square_of_ship() < structures.mean_square_of_ship() {
-            (full, structures) = other;
-        }
-    }
+    let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_errors);
     let members = structures.members();
     let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, (&full.law, &members), hulls, settings.thorough, time);
     let (mut identification, mut no_nearer) = fit(&[])?;
     let location = locate(&problem, &full, &structures, &candidates, settings);
     let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, (&location, &rudder_errors));
     let hulls = hulls::fit(&trials, settings, &identification, &remainder);
-    if !hulls.is_empty() {
-        (identification, no_nearer) = fit(&hulls)?;
-    }
-    let unseen = AveragedModel { members: &members, hulls: &hulls, law: &full.law, known: None, time };
-    let judged = unseen.all_compared(&validation, &response, settings.thorough)?;
-    let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let folds = is_folded.then(|| leave_one_out(&trials, &problem, (&full, &structures), &hulls, watcher));
-    let left_out = folds.unwrap_or_default();
-    let said = report::TraceParts {
+    (identification, no_nearer) = if hulls.is_empty() { (identification, no_nearer) } else { fit(&hulls)? };
+    let judged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, known: None, time }
+        .all_compared(&validation, &response, settings.thorough)?;
+    let left_out = match settings.thorough && trials.len() > 1 && validation.is_empty() {
+        true => leave_one_out(&trials, &problem, (&full, &structures), &hulls, watcher),
+        false => Vec::new(),
+    };
+    let document = report::TraceParts {
         trials: &trials,
         settings,
         base: &base,
@@ -181,9 +164,10 @@ pub fn watched(
         rudder_errors: &rudder_errors,
         no_nearer,
         problem: &problem,
-    };
+    }
+    .document();
     Ok(Analysis {
-        document: said.document(),
+        document,
         base: base.estimate,
         identification,
         validation: judged,
@@ -194,6 +178,32 @@ pub fn watched(
         problem,
         candidates,
     })
+}
+
+/// The full model and the structures under the noise that explains the records best.
+fn weighed(
+    problem: &FittedRecords,
+    base: &Base,
+    candidates: &[Arc<Term>],
+    trials: &[Trial],
+    settings: &Settings,
+    rudder_errors: &[Option<RudderError>],
+) -> (Full, Structures) {
+    let has_waves = candidates::has_waves(trials, &settings.selection);
+    let under = |kinds: &[CorrelatedNoise]| {
+        let fulls = full::fit(problem, base, candidates, has_waves, kinds);
+        let fulls = rudder::beside(fulls, problem, base.estimate.response.K_over_T, rudder_errors);
+        structures::choose(problem, fulls, candidates, &settings.selection, settings.rule, base.mean_square())
+    };
+    let kinds: Vec<CorrelatedNoise> = CorrelatedNoise::all().collect();
+    let best = under(&kinds);
+    if !trials.iter().all(Trial::is_calm) || !best.0.law.is_random_moment() {
+        return best;
+    }
+    // In a calm nothing turns the ship at random: a ship that replays the records nearer is believed.
+    let of_heading: Vec<CorrelatedNoise> = kinds.into_iter().filter(|kind| kind.is_of_heading()).collect();
+    let other = under(&of_heading);
+    if other.1.mean_square_of_ship() < best.1.mean_square_of_ship() { other } else { best }
 }
 
 /// The candidates of a request; fails where one that was asked for cannot be among them.

@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use ship::effects::{Effect, Formula, listed};
-use trial::Trial;
+use trial::{Conditions, DeclaredWeather, Trial};
 
-use crate::testing::{TrialPlan, record, ship, wandering};
-use crate::{Analysis, EffectId, Rule, Selection, Settings, Watcher, trace, watched};
+use crate::rudder::tests::noisy;
+use crate::testing::{TrialPlan, of_columns, record, ship, wandering};
+use crate::{Analysis, EffectId, Rule, Selection, Settings, Verdict, Watcher, trace, watched};
 
 /// A record of a ship whose damping grows with the cube of its yaw rate.
 fn damped(plan: TrialPlan) -> Trial {
@@ -128,4 +129,44 @@ fn a_document_is_read_as_it_was_written() {
     let text = serde_json::to_string(&analysis.document).expect("plain data");
     let again: crate::Document = serde_json::from_str(&text).expect("the same");
     assert_eq!(serde_json::to_string(&again).expect("plain data"), text);
+}
+
+/// Errors of the recorded rudder are noise of the instruments: nothing is named for them, nothing located, and nothing
+/// turns the ship.
+#[test]
+fn nothing_is_named_for_noise_of_the_rudder() {
+    let clean = record(&ship(Vec::new()), TrialPlan::default());
+    let rudder = noisy(clean.rudder(), 0.3);
+    let document = traced(&[of_columns(clean.time().to_vec(), clean.heading().to_vec(), rudder)]).document;
+    assert_eq!((document.verdict, document.effects.len()), (Verdict::Clean, 0), "{}", document.headline);
+    assert!(document.noise[0].rudder_sd_deg.is_some_and(|sd| (sd - 0.3).abs() < 0.05), "{:?}", document.noise);
+}
+
+/// A tug on one side is no wind: the name falls, and is said to be as near.
+#[test]
+fn a_name_falls_where_a_shape_does_better() {
+    let tug: Arc<dyn Effect> = Formula::read("tug = c * max(psi, 0)").expect("a formula");
+    let plan = TrialPlan { noise_deg: 0.1, seed: 5, ..TrialPlan::default() };
+    let document = traced(&[record(&ship(vec![(tug, vec![-0.1])]), plan)]).document;
+    assert_eq!((document.verdict, document.effects.len()), (Verdict::Located, 0), "{}", document.headline);
+    let located = &document.located[0];
+    assert_eq!((&*located.depends_on, located.formula.as_deref()), ("heading", Some("located = c * max(psi, 0)")));
+    assert!(located.nats > 10.0 && located.rudder_deg > 0.1, "{located:?}");
+}
+
+/// A moment that walks is a disturbance: it carries the heading error, and no shape or effect is said to be there. In a
+/// calm there is no weather, so that the same is unexplained.
+#[test]
+fn a_random_moment_is_a_disturbance_and_in_a_calm_unexplained() {
+    let walking = wandering(30.0, 2);
+    let document = traced(std::slice::from_ref(&walking)).document;
+    let disturbance = document.disturbance.expect("a random moment");
+    assert_eq!((document.verdict, document.effects.len()), (Verdict::Disturbed, 0), "{}", document.headline);
+    assert!(disturbance.heading_error_share > 0.9 && document.headline.contains("something turns the ship"));
+    let weather = Some(DeclaredWeather::Calm);
+    let becalmed = walking.with_conditions(Conditions { weather, ..Conditions::default() });
+    let document = traced(&[becalmed]).document;
+    assert_eq!(document.verdict, Verdict::Unexplained, "{}", document.headline);
+    let wind = document.candidates.iter().find(|one| one.id == "wind_moment").expect("on the list");
+    assert!(wind.reason.as_deref().is_some_and(|why| why.contains("calm")), "{wind:?}");
 }

@@ -38,7 +38,7 @@ const ROUNDS: usize = 2;
 
 /// Variance, rad², that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral
 /// of the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
-fn floors(problem: &FittedRecords, gain: f64) -> Vec<f64> {
+pub fn floors(problem: &FittedRecords, gain: f64) -> Vec<f64> {
     let of = |record: &crate::record::PreparedRecord| {
         let mut bends: Vec<f64> =
             record.rudder.values().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();

@@ -12,7 +12,7 @@ use crate::model::{Term, TermName};
 use crate::naming::{EffectNaming, named};
 use crate::rudder::RudderError;
 use crate::settings::Settings;
-use crate::shape::{self, ALIKE, BELIEVED, RandomMoment, ShapeAnalysis};
+use crate::shape::{self, ALIKE, BELIEVED, MomentSize, ShapeAnalysis};
 use crate::structures::Structures;
 
 /// Probability of a size as far from neutral by chance, above which an effect is not named.
@@ -34,7 +34,7 @@ pub struct Location {
 
 impl Location {
     /// The random moment beside the names and shapes; none where errors of the rudders are one as large.
-    pub fn moment(&self, errors: &[Option<RudderError>]) -> Option<RandomMoment> {
+    pub fn moment(&self, errors: &[Option<RudderError>]) -> Option<MomentSize> {
         let moment = self.shapes.as_ref()?.moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
         let is_of_rudder = moment.white.is_some_and(|density| density < OF_RUDDER * instrument);

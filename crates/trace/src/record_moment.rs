@@ -11,6 +11,7 @@ use ship::{FirstOrder, Polyline};
 
 use crate::average::Average;
 use crate::record::PreparedRecord;
+use crate::replay_errors::MomentErrors;
 
 /// Evenly spaced instants between which a slow moment runs straight.
 const INSTANTS: usize = 5;
@@ -26,15 +27,6 @@ const SHORTENED: f64 = 0.4;
 
 /// Combinations of answers whose size is less than this share of that of each of them cannot be seen.
 const SINGULAR: f64 = 1e-10;
-
-/// Root mean square heading errors of a replay with a moment of the record, rad.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MomentErrors {
-    /// With a rudder bias of the record.
-    pub bias: f64,
-    /// With a moment that runs straight between five instants.
-    pub slow: f64,
-}
 
 /// Least squares of a residual on what initial state and moment do to the heading of the base.
 #[derive(Debug, Clone)]

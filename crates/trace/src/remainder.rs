@@ -92,7 +92,8 @@ impl Remainder {
         // In a calm nothing turns the ship at random.
         let is_calm = location.moment(rudder_errors).is_some() && trials.iter().all(Trial::is_calm);
         let is_unexplained = is_large && (is_smooth || !is_chance || is_calm);
-        let signature = (is_unexplained || location.is_located()).then(|| worst(identification, trials)).flatten();
+        let is_left = is_unexplained || location.is_located() || is_large && !holds;
+        let signature = is_left.then(|| worst(identification, trials)).flatten();
         Self { holds, is_founded, is_unexplained, signature }
     }
 }

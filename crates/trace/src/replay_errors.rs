@@ -14,7 +14,6 @@ use trial::{Channel, Columns, Trial, ZigZag};
 
 use crate::model::step;
 use crate::record::PreparedRecord;
-use crate::record_moment::MomentErrors;
 
 /// Steps of the solver per shortest time constant: the heading is then exact to 10⁻⁵ of the response.
 const SOLVER_STEPS: f64 = 4.0;
@@ -34,6 +33,15 @@ const SAME: f64 = 1e-6;
 
 /// A step that promises to lower the sum of squares by less than this share ends the search.
 const NEGLIGIBLE: f64 = 1e-7;
+
+/// Root mean square heading errors of a replay with a moment of the record, rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MomentErrors {
+    /// With a rudder bias of the record.
+    pub bias: f64,
+    /// With a moment that runs straight between five instants.
+    pub slow: f64,
+}
 
 /// Errors of a response on one record.
 #[derive(Debug, Clone, PartialEq)]

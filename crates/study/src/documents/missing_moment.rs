@@ -24,7 +24,8 @@ pub struct MissingMomentEntry {
     pub rms_rudder_deg: f64,
     /// The explanation beside it in the tables: the named effects together, else the best candidate alone.
     pub explanation: Option<String>,
-    /// Whether the verdict is located or unexplained and no effect lies inside the bands of all curves that show something.
+    /// Whether the verdict is located or unexplained and no effect lies inside the bands of all curves that show
+    /// something.
     pub unlisted: bool,
     /// Effects inside the bands of all curves that show something.
     pub inside_all: Vec<String>,

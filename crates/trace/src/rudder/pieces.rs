@@ -16,7 +16,7 @@ const ROUNDS: usize = 3;
 
 /// A rest or a stroke.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub struct RudderPiece {
     /// First row.
     pub from: usize,
     /// Row behind the last.
@@ -33,7 +33,7 @@ pub struct Piece {
     pub is_stroke: bool,
 }
 
-impl Piece {
+impl RudderPiece {
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.to - self.from
@@ -57,11 +57,11 @@ impl Piece {
     }
 }
 
-/// Sums of the rows before a row: of 1 (t t²) and δ (δ t, δ²).
-type Sums = [f64; 5];
+/// PieceSums of the rows before a row: of 1 (t t²) and δ (δ t, δ²).
+type PieceSums = [f64; 5];
 
 /// Squares that a level and a line leave of the rows between two sums.
-fn left(one: &Sums, other: &Sums, rows: f64) -> [f64; 2] {
+fn left(one: &PieceSums, other: &PieceSums, rows: f64) -> [f64; 2] {
     let [t, tt, y, ty, yy] = std::array::from_fn(|k| other[k] - one[k]);
     let (level, spread, product) = (yy - y * y / rows, tt - t * t / rows, ty - t * y / rows);
     let line = if spread > 0.0 { level - product * product / spread } else { level };
@@ -72,7 +72,7 @@ fn left(one: &Sums, other: &Sums, rows: f64) -> [f64; 2] {
 fn partition(time: &[f64], angle: &[f64], sd: f64) -> Vec<(usize, usize, bool)> {
     let rows = time.len();
     let price = (rows as f64).ln();
-    let mut sums: Vec<Sums> = vec![[0.0; 5]];
+    let mut sums: Vec<PieceSums> = vec![[0.0; 5]];
     for (t, y) in time.iter().map(|t| t - time[0]).zip(angle.iter().map(|y| (y - angle[0]) / sd)) {
         let last = sums[sums.len() - 1];
         let own = [t, t * t, y, t * y, y * y];
@@ -134,7 +134,7 @@ fn pooled(values: &[(f64, f64)], price: f64) -> Vec<f64> {
 }
 
 /// Gives rests and strokes the levels and rates of a gear.
-fn by_gear(pieces: &mut [Piece], sd: f64, price: f64) {
+fn by_gear(pieces: &mut [RudderPiece], sd: f64, price: f64) {
     let weight = 1.0 / (sd * sd);
     let rests: Vec<usize> = (0..pieces.len()).filter(|&k| !pieces[k].is_stroke && pieces[k].rows() > 1).collect();
     let levels: Vec<(f64, f64)> = rests.iter().map(|&k| (pieces[k].angle, pieces[k].rows() as f64 * weight)).collect();
@@ -147,7 +147,7 @@ fn by_gear(pieces: &mut [Piece], sd: f64, price: f64) {
 }
 
 /// The row at which a piece ends and the next begins: where their lines meet, if that is near to where it was.
-fn meeting(time: &[f64], one: &Piece, other: &Piece) -> usize {
+fn meeting(time: &[f64], one: &RudderPiece, other: &RudderPiece) -> usize {
     let bend = one.rate - other.rate;
     let near = 2 * MOVABLE;
     if one.is_stroke == other.is_stroke || one.rows() < near || other.rows() < near {
@@ -159,12 +159,12 @@ fn meeting(time: &[f64], one: &Piece, other: &Piece) -> usize {
 }
 
 /// The pieces of a rudder (s, rad) whose readings have noise of a standard deviation `sd`, rad.
-pub fn pieces(time: &[f64], angle: &[f64], sd: f64) -> Vec<Piece> {
+pub fn pieces(time: &[f64], angle: &[f64], sd: f64) -> Vec<RudderPiece> {
     let mut parts = partition(time, angle, sd);
     let price = (time.len() as f64).ln();
     for round in 0.. {
-        let mut all: Vec<Piece> =
-            parts.iter().map(|&(from, to, is_stroke)| Piece::of(time, angle, (from, to), is_stroke)).collect();
+        let mut all: Vec<RudderPiece> =
+            parts.iter().map(|&(from, to, is_stroke)| RudderPiece::of(time, angle, (from, to), is_stroke)).collect();
         by_gear(&mut all, sd, price);
         let ends: Vec<usize> = all.windows(2).map(|pair| meeting(time, &pair[0], &pair[1])).collect();
         let is_settled = ends.iter().zip(&parts).all(|(end, part)| *end == part.1);

@@ -1,9 +1,9 @@
 //! A linearised structure under one law of the noise, and what shapes behind its unknowns explain.
 //!
-//! −2 log p = (n − p) log s² + Σ log S + log det(XᵀV⁻¹X) + Σ price, with s² = RSS/(n − p) and the p unknowns X that are
-//! integrated out: base, initial states and what is beside them. The coefficient of an effect or a shape pays
-//! max(log n, log(1 + t²)) + 1 with its t value behind those before it, a shape the logarithm of the places and forms
-//! that were tried, a law log n for each of its parameters.
+//! −2 log p = (n − p) log s² + RSS/s² − (n − p) + Σ log S + log det(XᵀV⁻¹X) + Σ price, with s² = RSS/(n − p), or the
+//! least that noise can be, and the p unknowns X that are integrated out: base, initial states and what is beside them.
+//! The coefficient of an effect or a shape pays max(log n, log(1 + t²)) + 1 with its t value behind those before it, a
+//! shape the logarithm of the places and forms that were tried, a law log n for each of its parameters.
 
 use estimation::column::dot;
 
@@ -14,7 +14,7 @@ use crate::weights::Weights;
 const DEPENDENT: f64 = 1e-7;
 
 /// The change of the headings for one coefficient, rad for rad, by record.
-pub type Column = Vec<(usize, Vec<f64>)>;
+pub type HeadingColumn = Vec<(usize, Vec<f64>)>;
 
 /// Residual and sensitivities of a structure, its unknowns in the order in which they are taken.
 #[derive(Debug, Clone)]
@@ -27,6 +27,9 @@ pub struct LinearisedStructure {
     pub prior: Vec<(f64, f64)>,
     /// How far the unknowns that pay are from neutral.
     pub sizes: Vec<f64>,
+    /// Least variance of the white noise of a row, in units of that of the weights: what no compass reads and no
+    /// recorded rudder tells.
+    pub least: f64,
 }
 
 impl LinearisedStructure {
@@ -52,11 +55,13 @@ pub struct Conditioned {
     /// n − p and log n.
     freedom: f64,
     log_n: f64,
+    /// Least s².
+    least: f64,
 }
 
-/// Products of columns behind the unknowns of a structure: with these, with each other, and with the residual.
+/// ColumnProducts of columns behind the unknowns of a structure: with these, with each other, and with the residual.
 #[derive(Debug, Clone)]
-pub struct Products {
+pub struct ColumnProducts {
     /// With the unknowns, column by column.
     pub cross: Vec<Vec<f64>>,
     gram: Vec<Vec<f64>>,
@@ -64,7 +69,7 @@ pub struct Products {
 }
 
 /// Product of two columns.
-pub fn product(one: &Column, other: &Column) -> f64 {
+pub fn product(one: &HeadingColumn, other: &HeadingColumn) -> f64 {
     let pairs = one.iter().flat_map(|(record, values)| {
         other.iter().filter(move |(own, _)| own == record).map(move |(_, own)| dot(own, values))
     });
@@ -107,7 +112,8 @@ impl Conditioned {
             .sum();
         let volume: f64 = (0..structure.integrated).map(|k| 2.0 * factor[k][k].ln()).sum();
         let fixed = log_variance + volume + law_freedom as f64 * log_n;
-        let mut all = Self { blocks, factor, solution, paid: Vec::new(), square, fixed, freedom, log_n };
+        let (paid, least) = (Vec::new(), structure.least);
+        let mut all = Self { blocks, factor, solution, paid, square, fixed, freedom, log_n, least };
         all.solution = solved(&all.factor, &gradient);
         all.square -= dot(&all.solution, &all.solution);
         all.paid = (structure.integrated..count)
@@ -127,13 +133,15 @@ impl Conditioned {
 
     /// The same with coefficients behind it that leave a square.
     fn height_with(&self, behind: &[f64], square: f64) -> f64 {
-        let variance = square.max(1e-12) / self.freedom;
+        let variance = (square / self.freedom).max(self.least);
         let price = |c: &f64| self.log_n.max((c * c / variance).ln_1p()) + 1.0;
-        self.freedom * variance.ln() + self.fixed + self.paid.iter().chain(behind).map(price).sum::<f64>()
+        let misfit = square / variance - self.freedom;
+        let prices: f64 = self.paid.iter().chain(behind).map(price).sum();
+        self.freedom * variance.ln() + misfit + self.fixed + prices
     }
 
     /// −2 log p with white columns behind it; infinite where they are some of those before.
-    pub fn height_of(&self, columns: &[Column]) -> f64 {
+    pub fn height_of(&self, columns: &[HeadingColumn]) -> f64 {
         self.height_of_products(&self.products(columns))
     }
 
@@ -142,7 +150,7 @@ impl Conditioned {
     }
 
     /// The structure with white columns behind it.
-    pub fn extended(&self, columns: &[Column]) -> Option<Self> {
+    pub fn extended(&self, columns: &[HeadingColumn]) -> Option<Self> {
         let extension = self.extension(&self.products(columns))?;
         let mut next = self.clone();
         for (k, column) in columns.iter().enumerate() {
@@ -157,10 +165,10 @@ impl Conditioned {
         Some(next)
     }
 
-    /// Products of white columns with the unknowns, with each other, and with the residual.
-    pub fn products(&self, columns: &[Column]) -> Products {
+    /// ColumnProducts of white columns with the unknowns, with each other, and with the residual.
+    pub fn products(&self, columns: &[HeadingColumn]) -> ColumnProducts {
         let count = self.factor.len();
-        let mut all = Products { cross: Vec::new(), gram: Vec::new(), gradient: Vec::new() };
+        let mut all = ColumnProducts { cross: Vec::new(), gram: Vec::new(), gradient: Vec::new() };
         for (k, column) in columns.iter().enumerate() {
             let (mut cross, mut with) = (vec![0.0; count], 0.0);
             for (record, values) in column {
@@ -176,13 +184,13 @@ impl Conditioned {
     }
 
     /// −2 log p with columns of these products behind it; infinite where they are some of those before.
-    pub fn height_of_products(&self, products: &Products) -> f64 {
+    pub fn height_of_products(&self, products: &ColumnProducts) -> f64 {
         let extension = self.extension(products);
         extension.map_or(f64::INFINITY, |own| self.height_with(&own.solution, self.square_with(&own.solution)))
     }
 
     /// Rows of the factor, and of its solution, for columns behind all others.
-    fn extension(&self, products: &Products) -> Option<Extension> {
+    fn extension(&self, products: &ColumnProducts) -> Option<Extension> {
         let count = self.factor.len();
         let rows = products.cross.iter().zip(&products.gram).map(|(cross, gram)| [cross.as_slice(), gram].concat());
         let factor = factor(&rows.collect::<Vec<_>>(), &self.factor)?;

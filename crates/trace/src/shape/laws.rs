@@ -22,7 +22,8 @@ pub struct RandomLaw {
     pub colour: NoiseColour,
     /// Number of its parameters beside the white noise.
     pub freedom: usize,
-    /// Its size: of a moment in rudder angle over the standard deviation of the white noise, of a heading error over it.
+    /// Its size: of a moment in rudder angle over the standard deviation of the white noise, of a heading error over
+    /// it.
     pub size: f64,
 }
 
@@ -59,8 +60,8 @@ fn decades(from: f64, to: f64, step: f64) -> impl Iterator<Item = f64> + Clone {
     (0..=count).map(move |k| 10f64.powf(from + step * k as f64))
 }
 
-/// Every law for a ship of the given K/T (1/s²), on records of which the longest lasts so many seconds, with rows so many
-/// seconds apart; `waves` are those that the records are known to hold, beside which no others are looked for.
+/// Every law for a ship of the given K/T (1/s²), on records of which the longest lasts so many seconds, with rows so
+/// many seconds apart; `waves` are those that the records are known to hold, beside which no others are looked for.
 pub fn all(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBand>) -> Vec<RandomLaw> {
     let of = |kind, sizes: &mut dyn Iterator<Item = f64>| -> Vec<RandomLaw> {
         sizes.map(|size| RandomLaw::of(kind, size, gain, longest, waves)).collect()

@@ -1,5 +1,5 @@
-//! Structure against chance: whether what a structure leaves of the records is a moment of some shape, a random moment, or
-//! the noise of the instruments.
+//! Structure against chance: whether what a structure leaves of the records is a moment of some shape, a random moment,
+//! or the noise of the instruments.
 //!
 //! A random moment can follow almost any heading, so a shape is held against every random law with the law found anew
 //! beside the shape: G = ½ (h₀ − h), in nats, of −2 log p under the best law without the shapes and with them.
@@ -7,6 +7,7 @@
 mod conditioned;
 mod dictionary;
 mod laws;
+mod library;
 mod motion;
 mod point;
 mod search;
@@ -21,9 +22,9 @@ use crate::noise::{CorrelatedNoise, NoiseColour};
 use crate::weights::{NoiseLaw, Weights};
 use conditioned::{Conditioned, LinearisedStructure};
 use laws::RandomLaw;
-use motion::Motion;
-use point::Point;
-use search::Search;
+use motion::ForeseenMotion;
+use point::StructurePoint;
+use search::ShapeSearch;
 
 pub use dictionary::{Dependence, Shape};
 pub use search::{Candidate, Explanation};
@@ -37,7 +38,8 @@ pub const ALIKE: f64 = 3.0;
 /// Gain in nats from which a smooth moment of unknown shape is believed.
 const SMOOTH: f64 = 1.5;
 
-/// How often the response of the ship is found anew under the best law, and the change of 1/T, as a share, that ends it.
+/// How often the response of the ship is found anew under the best law, and the change of 1/T, as a share, that ends
+/// it.
 const ROUNDS: usize = 3;
 const SETTLED: f64 = 0.02;
 
@@ -64,7 +66,7 @@ const BESIDE: f64 = 0.1;
 
 /// A random moment, as a rudder angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RandomMoment {
+pub struct MomentSize {
     /// Its root mean square over the longest record, of a white moment that of its mean over L/U, rad.
     pub rudder: f64,
     /// Spectral density of a white one, rad² s.
@@ -92,7 +94,7 @@ pub struct ShapeAnalysis {
     /// Whether a smooth moment explains it better than any random law, where no shape does.
     pub is_smooth: bool,
     /// The random moment beside the best.
-    pub moment: Option<RandomMoment>,
+    pub moment: Option<MomentSize>,
     /// Standard deviations of the white noise of a row of the records, rad.
     pub heading_sd: Vec<f64>,
     /// Mean square of the heading error that the shapes leave, rad²; `None` without any.
@@ -156,7 +158,7 @@ impl ShapeAnalysis {
 /// Looks for shapes in what a fit leaves, beside a law whose waves are known; `None` where its unknowns cannot be told
 /// apart.
 pub fn analysis(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLaw) -> Option<ShapeAnalysis> {
-    let mut stand = Stand::new(Point::new(problem, fit, law), problem, law, &law.colour)?;
+    let mut stand = Stand::new(StructurePoint::new(problem, fit, law), problem, law, &law.colour)?;
     for _ in 0..ROUNDS {
         let (before, colour) = (stand.point.theta[0], stand.laws[stand.law].colour);
         let point = stand.point.moved(&stand.structure[stand.law].as_ref()?.step());
@@ -173,8 +175,8 @@ pub fn analysis(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLaw) -> 
 
 /// A point with its motions and laws.
 struct Stand<'a> {
-    point: Point<'a>,
-    motions: Vec<Motion<'a>>,
+    point: StructurePoint<'a>,
+    motions: Vec<ForeseenMotion<'a>>,
     linearised: LinearisedStructure,
     laws: Vec<RandomLaw>,
     weights: Vec<Weights>,
@@ -185,7 +187,7 @@ struct Stand<'a> {
 
 impl<'a> Stand<'a> {
     /// A point whose motions are foreseen under a colour; `None` where its unknowns cannot be told apart.
-    fn new(point: Point<'a>, problem: &FittedRecords, law: &NoiseLaw, colour: &NoiseColour) -> Option<Self> {
+    fn new(point: StructurePoint<'a>, problem: &FittedRecords, law: &NoiseLaw, colour: &NoiseColour) -> Option<Self> {
         let spacing = problem.records.iter().map(|record| record.spacing).fold(f64::INFINITY, f64::min);
         let laws = laws::all(point.theta[1].abs(), problem.longest(), spacing, law.colour.waves);
         let motions = point.motions(colour);
@@ -211,7 +213,7 @@ impl<'a> Stand<'a> {
         let smooth = law.colour.waves.is_none().then(|| laws::smooth(self.point.theta[1].abs(), longest));
         let smooth =
             smooth.unwrap_or_default().par_iter().map(|law| self.under(law)).reduce(|| f64::INFINITY, f64::min);
-        let search = Search {
+        let search = ShapeSearch {
             motions: &self.motions,
             laws: &self.laws,
             weights: &self.weights,
@@ -252,14 +254,14 @@ impl<'a> Stand<'a> {
     }
 
     /// The random moment of an explanation whose white noise has a standard deviation in units of that of the records.
-    fn moment(&self, best: &Explanation, sd: f64, [longest, time]: [f64; 2]) -> Option<RandomMoment> {
+    fn moment(&self, best: &Explanation, sd: f64, [longest, time]: [f64; 2]) -> Option<MomentSize> {
         let law = &self.laws[best.law];
         let (kind, _) = law.colour.wander.filter(|_| law.is_moment())?;
         let size = law.size * sd * self.point.sd.iter().copied().fold(0.0, f64::max);
         Some(match kind {
-            CorrelatedNoise::White => RandomMoment { rudder: size / time.sqrt(), white: Some(size * size) },
-            CorrelatedNoise::Walk => RandomMoment { rudder: size * (0.5 * longest).sqrt(), white: None },
-            _ => RandomMoment { rudder: size, white: None },
+            CorrelatedNoise::White => MomentSize { rudder: size / time.sqrt(), white: Some(size * size) },
+            CorrelatedNoise::Walk => MomentSize { rudder: size * (0.5 * longest).sqrt(), white: None },
+            _ => MomentSize { rudder: size, white: None },
         })
     }
 }

@@ -1,8 +1,8 @@
 //! The motion of a ship as it was foreseen one row ahead, and the answer of her heading to a moment.
 //!
-//! Heading and yaw rate are those of the replay and, under a random moment, what the filter of the law predicts from the
-//! rows before. A shape of these states is known before the row that it explains; one of smoothed states would hold the
-//! random moment itself and always explain it.
+//! Heading and yaw rate are those of the replay and, under a random moment, what the filter of the law predicts from
+//! the rows before. A shape of these states is known before the row that it explains; one of smoothed states would hold
+//! the random moment itself and always explain it.
 
 use ship::Replayable;
 use ship::dynamics::Dynamics;
@@ -21,7 +21,7 @@ const MEDIAN: usize = 5;
 
 /// One record: its motion, and the first-order response that a moment goes through.
 #[derive(Debug, Clone)]
-pub struct Motion<'a> {
+pub struct ForeseenMotion<'a> {
     /// The record.
     pub record: &'a PreparedRecord,
     /// Its number.
@@ -41,9 +41,9 @@ pub struct Motion<'a> {
     transitions: Vec<Transition>,
 }
 
-impl<'a> Motion<'a> {
-    /// The motion of a record under a structure and a colour of the noise, from what the structure leaves of the headings
-    /// (rad).
+impl<'a> ForeseenMotion<'a> {
+    /// The motion of a record under a structure and a colour of the noise, from what the structure leaves of the
+    /// headings (rad).
     pub fn new(
         (record, number): (&'a PreparedRecord, usize),
         structure: &Structure,

@@ -1,12 +1,13 @@
 //! Where a structure stands when shapes are looked for beside it, and its linearisation there.
 
 use crate::fit::{FittedRecords, StructureFit, curvature, deviation};
+use crate::law;
 use crate::linear::HeadingSensitivities;
 use crate::noise::{NoiseColour, RecordNoise};
 use crate::weights::{NoiseLaw, Weights};
 
 use super::conditioned::LinearisedStructure;
-use super::motion::Motion;
+use super::motion::ForeseenMotion;
 
 /// A gap of more than so many usual steps between headings, and the gaps of a record that are bridged: heading and yaw
 /// rate begin anew behind them.
@@ -15,7 +16,7 @@ const MOST_GAPS: usize = 4;
 
 /// A structure with its unknowns, and the noise of a ship of its T.
 #[derive(Clone)]
-pub struct Point<'a> {
+pub struct StructurePoint<'a> {
     problem: &'a FittedRecords,
     fit: &'a StructureFit,
     /// Standard deviations of the white noise of the records, rad.
@@ -26,7 +27,7 @@ pub struct Point<'a> {
     noise: Vec<RecordNoise>,
 }
 
-impl<'a> Point<'a> {
+impl<'a> StructurePoint<'a> {
     /// That of a fit under a law.
     pub fn new(problem: &'a FittedRecords, fit: &'a StructureFit, law: &NoiseLaw) -> Self {
         let (theta, initial) = (fit.theta.clone(), fit.initial.clone());
@@ -41,13 +42,13 @@ impl<'a> Point<'a> {
     }
 
     /// The motions of the records as they are foreseen under a colour.
-    pub fn motions(&self, colour: &NoiseColour) -> Vec<Motion<'a>> {
+    pub fn motions(&self, colour: &NoiseColour) -> Vec<ForeseenMotion<'a>> {
         let structure = &self.fit.structure;
         let residual = self.problem.residual(structure, &self.theta, &self.initial);
         let of = |number: usize| {
             let (record, noise) = (&self.problem.records[number], &self.noise[number]);
             let at = (self.theta.as_slice(), self.initial[number]);
-            Motion::new((record, number), structure, at, (noise, colour), &residual[number])
+            ForeseenMotion::new((record, number), structure, at, (noise, colour), &residual[number])
         };
         (0..self.problem.records.len()).map(of).collect()
     }
@@ -62,7 +63,7 @@ impl<'a> Point<'a> {
 
     /// Residual and columns: base, initial states and gaps first, which are integrated out, then the parameters of the
     /// terms, which pay.
-    pub fn linearised(&self, motions: &[Motion]) -> LinearisedStructure {
+    pub fn linearised(&self, motions: &[ForeseenMotion]) -> LinearisedStructure {
         let structure = &self.fit.structure;
         let mut linear = self.problem.linear(structure, &self.theta, &self.initial);
         let [of_base, of_terms] = self.counts();
@@ -100,7 +101,19 @@ impl<'a> Point<'a> {
             true => 0.0,
             false => self.theta[place] - neutral[place - structure.base_count()],
         };
-        LinearisedStructure { linear, integrated, prior, sizes: fitted[of_base..].iter().map(size).collect() }
+        LinearisedStructure {
+            linear,
+            integrated,
+            prior,
+            sizes: fitted[of_base..].iter().map(size).collect(),
+            least: self.least(),
+        }
+    }
+
+    /// Least variance of the white noise of a row over that of the records, in the record where it is largest.
+    fn least(&self) -> f64 {
+        let floors = law::floors(self.problem, self.theta[1]);
+        floors.iter().zip(&self.sd).map(|(floor, sd)| floor / (sd * sd)).fold(0.0, f64::max)
     }
 
     /// The point after a step of all unknowns of [`linearised`](Self::linearised), within their ranges.
@@ -125,14 +138,14 @@ impl<'a> Point<'a> {
 }
 
 /// Puts the answer to the moment that another 1/T is in the place of that of a replay: exact under any noise.
-fn with_foreseen_rate(block: &mut HeadingSensitivities, motion: &Motion) {
+fn with_foreseen_rate(block: &mut HeadingSensitivities, motion: &ForeseenMotion) {
     let moment: Vec<f64> = motion.rate.iter().map(|rate| -rate / motion.base[1]).collect();
     let by_inverse_time = block.columns.iter_mut().find(|(unknown, _)| *unknown == 0);
     by_inverse_time.into_iter().for_each(|(_, column)| *column = motion.answer(&moment));
 }
 
 /// Heading and yaw rate that begin anew behind the largest gaps.
-fn behind_gaps(motion: &Motion) -> Vec<[Vec<f64>; 2]> {
+fn behind_gaps(motion: &ForeseenMotion) -> Vec<[Vec<f64>; 2]> {
     let time: Vec<f64> = motion.record.observed.iter().map(|&row| motion.record.time[row]).collect();
     let lengths: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut sorted = lengths.clone();

@@ -1,15 +1,16 @@
-//! The search for shapes: all are tried beside those that stand, under some laws; the law of the best is found anew among
-//! all, and their places are refined.
+//! The search for shapes: all are tried beside those that stand, under some laws; the law of the best is found anew
+//! among all, and their places are refined.
 
 use std::sync::Arc;
 
 use estimation::column::dot;
 use rayon::prelude::*;
 
-use super::conditioned::{Column, Conditioned, Products, product};
-use super::dictionary::{Shape, shapes};
+use super::conditioned::{ColumnProducts, Conditioned, HeadingColumn, product};
+use super::dictionary::Shape;
 use super::laws::{RandomLaw, tried};
-use super::motion::Motion;
+use super::library::shapes;
+use super::motion::ForeseenMotion;
 use crate::linear::{HeadingSensitivities, Linear};
 use crate::weights::Weights;
 
@@ -36,7 +37,7 @@ pub struct Candidate {
     pub only: Option<usize>,
     /// −2 log of the prior odds of its places and forms.
     pub price: f64,
-    columns: Vec<Column>,
+    columns: Vec<HeadingColumn>,
 }
 
 /// Shapes that stand together, with the law beside them.
@@ -51,9 +52,9 @@ pub struct Explanation {
 }
 
 /// What a search needs.
-pub struct Search<'a> {
+pub struct ShapeSearch<'a> {
     /// The records.
-    pub motions: &'a [Motion<'a>],
+    pub motions: &'a [ForeseenMotion<'a>],
     /// Laws.
     pub laws: &'a [RandomLaw],
     /// What makes columns white under each.
@@ -67,22 +68,23 @@ pub struct Search<'a> {
 /// Sizes below which a moment is none.
 const LEAST: f64 = 1e-12;
 
-impl Search<'_> {
+impl ShapeSearch<'_> {
     /// A shape in all records, or in one; `None` where the records do not hold it.
     fn candidate(&self, shape: Shape, only: Option<usize>, price: f64) -> Option<Candidate> {
         let acting = || self.motions.iter().filter(|motion| only.is_none_or(|only| only == motion.number));
-        let moments: Vec<(&Motion, Vec<Vec<f64>>)> = acting().map(|motion| (motion, shape.moments(motion))).collect();
-        let column = |k: usize| -> Option<Column> {
+        let moments: Vec<(&ForeseenMotion, Vec<Vec<f64>>)> =
+            acting().map(|motion| (motion, shape.moments(motion))).collect();
+        let column = |k: usize| -> Option<HeadingColumn> {
             let values = moments.iter().flat_map(|(_, own)| &own[k]);
             let (square, rows) = values.fold((0.0, 0.0), |(sum, rows), m| (sum + m * m, rows + 1.0));
             let size = (square / rows).sqrt();
-            let answer = |(motion, own): &(&Motion, Vec<Vec<f64>>)| {
+            let answer = |(motion, own): &(&ForeseenMotion, Vec<Vec<f64>>)| {
                 let moment: Vec<f64> = own[k].iter().map(|m| m / size).collect();
                 (motion.number, motion.answer(&moment))
             };
             (size.is_finite() && size > LEAST).then(|| moments.iter().map(answer).collect())
         };
-        let columns = (0..moments.first()?.1.len()).map(column).collect::<Option<Vec<Column>>>()?;
+        let columns = (0..moments.first()?.1.len()).map(column).collect::<Option<Vec<HeadingColumn>>>()?;
         Some(Candidate { shape, only, price, columns })
     }
 
@@ -90,7 +92,7 @@ impl Search<'_> {
     fn library(&self, unit: f64) -> Vec<Arc<Candidate>> {
         let longest = self.motions.iter().max_by(|one, other| one.span()[1].total_cmp(&other.span()[1]));
         let Some(longest) = longest else { return Vec::new() };
-        let all = |motion: &Motion| shapes([motion.span()[1], motion.record.spacing], unit);
+        let all = |motion: &ForeseenMotion| shapes([motion.span()[1], motion.record.spacing], unit);
         let forms = |class: usize, all: &[(Shape, usize)]| {
             all.iter().filter(|(shape, places)| *places == 1 && shape.class() == class).count()
         };
@@ -116,8 +118,8 @@ impl Search<'_> {
     }
 
     /// The columns of a shape, white under a law.
-    fn white(&self, law: usize, candidates: &[&Candidate]) -> Vec<Vec<Column>> {
-        let mut all: Vec<Vec<Column>> = candidates.iter().map(|own| own.columns.clone()).collect();
+    fn white(&self, law: usize, candidates: &[&Candidate]) -> Vec<Vec<HeadingColumn>> {
+        let mut all: Vec<Vec<HeadingColumn>> = candidates.iter().map(|own| own.columns.clone()).collect();
         let columns = || all.iter().flatten().flatten();
         let mut records: Vec<usize> = columns().map(|(record, _)| *record).collect();
         records.sort_unstable();
@@ -149,7 +151,7 @@ impl Search<'_> {
     }
 
     /// The products of every shape with the structure, under some laws.
-    fn products(&self, laws: &[usize], library: &[Arc<Candidate>]) -> Vec<Vec<Products>> {
+    fn products(&self, laws: &[usize], library: &[Arc<Candidate>]) -> Vec<Vec<ColumnProducts>> {
         let of = |chunk: &[Arc<Candidate>]| {
             let candidates: Vec<&Candidate> = chunk.iter().map(Arc::as_ref).collect();
             let mut all = vec![Vec::with_capacity(laws.len()); chunk.len()];
@@ -163,19 +165,19 @@ impl Search<'_> {
         library.par_chunks(SIDE_BY_SIDE).flat_map_iter(of).collect()
     }
 
-    /// The lowest height of every shape behind the structure and the shapes that `stand`, under some laws, from products
-    /// to which those with the shapes that stand are added.
+    /// The lowest height of every shape behind the structure and the shapes that `stand`, under some laws, from
+    /// products to which those with the shapes that stand are added.
     fn scan(
         &self,
         stand: &[Arc<Candidate>],
         under: &[Option<Conditioned>],
         laws: &[usize],
         library: &[Arc<Candidate>],
-        products: &mut [Vec<Products>],
+        products: &mut [Vec<ColumnProducts>],
     ) -> Vec<f64> {
         let laws: Vec<usize> = laws.iter().copied().filter(|law| self.structure[*law].is_some()).collect();
-        let behind: Vec<Vec<Column>> = laws.iter().map(|&law| self.weighted(law, stand)).collect();
-        let height = |(candidate, products): (&Arc<Candidate>, &mut Vec<Products>)| {
+        let behind: Vec<Vec<HeadingColumn>> = laws.iter().map(|&law| self.weighted(law, stand)).collect();
+        let height = |(candidate, products): (&Arc<Candidate>, &mut Vec<ColumnProducts>)| {
             let mut lowest = f64::INFINITY;
             for ((products, &law), behind) in products.iter_mut().zip(&laws).zip(&behind) {
                 for (cross, column) in products.cross.iter_mut().zip(&candidate.columns) {
@@ -192,7 +194,7 @@ impl Search<'_> {
 
     /// The columns of shapes after the inverse covariance of a law: their products with raw columns are those of white
     /// ones.
-    fn weighted(&self, law: usize, shapes: &[Arc<Candidate>]) -> Vec<Column> {
+    fn weighted(&self, law: usize, shapes: &[Arc<Candidate>]) -> Vec<HeadingColumn> {
         let mut columns = self.white(law, &shapes.iter().map(Arc::as_ref).collect::<Vec<_>>()).concat();
         for (record, values) in columns.iter_mut().flatten() {
             self.weights[law].apply_transposed(*record, values);
@@ -282,7 +284,7 @@ impl Search<'_> {
         let structure = self.structure[from.law].as_ref()?;
         let mut shapes = from.shapes.clone();
         let white = |own: &Candidate| self.white(from.law, &[own]).concat();
-        let mut columns: Vec<Vec<Column>> = shapes.iter().map(|own| white(own)).collect();
+        let mut columns: Vec<Vec<HeadingColumn>> = shapes.iter().map(|own| white(own)).collect();
         let mut lowest = structure.height_of(&columns.concat());
         let mut has_moved = false;
         for scale in [1.0, 0.5, 0.25] {
@@ -326,7 +328,7 @@ pub fn coefficients(shapes: &[Arc<Candidate>], step: &[f64]) -> Vec<Vec<f64>> {
 
 /// Σ e² of the headings, rad², that a structure leaves after a step, with shapes behind its unknowns.
 pub fn square_left(linear: &Linear, shapes: &[Arc<Candidate>], step: &[f64]) -> f64 {
-    let columns: Vec<&Column> = shapes.iter().flat_map(|own| &own.columns).collect();
+    let columns: Vec<&HeadingColumn> = shapes.iter().flat_map(|own| &own.columns).collect();
     let of = |(number, block): (usize, &HeadingSensitivities)| {
         let mut left = block.residual.clone();
         let mut take = |by: f64, column: &[f64]| left.iter_mut().zip(column).for_each(|(e, x)| *e -= by * x);

@@ -10,7 +10,8 @@ use ship::effects::{Effect, Formula};
 use trial::Trial;
 
 use super::conditioned::{Conditioned, LinearisedStructure};
-use super::dictionary::{Power, Signal, shapes};
+use super::dictionary::{Power, ShipSignal};
+use super::library::shapes;
 use super::*;
 use crate::base::Base;
 use crate::candidates::ship_time;
@@ -135,6 +136,7 @@ fn heights_are_those_of_dense_matrices() {
         integrated: 2,
         prior: vec![(0.0, 0.0); 2],
         sizes: vec![0.7],
+        least: 0.0,
     };
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let made = of_columns(time, residual.clone(), vec![0.0; rows]);
@@ -205,7 +207,7 @@ fn shapes_can_be_moved_and_typed() {
             assert!(back.is_some_and(|back| back.words([0.0, 300.0]) == shape.words([0.0, 300.0])), "{shape:?}");
         }
     }
-    let tug = Shape::Powers(Dependence::Heading, (Signal::Heading, Power::Positive), None);
+    let tug = Shape::Powers(Dependence::Heading, (ShipSignal::Heading, Power::Positive), None);
     assert_eq!(tug.formula().as_deref(), Some("c * max(psi, 0)"));
     assert_eq!(Shape::Pulse(91.0, 24.0).words([0.0, 300.0]), "moment from 91 to 115 s");
     assert_eq!(Shape::Pulse(91.0, 2.0).moved(1, -1.0, [300.0, 1.0]), None);

@@ -1,0 +1,75 @@
+//! Errors of the headings before and after, as a trace says them.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use ship::angle::to_deg;
+
+use crate::comparison::ReplayResult;
+use crate::replay_errors::HORIZONS;
+
+/// Errors on all records.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ErrorEntry {
+    /// Why the replay after is that before, where the structures are no nearer to the fitted records.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kept_base: Option<String>,
+    /// Records that were fitted.
+    pub identification: Vec<BeforeAfter>,
+    /// Records that were held out: nothing else in the document depends on them.
+    pub validation: Vec<BeforeAfter>,
+    /// Every record left out in turn, where there are several and none was held out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub leave_one_out: Vec<BeforeAfter>,
+}
+
+/// One record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct BeforeAfter {
+    /// Its file.
+    pub file: String,
+    /// The best first-order response.
+    pub before: ErrorsEntry,
+    /// The average of the structures.
+    pub after: ErrorsEntry,
+}
+
+/// Errors of one model on one record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ErrorsEntry {
+    /// Full replay.
+    pub heading_rmse_deg: f64,
+    /// Full replay, where the yaw rate was measured.
+    pub yaw_rate_rmse_deg_s: Option<f64>,
+    /// Mean absolute error of the overshoot angles.
+    pub overshoot_error_deg: Option<f64>,
+    /// Replays restarted every so many seconds.
+    pub horizon_rmse_deg: BTreeMap<String, Option<f64>>,
+    /// Share of the headings inside the 95 % band of the full replay.
+    pub band_coverage_95: Option<f64>,
+    /// Mean width of that band.
+    pub band_width_95_deg: Option<f64>,
+    /// Full replay with a rudder bias of the record fitted, where the record was not fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_own_bias_deg: Option<f64>,
+    /// The same with a moment of the record as a rudder angle: straight between five evenly spaced instants.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_own_moment_deg: Option<f64>,
+}
+
+impl From<&ReplayResult> for ErrorsEntry {
+    fn from(on: &ReplayResult) -> Self {
+        let errors = &on.errors;
+        let horizon = HORIZONS.iter().zip(errors.horizon);
+        Self {
+            heading_rmse_deg: to_deg(errors.heading),
+            yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
+            overshoot_error_deg: errors.overshoot.map(to_deg),
+            horizon_rmse_deg: horizon.map(|(length, error)| (format!("{length:.0}"), error.map(to_deg))).collect(),
+            band_coverage_95: on.coverage().map(|own| own.share()),
+            band_width_95_deg: on.width().map(to_deg),
+            with_own_bias_deg: errors.with_moment.map(|with| to_deg(with.bias)),
+            with_own_moment_deg: errors.with_moment.map(|with| to_deg(with.slow)),
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Every moment that is tried.
+
+use super::dictionary::{Dependence, Power, Shape, ShipSignal};
+
+/// Lags, as multiples of the unit of time of a ship.
+const DELAYS: [f64; 3] = [1.0, 2.0, 4.0];
+const MEMORIES: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
+
+/// Instants in a record.
+const INSTANTS: usize = 48;
+
+/// Lengths of moments that pass, as shares of the record; a squall is longer than a pulse by a factor.
+const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
+const SQUALL: f64 = 1.6;
+
+/// Lengths of ramps.
+const RAMPS: [f64; 3] = [0.08, 0.15, 0.3];
+
+/// Fewest rows in the shortest period of a shape.
+const ROWS_PER_CYCLE: f64 = 6.0;
+
+/// Every shape of a ship with the number of places at which its kind is tried, for records of which one lasts so long
+/// with rows so far apart; `unit` is the unit of the lags, all in s.
+pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
+    let mut all: Vec<(Shape, usize)> = of_state(unit).into_iter().map(|shape| (shape, 1)).collect();
+    all.extend([Shape::Trend(Power::Linear), Shape::Trend(Power::Square)].map(|shape| (shape, 1)));
+    all.extend([Shape::HeadingTrend, Shape::ResponseTrend].map(|shape| (shape, 1)));
+    for k in 2..INSTANTS - 1 {
+        let at = duration * k as f64 / INSTANTS as f64;
+        let changes = [Shape::ResponseChange(at), Shape::GainChange(at), Shape::TimeChange(at), Shape::DelayChange(at)];
+        all.push((Shape::Step(at), INSTANTS));
+        all.extend(changes.map(|shape| (shape, INSTANTS)));
+        all.extend(k.is_multiple_of(3).then_some((Shape::Bend(at), INSTANTS)));
+    }
+    for length in LENGTHS.map(|share| share * duration) {
+        let count = (2.0 * (duration - length) / length) as usize;
+        for k in 1..=count {
+            let at = (0.5 * k as f64 - 0.25) * length;
+            let both = [Shape::Pulse(at, length), Shape::Squall(at, SQUALL * length)];
+            all.extend(both.map(|shape| (shape, 2 * LENGTHS.len() * count)));
+        }
+    }
+    for share in RAMPS {
+        let count = ((0.85 - share) / 0.05) as usize;
+        let ramp = |k| Shape::Ramp((0.1 + 0.05 * k as f64) * duration, share * duration);
+        all.extend((0..=count).map(|k| (ramp(k), INSTANTS)));
+    }
+    let most = duration / (ROWS_PER_CYCLE * spacing);
+    let grid = |from: f64, to: f64, step: f64| -> Vec<f64> {
+        let count = ((to - from) / step).max(0.0) as usize;
+        (0..=count).map(|k| from + step * k as f64).filter(|cycles| *cycles < most).collect()
+    };
+    let periods = grid(1.5, 16.0, 0.33);
+    all.extend(periods.iter().map(|&cycles| (Shape::Period(cycles), periods.len())));
+    let repeated = grid(2.0, (most / 3.0).min(10.0), 0.15);
+    all.extend(repeated.iter().map(|&cycles| (Shape::Harmonics(cycles), repeated.len())));
+    let ends = grid(1.5, 14.0, 1.0);
+    for &from in &ends {
+        let others = ends.iter().filter(|to| **to != from);
+        all.extend(others.map(|&to| (Shape::Chirp(from, to), ends.len() * ends.len())));
+    }
+    all
+}
+
+/// Every shape of the motion of a ship.
+fn of_state(unit: f64) -> Vec<Shape> {
+    let mut all = Vec::new();
+    for signal in [ShipSignal::Heading, ShipSignal::Way, ShipSignal::YawRate, ShipSignal::Rudder] {
+        // r and δ themselves are the base.
+        let is_base = matches!(signal, ShipSignal::YawRate | ShipSignal::Rudder);
+        let powers = Power::ALL.into_iter().filter(|power| !is_base || *power != Power::Linear);
+        all.extend(powers.map(|power| Shape::Powers(signal.dependence(), (signal, power), None)));
+    }
+    let product =
+        |dependence, signal, power, other| Shape::Powers(dependence, (signal, power), Some((other, Power::Linear)));
+    let (heading, way) = (Dependence::Heading, Dependence::Way);
+    all.extend([
+        product(Dependence::YawRate, ShipSignal::YawRate, Power::Linear, ShipSignal::Rudder),
+        product(Dependence::Rudder, ShipSignal::YawRate, Power::Magnitude, ShipSignal::Rudder),
+        product(heading, ShipSignal::Heading, Power::Linear, ShipSignal::Rudder),
+        product(heading, ShipSignal::Heading, Power::Linear, ShipSignal::YawRate),
+        product(heading, ShipSignal::Heading, Power::Square, ShipSignal::YawRate),
+        product(heading, ShipSignal::Heading, Power::Square, ShipSignal::Rudder),
+        product(way, ShipSignal::Way, Power::Linear, ShipSignal::YawRate),
+        product(way, ShipSignal::Way, Power::Linear, ShipSignal::Rudder),
+        product(way, ShipSignal::Way, Power::Linear, ShipSignal::Heading),
+    ]);
+    all.extend(DELAYS.map(|lag| Shape::Delay(lag * unit)));
+    for lag in MEMORIES.map(|lag| lag * unit) {
+        all.extend([Shape::RudderMemory(lag), Shape::RateSquareMemory(lag), Shape::RudderSizeMemory(lag)]);
+    }
+    // A short memory of the yaw rate beside one of the rudder is the moment itself.
+    all.extend(MEMORIES[2..].iter().map(|lag| Shape::RateMemory(lag * unit)));
+    all.push(Shape::Hysteresis);
+    all
+}
