@@ -30,13 +30,13 @@ const SINGULAR: f64 = 1e-10;
 
 /// Least squares of a residual on what initial state and moment do to the heading of the base.
 #[derive(Debug, Clone)]
-struct Answers {
+struct MomentAnswers {
     /// Heading at the observed rows for a unit initial heading, a unit initial yaw rate, and unit moments.
     columns: DMatrix<f64>,
     inverse: DMatrix<f64>,
 }
 
-impl Answers {
+impl MomentAnswers {
     /// `None` where the rows are no more than the columns, or one of these is not finite.
     fn new(columns: DMatrix<f64>) -> Option<Self> {
         let scale = DVector::from_iterator(columns.ncols(), columns.column_iter().map(|column| column.norm()));
@@ -59,11 +59,11 @@ impl Answers {
     }
 }
 
-/// Answers of the base on one record: to a rudder bias, and to a slow moment.
+/// MomentAnswers of the base on one record: to a rudder bias, and to a slow moment.
 #[derive(Debug, Clone)]
 pub struct RecordMoment<'a> {
     record: &'a PreparedRecord,
-    answers: [Answers; 2],
+    answers: [MomentAnswers; 2],
 }
 
 impl<'a> RecordMoment<'a> {
@@ -72,7 +72,7 @@ impl<'a> RecordMoment<'a> {
         let slow = headings(record, base);
         let mut bias = slow.columns(0, 3).into_owned();
         bias.set_column(2, &slow.columns(2, INSTANTS).column_sum());
-        Some(Self { record, answers: [Answers::new(bias)?, Answers::new(slow)?] })
+        Some(Self { record, answers: [MomentAnswers::new(bias)?, MomentAnswers::new(slow)?] })
     }
 
     /// Errors of the base beside its replay without a moment.
@@ -87,7 +87,7 @@ impl<'a> RecordMoment<'a> {
     pub fn of_average(&self, average: &Average, plain: &Replay) -> MomentErrors {
         let mut record = self.record.clone();
         let (mut best, mut error, mut moment) = (plain.clone(), plain.rms(), [0.0; INSTANTS]);
-        let mut search = |answers: &Answers, replays: usize| {
+        let mut search = |answers: &MomentAnswers, replays: usize| {
             let mut share = 1.0;
             for _ in 0..replays {
                 let (step, left) = answers.of(&self.residual(&best));

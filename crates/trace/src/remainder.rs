@@ -91,7 +91,7 @@ impl Remainder {
         let is_large = !is_small && (after / before).sqrt() >= UNEXPLAINED;
         // In a calm nothing turns the ship at random.
         let is_calm = location.moment(rudder_errors).is_some() && trials.iter().all(Trial::is_calm);
-        let is_unexplained = is_large && (is_smooth || !is_chance || is_calm);
+        let is_unexplained = is_large && (is_smooth || !is_chance) || is_calm;
         let is_left = is_unexplained || location.is_located() || is_large && !holds;
         let signature = is_left.then(|| worst(identification, trials)).flatten();
         Self { holds, is_founded, is_unexplained, signature }

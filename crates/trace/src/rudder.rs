@@ -225,29 +225,9 @@ pub fn beside(fulls: Vec<Full>, problem: &FittedRecords, gain: f64, errors: &[Op
     kept
 }
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
-    use crate::testing::{TrialPlan, of_columns, record, ship};
-    use rand::{SeedableRng, rngs::ChaCha8Rng};
-    use rand_distr::{Distribution, Normal};
-
-    /// Strokes of 2.5 deg/s between ±10 deg, off the rows: times, s, and angles, rad.
-    pub(crate) fn strokes(rows: usize) -> (Vec<f64>, Vec<f64>) {
-        let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
-        let angle = |t: &f64| {
-            let laps = (t + 3.37) / 43.7;
-            let (lap, sign) = (43.7 * laps.fract(), if (laps as usize).is_multiple_of(2) { 1.0 } else { -1.0 });
-            from_deg(sign * (2.5 * lap - 10.0).min(10.0))
-        };
-        (time.clone(), time.iter().map(angle).collect())
-    }
-
-    /// The same with white noise of a standard deviation in degrees.
-    pub(crate) fn noisy(angle: &[f64], sd_deg: f64) -> Vec<f64> {
-        let mut generator = ChaCha8Rng::seed_from_u64(7);
-        let noise = Normal::new(0.0, from_deg(sd_deg)).expect("a standard deviation");
-        angle.iter().map(|own| own + noise.sample(&mut generator)).collect()
-    }
+    use crate::testing::{TrialPlan, noisy, of_columns, record, ship, strokes};
 
     fn trial_with(of_rudder: impl Fn(&[f64]) -> Vec<f64>) -> (Trial, Trial) {
         let clean = record(&ship(Vec::new()), TrialPlan::default());

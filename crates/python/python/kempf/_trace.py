@@ -102,7 +102,7 @@ class TraceResult(Result):
 
     #: The result in one sentence.
     headline: str
-    #: ``"clean"``, ``"traced"`` or ``"unexplained"``.
+    #: ``"clean"``, ``"disturbed"``, ``"traced"``, ``"located"`` or ``"unexplained"``.
     verdict: str
     #: K averaged over the structures, 1/s.
     K_per_s: Quantity

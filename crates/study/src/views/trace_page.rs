@@ -129,7 +129,8 @@ const ERRORS: &str = "*Heading*: the recorded rudder replayed over the whole rec
 const EVIDENCE: &str = "The probability of an effect is the weight of all structures that have it. ΔBIC is −2 log of \
                         the ratio of the evidence with the effect to that without: negative where the effect helps. \
                         An effect is named where its probability, or that of the group it cannot be told from, is \
-                        high enough.";
+                        high enough, its size is none by chance, and no moment of another shape explains the records \
+                        better in its place.";
 
 const HULLS: &str = "Hulls of three degrees of freedom, fitted about what the dimensions of the ship say (`mmg`) or what \
                      hulls have (`quadratic`, `cubic`): their coefficients without dimension that are one standard \

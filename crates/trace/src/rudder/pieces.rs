@@ -181,7 +181,7 @@ pub fn pieces(time: &[f64], angle: &[f64], sd: f64) -> Vec<RudderPiece> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rudder::tests::{noisy, strokes};
+    use crate::testing::{noisy, strokes};
 
     #[test]
     fn rests_and_strokes_are_those_of_the_gear() {
