@@ -4,6 +4,7 @@
 
 mod bootstrap;
 mod groups;
+mod logistic;
 mod moments;
 mod sample;
 mod statistic;
@@ -11,6 +12,7 @@ mod sums;
 
 pub use bootstrap::{RESAMPLES, Resamples, SEED};
 pub use groups::{distinct, grouped};
+pub use logistic::{SizeTrials, size_of_share};
 pub use moments::Moments;
 pub use sample::{ErrorSample, Ordered};
 pub use statistic::{Statistic, Z95, share};

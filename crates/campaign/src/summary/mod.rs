@@ -4,12 +4,14 @@
 //! Rows are seen once, in their order. Only the sums of the present cell and those over all cells are kept, so memory
 //! does not grow with the number of replicates.
 
+mod blind_spots;
 mod detail;
 mod predictions;
 mod record;
 mod tally;
 mod tracing;
 
+pub use blind_spots::{BlindSpot, axis_of_sizes, blind_spots};
 pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
 pub use predictions::{CriterionTally, PredictionSummary};
 pub use record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};

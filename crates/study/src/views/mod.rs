@@ -3,6 +3,7 @@
 pub mod bench_figures;
 pub mod bench_page;
 pub mod bench_tables;
+pub mod blind_spots_table;
 pub mod charts;
 pub mod coverage_table;
 pub mod curve_tables;

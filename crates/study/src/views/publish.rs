@@ -5,7 +5,7 @@ use std::io::Write as _;
 use campaign::disk;
 use campaign::folder::ResultFolder;
 use campaign::store::StoredStudy;
-use campaign::summary::{Summary, Tally};
+use campaign::summary::{Summary, Tally, blind_spots};
 use rayon::prelude::*;
 use report::{Table, Theme};
 use scenario::failure::{Failure, OnPath};
@@ -13,7 +13,7 @@ use scenario::failure::{Failure, OnPath};
 use super::page_files::{KEY_FIGURE, REPORT, write_page};
 use super::study_figures::{self, FigurePlace};
 use super::study_page::{on_screen, page};
-use super::{coverage_table, curve_tables, tables, tracing_table};
+use super::{blind_spots_table, coverage_table, curve_tables, tables, tracing_table};
 use crate::documents::{self, answers::StudyAnswer};
 use crate::options::{Common, FigureChoice, Format};
 use crate::screen;
@@ -76,6 +76,10 @@ pub fn put(
             "reliability.csv",
             tracing_table::reliability(&study_figures::one_trace(design, &summary)).to_csv(),
         )?;
+        let spots = blind_spots(&summary.tracing, design);
+        if !spots.is_empty() {
+            folder.write("blind-spots.csv", blind_spots_table::table(&spots, design).to_csv())?;
+        }
     }
     if !summary.predictions.is_empty() {
         write_csv(folder, "predictions.csv", &summary.predictions, |lines| coverage_table::table(lines, design))?;

@@ -3,12 +3,12 @@
 use campaign::manifest::Manifest;
 use campaign::showcase::Showcase;
 use campaign::store::StoredStudy;
-use campaign::summary::Summary;
+use campaign::summary::{Summary, blind_spots};
 use report::markdown::text;
 use report::{Page, Table, number};
 
 use super::study_figures::{FigurePlace, StudyFigure};
-use super::{coverage_table, tables, tracing_table};
+use super::{blind_spots_table, coverage_table, tables, tracing_table};
 
 /// Cells whose lines go on the screen; more are in the files.
 const SHOWN_CELLS: usize = 12;
@@ -95,6 +95,11 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
              any other alone. Intervals are Wilson's, 95 %.",
             campaign::summary::CLEAR
         ));
+        let spots = blind_spots(&summary.tracing, design);
+        if !spots.is_empty() {
+            page.say(blind_spots_table::READING);
+            page.table(blind_spots_table::table(&spots, design));
+        }
         page.figures(at(&|place| place == FigurePlace::Traces));
         page.table(tracing_table::table(&summary.tracing, summary, design, false));
     }

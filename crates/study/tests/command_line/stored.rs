@@ -297,3 +297,45 @@ fn coverage_of_predictions_is_drawn() {
     assert_eq!(desk.text("out/criteria.csv"), criteria);
     assert_eq!(serde_json::from_str::<Value>(&desk.text("out/cells.json")).expect("it is JSON"), whole);
 }
+
+/// Where a sweep has sizes of an effect, the size from which on it is named is a table of its own.
+#[test]
+fn sizes_of_effects_make_a_table_of_blind_spots() {
+    let desk = Desk::new();
+    let wind = |size: f64| {
+        let set = format!("effect = [{{ wind_moment = {{ rudder-deg = {size:?}, from-deg = 60.0 }} }}]");
+        format!("{{ label = \"wind {size}°\", value = {size:?}, set = {{ {set} }} }}")
+    };
+    let points = [0.01, 3.0].map(wind).join(", ");
+    let study = format!(
+        r#"question = "How large must a wind be?"
+seed = 5
+replicates = 2
+ship.yukun = {{}}
+manoeuvre.zig-zag = {{ rudder-deg = 10.0, heading-deg = 10.0 }}
+recording = {{ sampling-s = 1.0, duration-s = 200.0 }}
+[[sweep]]
+name = "missing"
+points = [{{ label = "nothing", set = {{}} }}, {points}]
+[[sweep]]
+key = "sensor.heading-noise-deg"
+values = [0.1, 0.2]
+[[identifier]]
+trace.menu = ["wind_moment"]
+"#
+    );
+    desk.file("study.toml", &study);
+    desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
+    let table = desk.text("out/blind-spots.csv");
+    let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    let [head, fine, coarse] = lines.as_slice() else { panic!("an effect at two noises: {table}") };
+    assert!(head[0] == "effect" && head[1].contains("noise") && head[2] == "unit", "{table}");
+    assert!(fine[..7] == ["wind", "0.1", "°", "0.01", "3", "4", "100"] && coarse[1] == "0.2", "{table}");
+    let size: f64 = fine[7].parse().expect("between the sizes");
+    assert!((0.01..3.0).contains(&size), "{table}");
+    assert!(desk.text("out/report.md").contains("named in 90 % from"));
+    // Labels without their values name no sizes.
+    desk.file("study.toml", study.replace("wind 3°", "much wind").replace("wind 0.01°", "little wind"));
+    desk.run(&["study.toml", "--out", "none", "--quiet"]).is_done();
+    assert!(desk.path("none/tracing.csv").exists() && !desk.path("none/blind-spots.csv").exists());
+}

@@ -1,0 +1,130 @@
+//! The size from which on a missing effect is named, where a study has sizes of it.
+
+use super::tracing::TraceSummary;
+use crate::design::Design;
+use crate::statistics::{SizeTrials, Statistic, grouped, size_of_share};
+
+/// Share of the trials in which an effect has to be named.
+pub const NAMED: f64 = 0.9;
+
+/// The size from which on a trace names an effect, under one set of conditions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlindSpot {
+    /// What the labels call the effect.
+    pub effect: String,
+    /// Unit of its sizes.
+    pub unit: String,
+    /// Labels of the other axes.
+    pub place: Vec<String>,
+    /// Index of the method that is the trace.
+    pub method: usize,
+    /// Every size with its trials and those that name the effect, as the power figure counts them.
+    pub tried: Vec<SizeTrials>,
+    /// The size named in 90 % of the trials; what lies beyond the sizes tried is extrapolated.
+    pub size: Statistic,
+}
+
+impl BlindSpot {
+    /// The smallest and the largest size that was tried.
+    pub fn ends(&self) -> [f64; 2] {
+        let sizes = || self.tried.iter().map(|own| own.size);
+        [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)]
+    }
+}
+
+/// The axis of effects and their sizes: the first that has a label with its value and words before it.
+pub fn axis_of_sizes(design: &Design) -> Option<usize> {
+    let has_size = |axis: &usize| {
+        design
+            .cells
+            .iter()
+            .any(|cell| !cell.missing.is_empty() && parts(&cell.labels[*axis], cell.values[*axis]).is_some())
+    };
+    (0..design.axes.len()).find(has_size)
+}
+
+/// The sizes from which on effects are named, in the order of the cells; empty where a study has no sizes.
+pub fn blind_spots(lines: &[TraceSummary], design: &Design) -> Vec<BlindSpot> {
+    let Some(axis) = axis_of_sizes(design) else { return Vec::new() };
+    let sized = lines.iter().filter(|line| line.missing.len() == 1 && !line.is_hull()).filter_map(|line| {
+        let cell = &design.cells[line.cell];
+        let (effect, size, unit) = parts(&cell.labels[axis], cell.values[axis])?;
+        let mut place = cell.labels.clone();
+        place.remove(axis);
+        let own = SizeTrials { size, trials: line.trials, seen: line.complete };
+        Some(((effect, unit, place, line.method, &line.missing), own))
+    });
+    let groups = grouped(sized, |(kind, _)| kind.clone());
+    let spot = |((effect, unit, place, method, _), own): (_, Vec<(_, SizeTrials)>)| {
+        let tried: Vec<SizeTrials> = own.into_iter().map(|(_, own)| own).collect();
+        let size = size_of_share(&tried, NAMED)?;
+        Some(BlindSpot { effect, unit, place, method, tried, size })
+    };
+    groups.into_iter().filter_map(spot).collect()
+}
+
+/// The effect, its size and the unit in a label such as `wind 0.7°` of a point with the value 0.7.
+fn parts(label: &str, value: Option<f64>) -> Option<(String, f64, String)> {
+    let size = value.filter(|size| *size > 0.0)?;
+    let (effect, unit) = label.split_once(&format!(" {size}"))?;
+    let is_whole = !unit.starts_with(|next: char| next.is_ascii_digit() || next == '.');
+    (is_whole && !effect.is_empty()).then(|| (effect.to_owned(), size, unit.trim_start().to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::CellFacts;
+
+    #[test]
+    fn a_label_with_its_value_is_an_effect_with_a_size() {
+        let of = |label: &str, value| parts(label, Some(value)).map(|(effect, _, unit)| (effect, unit));
+        let named = |effect: &str, unit: &str| Some((effect.to_owned(), unit.to_owned()));
+        assert_eq!(of("wind 0.7°", 0.7), named("wind", "°"));
+        assert_eq!(of("second order, T₂ 2 s", 2.0), named("second order, T₂", "s"));
+        assert_eq!(of("wave 0.5", 0.5), named("wave", ""));
+        assert_eq!(
+            [of("0.1", 0.1), of("wind 0.75°", 0.7), of("wind 20°", 2.0), of("calm 0", 0.0)],
+            [const { None }; 4]
+        );
+        assert_eq!(parts("wind 0.7°", None), None);
+    }
+
+    /// Two effects on two ships: one is named from 1 on, the other never.
+    #[test]
+    fn every_effect_has_its_own_size() {
+        let sizes = [0.25, 0.5, 1.0, 2.0];
+        let cells = |label: &str, id: &str| {
+            let cell = |size: &f64, ship: &str| CellFacts {
+                labels: vec![ship.into(), format!("{label} {size}°")],
+                values: vec![None, Some(*size)],
+                missing: vec![id.to_owned()],
+                ..CellFacts::default()
+            };
+            sizes.iter().flat_map(|size| ["tanker", "ferry"].map(|ship| cell(size, ship))).collect::<Vec<_>>()
+        };
+        let nothing = ["tanker", "ferry"].map(|ship| CellFacts {
+            labels: vec![ship.into(), "nothing".into()],
+            values: vec![None, None],
+            ..CellFacts::default()
+        });
+        let axes = vec!["ship".into(), "missing".into()];
+        let cells: Vec<_> =
+            nothing.into_iter().chain(cells("wind", "wind_moment")).chain(cells("waves", "wave_yaw")).collect();
+        let design = Design { axes, cells, ..Design::default() };
+        let line = |cell: usize| TraceSummary {
+            missing: design.cells[cell].missing.clone(),
+            trials: 40,
+            complete: if (6..10).contains(&cell) { 40 } else { 0 },
+            cell,
+            ..TraceSummary::default()
+        };
+        let lines: Vec<TraceSummary> = (0..design.cells.len()).map(line).collect();
+        let spots = blind_spots(&lines, &design);
+        let names: Vec<String> = spots.iter().map(|own| format!("{} {}", own.effect, own.place.join(", "))).collect();
+        assert_eq!(names, ["wind tanker", "wind ferry", "waves tanker", "waves ferry"]);
+        assert!(spots.iter().all(|own| own.ends() == [0.25, 2.0] && own.unit == "°"));
+        assert!((0.5..1.0).contains(&spots[0].size.value) && spots[2].size.value > 2.0, "{spots:?}");
+        assert_eq!(axis_of_sizes(&Design::default()), None);
+    }
+}

@@ -1,0 +1,48 @@
+//! The table of the sizes from which on effects are named: `blind-spots.csv`, and in the report.
+
+use report::number::{fixed, significant};
+use report::{Table, TableColumn};
+
+use super::tracing_table::has_several;
+use campaign::design::Design;
+use campaign::summary::{BlindSpot, axis_of_sizes};
+
+/// What stands over the table in the report.
+pub const READING: &str = "The size of an effect at which the trace names it (itself or its group) in 90 % of the trials, by a \
+                           logistic regression on the logarithm of the size, with its 95 % interval by profile likelihood. \
+                           What lies beyond the sizes tried is given as more or less than the last of them; *at the \
+                           largest*: named at the largest size.";
+
+/// A line for every effect with sizes, at every place of the other axes.
+pub fn table(spots: &[BlindSpot], design: &Design) -> Table {
+    let of_sizes = axis_of_sizes(design);
+    let other_axes = design.axes.iter().enumerate().filter(|(axis, _)| Some(*axis) != of_sizes);
+    let several = has_several(design);
+    let mut columns = Vec::from([TableColumn::left("effect")]);
+    columns.extend(other_axes.map(|(_, name)| TableColumn::left(name)));
+    columns.extend(several.then(|| TableColumn::left("method")));
+    columns.extend(TableColumn::all(
+        "unit | >smallest | >largest | >trials | >at the largest [%] | >named in 90 % from | >low | >high",
+    ));
+    let mut table = Table::new(columns);
+    for spot in spots {
+        let [smallest, largest] = spot.ends();
+        let within = |size: f64| match size {
+            size if size > largest => format!("more than {largest}"),
+            size if size < smallest => format!("less than {smallest}"),
+            size => significant(size, 3),
+        };
+        let at_largest = spot.tried.iter().filter(|own| own.size == largest);
+        let [named, of] = at_largest.fold([0, 0], |[named, of], own| [named + own.seen, of + own.trials]);
+        let mut cells = vec![spot.effect.clone()];
+        cells.extend(spot.place.iter().cloned());
+        cells.extend(several.then(|| design.methods[spot.method].label.clone()));
+        let trials: u64 = spot.tried.iter().map(|own| own.trials).sum();
+        cells.extend([spot.unit.clone(), smallest.to_string(), largest.to_string(), trials.to_string()]);
+        cells.push(fixed(100.0 * named as f64 / of as f64, 0));
+        let [low, high] = spot.size.ci95.unwrap_or([0.0, f64::INFINITY]);
+        cells.extend([spot.size.value, low, high].map(within));
+        table.push(cells);
+    }
+    table
+}
