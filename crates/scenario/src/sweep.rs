@@ -55,7 +55,7 @@ struct RangeWire {
 struct PointWire {
     /// What it is called.
     label: String,
-    /// Where it lies on an axis of numbers; of an effect its size, which the label has, too: `wind 0.7°`.
+    /// Where it lies on an axis of numbers; of an effect its size, which the label has, too (wind 0.7°).
     value: Option<f64>,
     /// Dotted keys and their values.
     #[schemars(with = "serde_json::Map<String, serde_json::Value>")]

@@ -1,6 +1,6 @@
 //! The size from which on something is seen in a share of trials: a logistic regression on the logarithm of the size.
 
-use super::Statistic;
+use super::statistic::Statistic;
 
 /// Trials of one size.
 #[derive(Debug, Clone, Copy, PartialEq)]
