@@ -166,21 +166,14 @@ fn programs() -> Vec<(String, Option<ProgramRevision>)> {
     names.iter().map(|name| (name.clone(), program(name))).collect()
 }
 
-/// What may be of another revision: times, which are measured on a machine that does nothing beside, and what a later
-/// revision tells otherwise: all that is made with fitted hulls, and a warning of `yukun` that has other words.
-const APART: [&str; 5] = ["measured", "performance", "predict-hulls", "predicted", "yukun"];
-
-/// All was made by one version and, but for these, by one revision of it, whose source is in the repository.
+/// Every folder was made by one version and a revision of it whose source is in the repository.
 #[test]
-fn published_results_are_of_one_program() {
+fn published_results_are_of_one_version() {
     let programs = programs();
     let (_, first) = &programs[0];
-    assert!(first.as_ref().is_some_and(|first| !first.git_dirty && first.git_revision.is_some()), "{first:?}");
-    let is_same = |name: &str, program: &Option<ProgramRevision>| match program.as_ref().zip(first.as_ref()) {
-        Some((own, first)) if APART.contains(&name) => own.version == first.version && !own.git_dirty,
-        _ => program == first,
-    };
-    let others: Vec<_> = programs.iter().filter(|(name, program)| !is_same(name, program)).collect();
+    let version = first.as_ref().map(|first| &first.version);
+    let is_clean = |own: &ProgramRevision| Some(&own.version) == version && !own.git_dirty && own.git_revision.is_some();
+    let others: Vec<_> = programs.iter().filter(|(_, program)| !program.as_ref().is_some_and(is_clean)).collect();
     assert!(others.is_empty(), "not made by {first:?}; run `study publish`: {others:?}");
 }
 
