@@ -172,7 +172,8 @@ fn published_results_are_of_one_version() {
     let programs = programs();
     let (_, first) = &programs[0];
     let version = first.as_ref().map(|first| &first.version);
-    let is_clean = |own: &ProgramRevision| Some(&own.version) == version && !own.git_dirty && own.git_revision.is_some();
+    let is_clean =
+        |own: &ProgramRevision| Some(&own.version) == version && !own.git_dirty && own.git_revision.is_some();
     let others: Vec<_> = programs.iter().filter(|(_, program)| !program.as_ref().is_some_and(is_clean)).collect();
     assert!(others.is_empty(), "not made by {first:?}; run `study publish`: {others:?}");
 }

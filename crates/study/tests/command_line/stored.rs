@@ -306,14 +306,15 @@ fn sizes_of_effects_make_a_table_of_blind_spots() {
         let set = format!("effect = [{{ wind_moment = {{ rudder-deg = {size:?}, from-deg = 60.0 }} }}]");
         format!("{{ label = \"wind {size}°\", value = {size:?}, set = {{ {set} }} }}")
     };
-    let points = [0.01, 3.0].map(wind).join(", ");
+    let points = [0.01, 2.0].map(wind).join(", ");
     let study = format!(
         r#"question = "How large must a wind be?"
 seed = 5
 replicates = 2
 ship.yukun = {{}}
 manoeuvre.zig-zag = {{ rudder-deg = 10.0, heading-deg = 10.0 }}
-recording = {{ sampling-s = 1.0, duration-s = 200.0 }}
+steering-gear = {{ rate-deg-s = 2.5 }}
+recording = {{ sampling-s = 1.0, duration-s = 300.0 }}
 [[sweep]]
 name = "missing"
 points = [{{ label = "nothing", set = {{}} }}, {points}]
@@ -330,12 +331,12 @@ trace.menu = ["wind_moment"]
     let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     let [head, fine, coarse] = lines.as_slice() else { panic!("an effect at two noises: {table}") };
     assert!(head[0] == "effect" && head[1].contains("noise") && head[2] == "unit", "{table}");
-    assert!(fine[..7] == ["wind", "0.1", "°", "0.01", "3", "4", "100"] && coarse[1] == "0.2", "{table}");
+    assert!(fine[..7] == ["wind", "0.1", "°", "0.01", "2", "4", "100"] && coarse[1] == "0.2", "{table}");
     let size: f64 = fine[7].parse().expect("between the sizes");
-    assert!((0.01..3.0).contains(&size), "{table}");
+    assert!((0.01..2.0).contains(&size), "{table}");
     assert!(desk.text("out/report.md").contains("named in 90 % from"));
     // Labels without their values name no sizes.
-    desk.file("study.toml", study.replace("wind 3°", "much wind").replace("wind 0.01°", "little wind"));
+    desk.file("study.toml", study.replace("wind 2°", "much wind").replace("wind 0.01°", "little wind"));
     desk.run(&["study.toml", "--out", "none", "--quiet"]).is_done();
     assert!(desk.path("none/tracing.csv").exists() && !desk.path("none/blind-spots.csv").exists());
 }

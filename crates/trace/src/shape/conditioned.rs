@@ -33,6 +33,17 @@ pub struct LinearisedStructure {
 }
 
 impl LinearisedStructure {
+    /// Squares of the unknowns that are integrated out, under white noise, with what is expected of them.
+    fn squares(&self, scale: &[f64]) -> Vec<f64> {
+        let mut squares: Vec<f64> = self.prior.iter().map(|(precision, _)| *precision).collect();
+        for (block, scale) in self.linear.blocks.iter().zip(scale) {
+            for (unknown, column) in block.columns.iter().filter(|(unknown, _)| *unknown < self.integrated) {
+                squares[*unknown] += scale * scale * dot(column, column);
+            }
+        }
+        squares
+    }
+
     /// Number of headings.
     pub fn rows(&self) -> usize {
         self.linear.blocks.iter().map(|block| block.residual.len()).sum()
@@ -110,7 +121,8 @@ impl Conditioned {
         let log_variance: f64 = weights_rows
             .map(|((own, scale), block)| own.log_variance - 2.0 * block.residual.len() as f64 * scale.ln())
             .sum();
-        let volume: f64 = (0..structure.integrated).map(|k| 2.0 * factor[k][k].ln()).sum();
+        let squares = structure.squares(&weights.scale);
+        let volume: f64 = (0..structure.integrated).map(|k| 2.0 * factor[k][k].ln() - squares[k].ln()).sum();
         let fixed = log_variance + volume + law_freedom as f64 * log_n;
         let (paid, least) = (Vec::new(), structure.least);
         let mut all = Self { blocks, factor, solution, paid, square, fixed, freedom, log_n, least };

@@ -112,7 +112,8 @@ impl<'a> StructurePoint<'a> {
 
     /// Least variance of the white noise of a row over that of the records, in the record where it is largest.
     fn least(&self) -> f64 {
-        let floors = law::floors(self.problem, self.theta[1]);
+        // That of any ship of this length and speed: the same for every structure.
+        let floors = law::floors(self.problem, self.problem.time.powi(-2));
         floors.iter().zip(&self.sd).map(|(floor, sd)| floor / (sd * sd)).fold(0.0, f64::max)
     }
 

@@ -160,8 +160,9 @@ fn heights_are_those_of_dense_matrices() {
             let c = (step[k] + away) * alone.norm() + later / alone.norm();
             log_n.max((c * c / variance).ln_1p()) + 1.0
         };
+        let sizes: f64 = (0..2).map(|k| x.column(k).norm_squared().ln()).sum();
         let paid = price(2, 0.7) + if count > 3 { price(3, 0.0) } else { 0.0 };
-        freedom * variance.ln() - 2.0 * rows as f64 * 10f64.ln() + integrated.ln() + log_n + paid
+        freedom * variance.ln() - 2.0 * rows as f64 * 10f64.ln() + integrated.ln() - sizes + log_n + paid
     };
     let own = Conditioned::new(&structure, &weights, 1).expect("independent");
     assert!((own.height() - dense(3)).abs() < 1e-8, "{} {}", own.height(), dense(3));
