@@ -289,7 +289,7 @@ fn effects_can_be_asked_for_and_excluded() {
     };
     let with = effects("with/trace.json");
     assert!(["speed_loss", "moment_drift"].iter().all(|id| with.contains(&((*id).to_owned(), true))), "{with:?}");
-    // Beside effects that are not there the delay of this ship has its name, or is located in the history of the rudder.
+    // Beside effects that are not there the delay has its name, or is located in the history of the rudder.
     let located = desk.json("with/trace.json")["located"].to_string();
     let is_seen = with.contains(&("second_order".to_owned(), false)) || located.contains("history of the rudder");
     assert!(is_seen, "{with:?} {located}");
