@@ -3,9 +3,6 @@
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
 use crate::fit::{Effort, FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::model::{Term, TermName};
@@ -13,7 +10,7 @@ use crate::naming::{EffectNaming, named};
 use crate::rudder::RudderError;
 use crate::settings::Settings;
 use crate::shape::{self, ALIKE, BELIEVED, MomentSize, ShapeAnalysis};
-use crate::structures::Structures;
+use crate::structures::{Structures, by_chance};
 
 /// Probability of a size as far from neutral by chance, above which an effect is not named.
 const BY_CHANCE: f64 = 0.05;
@@ -157,11 +154,7 @@ impl NamedStructures<'_> {
             .filter(|((_, prior), _)| prior.is_fitted() && !prior.is_shape)
             .map(|((place, _), neutral)| (place, fit.theta[place] - neutral))
             .collect();
-        let all = fit.covariance()?;
-        let covariance = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| all[(sizes[i].0, sizes[j].0)]);
-        let away = DVector::from_iterator(sizes.len(), sizes.iter().map(|(_, away)| *away));
-        let square = away.dot(&covariance.cholesky()?.solve(&away));
-        Some(ChiSquared::new(sizes.len() as f64).ok()?.sf(square))
+        by_chance(&sizes, &fit.covariance()?)
     }
 
     /// What some named effects leave.

@@ -59,7 +59,7 @@ impl MomentAnswers {
     }
 }
 
-/// MomentAnswers of the base on one record: to a rudder bias, and to a slow moment.
+/// Answers of the base on one record: to a rudder bias, and to a slow moment.
 #[derive(Debug, Clone)]
 pub struct RecordMoment<'a> {
     record: &'a PreparedRecord,

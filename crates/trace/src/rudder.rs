@@ -24,7 +24,7 @@ use estimation::statistics::median;
 use identify::{Identifier, maximum_likelihood};
 use rayon::prelude::*;
 use ship::angle::{from_deg, to_deg};
-use trial::{Channel, Columns, Trial};
+use trial::Trial;
 
 use crate::fit::FittedRecords;
 use crate::full::Full;
@@ -89,7 +89,7 @@ fn smoothed(trial: &Trial) -> Option<(Trial, RudderError)> {
     let path: Vec<f64> =
         pieces.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t))).collect();
     let error = error_of(time, (angle, &path), &pieces, rounding)?;
-    let clean = with_rudder(trial, path)?;
+    let clean = trial.clone().with_rudder(path)?;
     let is_nearer = log_likelihood(trial)? > log_likelihood(&clean)? + BELIEVED;
     match (is_nearer, quantum > 0.0) {
         (false, _) => Some((clean, error)),
@@ -160,22 +160,6 @@ fn error_of(
     }
     let error = RudderError { sd: variance.sqrt().max(rounding), intensity: grown / (time[last] - time[0]) };
     (grown > 0.0).then_some(error)
-}
-
-/// The record with another rudder.
-fn with_rudder(trial: &Trial, rudder: Vec<f64>) -> Option<Trial> {
-    let is_read = |channel: Channel| channel != Channel::Heading || !trial.heading_from_yaw_rate();
-    let kept = trial.channels().filter(|(channel, _)| is_read(*channel));
-    let mut channels: std::collections::BTreeMap<_, _> = kept.map(|(own, values)| (own, values.to_vec())).collect();
-    channels.insert(Channel::Rudder, rudder);
-    let columns = Columns { time: trial.time().to_vec(), channels, unknown: trial.unknown().to_vec() };
-    let other = Trial::new(trial.name(), trial.origin().clone(), columns).ok()?;
-    let other = other.with_noise(trial.noise()).with_conditions(trial.conditions().clone());
-    let other = other.with_rejected(trial.rejected().to_vec());
-    Some(match trial.particulars() {
-        Some(particulars) => other.with_particulars(particulars),
-        None => other,
-    })
 }
 
 /// Log of the largest likelihood of a record with a random moment beside its rudder.

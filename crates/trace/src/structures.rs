@@ -20,7 +20,7 @@ use crate::weights::Weights;
 use quadratic::{HOPELESS, Quadratic};
 use result::names;
 
-pub use quadratic::Support;
+pub use quadratic::{Support, by_chance};
 pub use result::{Structures, WeighedStructure};
 
 /// Structures whose fit is driven to the end.

@@ -57,7 +57,7 @@ impl RudderPiece {
     }
 }
 
-/// PieceSums of the rows before a row: of 1 (t t²) and δ (δ t, δ²).
+/// Sums of the rows before a row: of 1 (t t²) and δ (δ t, δ²).
 type PieceSums = [f64; 5];
 
 /// Squares that a level and a line leave of the rows between two sums.

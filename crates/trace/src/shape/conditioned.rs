@@ -70,7 +70,7 @@ pub struct Conditioned {
     least: f64,
 }
 
-/// ColumnProducts of columns behind the unknowns of a structure: with these, with each other, and with the residual.
+/// Products of columns behind the unknowns of a structure: with these, with each other, and with the residual.
 #[derive(Debug, Clone)]
 pub struct ColumnProducts {
     /// With the unknowns, column by column.
@@ -114,7 +114,8 @@ impl Conditioned {
             gradient[k] -= precision * beside;
             square += precision * beside * beside;
         }
-        let (factor, solution) = (factor(&matrix, &[])?, Vec::new());
+        let factor = factor(&matrix, &[])?;
+        let solution = solved(&factor, &gradient, &[]);
         let rows = structure.rows() as f64;
         let (freedom, log_n) = (rows - structure.integrated as f64, rows.ln());
         let weights_rows = weights.whiteners.iter().zip(&weights.scale).zip(&blocks);
@@ -125,9 +126,8 @@ impl Conditioned {
         let volume: f64 = (0..structure.integrated).map(|k| 2.0 * factor[k][k].ln() - squares[k].ln()).sum();
         let fixed = log_variance + volume + law_freedom as f64 * log_n;
         let (paid, least) = (Vec::new(), structure.least);
+        square -= dot(&solution, &solution);
         let mut all = Self { blocks, factor, solution, paid, square, fixed, freedom, log_n, least };
-        all.solution = solved(&all.factor, &gradient);
-        all.square -= dot(&all.solution, &all.solution);
         all.paid = (structure.integrated..count)
             .map(|k| {
                 let sizes = structure.sizes.iter().enumerate().skip(k - structure.integrated);
@@ -177,7 +177,7 @@ impl Conditioned {
         Some(next)
     }
 
-    /// ColumnProducts of white columns with the unknowns, with each other, and with the residual.
+    /// Products of white columns with the unknowns, with each other, and with the residual.
     pub fn products(&self, columns: &[HeadingColumn]) -> ColumnProducts {
         let count = self.factor.len();
         let mut all = ColumnProducts { cross: Vec::new(), gram: Vec::new(), gradient: Vec::new() };
@@ -203,14 +203,9 @@ impl Conditioned {
 
     /// Rows of the factor, and of its solution, for columns behind all others.
     fn extension(&self, products: &ColumnProducts) -> Option<Extension> {
-        let count = self.factor.len();
         let rows = products.cross.iter().zip(&products.gram).map(|(cross, gram)| [cross.as_slice(), gram].concat());
         let factor = factor(&rows.collect::<Vec<_>>(), &self.factor)?;
-        let mut solution: Vec<f64> = Vec::with_capacity(factor.len());
-        for (k, row) in factor.iter().enumerate() {
-            let before = dot(&row[..count], &self.solution) + dot(&row[count..count + k], &solution);
-            solution.push((products.gradient[k] - before) / row[count + k]);
-        }
+        let solution = solved(&factor, &products.gradient, &self.solution);
         Some(Extension { factor, solution })
     }
 
@@ -266,11 +261,13 @@ fn factor(matrix: &[Vec<f64>], known: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     Some(rows)
 }
 
-/// L⁻¹ of a right side.
-fn solved(factor: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
+/// L⁻¹ of a right side in the rows of a lower factor behind those of a `known` solution.
+fn solved(factor: &[Vec<f64>], right: &[f64], known: &[f64]) -> Vec<f64> {
+    let count = known.len();
     let mut solution: Vec<f64> = Vec::with_capacity(right.len());
     for (k, row) in factor.iter().enumerate() {
-        solution.push((right[k] - dot(&row[..k], &solution)) / row[k]);
+        let before = dot(&row[..count], known) + dot(&row[count..count + k], &solution);
+        solution.push((right[k] - before) / row[count + k]);
     }
     solution
 }

@@ -100,14 +100,14 @@ pub fn tried(laws: &[RandomLaw], best: usize) -> Vec<usize> {
     let kind = |law: &RandomLaw| law.colour.wander.map(|(kind, _)| kind);
     let steps = |one: f64, other: f64, step: f64| {
         let count = (one / other).log10() / step;
-        (count > -0.01 && (count - count.round()).abs() < 0.01).then_some(())
+        count > -0.01 && (count - count.round()).abs() < 0.01
     };
     let is_tried = |(place, law): (usize, &RandomLaw)| {
         let is_weaker = law.size > 0.0
             && kind(law) == kind(&laws[best])
             && law.colour.waves.map(|sea| sea.frequency) == laws[best].colour.waves.map(|sea| sea.frequency)
-            && steps(laws[best].size, law.size, 0.5).is_some();
-        let is_walk = kind(law) == Some(CorrelatedNoise::Walk) && steps(1e9, law.size, 1.0).is_some();
+            && steps(laws[best].size, law.size, 0.5);
+        let is_walk = kind(law) == Some(CorrelatedNoise::Walk) && steps(1e9, law.size, 1.0);
         let is_compass = kind(law) == Some(CorrelatedNoise::Compass(1)) && (law.size - 1.0).abs() < 0.01;
         (place == 0 || place == best || is_weaker || is_walk || is_compass).then_some(place)
     };

@@ -201,7 +201,7 @@ impl<'a> Stand<'a> {
         Some(Self { point, motions, linearised, laws, weights, structure, height, law })
     }
 
-    /// −2 log p of shapes beside a law, of its own weights.
+    /// −2 log p under another law.
     fn under(&self, law: &RandomLaw) -> f64 {
         let weights = self.point.weights(&law.colour);
         Conditioned::new(&self.linearised, &weights, law.freedom).map_or(f64::INFINITY, |own| own.height())
@@ -221,22 +221,19 @@ impl<'a> Stand<'a> {
             unknowns: self.linearised.linear.unknowns,
         };
         let unit = UNIT / self.point.theta[0].max(LONGEST_TIME.recip());
-        let (mut best, mut tried) = search.explain(unit);
+        let ((mut best, mut without), mut tried) = search.explain(unit);
         let rows = self.linearised.linear.blocks.iter().map(|block| block.residual.len() as f64);
         let power = rows.zip(&law.power).map(|(rows, power)| rows * power).sum::<f64>() / self.linearised.rows() as f64;
         if 0.5 * power * (self.height - best.height) < BELIEVED {
-            best = Explanation { shapes: Vec::new(), height: self.height, law: self.law };
+            (best, without) = (Explanation { shapes: Vec::new(), height: self.height, law: self.law }, Vec::new());
         }
         tried.retain(|other| {
             other.shapes.len() <= best.shapes.len() && power * (other.height - best.height) < 2.0 * ALIKE
         });
-        let losses =
-            (0..best.shapes.len()).map(|place| 0.5 * power * (search.without(&best, place).height - best.height));
-        let losses = losses.collect();
         let whole = search.whole(&best)?;
         let step = whole.step();
         Some(ShapeAnalysis {
-            losses,
+            losses: without.iter().map(|height| 0.5 * power * (height - best.height)).collect(),
             coefficients: search::coefficients(&best.shapes, &step),
             mean_square: (!best.shapes.is_empty()).then(|| {
                 search::square_left(&self.linearised.linear, &best.shapes, &step) / self.linearised.rows() as f64

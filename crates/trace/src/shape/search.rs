@@ -220,16 +220,16 @@ impl ShapeSearch<'_> {
         kept
     }
 
-    /// The best explanation, and all that were tried.
-    pub fn explain(&self, unit: f64) -> (Explanation, Vec<Explanation>) {
+    /// The best explanation with the heights without each of its shapes, and all that were tried.
+    pub fn explain(&self, unit: f64) -> ((Explanation, Vec<f64>), Vec<Explanation>) {
         let library = self.library(unit);
         let (height, law) = best(self.structure).unwrap_or(NONE);
         let laws = tried(self.laws, law);
         let mut stand = Explanation { shapes: Vec::new(), height, law };
         let mut all = vec![stand.clone()];
-        let mut under = self.structure.to_vec();
         let mut products = self.products(&laws, &library);
         for _ in 0..ROUNDS {
+            let under = self.extended(&stand.shapes);
             let heights = self.scan(&stand.shapes, &under, &laws, &library, &mut products);
             let price: f64 = stand.shapes.iter().map(|own| own.price).sum();
             let with = |shape: Arc<Candidate>| {
@@ -245,26 +245,25 @@ impl ShapeSearch<'_> {
             let Some(lowest) = next.first().cloned() else { break };
             all.extend(next);
             stand = lowest;
-            under = self.extended(&stand.shapes);
         }
         let lowest = all.iter().min_by(|one, other| one.height.total_cmp(&other.height)).cloned();
         (self.pruned(lowest.expect("the structure alone is one")), all)
     }
 
-    /// Without the shapes that do not pay.
-    fn pruned(&self, mut best: Explanation) -> Explanation {
-        while best.shapes.len() > 1 {
-            let fewer = (0..best.shapes.len()).map(|place| self.without(&best, place));
-            match fewer.min_by(|one, other| one.height.total_cmp(&other.height)) {
-                Some(next) if next.height < best.height => best = next,
-                _ => break,
+    /// Without the shapes that do not pay, and the heights without each of the others.
+    fn pruned(&self, mut best: Explanation) -> (Explanation, Vec<f64>) {
+        loop {
+            let fewer: Vec<Explanation> = (0..best.shapes.len()).map(|place| self.without(&best, place)).collect();
+            let lowest = fewer.iter().min_by(|one, other| one.height.total_cmp(&other.height));
+            match lowest.filter(|next| best.shapes.len() > 1 && next.height < best.height) {
+                Some(next) => best = next.clone(),
+                None => return (best, fewer.iter().map(|own| own.height).collect()),
             }
         }
-        best
     }
 
     /// An explanation without one of its shapes, its law found anew.
-    pub fn without(&self, all: &Explanation, place: usize) -> Explanation {
+    fn without(&self, all: &Explanation, place: usize) -> Explanation {
         let mut shapes = all.shapes.clone();
         shapes.remove(place);
         self.explained(shapes)

@@ -101,11 +101,7 @@ impl Quadratic {
                 return Support { gain: 0.0, p_value: 1.0 };
             }
             let own = &self.removable[number];
-            let places: Vec<usize> = own.sizes.iter().map(|(unknown, _)| *unknown).collect();
-            let distance = DVector::from_iterator(places.len(), own.sizes.iter().map(|(_, distance)| *distance));
-            let matrix = DMatrix::from_fn(places.len(), places.len(), |i, j| self.covariance[(places[i], places[j])]);
-            let square = matrix.cholesky().map_or(0.0, |factor| distance.dot(&factor.solve(&distance)));
-            let law = ChiSquared::new(places.len().max(1) as f64).expect("degrees of freedom");
+            let p_value = by_chance(&own.sizes, &self.covariance).unwrap_or(1.0);
             let alike: usize = kept
                 .iter()
                 .enumerate()
@@ -116,7 +112,7 @@ impl Quadratic {
                 let all = weights.iter().enumerate().filter(|(subset, _)| (subset & alike != 0) == with);
                 all.map(|(_, weight)| *weight).fold(f64::NEG_INFINITY, f64::max)
             };
-            Support { gain: highest(true) - highest(false) - own.log_odds, p_value: law.sf(square) }
+            Support { gain: highest(true) - highest(false) - own.log_odds, p_value }
         };
         (0..self.removable.len()).map(of).collect()
     }
@@ -179,6 +175,15 @@ impl Quadratic {
         let own = kept.iter().map(|&k| removable[k].clone()).collect();
         (kept, covariance, own)
     }
+}
+
+/// Probability of sizes, each with its place in a covariance, as far from neutral by chance (χ²); `None` of
+/// none, and where the covariance is singular.
+pub fn by_chance(sizes: &[(usize, f64)], covariance: &DMatrix<f64>) -> Option<f64> {
+    let distance = DVector::from_iterator(sizes.len(), sizes.iter().map(|(_, distance)| *distance));
+    let matrix = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| covariance[(sizes[i].0, sizes[j].0)]);
+    let square = distance.dot(&matrix.cholesky()?.solve(&distance));
+    Some(ChiSquared::new(sizes.len() as f64).ok()?.sf(square))
 }
 
 /// A term as it may be taken away, at a point θ of the full model with the unknowns that its places are.

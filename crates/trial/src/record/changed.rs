@@ -32,6 +32,12 @@ impl Trial {
         self
     }
 
+    /// The same record with other rudder angles, rad; `None` where these are not one finite angle for every row.
+    pub fn with_rudder(mut self, angles: Vec<f64>) -> Option<Self> {
+        self.rudder = RecordedRudder::new(signal(self.time().to_vec(), angles).ok()?);
+        Some(self)
+    }
+
     /// The record that a similar ship of another length and approach speed would have made: every time is multiplied
     /// with (L₂/V₂)/(L₁/V₁), a yaw rate and the rate of the propeller are divided by it, speeds are multiplied with
     /// V₂/V₁ and lengths with L₂/L₁; angles stay, and so do columns that are not known.
