@@ -31,6 +31,7 @@ use crate::report;
 use crate::rudder::{self, RudderError};
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
+use crate::shape::{self, ShapeAnalysis};
 use crate::structures::{self, Structures};
 use crate::watcher::{NoWatcher, Watcher};
 use crate::weights::NoiseLaw;
@@ -88,9 +89,8 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// Analyses records of one ship. `validation` records only judge: nothing else depends on them.
 ///
 /// Readings of the compass that belong to no ship are left out of all records, and listed; a rudder with errors of its
-/// instrument is replaced by the one behind its readings. Fails when a setting is out
-/// of its range, when an effect that was asked for cannot be in the model, and when the base cannot be fitted or
-/// replayed.
+/// instrument is replaced by the one behind its readings. Fails when a setting is out of its range, when an effect that was
+/// asked for cannot be in the model, and when the base cannot be fitted or replayed.
 ///
 /// ```
 /// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
@@ -279,6 +279,12 @@ impl Analysis {
     pub fn innovations(&self) -> Vec<Innovations> {
         let best = self.structures.all.first();
         best.map_or_else(Vec::new, |best| innovations(&self.problem, &best.fit.residual, &self.full.law))
+    }
+
+    /// Moments of a shape in what the most probable structure leaves, against every random law; `None` where its
+    /// parameters cannot be told apart.
+    pub fn shapes(&self) -> Option<ShapeAnalysis> {
+        shape::analysis(&self.problem, &self.structures.all.first()?.fit, &self.full.law)
     }
 
     /// The members of the average as predictions take them.
