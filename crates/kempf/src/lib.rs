@@ -13,6 +13,7 @@
 //! | make a record | [`simulate`] |
 //! | find K, T and δ_r with their intervals | [`identify`] |
 //! | find what a first-order model lacks | [`trace`](mod@trace) |
+//! | read what a fit, trace or prediction wrote | [`document`] |
 //! | read a scenario file | [`scenario`] |
 //! | run one to rows and summarise them | [`campaign`] |
 //! | hold methods against each other on published records | [`campaign::benchmark`] |
@@ -38,7 +39,7 @@
 //! own in a study.
 
 pub use trial::find;
-pub use {campaign, identify, predict, scenario, ship, simulate, trace, trial};
+pub use {campaign, document, identify, predict, scenario, ship, simulate, trace, trial};
 
 /// What most programs need, under one `use`.
 pub mod prelude {
