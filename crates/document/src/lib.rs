@@ -1,7 +1,22 @@
 //! Documents: the results that cross between crates and into files.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | a number with its error | [`Quantity`] |
+//! | the noise of a record | [`noise`] |
+//! | an identified ship, as files hold it | [`identified_ship`], [`stored_hull`] |
+//! | what a reader should know beside the numbers | [`warning`] |
 
+pub mod error;
+pub mod identified_ship;
 pub mod noise;
+mod quantity;
+pub mod stored_hull;
 pub mod warning;
 
-pub use noise::{HeadingNoise, HeadingWander, RandomMoment};
+pub use error::IdentifiedShipError;
+pub use identified_ship::{IdentifiedShip, KnownGear, StoredEffect, ValidityRange, WeightedStructure};
+pub use noise::{HeadingNoise, Moment, RandomMoment};
+pub use quantity::Quantity;
+pub use stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
 pub use warning::{Severity, Source, Warning};

@@ -172,6 +172,7 @@ impl Identifier for CharacteristicPoints {
             robust: None,
             stop: StopReason::Direct,
             evaluations: 1,
+            noise: None,
             diagnostics,
             warnings: warnings(trials, &analysed),
         })

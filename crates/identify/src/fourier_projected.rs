@@ -291,6 +291,7 @@ impl Identifier for FourierProjected {
             robust: None,
             stop: fits.iter().map(|fit| fit.stop).max().unwrap_or(StopReason::Direct),
             evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + 1,
+            noise: None,
             diagnostics,
             warnings,
         })

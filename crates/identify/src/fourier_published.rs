@@ -195,6 +195,7 @@ impl Identifier for FourierPublished {
             robust: None,
             stop: fits.iter().map(|fit| fit.stop).max().unwrap_or(StopReason::Direct),
             evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + drawn.tried,
+            noise: None,
             diagnostics: diagnostics(&fits, instants.len(), &drawn),
             warnings: warnings(&fits, &drawn),
         })

@@ -121,6 +121,7 @@ impl Identifier for IntegralLeastSquares {
             robust,
             stop: StopReason::Direct,
             evaluations: 1,
+            noise: None,
             diagnostics,
             warnings: warnings(trials, pieces.len()).into_iter().chain(warning).collect(),
         })

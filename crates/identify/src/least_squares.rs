@@ -188,6 +188,7 @@ impl Identifier for MotionRegression {
             robust,
             stop: StopReason::Direct,
             evaluations: 1,
+            noise: None,
             diagnostics,
             warnings,
         })

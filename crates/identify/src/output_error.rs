@@ -317,6 +317,7 @@ impl RangeScan {
             robust: Some(robust_covariance),
             stop: if at_bound { StopReason::RangeLimit } else { stop },
             evaluations: self.grid.len() + evaluations,
+            noise: None,
             diagnostics: vec![
                 ("heading_rmse_deg", to_deg((rss / observations as f64).sqrt())),
                 ("r_squared", 1.0 - rss / total),

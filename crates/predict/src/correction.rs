@@ -10,6 +10,7 @@
 //!
 //! Source: MSC/Circ.1053 (2002), 3.4.1.2 and 3.4.1.3.
 
+use document::identified_ship::{IdentifiedShip, is_same_length};
 use indexmap::IndexMap;
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -20,7 +21,6 @@ use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
 use crate::helm_replay::{DrawResult, SteeredZigZag};
-use crate::identified_ship::{IdentifiedShip, is_same_length};
 use crate::interval::PredictionInterval;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::prediction::{drawn, enough};
@@ -333,7 +333,7 @@ mod tests {
     fn without_doubt_the_answer_is_the_truth() {
         let [full, ballast] = ships().map(|mut known| {
             (known.members[0].covariance, known.members[0].fitted) = (Vec::new(), Vec::new());
-            known.noise.moment = crate::identified_ship::Moment::None;
+            known.noise.moment = document::RandomMoment::None;
             if let Some(gear) = &mut known.gear {
                 gear.sd_rad_s = 0.0;
             }

@@ -1,12 +1,12 @@
 //! The document of a prediction and the curves beside it: what files hold, pages and figures are made from, and Python
 //! gets.
 
+use document::identified_ship::ValidityRange;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::correction::{Correction, FULL_LOAD};
 use crate::form::ImoFormEntry;
-use crate::identified_ship::ValidityRange;
 use crate::imo::PredictedCriterion;
 use crate::prediction::{Bands, ManoeuvreCurves, Prediction};
 use crate::replay::RecordReplay;

@@ -252,8 +252,8 @@ fn turns(trial: &Trial, made: &[SimulatedManoeuvre], timescale: f64, current: Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::IdentifiedShip;
     use crate::testing;
+    use document::IdentifiedShip;
     use ship::angle::from_deg;
     use trial::{Channel, Columns};
 

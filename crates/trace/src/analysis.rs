@@ -5,6 +5,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use ::document::HeadingNoise;
 use identify::hull::HullEstimate;
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
@@ -54,6 +55,8 @@ pub struct Analysis {
     pub structures: Structures,
     /// The full model and the noise that it leaves.
     pub full: Full,
+    /// That noise, its sizes being means over the records.
+    pub noise: HeadingNoise,
     /// Hulls of three degrees of freedom that stand beside the structures.
     pub hulls: Vec<HullEstimate>,
     pub(crate) problem: FittedRecords,
@@ -147,7 +150,7 @@ pub fn watched(
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let folds = || leave_one_out(&trials, &problem, (&full, &structures), &hulls, watcher);
     let left_out = if is_folded { folds() } else { Vec::new() };
-    let document = report::TraceParts {
+    let parts = report::TraceParts {
         trials: &trials,
         settings,
         base: &base,
@@ -163,10 +166,11 @@ pub fn watched(
         rudder_errors: &rudder_errors,
         no_nearer,
         problem: &problem,
-    }
-    .document();
+    };
+    let (document, noise) = (parts.document(), HeadingNoise::mean(&parts.heading_noise()).unwrap_or_default());
     Ok(Analysis {
         document,
+        noise,
         base: base.estimate,
         identification,
         validation: judged,

@@ -4,10 +4,10 @@
 
 use std::collections::BTreeMap;
 
+use ::document::{Moment, Quantity};
 use estimation::residuals::Whiteness;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
-use trial::Quantity;
 
 mod errors;
 
@@ -323,8 +323,8 @@ pub struct RecordNoiseEntry {
     /// What a heading error that lasts is: `compass` (first order) or `model` (smooth, of a model that is not quite the
     /// ship).
     pub heading_wander: Option<String>,
-    /// `none`, `white`, `ornstein-uhlenbeck` or `walk`.
-    pub moment: String,
+    /// Kind of the random moment.
+    pub moment: Moment,
     /// Standard deviation of gusts, of the mean of a white moment over one second, of what a walk adds in one second.
     pub moment_sd_rudder_deg: Option<f64>,
     /// Correlation time of gusts.

@@ -21,7 +21,7 @@ mod pieces;
 use std::borrow::Cow;
 
 use estimation::statistics::median;
-use identify::{Identifier, maximum_likelihood};
+use identify::maximum_likelihood;
 use rayon::prelude::*;
 use ship::angle::{from_deg, to_deg};
 use trial::Trial;
@@ -169,7 +169,7 @@ fn log_likelihood(trial: &Trial) -> Option<f64> {
         ..maximum_likelihood::Settings::default()
     };
     let method = settings.build().expect("default settings are valid");
-    method.identify(std::slice::from_ref(trial)).ok()?.diagnostic("log_likelihood")
+    method.log_likelihood(std::slice::from_ref(trial))
 }
 
 /// Fall of −2 log of the likelihood from which another noise is believed beside errors of the rudder.

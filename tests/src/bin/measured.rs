@@ -320,7 +320,7 @@ fn noise(noise: &RecordNoiseEntry) -> String {
     }
     if let Some(sd) = noise.moment_sd_rudder_deg {
         let time = noise.moment_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));
-        parts.push(format!("moment ({}) {} deg{time}", noise.moment, significant(sd, 2)));
+        parts.push(format!("moment ({}) {} deg{time}", noise.moment.as_str(), significant(sd, 2)));
     }
     if let (Some(sd), Some(frequency)) = (noise.waves_sd_deg, noise.waves_frequency_rad_s) {
         parts.push(format!("waves {} deg at {} rad/s", significant(sd, 2), significant(frequency, 2)));

@@ -75,6 +75,7 @@ impl Answer {
             robust: None,
             stop: StopReason::Outside,
             evaluations: 0,
+            noise: None,
             diagnostics: Vec::new(),
             warnings: warning.into_iter().map(str::to_owned).collect(),
         })

@@ -1,5 +1,6 @@
 //! From the largest likelihood to an estimate: covariance from the information, and what a reader should know.
 
+use document::{HeadingNoise, RandomMoment};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use ship::angle::to_deg;
 use ship::first_order::State;
@@ -168,6 +169,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
             (false, false) => StopReason::IterationLimit,
         },
         evaluations: chosen.evaluations,
+        noise: Some(HeadingNoise { heading_sd_rad: noises[0].heading_sd, moment: random_moment(&noises[0], gain) }),
         diagnostics,
         warnings,
     })
@@ -209,13 +211,16 @@ fn of_noise(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'static str
     ];
     diagnostics.extend(noise.heading_correlation.map(|time| ("heading_correlation_s", time)));
     diagnostics.extend(noise.yaw_rate_sd.map(|sd| ("yaw_rate_sd_deg_s", to_deg(sd))));
-    let level = to_deg(noise.moment_level / gain);
-    match noise.moment {
-        Moment::None => {}
-        Moment::White => diagnostics.push(("white_moment_rudder_deg_root_s", level)),
-        Moment::Walk => diagnostics.push(("moment_walk_rudder_deg_per_root_s", level)),
-        Moment::OrnsteinUhlenbeck => {
-            diagnostics.extend([("gusts_sd_rudder_deg", level), ("gusts_correlation_s", noise.moment_correlation)]);
+    match random_moment(noise, gain) {
+        RandomMoment::None => {}
+        RandomMoment::White { rudder_rad_root_s: size } => {
+            diagnostics.push(("white_moment_rudder_deg_root_s", to_deg(size)));
+        }
+        RandomMoment::Walk { rudder_rad_per_root_s: size } => {
+            diagnostics.push(("moment_walk_rudder_deg_per_root_s", to_deg(size)));
+        }
+        RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: sd, correlation_s } => {
+            diagnostics.extend([("gusts_sd_rudder_deg", to_deg(sd)), ("gusts_correlation_s", correlation_s)]);
         }
     }
     diagnostics.extend((noise.rudder_sd > 0.0).then(|| ("rudder_sd_deg", to_deg(noise.rudder_sd))));
@@ -232,18 +237,34 @@ fn of_noise(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'static str
     diagnostics
 }
 
+/// The random moment of a noise as the rudder angle of a ship of K/T = `gain`.
+fn random_moment(noise: &NoiseModel, gain: f64) -> RandomMoment {
+    let rudder = noise.moment_level / gain;
+    match noise.moment {
+        Moment::None => RandomMoment::None,
+        Moment::White => RandomMoment::White { rudder_rad_root_s: rudder },
+        Moment::Walk => RandomMoment::Walk { rudder_rad_per_root_s: rudder },
+        Moment::OrnsteinUhlenbeck => {
+            RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: rudder, correlation_s: noise.moment_correlation }
+        }
+    }
+}
+
 /// What is random beside a white compass error, in words.
 fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<String> {
     let mut parts = Vec::new();
-    let degrees = to_deg(noise.moment_level / gain);
-    match noise.moment {
-        Moment::None => {}
-        Moment::White => parts.push(format!("a white yaw moment of {degrees:.3} deg √s of rudder")),
-        Moment::Walk => parts.push(format!("a yaw moment that walks by {degrees:.3} deg/√s of rudder")),
-        Moment::OrnsteinUhlenbeck => parts.push(format!(
-            "gusts of {degrees:.3} deg of rudder with a correlation time of {:.0} s",
-            noise.moment_correlation
-        )),
+    match random_moment(noise, gain) {
+        RandomMoment::None => {}
+        RandomMoment::White { rudder_rad_root_s: size } => {
+            parts.push(format!("a white yaw moment of {:.3} deg √s of rudder", to_deg(size)));
+        }
+        RandomMoment::Walk { rudder_rad_per_root_s: size } => {
+            parts.push(format!("a yaw moment that walks by {:.3} deg/√s of rudder", to_deg(size)));
+        }
+        RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: sd, correlation_s } => {
+            let sd = to_deg(sd);
+            parts.push(format!("gusts of {sd:.3} deg of rudder with a correlation time of {correlation_s:.0} s"));
+        }
     }
     if noise.rudder_sd > 0.0 {
         parts.push(format!("a rudder error of {:.3} deg", to_deg(noise.rudder_sd)));

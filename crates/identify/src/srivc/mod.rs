@@ -144,6 +144,7 @@ impl Identifier for Srivc {
             robust: Some(robust_covariance),
             stop: StopReason::Converged,
             evaluations: evaluations + iterations + 1,
+            noise: None,
             diagnostics: vec![
                 ("iterations", iterations as f64),
                 ("r_squared", 1.0 - residuals.rss / residuals.total),

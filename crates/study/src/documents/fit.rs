@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use campaign::answer::MethodEntry;
 use campaign::stored_figures::Replays;
-use predict::IdentifiedShip;
+use document::IdentifiedShip;
 use report::PlotCurve;
 use report::figures::ZigzagTrial;
 use serde::{Deserialize, Serialize};

@@ -2,7 +2,7 @@
 
 use ::trace::Document;
 use ::trace::document::BeforeAfter;
-use predict::IdentifiedShip;
+use document::IdentifiedShip;
 use scenario::name::slug;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;

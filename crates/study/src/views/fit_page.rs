@@ -1,7 +1,7 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
 use campaign::answer::MethodEntry;
-use identify::recommended::{MOMENTS, Reason, ResidualKind};
+use identify::recommended::{Reason, ResidualKind};
 use report::markdown::text;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, Table};
@@ -148,7 +148,7 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let other = verdict.contradicted_by.as_ref();
     let Some(other) = document.methods.iter().find(|entry| Some(&entry.method) == other) else { return String::new() };
     let name = &other.method;
-    let has_moment = other.diagnostics.keys().any(|key| MOMENTS.contains(&key.as_str()));
+    let has_moment = other.noise.is_some_and(|noise| !noise.moment.is_none());
     let why = match verdict.reason {
         Reason::NearestReplay if has_moment => "a random moment explains part of the manoeuvre in it",
         Reason::NearestReplay => "look at both replays",

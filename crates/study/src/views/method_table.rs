@@ -103,6 +103,7 @@ mod tests {
             robust: None,
             stop,
             evaluations: 1,
+            noise: None,
             diagnostics: Vec::new(),
             warnings: Vec::new(),
         };

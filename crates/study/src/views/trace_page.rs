@@ -1,7 +1,7 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
 use ::trace::document::{Outcome, ParameterEntry};
-use predict::identified_ship::ValidityRange;
+use document::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
 use report::markdown::text;
 use report::number::{fixed, significant};

@@ -2,7 +2,8 @@
 
 use ::trace::document::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
 use ::trace::replay_errors::HORIZONS;
-use predict::stored_hull::StoredCoefficient;
+use document::Moment;
+use document::stored_hull::StoredCoefficient;
 use report::Table;
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
 use ship::angle::to_deg;
@@ -221,14 +222,14 @@ pub fn noise(document: &TraceDocument) -> Table {
 pub fn coloured(own: &RecordNoiseEntry) -> Vec<String> {
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
     let size = two(own.moment_sd_rudder_deg);
-    let moment = match own.moment.as_str() {
-        "white" => Some(format!("a white yaw moment of {size}° of rudder averaged over 1 s")),
-        "ornstein-uhlenbeck" => {
+    let moment = match own.moment {
+        Moment::White => Some(format!("a white yaw moment of {size}° of rudder averaged over 1 s")),
+        Moment::OrnsteinUhlenbeck => {
             let time = two(own.moment_correlation_s);
             Some(format!("gusts of {size}° of rudder that last about {time} s"))
         }
-        "walk" => Some(format!("a yaw moment that walks by {size}°/√s of rudder")),
-        _ => None,
+        Moment::Walk => Some(format!("a yaw moment that walks by {size}°/√s of rudder")),
+        Moment::None => None,
     };
     let heading = own.heading_wander_sd_deg.map(|sd| {
         let whose = if own.heading_wander.as_deref() == Some("model") { "model" } else { "compass" };

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use campaign::earlier::hulls_of;
 use campaign::known::RecordFacts;
+use document::IdentifiedShip;
+use document::stored_hull::rows_of;
 use identify::hull::{self, EarlierHull, ExpectationCheck, Likeness, is_other_froude_number};
-use predict::IdentifiedShip;
-use predict::stored_hull::rows_of;
+use predict::drawable_hull;
 use report::number::fixed;
 use scenario::failure::Failure;
 use ship::vessel::prior::HullParticulars;
@@ -133,7 +134,7 @@ pub fn with_earlier(
         let values = stored.coefficients.iter_mut().zip(after.values.iter());
         values.for_each(|(coefficient, value)| coefficient.value = *value);
         stored.covariance = rows_of(&after.covariance);
-        stored.check().map_err(|error| Failure::about(shown, error))?;
+        drawable_hull::check(stored).map_err(|error| Failure::about(shown, error))?;
         checks.extend(check.map(|check| (own.form.as_str(), check)));
     }
     if checks.is_empty() {

@@ -4,9 +4,10 @@
 use std::path::Path;
 
 use campaign::earlier::hulls_of;
+use document::IdentifiedShip;
+use document::stored_hull::StoredHull;
 use identify::hull::ExpectedHull;
-use predict::IdentifiedShip;
-use predict::stored_hull::StoredHull;
+use predict::drawable_hull;
 use scenario::failure::Failure;
 use ship::ShortNumber;
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, priors};
@@ -81,7 +82,7 @@ impl DescribedLoading {
             let hull = ship.hulls[0].at_loading(&to, &own.coefficients, own.law()?);
             Some(StoredHull { propeller_per_s: self.given.propeller_rate, ..hull })
         };
-        let hull = expected.and_then(at_loading).filter(|hull| hull.check().is_ok());
+        let hull = expected.and_then(at_loading).filter(|hull| drawable_hull::check(hull).is_ok());
         let none = || self.refused(format!("the hull of {shown} makes no ship at this loading; check the numbers"));
         ship.hulls = vec![hull.ok_or_else(none)?];
         let faster = to.speed / own.speed;
@@ -186,7 +187,7 @@ fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsErro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use predict::stored_hull::{StoredCoefficient, by_keys};
+    use document::stored_hull::{StoredCoefficient, by_keys};
     use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
 
     /// A tanker in ballast.

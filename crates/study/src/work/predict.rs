@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use document::IdentifiedShip;
 use identify::hull::Likeness;
 use identify::suspicion::unusual_froude_number;
 use predict::correction::{self, Correction};
@@ -10,7 +11,7 @@ use predict::document::{ModelWeight, OtherLoading};
 use predict::form::{self, FormRecord};
 use predict::replay::RecordReplay;
 use predict::turn::{self, Current};
-use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
+use predict::{PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
 use report::number::fixed;
 use scenario::TRACE;
 use scenario::failure::Failure;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use ::trace::document::SCHEMA as TRACE_SCHEMA;
-use predict::IdentifiedShip;
+use document::IdentifiedShip;
 use scenario::failure::Failure;
 use scenario::{TRACE, name};
 use serde_json::Value;

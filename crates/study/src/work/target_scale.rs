@@ -1,9 +1,10 @@
 //! The scale of a prediction, and what is brought to it. What is said of a ship of one length does not hold for one of
 //! another, so scales that differ are refused or told.
 
+use document::IdentifiedShip;
+use document::IdentifiedShipError;
+use document::identified_ship::is_same_length;
 use identify::hull::is_other_froude_number;
-use predict::identified_ship::is_same_length;
-use predict::{IdentifiedShip, PredictError};
 use report::number::fixed;
 use scenario::failure::Failure;
 use ship::Particulars;
@@ -77,7 +78,7 @@ pub fn is_alike(one: Particulars, other: Particulars) -> bool {
 }
 
 /// A ship at a scale; one whose scale is not known takes it as its own.
-pub fn at_scale(known: &IdentifiedShip, scale: Option<TargetScale>) -> Result<IdentifiedShip, PredictError> {
+pub fn at_scale(known: &IdentifiedShip, scale: Option<TargetScale>) -> Result<IdentifiedShip, IdentifiedShipError> {
     let Some(TargetScale { length, speed, is_asked }) = scale else { return Ok(known.clone()) };
     // The speed of a trial is read off its beginning and never quite that of another.
     let is_speed_of = |own: Particulars, speed| match is_asked {
