@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use document::trace::ParameterEntry;
 use report::number::{MISSING, uncertain};
 use report::{Table, TableColumn};
 use trace::Document;
-use trace::document::ParameterEntry;
 
 /// Identifier and form.
 type Effect = (String, String);

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use document::trace::PrimeIndices;
 use document::{HeadingNoise, Quantity};
 use identify::replay::pooled;
 use identify::{Estimate, IdentifyError};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
-use trace::document::PrimeIndices;
 
 /// K, T and δ_r of one method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

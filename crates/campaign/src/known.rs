@@ -315,6 +315,7 @@ mod tests {
     use predict::ShipMixture;
     use scenario::Predictions;
     use ship::FirstOrder;
+    use ship::angle::from_deg;
     use ship::vessel::prior::HullParticulars;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
 

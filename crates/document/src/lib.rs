@@ -5,6 +5,7 @@
 //! | a number with its error | [`Quantity`] |
 //! | the noise of a record | [`noise`] |
 //! | an identified ship, as files hold it | [`identified_ship`], [`stored_hull`] |
+//! | what a trace says | [`trace`] |
 //! | what a reader should know beside the numbers | [`warning`] |
 
 pub mod error;
@@ -12,6 +13,7 @@ pub mod identified_ship;
 pub mod noise;
 mod quantity;
 pub mod stored_hull;
+pub mod trace;
 pub mod warning;
 
 pub use error::IdentifiedShipError;

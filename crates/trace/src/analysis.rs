@@ -5,7 +5,8 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use ::document::HeadingNoise;
+use document::HeadingNoise;
+use document::trace::Document;
 use identify::hull::HullEstimate;
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
@@ -17,7 +18,6 @@ use crate::average::{Average, AveragedModel};
 use crate::base::Base;
 use crate::candidates;
 use crate::comparison::{RecordComparison, ReplayResult, before, starts};
-use crate::document::Document;
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::{self, Full};

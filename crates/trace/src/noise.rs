@@ -12,7 +12,7 @@
 
 use std::sync::OnceLock;
 
-use ::document::RandomMoment;
+use document::RandomMoment;
 use estimation::kalman::{MOST, Step, System, Whitener};
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use ::document::{HeadingNoise, Quantity, RandomMoment};
+use document::trace::*;
+use document::{HeadingNoise, Quantity, RandomMoment};
 use estimation::mixture::{MixtureSummary, NormalMixture, NormalPair, ratio};
 use estimation::residuals::{GappedSeries, whiteness};
 use ship::angle::to_deg;
@@ -15,7 +16,6 @@ use trial::Trial;
 use crate::base::Base;
 use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME, is_becalmed};
 use crate::comparison::{RecordComparison, ReplayResult};
-use crate::document::*;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::location::Location;
@@ -116,7 +116,6 @@ impl TraceParts<'_> {
                 after: self.whiteness(|one| &one.after),
             },
             noise: self.noise(),
-            next_trial: String::new(),
             model: ModelEntry {
                 equations: match effects.is_empty() {
                     true => vec!["T r' + r = K (δ + δ_r)".into()],

@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
+use document::trace::RecordNoiseEntry;
 use kempf_tests::autopilot;
 use kempf_tests::measured::analysis::{
     MeasuredAnalysis, ReplayError, SetSummary, WHOLE, WINDOWS_20_S, WINDOWS_60_S, named,
@@ -21,7 +22,6 @@ use report::{Table, TableColumn, Theme};
 use study::documents::trace::TraceDocument;
 use study::options::PageFigures;
 use trace::Document;
-use trace::document::RecordNoiseEntry;
 
 /// Cases whose whole report is kept: record, and whether the wind is withheld.
 const KEPT: [(&str, bool); 2] = [("zigzag_20_10_s", false), ("zigzag_20", false)];

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use campaign::statistics::share;
+use document::trace::LocatedEntry;
 use report::number::{MISSING, fixed, significant};
 use report::{PageFigure, Table, TableColumn};
 use ship::angle::to_deg;
-use trace::document::LocatedEntry;
 
 use super::chart;
 use super::judged::{Answer, Judgement, NEAR, NEAR_PERIOD, Named};

@@ -2,9 +2,9 @@
 //! records that were not fitted, the evidence, the innovations, the moment that the base lacks, and the residuals from
 //! several sides.
 
-use ::trace::document::{BeforeAfter, ErrorsEntry, Outcome};
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use campaign::curves::{curve, degrees, phase_curve, phase_of};
+use document::trace::{BeforeAfter, ErrorsEntry, Outcome};
 use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
 use identify::replay::Replay;
 use report::figures::{

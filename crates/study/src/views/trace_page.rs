@@ -1,7 +1,7 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
-use ::trace::document::{Outcome, ParameterEntry};
 use document::identified_ship::ValidityRange;
+use document::trace::{Outcome, ParameterEntry};
 use predict::steady::SteadyCurve;
 use report::markdown::text;
 use report::number::{fixed, significant};
@@ -42,7 +42,7 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
-    behind += &format!("\nnext trial: {}", trace.next_trial);
+    behind += &format!("\nnext trial: {}", document.next_trial);
     [before, behind]
 }
 
@@ -157,7 +157,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     }
     what_is_left(&mut page, document);
     page.part("Next trial");
-    page.say(&document.trace.next_trial);
+    page.say(&document.next_trial);
     page.folded_part("Every record");
     page.table(all_errors(document));
     page.say(ERRORS);

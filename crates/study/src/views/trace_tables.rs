@@ -1,9 +1,9 @@
 //! Tables of a trace, from its document alone.
 
-use ::trace::document::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
 use ::trace::replay_errors::HORIZONS;
 use document::Moment;
 use document::stored_hull::StoredCoefficient;
+use document::trace::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
 use report::Table;
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
 use ship::angle::to_deg;

@@ -2,6 +2,7 @@
 //! known of the ship.
 
 use campaign::stored_figures::Replays;
+use document::trace::PrimeIndices;
 use identify::estimate::Uncertainty;
 use identify::recommended::Recommendation;
 use identify::replay::{pooled, replay};
@@ -14,7 +15,6 @@ use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
 use ship::FirstOrder;
 use ship::angle::to_deg;
-use trace::document::PrimeIndices;
 use trial::{Channel, Trial, ZigZag};
 
 use super::earlier::{self, EarlierModel};

@@ -132,7 +132,8 @@ pub fn trace(
         records: entries,
         missing_moment: moments,
         scales,
-        trace: ::trace::Document { next_trial: next_trial(&analysis, &trials), ..analysis.document },
+        next_trial: next_trial(&analysis, &trials),
+        trace: analysis.document,
     };
     Ok(TraceResult { document, tables })
 }

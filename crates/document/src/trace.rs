@@ -1,13 +1,15 @@
-//! What a trace says, as `trace.json` holds it: written from here, read back by reports, predictions and Python.
+//! What a trace says, as `trace.json` holds it.
 //!
 //! Angles are in degrees where a name says so; parameters of effects are in SI units and radians.
 
 use std::collections::BTreeMap;
 
-use ::document::{Moment, Quantity};
 use estimation::residuals::Whiteness;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
+
+use crate::noise::Moment;
+use crate::quantity::Quantity;
 
 mod errors;
 
@@ -386,8 +388,6 @@ pub struct Document {
     pub residual: ResidualEntry,
     /// The noise of every fitted record.
     pub noise: Vec<RecordNoiseEntry>,
-    /// The trial that would tell most.
-    pub next_trial: String,
     /// The augmented model.
     pub model: ModelEntry,
 }
