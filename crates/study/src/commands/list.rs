@@ -17,7 +17,6 @@ use trial::Channel;
 use trial::names::{self, ColumnMeaning};
 use trial::sidecar::{self, Key, Sidecar};
 
-use scenario::effect_keys;
 use scenario::failure::Failure;
 use scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 
@@ -93,7 +92,8 @@ fn effects() -> Table {
     for effect in effects::all() {
         let parameters: Vec<String> =
             effect.parameters().iter().map(|parameter| format!("{} [{}]", parameter.symbol, parameter.unit)).collect();
-        let keys = effect_keys(effect.as_ref()).unwrap_or_else(|| MISSING.to_owned());
+        let keys = effect.in_file().map(|numbers| numbers.iter().map(|own| own.key).collect::<Vec<_>>().join(", "));
+        let keys = keys.unwrap_or_else(|| MISSING.to_owned());
         table.push([effect.id(), effect.form(), &keys, effect.equation(), &parameters.join(", ")]);
     }
     table
