@@ -1,7 +1,6 @@
 //! Play between the recorded and the acting rudder.
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
-use super::file_number::FileNumber;
 use crate::angle::DEGREE;
 use estimation::number::Real;
 
@@ -26,7 +25,7 @@ impl Effect for Backlash {
             id: "rudder_deadband",
             form: "backlash",
             equation: "T r' + r = K (δ_e + δ_r), |δ_e − δ| ≤ g (play)",
-            parameters: &const { [Self::HALF_WIDTH.in_file(FileNumber::of("backlash-deg", DEGREE, "Width of a backlash."))] },
+            parameters: &const { [Self::HALF_WIDTH.in_file("backlash-deg", DEGREE, "Width of a backlash.")] },
         }
     }
 

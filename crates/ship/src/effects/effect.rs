@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use estimation::number::Real;
 
-use super::file_number::FileNumber;
+use super::file_number::{FileNumber, FileRole};
 use crate::dynamics::{Measured, Regressor};
 use crate::number::Tangent;
 use crate::particulars::{self, Dimension};
@@ -52,9 +52,22 @@ impl Parameter {
         Self { odd: true, ..Self::even(words, sizes, ends) }
     }
 
-    /// The same with what a scenario file has for it.
-    pub(super) const fn in_file(self, number: FileNumber) -> Self {
-        Self { file: Some(number), ..self }
+    /// The same with what a scenario file has for it: a number that cannot be left out, its key and the size of its unit
+    /// in SI.
+    pub(super) const fn in_file(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
+        Self { file: Some(FileNumber { key, unit, meaning, role: FileRole::Value, default: None }), ..self }
+    }
+
+    /// The same in another role.
+    pub(super) const fn in_role(self, role: FileRole) -> Self {
+        let Some(number) = self.file else { return self };
+        Self { file: Some(FileNumber { role, ..number }), ..self }
+    }
+
+    /// The same with a number that holds where the file has none.
+    pub(super) const fn by_default(self, default: f64) -> Self {
+        let Some(number) = self.file else { return self };
+        Self { file: Some(FileNumber { default: Some(default), ..number }), ..self }
     }
 
     /// Whether its dimension is not known.

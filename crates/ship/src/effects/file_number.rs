@@ -2,6 +2,12 @@
 
 use crate::angle::DEGREE;
 
+/// The inverse of a degree.
+pub(super) const PER_DEGREE: f64 = 1.0 / DEGREE;
+
+/// The inverse of a square degree.
+pub(super) const PER_DEGREE_SQUARED: f64 = PER_DEGREE * PER_DEGREE;
+
 /// The number behind a parameter in a scenario file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FileNumber {
@@ -27,21 +33,4 @@ pub enum FileRole {
     /// With the parameter before, a strength and the direction ψ_w it comes from: strength sin 2(ψ_w − ψ) by its parts
     /// along cos 2ψ and sin 2ψ.
     Direction,
-}
-
-impl FileNumber {
-    /// The inverse of a degree.
-    pub(super) const PER_DEGREE: f64 = 1.0 / DEGREE;
-    /// The inverse of a square degree.
-    pub(super) const PER_DEGREE_SQUARED: f64 = Self::PER_DEGREE * Self::PER_DEGREE;
-
-    /// A number that cannot be left out.
-    pub(super) const fn of(key: &'static str, unit: f64, meaning: &'static str) -> Self {
-        Self { key, unit, meaning, role: FileRole::Value, default: None }
-    }
-
-    /// The same in another role.
-    pub(super) const fn with_role(self, role: FileRole) -> Self {
-        Self { role, ..self }
-    }
 }

@@ -1,7 +1,6 @@
 //! Sway coupling: the second time constant and the rudder zero that a first-order response lacks.
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Parameter, Places, Prior, Proposal, SwayCoupling};
-use super::file_number::FileNumber;
 use estimation::number::Real;
 
 /// T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
@@ -11,16 +10,12 @@ use estimation::number::Real;
 pub struct SecondOrder;
 
 const PARAMETERS: [Parameter; 2] = [
-    Parameter::even(["T2", "T₂", "s"], [1.0, 2.5], [0.02, 600.0]).in_file(FileNumber::of(
-        "T2-s",
-        1.0,
-        "Smaller time constant T2.",
-    )),
-    Parameter::even(["T3", "T₃", "s"], [1.0, 6.2], [-600.0, 2000.0]).in_file(FileNumber::of(
+    Parameter::even(["T2", "T₂", "s"], [1.0, 2.5], [0.02, 600.0]).in_file("T2-s", 1.0, "Smaller time constant T2."),
+    Parameter::even(["T3", "T₃", "s"], [1.0, 6.2], [-600.0, 2000.0]).in_file(
         "T3-s",
         1.0,
         "Time constant T3 of the rudder rate.",
-    )),
+    ),
 ];
 
 impl Effect for SecondOrder {
