@@ -8,7 +8,6 @@
 //! | to learn about | read |
 //! |---|---|
 //! | what is known of a ship, as files hold it | [`identified_ship`] |
-//! | speed and drift of a turn, tracks, turning circles | [`motion`] |
 //! | a hull as files hold it | [`stored_hull`] |
 //! | ships drawn from it | [`mixture`] |
 //! | the manoeuvres, and what ends them | [`standard`] |
@@ -35,7 +34,6 @@ pub mod imo;
 pub mod interval;
 mod line;
 pub mod mixture;
-pub mod motion;
 pub mod prediction;
 pub mod replay;
 mod root;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ::ship::ships::Model;
 use ::ship::{Particulars, Regressor, Ship, ShortNumber};
-use predict::motion::{Planar, PlanarShip};
+use simulate::motion::{Planar, PlanarShip};
 use simulate::{Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
 use crate::problem::{KeyFault, KeyPath};
