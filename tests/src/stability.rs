@@ -21,8 +21,8 @@ fn coefficient(entry: &ParameterEntry) -> (String, &str) {
 
 /// Every effect that is named in one of the records alone: how often, and its coefficients record by record.
 pub fn table(alone: &[(&str, &Document)]) -> Table {
-    let records = alone.iter().map(|(record, _)| TableColumn::left(*record));
-    let head = [TableColumn::left("effect"), TableColumn::left("coefficient"), TableColumn::right("named in")];
+    let records = alone.iter().map(|(record, _)| TableColumn::text(*record));
+    let head = [TableColumn::text("effect"), TableColumn::text("coefficient"), TableColumn::count("named in")];
     let mut table = Table::new(head.into_iter().chain(records).collect::<Vec<_>>());
     let own = |(_, document): &'_ (_, &Document)| -> BTreeMap<Effect, BTreeMap<String, ParameterEntry>> {
         let effects = document.effects.iter();

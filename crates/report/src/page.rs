@@ -192,7 +192,7 @@ mod tests {
         page.words("a*b\n<b>c");
         page.say("  ");
         page.part("Numbers");
-        let mut table = Table::new(vec![TableColumn::left("K")]);
+        let mut table = Table::new(vec![TableColumn::text("K")]);
         table.push(["0.1"]);
         page.table(table);
         page.figures([PageFigure::new("fit", "a*b", Panels::default())]);

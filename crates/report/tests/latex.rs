@@ -21,22 +21,22 @@ fn tables() -> Vec<Table> {
             .collect::<Vec<_>>()
             .join(" ")
     };
-    let mut characters = Table::new([TableColumn::left("character"), TableColumn::decimal("K̂ of √T′").unit("1/s")])
+    let mut characters = Table::new([TableColumn::text("character"), TableColumn::number("K̂ of √T′").unit("1/s")])
         .titled(format!("{} & {} \\ ~^_#$%{{}}<>|\"'`", words(CHARACTERS), words(LETTERS)))
         .labelled("characters");
     for c in LETTERS.chars() {
         characters.push([format!("[{c}] * ψ̇"), "0.1003 ± 0.0007".to_owned()]);
     }
-    let mut marks = Table::new([TableColumn::left("mark"), TableColumn::right("n")]);
+    let mut marks = Table::new([TableColumn::text("mark"), TableColumn::count("n")]);
     for c in CHARACTERS.chars().chain((32..127).map(char::from)) {
         marks.push([format!("{c}"), "12".to_owned()]);
     }
-    let mut heads = vec![TableColumn::left("trial"), TableColumn::left("method"), TableColumn::right("failed")];
+    let mut heads = vec![TableColumn::text("trial"), TableColumn::text("method"), TableColumn::count("failed")];
     for index in ["K", "T", "K/T"] {
-        heads.push(TableColumn::decimal(format!("{index} median")).unit("%"));
-        heads.push(TableColumn::left("95 %"));
-        heads.push(TableColumn::decimal(format!("{index} coverage")).unit("%"));
-        heads.push(TableColumn::decimal("sd/bound"));
+        heads.push(TableColumn::number(format!("{index} median")).unit("%"));
+        heads.push(TableColumn::text("95 %"));
+        heads.push(TableColumn::number(format!("{index} coverage")).unit("%"));
+        heads.push(TableColumn::number("sd/bound"));
     }
     let row = |number: usize| {
         let name = ["output-error", "characteristic-points", "integral-least-squares"][number % 3];
@@ -51,13 +51,13 @@ fn tables() -> Vec<Table> {
         (0..rows).for_each(|number| table.push(row(number)));
         table
     };
-    let mut prose = Table::new([TableColumn::left("key"), TableColumn::left("meaning"), TableColumn::left("where")]);
+    let mut prose = Table::new([TableColumn::text("key"), TableColumn::text("meaning"), TableColumn::text("where")]);
     let sentence = "what a ship is asked to do in words, which may well be many of them and never end, as here";
     (0..30).for_each(|number| prose.push([format!("key{number}"), sentence.repeat(number % 4), sentence.into()]));
     let mut few = prose.clone();
     few.rows.truncate(4);
     let mut plain =
-        Table::new([TableColumn::decimal("value"), TableColumn::right("count"), TableColumn::decimal("words")]);
+        Table::new([TableColumn::number("value"), TableColumn::count("count"), TableColumn::number("words")]);
     plain.push(["1e5", "123456", "n/a"]);
     plain.push(["[1, 2]", "–", "no number"]);
     vec![
@@ -69,7 +69,7 @@ fn tables() -> Vec<Table> {
         prose,
         few,
         plain,
-        Table::new([TableColumn::left("a")]),
+        Table::new([TableColumn::text("a")]),
         Table::default(),
     ]
 }

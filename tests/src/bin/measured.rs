@@ -155,13 +155,13 @@ fn with_prior(set: &'static MeasuredSet, scratch: &Path) -> Outcome<Vec<Measured
 /// A line for every set.
 fn sets_table(summaries: &[SetSummary]) -> Table {
     let mut table = Table::new([
-        TableColumn::left("set"),
-        TableColumn::right("records"),
-        TableColumn::decimal("heading before").unit("deg"),
-        TableColumn::decimal("after").unit("deg"),
-        TableColumn::decimal("held out ratio"),
-        TableColumn::decimal("held out ratio, windows of 60 s"),
-        TableColumn::left("named"),
+        TableColumn::text("set"),
+        TableColumn::count("records"),
+        TableColumn::number("heading before").unit("deg"),
+        TableColumn::number("after").unit("deg"),
+        TableColumn::number("held out ratio"),
+        TableColumn::number("held out ratio, windows of 60 s"),
+        TableColumn::text("named"),
     ]);
     for own in summaries {
         table.push([
@@ -216,16 +216,16 @@ const KEPT_REPORTS: &str = "## Reports\n\nWhole, with figures:\n\n";
 
 fn errors_table() -> Table {
     Table::new([
-        TableColumn::left("fitted record"),
-        TableColumn::left("found"),
-        TableColumn::decimal("heading before").unit("deg"),
-        TableColumn::decimal("after").unit("deg"),
-        TableColumn::decimal("ratio"),
-        TableColumn::decimal("held out: heading ratio"),
-        TableColumn::decimal("held out: windows of 20 s"),
-        TableColumn::decimal("held out: windows of 60 s"),
-        TableColumn::decimal("held out: inside the band").unit("%"),
-        TableColumn::decimal("held out: width of the band").unit("deg"),
+        TableColumn::text("fitted record"),
+        TableColumn::text("found"),
+        TableColumn::number("heading before").unit("deg"),
+        TableColumn::number("after").unit("deg"),
+        TableColumn::number("ratio"),
+        TableColumn::number("held out: heading ratio"),
+        TableColumn::number("held out: windows of 20 s"),
+        TableColumn::number("held out: windows of 60 s"),
+        TableColumn::number("held out: inside the band").unit("%"),
+        TableColumn::number("held out: width of the band").unit("deg"),
     ])
 }
 
@@ -269,12 +269,12 @@ fn geometric_means(of: &[&MeasuredAnalysis]) -> Vec<String> {
 /// What a trace says of records without a zig-zag: a line each, or why there is none.
 fn closed_loop(scratch: &Path) -> Outcome<Table> {
     let mut table = Table::new([
-        TableColumn::left("record"),
-        TableColumn::left("found"),
-        TableColumn::left("verdict"),
-        TableColumn::decimal("heading before").unit("deg"),
-        TableColumn::decimal("after").unit("deg"),
-        TableColumn::left("noise"),
+        TableColumn::text("record"),
+        TableColumn::text("found"),
+        TableColumn::text("verdict"),
+        TableColumn::number("heading before").unit("deg"),
+        TableColumn::number("after").unit("deg"),
+        TableColumn::text("noise"),
     ]);
     for record in autopilot::ALL {
         let source = folder().join("full_scale_closed_loop").join(record.file);

@@ -49,12 +49,12 @@ fn cells(group: &str, kind: &str, unit: &str, score: &ForecastScore) -> Vec<Stri
 /// The table of the page: groups and kinds of figure, and all kinds of a group together.
 fn scores(figures: &[ForecastFigure]) -> Table {
     let mut table = Table::new([
-        TableColumn::left("what from what"),
-        TableColumn::left("figure"),
-        TableColumn::right("n"),
-        TableColumn::right("error"),
-        TableColumn::right("held [%]"),
-        TableColumn::right("width"),
+        TableColumn::text("what from what"),
+        TableColumn::text("figure"),
+        TableColumn::count("n"),
+        TableColumn::count("error"),
+        TableColumn::count("held [%]"),
+        TableColumn::count("width"),
     ]);
     let judged = those(figures, |own| own.kind().is_some());
     let whole =
@@ -75,7 +75,7 @@ fn scores(figures: &[ForecastFigure]) -> Table {
 
 /// What was to be reached, and what is.
 fn reached(figures: &[ForecastFigure]) -> Table {
-    let mut table = Table::new([TableColumn::left("to reach"), TableColumn::left("reached"), TableColumn::left("met")]);
+    let mut table = Table::new([TableColumn::text("to reach"), TableColumn::text("reached"), TableColumn::text("met")]);
     let mut row = |what: &str, is: String, met: bool| {
         table.push([what.to_owned(), is, String::from(if met { "yes" } else { "no" })]);
     };
@@ -130,17 +130,17 @@ fn in_per_cent(share: Option<Statistic>) -> String {
 /// Every figure, a row each.
 fn rows(figures: &[ForecastFigure]) -> Table {
     let mut table = Table::new([
-        TableColumn::left("what from what"),
-        TableColumn::left("fitted"),
-        TableColumn::left("trial"),
-        TableColumn::left("figure"),
-        TableColumn::decimal("measured"),
-        TableColumn::decimal("median"),
-        TableColumn::decimal("lower 90"),
-        TableColumn::decimal("upper 90"),
-        TableColumn::left("held"),
-        TableColumn::decimal("width over value"),
-        TableColumn::left("judged as"),
+        TableColumn::text("what from what"),
+        TableColumn::text("fitted"),
+        TableColumn::text("trial"),
+        TableColumn::text("figure"),
+        TableColumn::number("measured"),
+        TableColumn::number("median"),
+        TableColumn::number("lower 90"),
+        TableColumn::number("upper 90"),
+        TableColumn::text("held"),
+        TableColumn::number("width over value"),
+        TableColumn::text("judged as"),
     ]);
     for own in figures {
         let [low, high] = own.compared.interval.ci90;

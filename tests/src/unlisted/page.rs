@@ -37,24 +37,24 @@ pub fn markdown(truths: &[Truth], outcomes: &[Outcome]) -> String {
 /// A line for every trial.
 pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
     let mut table = Table::new([
-        TableColumn::left("truth"),
-        TableColumn::left("group"),
-        TableColumn::decimal("noise").unit("deg"),
-        TableColumn::right("trial"),
-        TableColumn::decimal("likelihood ratio"),
-        TableColumn::left("judgement"),
-        TableColumn::left("verdict"),
-        TableColumn::left("named"),
-        TableColumn::left("aliases"),
-        TableColumn::left("times").unit("s"),
-        TableColumn::left("depends on"),
-        TableColumn::left("form"),
-        TableColumn::left("nats"),
-        TableColumn::left("from").unit("s"),
-        TableColumn::left("until").unit("s"),
-        TableColumn::decimal("moment").unit("deg"),
-        TableColumn::decimal("heading before").unit("deg"),
-        TableColumn::decimal("heading after").unit("deg"),
+        TableColumn::text("truth"),
+        TableColumn::text("group"),
+        TableColumn::number("noise").unit("deg"),
+        TableColumn::count("trial"),
+        TableColumn::number("likelihood ratio"),
+        TableColumn::text("judgement"),
+        TableColumn::text("verdict"),
+        TableColumn::text("named"),
+        TableColumn::text("aliases"),
+        TableColumn::text("times").unit("s"),
+        TableColumn::text("depends on"),
+        TableColumn::text("form"),
+        TableColumn::text("nats"),
+        TableColumn::text("from").unit("s"),
+        TableColumn::text("until").unit("s"),
+        TableColumn::number("moment").unit("deg"),
+        TableColumn::number("heading before").unit("deg"),
+        TableColumn::number("heading after").unit("deg"),
     ]);
     for outcome in outcomes {
         let answer = outcome.answer.as_ref();
@@ -247,19 +247,19 @@ fn how() -> String {
 /// The ships of one group at both noises.
 fn table(truths: &[Truth], outcomes: &[Outcome], group: Group, counted: &[Counted]) -> Table {
     let mut columns = vec![
-        TableColumn::left("truth"),
-        TableColumn::decimal("noise").unit("deg"),
-        TableColumn::decimal("likelihood ratio"),
-        TableColumn::right("trials"),
-        TableColumn::left("right").unit("%"),
+        TableColumn::text("truth"),
+        TableColumn::number("noise").unit("deg"),
+        TableColumn::number("likelihood ratio"),
+        TableColumn::count("trials"),
+        TableColumn::text("right").unit("%"),
     ];
-    columns.extend(counted.iter().map(|(heading, _)| TableColumn::right(*heading)));
+    columns.extend(counted.iter().map(|(heading, _)| TableColumn::count(*heading)));
     columns.extend([
-        TableColumn::right("and more"),
-        TableColumn::decimal("before").unit("× noise"),
-        TableColumn::decimal("after").unit("× noise"),
-        TableColumn::decimal("moment").unit("deg"),
-        TableColumn::left("named and located"),
+        TableColumn::count("and more"),
+        TableColumn::number("before").unit("× noise"),
+        TableColumn::number("after").unit("× noise"),
+        TableColumn::number("moment").unit("deg"),
+        TableColumn::text("named and located"),
     ]);
     let mut table = Table::new(columns);
     for cell in outcomes.chunk_by(|one, other| (one.ship, one.noise_deg) == (other.ship, other.noise_deg)) {
@@ -292,7 +292,7 @@ fn table(truths: &[Truth], outcomes: &[Outcome], group: Group, counted: &[Counte
 
 /// The equations, and what is right to say of them.
 fn equations(truths: &[Truth]) -> Table {
-    let mut table = Table::new([TableColumn::left("truth"), TableColumn::left("equation"), TableColumn::left("right")]);
+    let mut table = Table::new([TableColumn::text("truth"), TableColumn::text("equation"), TableColumn::text("right")]);
     for truth in truths {
         let right = match truth.kind {
             Kind::Listed { right, alias: [] } => right.join(", "),

@@ -23,45 +23,23 @@ pub struct TableColumn {
 
 impl TableColumn {
     /// A column of words.
-    pub fn left(heading: impl Into<String>) -> Self {
+    pub fn text(heading: impl Into<String>) -> Self {
         Self { heading: heading.into(), ..Self::default() }
     }
 
     /// A column of whole numbers.
-    pub fn right(heading: impl Into<String>) -> Self {
-        Self { alignment: Alignment::Right, ..Self::left(heading) }
+    pub fn count(heading: impl Into<String>) -> Self {
+        Self { alignment: Alignment::Right, ..Self::text(heading) }
     }
 
     /// A column of numbers with decimals.
-    pub fn decimal(heading: impl Into<String>) -> Self {
-        Self { alignment: Alignment::Decimal, ..Self::left(heading) }
+    pub fn number(heading: impl Into<String>) -> Self {
+        Self { alignment: Alignment::Decimal, ..Self::text(heading) }
     }
 
     /// The 95 % intervals of the column before.
     pub fn interval() -> Self {
-        Self { interval: true, ..Self::left("95 %") }
-    }
-
-    /// Columns by their heads, parted by `|`: words; whole numbers behind `>`, numbers with decimals behind `.`, the
-    /// intervals of the column before behind `~`; a unit in brackets at the end.
-    pub fn all(heads: &str) -> Vec<Self> {
-        let column = |head: &str| {
-            let (mark, name) = match head.split_at_checked(1) {
-                Some((mark @ ("." | ">" | "~"), name)) => (mark, name),
-                _ => ("", head),
-            };
-            let (heading, unit) = match name.strip_suffix(']').and_then(|name| name.rsplit_once(" [")) {
-                Some((heading, unit)) => (heading, Some(unit.to_owned())),
-                None => (name, None),
-            };
-            let alignment = match mark {
-                "." => Alignment::Decimal,
-                ">" => Alignment::Right,
-                _ => Alignment::Left,
-            };
-            Self { heading: heading.to_owned(), unit, alignment, interval: mark == "~" }
-        };
-        heads.split('|').map(|head| column(head.trim())).collect()
+        Self { interval: true, ..Self::text("95 %") }
     }
 
     /// The same column with a unit.
@@ -100,11 +78,6 @@ impl Table {
     /// An empty table.
     pub fn new(columns: impl Into<Vec<TableColumn>>) -> Self {
         Self { columns: columns.into(), ..Self::default() }
-    }
-
-    /// An empty table with the columns of [`TableColumn::all`].
-    pub fn headed(heads: &str) -> Self {
-        Self::new(TableColumn::all(heads))
     }
 
     /// The same table with a title.

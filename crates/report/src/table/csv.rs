@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn an_interval_is_two_numbers() {
         let columns =
-            [TableColumn::left("method"), TableColumn::decimal("K").unit("1/s"), TableColumn::interval().unit("1/s")];
+            [TableColumn::text("method"), TableColumn::number("K").unit("1/s"), TableColumn::interval().unit("1/s")];
         let mut table = Table::new(columns);
         table.push(["one", "0.1", "[−0.2, 4×10⁻¹]"]);
         table.push(["two", number::MISSING, number::MISSING]);
