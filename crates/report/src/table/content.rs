@@ -4,60 +4,9 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::width::{Alignment, align};
+use super::head::{TableColumn, TableHead};
+use super::width::align;
 use crate::printable::escaped;
-
-/// A column of a table.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct TableColumn {
-    /// What the column holds.
-    pub heading: String,
-    /// Its unit, without brackets.
-    pub unit: Option<String>,
-    /// How its cells are aligned.
-    pub alignment: Alignment,
-    /// Whether its cells are intervals of the column before it, `[low, high]`; other programs read two columns.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub interval: bool,
-}
-
-impl TableColumn {
-    /// A column of words.
-    pub fn text(heading: impl Into<String>) -> Self {
-        Self { heading: heading.into(), ..Self::default() }
-    }
-
-    /// A column of whole numbers.
-    pub fn count(heading: impl Into<String>) -> Self {
-        Self { alignment: Alignment::Right, ..Self::text(heading) }
-    }
-
-    /// A column of numbers with decimals.
-    pub fn number(heading: impl Into<String>) -> Self {
-        Self { alignment: Alignment::Decimal, ..Self::text(heading) }
-    }
-
-    /// The 95 % intervals of the column before.
-    pub fn interval() -> Self {
-        Self { interval: true, ..Self::text("95 %") }
-    }
-
-    /// The same column with a unit.
-    pub fn unit(self, unit: impl Into<String>) -> Self {
-        Self { unit: Some(unit.into()), ..self }
-    }
-
-    /// Heading and unit, as in `K [1/s]`.
-    pub(super) fn head(&self) -> String {
-        // An interval stands beside the column whose unit it has.
-        if self.interval { self.heading.clone() } else { self.named(&self.heading) }
-    }
-
-    /// Another heading with the unit of this column.
-    pub(super) fn named(&self, heading: &str) -> String {
-        self.unit.as_ref().map_or_else(|| heading.to_owned(), |unit| format!("{heading} [{unit}]"))
-    }
-}
 
 /// A table: columns, and rows of cells. `None` is a missing cell; a row shorter than the columns is filled up with
 /// missing cells and what is beyond the last column is not shown.
@@ -76,8 +25,8 @@ pub struct Table {
 
 impl Table {
     /// An empty table.
-    pub fn new(columns: impl Into<Vec<TableColumn>>) -> Self {
-        Self { columns: columns.into(), ..Self::default() }
+    pub fn new(head: TableHead) -> Self {
+        Self { columns: head.columns, ..Self::default() }
     }
 
     /// The same table with a title.

@@ -88,9 +88,9 @@ impl MissingMomentCurves {
             over: Over::ALL.into_iter().find(|over| column(*over).0 == name),
             rows: of(time, name),
             x: of(channels, name),
-            moment: of(channels, &beside(name, MOMENT)),
-            half_width: of(channels, &beside(name, HALF_WIDTH)),
-            explained: of(channels, &beside(name, EXPLAINED)),
+            moment: of(channels, &format!("{name}_{MOMENT}")),
+            half_width: of(channels, &format!("{name}_{HALF_WIDTH}")),
+            explained: of(channels, &format!("{name}_{EXPLAINED}")),
         };
         Self {
             time: of(time, TIME),
@@ -107,11 +107,6 @@ const MOMENT: &str = "moment_rudder_deg";
 const BAND: [&str; 2] = ["lower95_rudder_deg", "upper95_rudder_deg"];
 const HALF_WIDTH: &str = "half_width95_rudder_deg";
 const EXPLAINED: &str = "explained_rudder_deg";
-
-/// A column of the curve over the channel in this column.
-fn beside(channel: &str, name: &str) -> String {
-    format!("{channel}_{name}")
-}
 
 /// Name of a channel in a table, and whether it is an angle.
 fn column(over: Over) -> (&'static str, bool) {
@@ -157,10 +152,10 @@ pub fn over_channels(missing: &MissingMoment) -> String {
         let (name, curve) = (column(panel.over).0, &panel.curve);
         columns.push(name, shown(panel.over, &curve.x));
         let about = |values: &[f64]| values.iter().map(|value| to_deg(value + mean)).collect::<Vec<f64>>();
-        columns.push(beside(name, MOMENT), about(&curve.moment));
-        columns.push(beside(name, HALF_WIDTH), degrees(&curve.half_width));
+        columns.push(format!("{name}_{MOMENT}"), about(&curve.moment));
+        columns.push(format!("{name}_{HALF_WIDTH}"), degrees(&curve.half_width));
         if let Some(other) = curve.others.first() {
-            columns.push(beside(name, EXPLAINED), about(other));
+            columns.push(format!("{name}_{EXPLAINED}"), about(other));
         }
     }
     columns.text()

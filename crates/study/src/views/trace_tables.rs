@@ -45,9 +45,8 @@ pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
 
 /// Named effects with their parameters.
 pub fn effects(document: &TraceDocument) -> Table {
-    let mut table = Table::new(
-        TableHead::default().texts(["effect"]).numbers(["probability", "ΔBIC"]).texts(["parameters", "not told from"]),
-    );
+    let head = TableHead::default().texts(["effect"]).numbers(["probability", "ΔBIC"]);
+    let mut table = Table::new(head.texts(["parameters", "not told from"]));
     for effect in &document.trace.effects {
         let asked = if effect.asked { ", asked for" } else { "" };
         let parameters: Vec<String> = effect.parameters.values().map(value).collect();
@@ -111,14 +110,8 @@ const DEPARTS: f64 = 1.0;
 
 /// Coefficients of the hulls that are not as expected, the farthest first.
 pub fn hulls(document: &TraceDocument) -> Table {
-    let mut table = Table::new(
-        TableHead::default()
-            .texts(["hull", "coefficient"])
-            .numbers(["value", "expected"])
-            .numbers(["departure"])
-            .unit("sd")
-            .texts(["what it can mean"]),
-    );
+    let head = TableHead::default().texts(["hull", "coefficient"]).numbers(["value", "expected"]);
+    let mut table = Table::new(head.numbers(["departure"]).unit("sd").texts(["what it can mean"]));
     for hull in &document.ship.hulls {
         let mut far: Vec<&StoredCoefficient> =
             hull.coefficients.iter().filter(|own| own.departure().abs() >= DEPARTS).collect();
@@ -171,13 +164,8 @@ pub fn parameters(document: &TraceDocument) -> Table {
 
 /// What became of every candidate.
 pub fn candidates(document: &TraceDocument) -> Table {
-    let mut table = Table::new(
-        TableHead::default()
-            .texts(["candidate", "form", "outcome"])
-            .numbers(["probability", "ΔBIC"])
-            .texts(["p"])
-            .numbers(["visibility"]),
-    );
+    let head = TableHead::default().texts(["candidate", "form", "outcome"]).numbers(["probability", "ΔBIC"]);
+    let mut table = Table::new(head.texts(["p"]).numbers(["visibility"]));
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
     for one in &document.trace.candidates {
         if one.forms.is_empty() {
@@ -220,15 +208,8 @@ pub fn structures(document: &TraceDocument) -> Table {
 
 /// The noise of every fitted record.
 pub fn noise(document: &TraceDocument) -> Table {
-    let mut table = Table::new(
-        TableHead::default()
-            .texts(["record"])
-            .numbers(["heading, white"])
-            .unit("deg")
-            .texts(["beside it"])
-            .texts(["headings left out at"])
-            .unit("s"),
-    );
+    let head = TableHead::default().texts(["record"]).numbers(["heading, white"]).unit("deg").texts(["beside it"]);
+    let mut table = Table::new(head.texts(["headings left out at"]).unit("s"));
     for own in &document.trace.noise {
         let name = document.records.iter().find(|record| record.file == own.file).map_or(&own.file, |one| &one.name);
         let beside = coloured(own);
