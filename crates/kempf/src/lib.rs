@@ -8,7 +8,7 @@
 //! | describe a ship, its effects, a hull | [`ship`] |
 //! | read a measured record, find its overshoots | [`trial`] |
 //! | find manoeuvres in a long log | [`find`] |
-//! | draw the track of a turn | [`predict::motion`] |
+//! | draw the track of a turn | [`simulate::motion`] |
 //! | predict a manoeuvre that was not made, with intervals | [`predict`] |
 //! | make a record | [`simulate`] |
 //! | find K, T and δ_r with their intervals | [`identify`] |

@@ -7,7 +7,6 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | speed and drift of a turn, tracks, turning circles | [`motion`] |
 //! | ships drawn from it | [`mixture`] |
 //! | the manoeuvres, and what ends them | [`standard`] |
 //! | figures of merit | [`figures`] |
@@ -33,7 +32,6 @@ pub mod imo;
 pub mod interval;
 mod line;
 pub mod mixture;
-pub mod motion;
 pub mod prediction;
 pub mod replay;
 mod root;

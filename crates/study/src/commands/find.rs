@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use report::Table;
 use report::number::{MISSING, fixed, optional};
+use report::{Table, TableHead};
 use trial::file::called;
 
 use crate::documents;
@@ -72,9 +72,9 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
 }
 
 fn table(found: &[ManoeuvreEntry]) -> Table {
-    let mut table = Table::headed(
-        ".--trial | manoeuvre | .from [s] | .until [s] | clock | .executes | .rudder [deg] | .heading [deg]",
-    );
+    let head = TableHead::default().numbers(["--trial"]).texts(["manoeuvre"]).numbers(["from", "until"]).unit("s");
+    let head = head.texts(["clock"]).numbers(["executes"]).numbers(["rudder", "heading"]).unit("deg");
+    let mut table = Table::new(head);
     for one in found {
         let clock = one.clock.as_ref().map(|[from, until]| format!("{from} to {until}"));
         table.push([

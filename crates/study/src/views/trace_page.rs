@@ -5,7 +5,7 @@ use document::trace::{Outcome, ParameterEntry};
 use predict::steady::SteadyCurve;
 use report::markdown::text;
 use report::number::{fixed, significant};
-use report::{Page, PageFigure, Table};
+use report::{Page, PageFigure, Table, TableHead};
 use ship::ShortNumber;
 use ship::vessel::prime::meaning;
 
@@ -279,7 +279,7 @@ fn model(document: &TraceDocument) -> String {
 
 /// What these records cannot tell: effects from each other, and effects at all.
 fn aliases(document: &TraceDocument) -> Table {
-    let mut table = Table::headed("effect | these records cannot tell it from");
+    let mut table = Table::new(TableHead::default().texts(["effect", "these records cannot tell it from"]));
     for effect in document.trace.effects.iter().filter(|effect| !effect.alias_forms.is_empty()) {
         table.push([tables::term(&effect.id, &effect.form, effect.only.as_ref()), effect.alias_forms.join(", ")]);
     }
