@@ -4,4 +4,4 @@ pub mod noise;
 pub mod warning;
 
 pub use noise::{HeadingNoise, HeadingWander, RandomMoment};
-pub use warning::{Severity, Source, Warning};
+pub use warning::{Code, Severity, Source, Warning, Warnings};
