@@ -134,17 +134,10 @@ pub fn fit(
     let records: Vec<TrialEntry> = records.iter().zip(&zigzags).map(|(own, zigzag)| trial_entry(own, zigzag)).collect();
     let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
     warnings.extend(no_track(&shown));
-    let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
-    if has_form && speak_against_form(&shown.hulls) {
-        let text = format!("{AGAINST_FORM}; `study predict --load` cannot take this ship to another loading");
-        warnings.push(Code::NoLoading, Source::Study, text);
-    }
+    warnings.extend(no_loading(trials, &shown));
     let earlier_trials = earlier::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(EarlierTrials::warning));
-    for (entry, estimate) in &answers {
-        let own = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
-        warnings.extend(Source::Method(entry.method.clone()).of(own));
-    }
+    warnings.extend(answers.iter().flat_map(of_answer));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
     };
@@ -164,6 +157,19 @@ pub fn fit(
         methods: entries,
     };
     Ok(FitResult { together, answers, document })
+}
+
+/// What a method says of its answer.
+fn of_answer((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
+    let own = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
+    Source::Method(entry.method.clone()).of(own).collect()
+}
+
+/// The warning of a ship of known draught that cannot be taken to another loading.
+fn no_loading(trials: &[Trial], shown: &RecordFacts) -> Option<Warning> {
+    let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
+    let text = format!("{AGAINST_FORM}; `study predict --load` cannot take this ship to another loading");
+    (has_form && speak_against_form(&shown.hulls)).then(|| Code::NoLoading.warning(text))
 }
 
 /// The warning of a record whose first overshoot cannot be read.

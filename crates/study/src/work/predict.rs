@@ -206,8 +206,7 @@ pub fn predict(
     let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
     warnings.extend(records.iter().filter(|_| ballast.is_empty()).filter_map(|own| validates_nothing(models, own)));
-    let draws = request.draws as usize;
-    let scale = TargetScale::of(&request.scale, &records, declared)?;
+    let (draws, scale) = (request.draws as usize, TargetScale::of(&request.scale, &records, declared)?);
     let mut in_still_water = |record| turn::without_current(target_scale::at_own_scale(record, warnings), current);
     let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
     let mixture = mixture_of(models, scale)?;
@@ -216,8 +215,8 @@ pub fn predict(
     let file = files(models).join(", ");
     let kinds = manoeuvres(request);
     let steps = ProgressSteps::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
-    let ships = SteeredShips { mixture: &mixture, draws, file: &file };
-    let (predictions, lost) = ships.predictions(&kinds, &steps, warnings)?;
+    let (predictions, lost) =
+        SteeredShips { mixture: &mixture, draws, file: &file }.predictions(&kinds, &steps, warnings)?;
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
         return Err(Failure::about(&file, error));
     }
