@@ -116,7 +116,10 @@ fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
                 zig_zags += 1;
                 assert!(matches!(flipped, Err(plausibility::Implausible::RudderFlipped { .. })), "{stem} {flipped:?}");
             } else {
-                assert!(flipped.expect("a turning circle alone is no proof")[0].contains("looks flipped"), "{stem}");
+                assert!(
+                    flipped.expect("a turning circle alone is no proof")[0].text.contains("looks flipped"),
+                    "{stem}"
+                );
             }
             for (channel, factor) in [
                 (Channel::YawRate, -1.0),
