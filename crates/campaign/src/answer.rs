@@ -74,8 +74,6 @@ pub struct MethodEntry {
     pub diagnostics: BTreeMap<String, f64>,
     /// Why the method stopped.
     pub stop: Option<String>,
-    /// What a reader should see beside the numbers.
-    pub warnings: Vec<String>,
 }
 
 impl MethodEntry {
@@ -100,7 +98,6 @@ impl MethodEntry {
             noise: estimate.noise,
             diagnostics: diagnostics.map(|&(name, value)| (name.to_owned(), value)).collect(),
             stop: Some(estimate.stop.as_str().to_owned()),
-            warnings: estimate.warnings.clone(),
             ..Self::default()
         }
     }

@@ -21,4 +21,4 @@ pub use identified_ship::{IdentifiedShip, KnownGear, StoredEffect, ValidityRange
 pub use noise::{HeadingNoise, Moment, RandomMoment};
 pub use quantity::Quantity;
 pub use stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
-pub use warning::{Severity, Source, Warning};
+pub use warning::{Code, Severity, Source, Warning, Warnings};

@@ -9,6 +9,7 @@
 //!
 //! Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, eqs. (9) to (11).
 
+use document::{Code, Warning};
 use estimation::column::extremes;
 use estimation::statistics::quantile;
 use serde::{Deserialize, Serialize};
@@ -222,12 +223,12 @@ fn diagnostics(fits: &[Fitted], instants: usize, drawn: &Drawn) -> Vec<(&'static
     all
 }
 
-fn warnings(fits: &[Fitted], drawn: &Drawn) -> Vec<String> {
+fn warnings(fits: &[Fitted], drawn: &Drawn) -> Vec<Warning> {
     let mut warnings = fourier::warnings(fits);
     if drawn.negative > 0 {
         let kept = drawn.answers.len();
-        warnings
-            .push(format!("{} of {kept} triples give a negative K or T and are part of the answer", drawn.negative));
+        let text = format!("{} of {kept} triples give a negative K or T and are part of the answer", drawn.negative);
+        warnings.push(Code::NegativeIndex.warning(text));
     }
     warnings
 }

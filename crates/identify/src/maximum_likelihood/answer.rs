@@ -1,6 +1,6 @@
 //! From the largest likelihood to an estimate: covariance from the information, and what a reader should know.
 
-use document::{HeadingNoise, RandomMoment};
+use document::{Code, HeadingNoise, RandomMoment, Warning};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use ship::angle::to_deg;
 use ship::first_order::State;
@@ -145,8 +145,9 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
     let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.innovations.as_slice()));
     let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, readings);
     let mut warnings = Vec::from_iter(warning);
-    warnings.extend(response.is_course_unstable().then(|| COURSE_UNSTABLE.into()));
-    warnings.extend(at_bound.then(|| format!("T = {} s is at its bound or beyond", ShortNumber(response.T()))));
+    warnings.extend(response.is_course_unstable().then(|| Code::CourseUnstable.warning(COURSE_UNSTABLE)));
+    let beyond = || format!("T = {} s is at its bound or beyond", ShortNumber(response.T()));
+    warnings.extend(at_bound.then(|| Code::AtBound.warning(beyond())));
     let noises: Vec<NoiseModel> = (records.iter().zip(places.iter().zip(parts)))
         .map(|(record, (place, part))| place.noise(gain, part.variance.sqrt(), record.has_gyro()))
         .collect();
@@ -176,7 +177,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
 }
 
 /// What a reader should know of readings that belong to no ship.
-fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
+fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for ((trial, record), found) in trials.iter().zip(&chosen.records).zip(&chosen.outliers) {
         let (name, time) = (trial.name(), &record.track.time);
@@ -186,17 +187,18 @@ fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
         };
         if !found.spikes.is_empty() {
             let (count, times) = (found.spikes.len(), times(&found.spikes));
-            warnings.push(format!("{name}: headings far from those around are left out ({count}), at t = {times} s"));
+            let text = format!("{name}: headings far from those around are left out ({count}), at t = {times} s");
+            warnings.push(Code::RejectedReadings.warning(text));
         }
         if !found.jumps.is_empty() {
             let times = times(&found.jumps);
-            warnings.push(format!("{name}: the heading jumps and stays off at t = {times} s; the jumps are estimated"));
+            let text = format!("{name}: the heading jumps and stays off at t = {times} s; the jumps are estimated");
+            warnings.push(Code::HeadingJump.warning(text));
         }
     }
     if chosen.too_many {
-        warnings.push(
-            "more than a tenth of the headings are far from those around: none is left out; check the compass".into(),
-        );
+        let text = "more than a tenth of the headings are far from those around: none is left out; check the compass";
+        warnings.push(Code::OddHeadings.warning(text));
     }
     warnings
 }
@@ -250,8 +252,8 @@ fn random_moment(noise: &NoiseModel, gain: f64) -> RandomMoment {
     }
 }
 
-/// What is random beside a white compass error, in words.
-fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<String> {
+/// The warning of what is random beside a white compass error.
+fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<Warning> {
     let mut parts = Vec::new();
     match random_moment(noise, gain) {
         RandomMoment::None => {}
@@ -273,8 +275,8 @@ fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<String> {
         let sd = to_deg(noise.heading_sd);
         parts.push(format!("a compass error of {sd:.3} deg with a correlation time of {time:.1} s"));
     }
-    (!parts.is_empty())
-        .then(|| format!("{}: beside the white noise of the compass there is {}", trial.name(), parts.join(" and ")))
+    let told = || format!("{}: beside the white noise of the compass there is {}", trial.name(), parts.join(" and "));
+    (!parts.is_empty()).then(|| Code::Noise.warning(told()))
 }
 
 /// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial of known truth and known noise: the smallest covariance an

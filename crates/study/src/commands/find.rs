@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use document::Warnings;
 use report::number::{MISSING, fixed, optional};
 use report::{Table, TableHead};
 use trial::file::called;
@@ -27,12 +28,12 @@ fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
 /// The manoeuvres of every log, for other programs.
 ///
 /// Fails when a log cannot be read.
-pub fn found(request: &FindRequest, warnings: &mut Vec<String>) -> Result<FindAnswer, Failure> {
+pub fn found(request: &FindRequest, warnings: &mut Warnings) -> Result<FindAnswer, Failure> {
     let one = |file: &PathBuf| entry(file, request, warnings);
     Ok(FindAnswer { logs: files(request)?.iter().map(one).collect::<Result<_, Failure>>()? })
 }
 
-fn entry(file: &Path, request: &FindRequest, warnings: &mut Vec<String>) -> Result<LogEntry, Failure> {
+fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<LogEntry, Failure> {
     let log = open(file, request.columns.as_deref(), &request.with_columns, warnings)?;
     Ok(LogEntry::of(called(file), &log, &manoeuvres(&log)))
 }
@@ -41,10 +42,10 @@ fn entry(file: &Path, request: &FindRequest, warnings: &mut Vec<String>) -> Resu
 ///
 /// Fails when a log cannot be read.
 pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
-    let mut warnings = Vec::new();
+    let mut warnings = Warnings::default();
     if common.format == Format::Json {
         documents::say(&found(request, &mut warnings)?)?;
-        screen::warn_of(common, &warnings);
+        screen::warn_of(common, &warnings.ranked());
         return Ok(());
     }
     for file in &files(request)? {
@@ -67,7 +68,7 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         let remarks: String = remarked.map(|one| format!("{}: {}\n", one.trial, one.remarks.join(" "))).collect();
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
-    screen::warn_of(common, &warnings);
+    screen::warn_of(common, &warnings.ranked());
     Ok(())
 }
 

@@ -43,10 +43,9 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     page.table(answers(document, curves));
     page.say(MODEL);
     page.say(FILES);
-    let warnings = document.ranked_warnings();
-    if !warnings.is_empty() {
+    if document.of_answer().next().is_some() {
         page.part("Warnings");
-        page.list(warnings.iter().map(|entry| text(entry)));
+        page.list(document.of_answer().map(|entry| text(&entry.to_string())));
     }
     let notes = notes(document, curves);
     if !notes.trim().is_empty() {
@@ -66,10 +65,9 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
             table.into_iter().for_each(|table| page.table(table));
         }
     }
-    let remarks = document.notes();
-    if !remarks.is_empty() {
+    if document.notes().next().is_some() {
         page.folded_part("Notes");
-        page.list(remarks.iter().map(|entry| text(entry)));
+        page.list(document.notes().map(|entry| text(&entry.to_string())));
     }
     page.folded_part("Figures");
     page.figures(figures);

@@ -98,7 +98,8 @@ pub fn corrected(document: &PredictDocument) -> Table {
                 Some(_) => with_uncertainty(*measured, *sd),
                 None => fixed(*measured, result.decimals()),
             };
-            let ((name, unit), remark) = (words(name), warnings.join("; "));
+            let doubts: Vec<&str> = warnings.iter().map(|doubt| doubt.text.as_str()).collect();
+            let ((name, unit), remark) = (words(name), doubts.join("; "));
             let record = correction.name.clone();
             table.push([record, name, unit.to_owned(), measured, factor, of_factor, median, half, most, remark]);
         }

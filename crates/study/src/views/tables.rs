@@ -4,6 +4,7 @@ use campaign::stored_figures::Reference;
 use report::number::{self, MISSING};
 use report::{Table, TableHead};
 
+use campaign::answer::MethodEntry;
 use campaign::design::Design;
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
@@ -13,7 +14,8 @@ use scenario::MethodName;
 
 /// The table of a showcase: the methods, and below them the truth and the published values.
 pub fn showcase(showcase: &Showcase) -> Table {
-    let mut table = super::method_table::table(&showcase.methods, &[]);
+    let entries: Vec<MethodEntry> = showcase.methods.iter().map(|shown| shown.entry.clone()).collect();
+    let mut table = super::method_table::table(&entries, &[]);
     let references = [("truth", showcase.intervals.truth), ("published", showcase.intervals.published)];
     for (name, reference) in references {
         if let Some(Reference { k_per_s, t_s }) = reference {
