@@ -1,7 +1,7 @@
 //! Hulls that earlier trials left in `fit.json` or `trace.json`, as what is expected of the next ones.
 
-use document::stored_hull::StoredHull;
 use document::IdentifiedShip;
+use document::stored_hull::StoredHull;
 use identify::hull::EarlierHull;
 use nalgebra::{DMatrix, DVector};
 use predict::{PredictError, drawable_hull};

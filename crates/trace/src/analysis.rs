@@ -5,8 +5,8 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use document::trace::Document;
 use document::HeadingNoise;
+use document::trace::Document;
 use identify::hull::HullEstimate;
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;

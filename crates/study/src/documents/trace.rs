@@ -1,8 +1,8 @@
 //! `trace.json`: what the analysis says, and beside it the files of curves and what is known of the ship.
 
+use document::IdentifiedShip;
 use document::trace::BeforeAfter;
 use document::trace::Document;
-use document::IdentifiedShip;
 use scenario::name::slug;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;

@@ -1,9 +1,9 @@
 //! Tables of a trace, from its document alone.
 
 use ::trace::replay_errors::HORIZONS;
+use document::Moment;
 use document::stored_hull::StoredCoefficient;
 use document::trace::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
-use document::Moment;
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
 use report::{Table, TableHead};
 use ship::angle::to_deg;

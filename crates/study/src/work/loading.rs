@@ -188,8 +188,8 @@ fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsErro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use document::stored_hull::{StoredCoefficient, by_keys};
     use document::Warning;
+    use document::stored_hull::{StoredCoefficient, by_keys};
     use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
 
     /// A tanker in ballast.

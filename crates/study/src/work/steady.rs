@@ -1,7 +1,7 @@
 //! The steady turns of a traced model, as the diagram of a spiral test shows them.
 
-use document::identified_ship::ValidityRange;
 use document::IdentifiedShip;
+use document::identified_ship::ValidityRange;
 use predict::ShipMixture;
 use predict::steady::SteadyCurve;
 use ship::angle::from_deg;

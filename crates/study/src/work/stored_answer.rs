@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use document::trace::SCHEMA as TRACE_SCHEMA;
 use document::IdentifiedShip;
+use document::trace::SCHEMA as TRACE_SCHEMA;
 use scenario::failure::Failure;
 use scenario::{TRACE, name};
 use serde_json::Value;
