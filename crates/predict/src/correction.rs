@@ -412,7 +412,7 @@ mod tests {
         full.members[0].effects.clear();
         full.length_m = Some(300.0);
         let said = differences(&full, &ballast, FULL_LOAD);
-        assert!(said[0].contains("nonlinear_damping") && said[1].contains("300 m"), "{said:?}");
+        assert!(said[0].text.contains("nonlinear_damping") && said[1].text.contains("300 m"), "{said:?}");
     }
 
     /// A model that says nothing of the trial says so, and a reading far off it is told.
