@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use ::trace::document::SCHEMA;
+use document::trace::SCHEMA;
 use campaign::folder::ResultFolder;
 use document::{Warning, Warnings};
 use report::Theme;
