@@ -139,16 +139,16 @@ pub fn watched(
     let problem = FittedRecords::new(records, response.inverse_T, time);
     let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_errors);
     let members = structures.members();
-    let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, (&full.law, &members), hulls, settings, time);
+    let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, &full.law, &members, hulls, settings, time);
     let (mut identification, mut no_nearer) = fit(&[])?;
     let location = locate(&problem, &full, &structures, &candidates, settings);
-    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, (&location, &rudder_errors));
+    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_errors);
     let hulls = hulls::fit(&trials, settings, &identification, &remainder);
     (identification, no_nearer) = if hulls.is_empty() { (identification, no_nearer) } else { fit(&hulls)? };
     let unseen = AveragedModel { members: &members, hulls: &hulls, law: &full.law, known: None, time };
     let judged = unseen.all_compared(&validation, &response, settings.thorough)?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let folds = || leave_one_out(&trials, &problem, (&full, &structures), &hulls, watcher);
+    let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, watcher);
     let left_out = if is_folded { folds() } else { Vec::new() };
     let parts = report::TraceParts {
         trials: &trials,
@@ -226,7 +226,8 @@ fn candidates_of(
 fn fitted(
     trials: &[Trial],
     base: &Base,
-    (law, members): (&NoiseLaw, &[(f64, &StructureFit)]),
+    law: &NoiseLaw,
+    members: &[(f64, &StructureFit)],
     hulls: &[HullEstimate],
     &Settings { thorough, .. }: &Settings,
     time: f64,

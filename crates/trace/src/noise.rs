@@ -278,7 +278,7 @@ impl RecordNoise {
         let steps = known.iter().map(step).collect();
         let beside = colour.waves.filter(|_| own > 0).map(|_| own);
         let states = own + if colour.waves.is_some() { 2 } else { 0 };
-        (System::of_rows(steps, initial, (&of_row, &self.variances), beside), states)
+        (System::of_rows(steps, initial, &of_row, &self.variances, beside), states)
     }
 }
 

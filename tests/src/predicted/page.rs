@@ -169,7 +169,7 @@ pub fn write(forecasts: &Forecasts, results: &Path) -> Outcome<()> {
     page.say(headline(figures));
     page.table(reached(figures));
     page.figures([charts::overshoots(figures)]);
-    page.figures(tracks.iter().enumerate().map(charts::track));
+    page.figures(tracks.iter().enumerate().map(|(number, track)| charts::track(number, track)));
     page.figures([charts::steady(steady), charts::rates(steady), charts::coverage(figures)]);
     page.part("How well, figure by figure");
     page.say(SCORES);

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use document::trace::SCHEMA;
 use campaign::folder::ResultFolder;
+use document::trace::SCHEMA;
 use document::{Warning, Warnings};
 use report::Theme;
 use scenario::failure::Failure;

@@ -91,7 +91,8 @@ impl Log {
                 return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
             }
             Content::Sentences(text) => {
-                let read = nmea::read(Lines::new(text.bytes, Encoding::Utf8)).map(|read| of_sentences(read, &sidecar));
+                let read = nmea::read(Lines::new(text.bytes, Encoding::Utf8))
+                    .map(|(series, log)| of_sentences(series, log, &sidecar));
                 let checked = read.and_then(|log| if whole { check(&log.columns).map(|()| log) } else { Ok(log) });
                 checked.map_err(|problem| ReadError::table(path, problem))?
             }
@@ -254,7 +255,7 @@ fn joined_hash(one: &str, other: &str) -> String {
 }
 
 /// Channels with instants of their own, each cleaned by itself, and of them the part that the sidecar asks for.
-fn of_sentences((series, mut log): (Vec<Series>, Log), sidecar: &Sidecar) -> Log {
+fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
     let cleaned = series.into_iter().map(|Series { channel, time, mut values }| {
         if channel == Channel::Heading {
             ship::angle::unwrap_heading(&mut values);
