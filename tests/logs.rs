@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::Path;
 
+use document::Warnings;
 use identify::{Identifier, output_error};
 use kempf_tests::logs::{self, File, Outcome, combined, voyage};
 use rayon::prelude::*;
@@ -40,7 +41,7 @@ fn faults(file: &File, sound: &[Quantity; 2]) -> Vec<String> {
     let mut faults = Vec::new();
     match (read(file), file.outcome) {
         (Ok(reading), Outcome::Read(words)) => {
-            let said = reading.warnings.join("\n");
+            let said = reading.warnings.iter().map(|warning| warning.text.as_str()).collect::<Vec<_>>().join("\n");
             faults.extend(
                 words.iter().filter(|word| !said.contains(**word)).map(|word| format!("no {word:?} in {said:?}")),
             );
@@ -69,7 +70,7 @@ fn every_log_gives_the_answer_of_the_sound_one_or_says_why_not() {
     let files = logs::all();
     let sound = files.iter().find(|file| file.name == "clean.csv").expect("it is among them");
     let reading = read(sound).expect("a sound log is read");
-    assert_eq!(reading.warnings, [""; 0]);
+    assert_eq!(reading.warnings, []);
     let answer = answer(&reading);
     for (found, truth) in answer.iter().zip([voyage::K, voyage::T]) {
         let [low, high] = found.ci95.expect("output error has an interval");
@@ -107,16 +108,17 @@ fn faults_of_instruments_leave_the_overshoots() {
 fn said(text: &str) -> Result<([Quantity; 2], String), String> {
     let names = ["output-error", "maximum-likelihood"].map(str::to_owned);
     let read = read_bytes(Path::new("log.csv"), text.as_bytes(), None, None).map_err(|error| error.to_string())?;
-    let mut warnings = read.warnings;
+    let mut warnings = Warnings::default();
+    warnings.extend(read.warnings);
     let methods = fit::methods(&names, &[], None).expect("they are known");
     let fitted =
-        fit::fit([&[read.trial], &[]], &methods, &[], true, &mut warnings).map_err(|failure| failure.to_string())?;
+        fit::fit([&[read.trial], &[]], &methods, &[], true, warnings).map_err(|failure| failure.to_string())?;
     let document = fitted.document;
     let verdict = document.verdict.as_ref().expect("there is an answer");
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method).expect("it is among them");
     let own = entry.parameters.expect("it answered");
-    let words =
-        format!("{}\n{}", fit_page::verdict(&document).unwrap_or_default(), document.ranked_warnings().join("\n"));
+    let warnings: Vec<String> = document.of_answer().map(ToString::to_string).collect();
+    let words = format!("{}\n{}", fit_page::verdict(&document).unwrap_or_default(), warnings.join("\n"));
     Ok(([own.k_per_s, own.t_s], words))
 }
 

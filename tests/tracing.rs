@@ -5,6 +5,7 @@
 use std::io::Write as _;
 use std::sync::Arc;
 
+use document::trace::{EffectEntry, Outcome};
 use kempf_tests::records::{mirrored, zig_zag};
 use ship::angle::from_deg;
 use ship::dynamics::{Dynamics, Input, Motion};
@@ -12,7 +13,6 @@ use ship::effects::{self, Effect, listed};
 use ship::{Polyline, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Squall};
 use simulate::{Simulation, StreamKey, Vessel};
-use trace::document::{EffectEntry, Outcome};
 use trace::{Analysis, Selection, Settings, Verdict};
 use trial::{Channel, Columns, Origin, Trial};
 

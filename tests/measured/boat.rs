@@ -1,8 +1,8 @@
 //! The boat of Fuzhou, whose headings were interpolated between packets: no noise of the trace describes them.
 
+use document::trace::Verdict;
 use kempf_tests::measured::sets::SETS;
 use trace::Settings;
-use trace::document::Verdict;
 
 /// Structures that replay a record no nearer than the base, under a noise that does not describe what they leave, name
 /// nothing, whatever their probability. On her turning circle they are worse than the base by two and a half.

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use document::Warning;
 use kempf_tests::measured;
 use ship::angle::from_deg;
 
@@ -34,9 +35,9 @@ fn difference(raw: &Trial, tidy: &Trial, channel: Channel, tolerance_s: f64) -> 
 
 /// Whether the reader says of a record what is to be said: two antennas, as on the Esso Osaka, sometimes give the same
 /// heading ten times and then another one, or jump; and there the order of the rudder was recorded for its angle.
-fn are_expected(warnings: &[String], of_antennas: bool) -> bool {
+fn are_expected(warnings: &[Warning], of_antennas: bool) -> bool {
     let of_esso = ["the heading is frozen", "the heading jumps", "the rudder jumps from one row to the next"];
-    warnings.iter().all(|warning| of_antennas && of_esso.iter().any(|begin| warning.starts_with(begin)))
+    warnings.iter().all(|warning| of_antennas && of_esso.iter().any(|begin| warning.text.starts_with(begin)))
 }
 
 #[test]
@@ -115,7 +116,10 @@ fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
                 zig_zags += 1;
                 assert!(matches!(flipped, Err(plausibility::Implausible::RudderFlipped { .. })), "{stem} {flipped:?}");
             } else {
-                assert!(flipped.expect("a turning circle alone is no proof")[0].contains("looks flipped"), "{stem}");
+                assert!(
+                    flipped.expect("a turning circle alone is no proof")[0].text.contains("looks flipped"),
+                    "{stem}"
+                );
             }
             for (channel, factor) in [
                 (Channel::YawRate, -1.0),

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use document::trace::ParameterEntry;
 use report::number::{MISSING, uncertain};
-use report::{Table, TableColumn};
+use report::{Table, TableHead};
 use trace::Document;
-use trace::document::ParameterEntry;
 
 /// Identifier and form.
 type Effect = (String, String);
@@ -21,9 +21,8 @@ fn coefficient(entry: &ParameterEntry) -> (String, &str) {
 
 /// Every effect that is named in one of the records alone: how often, and its coefficients record by record.
 pub fn table(alone: &[(&str, &Document)]) -> Table {
-    let records = alone.iter().map(|(record, _)| TableColumn::left(*record));
-    let head = [TableColumn::left("effect"), TableColumn::left("coefficient"), TableColumn::right("named in")];
-    let mut table = Table::new(head.into_iter().chain(records).collect::<Vec<_>>());
+    let head = TableHead::default().texts(["effect", "coefficient"]).counts(["named in"]);
+    let mut table = Table::new(head.texts(alone.iter().map(|(record, _)| *record)));
     let own = |(_, document): &'_ (_, &Document)| -> BTreeMap<Effect, BTreeMap<String, ParameterEntry>> {
         let effects = document.effects.iter();
         effects.map(|effect| ((effect.id.clone(), effect.form.clone()), effect.parameters.clone())).collect()

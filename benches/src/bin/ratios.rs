@@ -9,7 +9,7 @@ use kempf_benches::work::{Cores, Reach, TimedWork, WorkGroup};
 use kempf_benches::works;
 use report::figures::{Division, NamedRows, Plot, Reference95, RowItem, RowKind, RowsColumn, Ruler};
 use report::number::{self, MISSING, significant};
-use report::{CurveOrigin, Table, TableColumn, Theme};
+use report::{CurveOrigin, Table, TableHead, Theme};
 use serde::Deserialize;
 
 /// Head of the report.
@@ -20,7 +20,7 @@ const HEAD: &str = "# What the work costs\n\n\
 fn main() -> Result<(), Box<dyn Error>> {
     let criterion = std::env::var_os("CRITERION_HOME").map_or_else(in_target, PathBuf::from);
     let mut figure = None;
-    let mut numbers = Table::new(NUMBERS.map(TableColumn::left));
+    let mut numbers = Table::new(TableHead::default().texts(NUMBERS));
     let mut report = format!("{HEAD}\nProcessor: {}, {} threads.\n", processor(), cores());
     // The group of outside estimators is only named here, so its program need not be there.
     for group in works::all().into_iter().chain([works::outside("echo")]) {
@@ -197,9 +197,8 @@ fn compared<'a>(group: &'a WorkGroup, criterion: &Path) -> Vec<ComparedWork<'a>>
 
 /// The table of a group.
 fn table(rows: &[ComparedWork]) -> Table {
-    let [work, times, beside, its, reach, verdict] =
-        ["work", "time", "beside it", "its time", "reach", "verdict"].map(TableColumn::left);
-    let mut table = Table::new([work, times, beside, its, TableColumn::decimal("ratio"), reach, verdict]);
+    let head = TableHead::default().texts(["work", "time", "beside it", "its time"]).numbers(["ratio"]);
+    let mut table = Table::new(head.texts(["reach", "verdict"]));
     rows.iter().for_each(|row| table.push(row.cells()));
     table
 }

@@ -1,7 +1,7 @@
 //! Predicting a manoeuvre from a thousand drawn ships.
 
-use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
-use predict::{IdentifiedShip, ShipMixture};
+use document::{HeadingNoise, IdentifiedShip, KnownGear, RandomMoment, StoredEffect, ValidityRange, WeightedStructure};
+use predict::ShipMixture;
 use ship::angle::from_deg;
 use ship::effects::{Effect, listed};
 use simulate::Manoeuvre;
@@ -13,7 +13,7 @@ use crate::work::{Reach, Work, WorkGroup};
 const DRAWS: usize = 1000;
 
 /// What a good 10/10 tells of a ship of 75 m at 6 m/s.
-fn known(effect: Option<&dyn Effect>, moment: Moment) -> IdentifiedShip {
+fn known(effect: Option<&dyn Effect>, moment: RandomMoment) -> IdentifiedShip {
     let damping = effect.map(|effect| StoredEffect {
         id: effect.id().to_owned(),
         form: effect.form().to_owned(),
@@ -35,12 +35,7 @@ fn known(effect: Option<&dyn Effect>, moment: Moment) -> IdentifiedShip {
             covariance: (0..count).map(|i| (0..count).map(|j| variance(i, j)).collect()).collect(),
             degrees_of_freedom: None,
         }],
-        noise: KnownNoise {
-            heading_sd_rad: from_deg(0.1),
-            moment,
-            moment_sd_rudder_rad: if moment == Moment::None { 0.0 } else { from_deg(0.5) },
-            moment_correlation_s: (moment == Moment::OrnsteinUhlenbeck).then_some(10.0),
-        },
+        noise: HeadingNoise { heading_sd_rad: from_deg(0.1), moment },
         gear: Some(KnownGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
         approach_yaw_rate_rad_s: from_deg(0.01),
         seen: ValidityRange { rudder_rad: from_deg(10.0), yaw_rate_rad_s: from_deg(1.0) },
@@ -65,9 +60,11 @@ pub fn prediction() -> WorkGroup {
         let work = Work::new(name, move || mixture.predict(&kind, DRAWS, false).is_ok()).slow();
         group.alone(work, Some(Reach::Time(0.05)));
     };
-    add("first order, calm", known(None, Moment::None));
-    add("first order, gusts", known(None, Moment::OrnsteinUhlenbeck));
-    add("first order, white moment", known(None, Moment::White));
-    add("cubic damping, calm", known(Some(listed("nonlinear_damping", "r³").as_ref()), Moment::None));
+    let size = from_deg(0.5);
+    let gusts = RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: size, correlation_s: 10.0 };
+    add("first order, calm", known(None, RandomMoment::None));
+    add("first order, gusts", known(None, gusts));
+    add("first order, white moment", known(None, RandomMoment::White { rudder_rad_root_s: size }));
+    add("cubic damping, calm", known(Some(listed("nonlinear_damping", "r³").as_ref()), RandomMoment::None));
     group
 }

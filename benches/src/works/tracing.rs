@@ -51,14 +51,17 @@ pub fn tracing() -> WorkGroup {
         "trace",
         "Tracing",
         "Whole traces with bands and the errors of restarted replays, on one core: a simulated record that lacks nothing, and \
-         measured zig-zags of KVLCC2 where they are at hand.",
+         measured zig-zags of KVLCC2 where they are at hand; and of the first the search for moments of a shape alone.",
     );
     let whole = |name: &str, trials: Vec<Trial>, held_out: Vec<Trial>| {
         let settings = Settings::default();
         Work::new(name, move || trace(&trials, &held_out, &settings).is_ok()).slow()
     };
     let clean = record(&first_order_zig_zag(400));
+    let shapes = trace(std::slice::from_ref(&clean), &[], &Settings::default()).expect("a base");
+    let stage = Work::new("moments of a shape alone, 400 rows", move || shapes.shapes().is_some()).slow();
     group.alone(whole("one record, nothing missing, 400 rows", vec![clean], Vec::new()), Some(Reach::Time(0.1)));
+    group.alone(stage, Some(Reach::Time(0.1)));
     if let Some(marin) = measured("kvlcc2_marin", &["zigzag_10"]) {
         group.alone(whole("one record, MARIN, 961 rows", marin, Vec::new()), Some(Reach::Time(0.5)));
     }

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use document::trace::PrimeIndices;
+use document::{HeadingNoise, Quantity};
 use identify::replay::pooled;
 use identify::{Estimate, IdentifyError};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
-use trace::document::PrimeIndices;
-use trial::Quantity;
 
 /// K, T and δ_r of one method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -67,12 +67,13 @@ pub struct MethodEntry {
     pub heading_rmse_deg: Option<f64>,
     /// Heading errors on other records.
     pub validation: Vec<Validation>,
+    /// The noise of the first record, where the method looks for a random moment; SI units and radians.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<HeadingNoise>,
     /// Named figures of the method; the unit is in the name.
     pub diagnostics: BTreeMap<String, f64>,
     /// Why the method stopped.
     pub stop: Option<String>,
-    /// What a reader should see beside the numbers.
-    pub warnings: Vec<String>,
 }
 
 impl MethodEntry {
@@ -94,9 +95,9 @@ impl MethodEntry {
             }),
             course_unstable: estimate.response.is_course_unstable(),
             heading_rmse_deg,
+            noise: estimate.noise,
             diagnostics: diagnostics.map(|&(name, value)| (name.to_owned(), value)).collect(),
             stop: Some(estimate.stop.as_str().to_owned()),
-            warnings: estimate.warnings.clone(),
             ..Self::default()
         }
     }

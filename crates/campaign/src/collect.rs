@@ -83,7 +83,7 @@ pub fn collect(
     if resumed > 0 {
         observer.note(&format!("going on after {resumed} of {} trials in {}", plan.most(), folder.path().display()));
     }
-    run_all((scenario, &outside), &mut plan, &mut unfinished, folder.path(), observer)?;
+    run_all(scenario, &outside, &mut plan, &mut unfinished, folder.path(), observer)?;
     finish(scenario, &plan, unfinished, folder)
 }
 
@@ -149,7 +149,8 @@ enum RunEnd {
 
 /// Runs what is left of a plan; rows go to a writer of their own while the next trials run.
 fn run_all(
-    (scenario, outside): (&Scenario, &RunningEstimators),
+    scenario: &Scenario,
+    outside: &RunningEstimators,
     plan: &mut TrialPlan,
     unfinished: &mut Unfinished,
     folder: &Path,

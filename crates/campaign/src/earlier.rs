@@ -1,9 +1,10 @@
 //! Hulls that earlier trials left in `fit.json` or `trace.json`, as what is expected of the next ones.
 
+use document::IdentifiedShip;
+use document::stored_hull::StoredHull;
 use identify::hull::EarlierHull;
 use nalgebra::{DMatrix, DVector};
-use predict::stored_hull::StoredHull;
-use predict::{IdentifiedShip, PredictError};
+use predict::{PredictError, drawable_hull};
 use ship::vessel::prior::HullParticulars;
 
 /// The hulls of an identified ship.
@@ -14,7 +15,7 @@ pub fn hulls_of(ship: &IdentifiedShip) -> Result<Vec<EarlierHull>, PredictError>
 }
 
 fn earlier(own: &StoredHull) -> Result<EarlierHull, PredictError> {
-    own.check()?;
+    drawable_hull::check(own)?;
     let particulars = HullParticulars { length: own.length_m, speed: own.speed_m_s, ..own.particulars()? };
     let size = own.coefficients.len();
     Ok(EarlierHull {

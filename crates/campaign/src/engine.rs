@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use ::trace::comparison::ReplayResult;
-use ::trace::document::EffectEntry;
 use ::trace::{Analysis, TraceError};
+use document::trace::EffectEntry;
 use identify::external::shown;
 use identify::replay::pooled;
 use identify::{Estimate, IdentifyError, StopReason};

@@ -1,19 +1,20 @@
 //! What an estimate or an analysis knows of a ship, as a prediction takes it. Longer than most: it reads all that fits,
 //! traces and hulls leave.
 
+use document::stored_hull::{by_keys, rows_of};
+use document::{
+    HeadingNoise, IdentifiedShip, KnownGear, RandomYawMoment, StoredCoefficient, StoredEffect, StoredHull,
+    ValidityRange, WeightedStructure,
+};
 use identify::estimate::{Estimate, Uncertainty};
 use identify::hull::{self, EarlierHull, ExpectationCheck, HullEstimate, HullFitError, HullReference, HullResidual};
 use identify::replay::{Replay, pooled_rms, replay};
 use identify::{Identifier, maximum_likelihood};
-use predict::IdentifiedShip;
-use predict::identified_ship::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
-use predict::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull, by_keys, rows_of};
 use ship::Particulars;
-use ship::angle::{from_deg, to_deg};
+use ship::angle::to_deg;
 use ship::vessel::prime::HullCoefficient;
 use trace::Analysis;
 use trace::analysis::Plausible;
-use trace::document::RecordNoiseEntry;
 use trial::zigzag::STRAIGHT_APPROACH;
 use trial::{Channel, Trial, ZigZag};
 
@@ -87,7 +88,7 @@ impl<'a> RecordFacts<'a> {
     fn with<'b>(
         &self,
         members: Vec<WeightedStructure>,
-        noise: KnownNoise,
+        noise: HeadingNoise,
         rates: impl Iterator<Item = &'b [f64]>,
     ) -> IdentifiedShip {
         let rates: Vec<&[f64]> = rates.collect();
@@ -95,7 +96,7 @@ impl<'a> RecordFacts<'a> {
         let of_readings = self.reading_noise.filter(|_| !self.hulls.is_empty());
         IdentifiedShip {
             members,
-            noise: KnownNoise { heading_sd_rad: of_readings.unwrap_or(noise.heading_sd_rad), ..noise },
+            noise: HeadingNoise { heading_sd_rad: of_readings.unwrap_or(noise.heading_sd_rad), ..noise },
             gear: self.gear,
             approach_yaw_rate_rad_s: self.approach_yaw_rate(&rates),
             seen: ValidityRange {
@@ -178,13 +179,6 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
     let replays: Vec<Replay> = facts.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
-    let kinds = [
-        (Moment::White, "white_moment_rudder_deg_root_s"),
-        (Moment::Walk, "moment_walk_rudder_deg_per_root_s"),
-        (Moment::OrnsteinUhlenbeck, "gusts_sd_rudder_deg"),
-    ];
-    let moment = kinds.into_iter().find_map(|(kind, name)| Some((kind, from_deg(estimate.diagnostic(name)?))));
-    let (moment, moment_sd_rudder_rad) = moment.unwrap_or_default();
     let member = WeightedStructure {
         weight: 1.0,
         effects: Vec::new(),
@@ -193,12 +187,10 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
         covariance: (0..3).map(|i| (0..3).map(|j| covariance.matrix[(i, j)]).collect()).collect(),
         degrees_of_freedom: covariance.degrees_of_freedom,
     };
-    let read = estimate.diagnostic("heading_sd_deg").map(from_deg).or(facts.reading_noise);
-    let noise = KnownNoise {
-        heading_sd_rad: read.unwrap_or_else(|| pooled_rms(&replays)),
-        moment,
-        moment_sd_rudder_rad,
-        moment_correlation_s: estimate.diagnostic("gusts_correlation_s"),
+    let readings = estimate.noise.map(|noise| noise.heading_sd_rad).or(facts.reading_noise);
+    let noise = HeadingNoise {
+        heading_sd_rad: readings.unwrap_or_else(|| pooled_rms(&replays)),
+        moment: estimate.noise.unwrap_or_default().moment,
     };
     Some(facts.with(vec![member], noise, replays.iter().map(|replay| replay.yaw_rate.as_slice())))
 }
@@ -210,26 +202,11 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
 pub fn of_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
     let members = analysis.plausible().iter().map(member).collect();
     let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
-    let noise = mean_noise(&analysis.document.noise);
+    let noise = analysis.noise;
     let known = facts.with(members, noise, rates);
     match known.members.first() {
-        Some(first) if first.effects.is_empty() && noise.moment != Moment::None => with_likelihood(known, facts),
+        Some(first) if first.effects.is_empty() && !noise.moment.is_none() => with_likelihood(known, facts),
         _ => known,
-    }
-}
-
-/// The noise of several records: means of the sizes, the kind being one and the same in all.
-fn mean_noise(records: &[RecordNoiseEntry]) -> KnownNoise {
-    let mean = |of: fn(&RecordNoiseEntry) -> Option<f64>| {
-        let values: Vec<f64> = records.iter().filter_map(of).collect();
-        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-    };
-    let named = |record: &RecordNoiseEntry| Moment::ALL.into_iter().find(|own| own.as_str() == record.moment);
-    KnownNoise {
-        heading_sd_rad: from_deg(mean(|record| Some(record.heading_sd_deg)).unwrap_or(0.0)),
-        moment: records.first().and_then(named).unwrap_or_default(),
-        moment_sd_rudder_rad: from_deg(mean(|record| record.moment_sd_rudder_deg).unwrap_or(0.0)),
-        moment_correlation_s: mean(|record| record.moment_correlation_s),
     }
 }
 
@@ -240,7 +217,7 @@ fn with_likelihood(mut known: IdentifiedShip, facts: &RecordFacts) -> Identified
         return known;
     };
     if let [member] = &likelihood.members[..]
-        && likelihood.noise.moment != Moment::None
+        && !likelihood.noise.moment.is_none()
     {
         known.members[0] = WeightedStructure { weight: known.members[0].weight, ..member.clone() };
         known.noise = likelihood.noise;
@@ -338,6 +315,7 @@ mod tests {
     use predict::ShipMixture;
     use scenario::Predictions;
     use ship::FirstOrder;
+    use ship::angle::from_deg;
     use ship::vessel::prior::HullParticulars;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
 
@@ -361,7 +339,7 @@ mod tests {
         let known = of_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
         let gear = known.gear.expect("a zig-zag");
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
-        assert!((to_deg(known.noise.heading_sd_rad) - 0.1).abs() < 0.02 && known.noise.moment == Moment::None);
+        assert!((to_deg(known.noise.heading_sd_rad) - 0.1).abs() < 0.02 && known.noise.moment.is_none());
         let kind: Manoeuvre = "zig-zag:20/20".parse().expect("known");
         let prediction =
             ShipMixture::new(vec![(known, 1.0)]).expect("sound").predict(&kind, 200, true).expect("a trial");
@@ -404,8 +382,8 @@ mod tests {
         let method = maximum_likelihood::Settings::default().build().expect("defaults");
         let known =
             of_estimate(&method.identify(&trials).expect("a fit"), &RecordFacts::of(&trials)).expect("a covariance");
-        assert_ne!(known.noise.moment, Moment::None);
-        assert!(known.noise.moment_sd_rudder_rad > 0.0);
+        assert!(!known.noise.moment.is_none());
+        assert!(known.noise.moment.size() > 0.0);
     }
 
     #[test]

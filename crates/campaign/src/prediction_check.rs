@@ -1,7 +1,8 @@
 //! Manoeuvres predicted from an answer, and the same ship making them: whether intervals hold.
 
+use document::IdentifiedShip;
 use predict::simulated_manoeuvre::SimulatedManoeuvre;
-use predict::{IdentifiedShip, ShipMixture, figures, standard};
+use predict::{ShipMixture, figures, standard};
 use scenario::Predictions;
 use simulate::{Manoeuvre, Sensors, Simulation, StreamKey};
 use trial::Trial;

@@ -34,7 +34,17 @@ pub struct Showcase {
     /// K and T of every method.
     pub intervals: Intervals,
     /// The numbers behind the figures.
-    pub methods: Vec<MethodEntry>,
+    pub methods: Vec<ShownAnswer>,
+}
+
+/// The answer of one method, with the texts of its warnings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ShownAnswer {
+    /// The answer.
+    #[serde(flatten)]
+    pub entry: MethodEntry,
+    /// What a reader should see beside the numbers.
+    pub warnings: Vec<String>,
 }
 
 /// Points of a fitted curve between two rows of the record.
@@ -79,8 +89,13 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
             replays: replay_curves(trial, &answers, |label| origin(&names, label)),
         },
         intervals: intervals(title("K and T"), &answers, &names, truth_of_ship.as_ref(), &scenario.published),
-        methods: answers.into_iter().map(|(entry, _)| entry).collect(),
+        methods: answers.into_iter().map(shown).collect(),
     })
+}
+
+fn shown((entry, estimate): (MethodEntry, Option<Estimate>)) -> ShownAnswer {
+    let warnings = estimate.into_iter().flat_map(|estimate| estimate.warnings).map(|warning| warning.text);
+    ShownAnswer { entry, warnings: warnings.collect() }
 }
 
 fn intervals(

@@ -8,7 +8,7 @@ use simulate::limits::MOST_STEPS;
 
 use crate::engine::{TrialRunner, key};
 use crate::task::Task;
-use scenario::{Scenario, effect_keys};
+use scenario::Scenario;
 
 /// Scenarios that together hold every key with a number, one a line.
 const EVERYTHING: [&str; 5] = [
@@ -224,8 +224,8 @@ fn numbers_are_shown_as_they_are_written() {
 #[test]
 fn the_listed_keys_of_an_effect_are_those_it_has() {
     for effect in ship::effects::all() {
-        let Some(keys) = effect_keys(effect.as_ref()) else { continue };
-        let lines: Vec<String> = keys.split(", ").map(|key| format!("{key} = 0.3\n")).collect();
+        let Some(numbers) = effect.in_file() else { continue };
+        let lines: Vec<String> = numbers.iter().map(|number| format!("{} = 0.3\n", number.key)).collect();
         let text = format!(
             "\n[ship.yukun]\n[[effect]]\n[effect.{}]\n{}[manoeuvre.zig-zag]\nrudder-deg = 10\nheading-deg = 10\n[recording]\n\
              sampling-s = 1\nduration-s = 100",
@@ -237,6 +237,6 @@ fn the_listed_keys_of_an_effect_are_those_it_has() {
             assert!(message.contains("` is 0.3"), "{message}");
         }
     }
-    let listed = ship::effects::all().iter().filter(|effect| effect_keys(effect.as_ref()).is_some()).count();
+    let listed = ship::effects::all().iter().filter(|effect| effect.in_file().is_some()).count();
     assert_eq!(listed, 16, "all forms but those of measured channels");
 }

@@ -94,7 +94,8 @@ impl<const N: usize> System<N> {
     pub fn of_rows(
         steps: Vec<Step<N>>,
         initial: [[f64; N]; N],
-        (of_row, variances): (&[usize], &[f64]),
+        of_row: &[usize],
+        variances: &[f64],
         beside: Option<usize>,
     ) -> Self {
         let mut sensors: Vec<Sensor> = Vec::new();

@@ -13,6 +13,7 @@ mod equation_8;
 mod found;
 mod points;
 
+use document::{Code, Warning};
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::angle::from_deg;
@@ -172,6 +173,7 @@ impl Identifier for CharacteristicPoints {
             robust: None,
             stop: StopReason::Direct,
             evaluations: 1,
+            noise: None,
             diagnostics,
             warnings: warnings(trials, &analysed),
         })
@@ -184,17 +186,17 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
     Matrix3::new(0.0, 0.0, -1.0 / square, 1.0 / time, 0.0, -gain / square, -gain_bias / (gain * gain), 1.0 / gain, 0.0)
 }
 
-fn warnings(trials: &[Trial], analysed: &[Analysed]) -> Vec<String> {
+fn warnings(trials: &[Trial], analysed: &[Analysed]) -> Vec<Warning> {
     let told = |(trial, analysed): (&Trial, &Analysed)| {
         let taken = match analysed.points.base_from {
             BaseHeadingOrigin::Given | BaseHeadingOrigin::Approach => return None,
             BaseHeadingOrigin::Zero => "heading 0",
             BaseHeadingOrigin::Middle => "the middle of its headings",
         };
-        Some(format!(
+        Some(Code::Method.warning(format!(
             "{} has no straight approach: {taken} was taken for the base course; give base-course-deg if it is known",
             trial.name()
-        ))
+        )))
     };
     trials.iter().zip(analysed).filter_map(told).collect()
 }

@@ -3,6 +3,7 @@
 
 use std::cell::Cell;
 
+use document::{HeadingNoise, Warning};
 use nalgebra::{Matrix3, Vector3};
 use ship::FirstOrder;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
@@ -104,10 +105,12 @@ pub struct Estimate {
     pub stop: StopReason,
     /// Model evaluations (simulations or solved systems).
     pub evaluations: usize,
+    /// The noise of the first record, where the method looks for a random moment.
+    pub noise: Option<HeadingNoise>,
     /// Named figures for a reader: fit R², condition numbers, counts; the unit is in the name.
     pub diagnostics: Vec<(&'static str, f64)>,
-    /// Sentences a reader should see beside the numbers.
-    pub warnings: Vec<String>,
+    /// What a reader should see beside the numbers, without the name that the method goes by.
+    pub warnings: Vec<Warning>,
 }
 
 impl Estimate {

@@ -15,6 +15,7 @@
 //! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series
 //! by generalised cross-validation (Golub, Heath and Wahba 1979).
 
+use document::Code;
 use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
 use ship::angle::to_deg;
@@ -275,13 +276,13 @@ impl Identifier for FourierProjected {
         let mut warnings = fourier::warnings(&fits);
         for (trial, noise) in trials.iter().zip(&noises) {
             if noise.white < LEAST_WHITE_SHARE * noise.residual {
-                warnings.push(format!(
+                warnings.push(Code::ColouredResidual.warning(format!(
                     "{}: the residual of the heading fit ({:.3} deg) is mostly not white noise ({:.3} deg): truncation of \
                      the series or a disturbance; the intervals take all of it for noise",
                     trial.name(),
                     to_deg(noise.residual.sqrt()),
                     to_deg(noise.white.sqrt()),
-                ));
+                )));
             }
         }
         let matrix = solution.covariance;
@@ -291,6 +292,7 @@ impl Identifier for FourierProjected {
             robust: None,
             stop: fits.iter().map(|fit| fit.stop).max().unwrap_or(StopReason::Direct),
             evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + 1,
+            noise: None,
             diagnostics,
             warnings,
         })

@@ -9,6 +9,7 @@
 //!
 //! Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, eqs. (9) to (11).
 
+use document::{Code, Warning};
 use estimation::column::extremes;
 use estimation::statistics::quantile;
 use serde::{Deserialize, Serialize};
@@ -195,6 +196,7 @@ impl Identifier for FourierPublished {
             robust: None,
             stop: fits.iter().map(|fit| fit.stop).max().unwrap_or(StopReason::Direct),
             evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + drawn.tried,
+            noise: None,
             diagnostics: diagnostics(&fits, instants.len(), &drawn),
             warnings: warnings(&fits, &drawn),
         })
@@ -221,12 +223,12 @@ fn diagnostics(fits: &[Fitted], instants: usize, drawn: &Drawn) -> Vec<(&'static
     all
 }
 
-fn warnings(fits: &[Fitted], drawn: &Drawn) -> Vec<String> {
+fn warnings(fits: &[Fitted], drawn: &Drawn) -> Vec<Warning> {
     let mut warnings = fourier::warnings(fits);
     if drawn.negative > 0 {
         let kept = drawn.answers.len();
-        warnings
-            .push(format!("{} of {kept} triples give a negative K or T and are part of the answer", drawn.negative));
+        let text = format!("{} of {kept} triples give a negative K or T and are part of the answer", drawn.negative);
+        warnings.push(Code::NegativeIndex.warning(text));
     }
     warnings
 }

@@ -10,6 +10,7 @@ mod noise;
 
 use std::ops::Range;
 
+use document::{Code, Warning};
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
@@ -121,6 +122,7 @@ impl Identifier for IntegralLeastSquares {
             robust,
             stop: StopReason::Direct,
             evaluations: 1,
+            noise: None,
             diagnostics,
             warnings: warnings(trials, pieces.len()).into_iter().chain(warning).collect(),
         })
@@ -150,18 +152,18 @@ impl IntegralLeastSquares {
     }
 }
 
-fn warnings(trials: &[Trial], pieces: usize) -> Vec<String> {
+fn warnings(trials: &[Trial], pieces: usize) -> Vec<Warning> {
     let mut warnings = Vec::new();
     if pieces > trials.len() {
-        warnings.push(format!(
+        warnings.push(Code::Gap.warning(format!(
             "gaps cut the record into {pieces} stretches, each with an initial state of its own; longest-gap-s moves the limit"
-        ));
+        )));
     }
     for trial in trials.iter().filter(|trial| trial.heading_from_yaw_rate()) {
-        warnings.push(format!(
+        warnings.push(Code::HeadingFromYawRate.warning(format!(
             "the heading of {} is the integral of its yaw rate, whose noise is not white as the covariance takes it to be",
             trial.name()
-        ));
+        )));
     }
     warnings
 }

@@ -4,6 +4,7 @@
 //! (errors in variables), smoothing biases it too, and the gyro helps only as far as its noise is small. Methods that
 //! do not differentiate, such as the integral or output-error ones, are better wherever noise can be seen.
 
+use document::Code;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
@@ -175,11 +176,11 @@ impl Identifier for MotionRegression {
             let bias = -unscaled[(0, 0)] * noise.of_rate_and_error * variance / a;
             diagnostics.push(("noise_bias_of_inverse_T_percent", 100.0 * bias));
             if bias.abs() > WARN_OF_BIAS {
-                warnings.push(format!(
+                warnings.push(Code::NoiseBias.warning(format!(
                     "noise in the differentiated signal biases 1/T by about {:+.0} %, and K with it; the standard \
                      deviations do not include this",
                     100.0 * bias
-                ));
+                )));
             }
         }
         Ok(Estimate {
@@ -188,6 +189,7 @@ impl Identifier for MotionRegression {
             robust,
             stop: StopReason::Direct,
             evaluations: 1,
+            noise: None,
             diagnostics,
             warnings,
         })

@@ -55,6 +55,15 @@ pub struct MaximumLikelihood {
     settings: Settings,
 }
 
+impl MaximumLikelihood {
+    /// Log of the largest likelihood of some records; `None` where the method has no answer.
+    pub fn log_likelihood(&self, trials: &[Trial]) -> Option<f64> {
+        let chosen = choice::PreparedRecords::new(&self.settings, trials).ok()?.choose(&self.settings).ok()?;
+        let log_likelihood = -0.5 * chosen.found[0].1.point.deviance;
+        answer::estimate(trials, chosen).is_ok().then_some(log_likelihood)
+    }
+}
+
 impl Identifier for MaximumLikelihood {
     fn id(&self) -> &'static str {
         "maximum-likelihood"

@@ -7,6 +7,7 @@
 //! on all, and the lowest wins. A local minimum therefore cannot be mistaken for the answer unless it is narrower than
 //! the scan.
 
+use document::Code;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
@@ -306,10 +307,11 @@ impl RangeScan {
         let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
         let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);
-        warnings.extend(response.is_course_unstable().then(|| COURSE_UNSTABLE.into()));
+        warnings.extend(response.is_course_unstable().then(|| Code::CourseUnstable.warning(COURSE_UNSTABLE)));
         if at_bound {
             let (time, end) = (ShortNumber(response.T()), ShortNumber(1.0 / fastest));
-            warnings.push(format!("T = {time} s is at its bound or beyond: the search ends at ±{end} s"));
+            let text = format!("T = {time} s is at its bound or beyond: the search ends at ±{end} s");
+            warnings.push(Code::AtBound.warning(text));
         }
         Ok(Estimate {
             response,
@@ -317,6 +319,7 @@ impl RangeScan {
             robust: Some(robust_covariance),
             stop: if at_bound { StopReason::RangeLimit } else { stop },
             evaluations: self.grid.len() + evaluations,
+            noise: None,
             diagnostics: vec![
                 ("heading_rmse_deg", to_deg((rss / observations as f64).sqrt())),
                 ("r_squared", 1.0 - rss / total),

@@ -27,10 +27,6 @@ use crate::{maximum_likelihood, output_error};
 /// shows what the rule costs; METHODOLOGY says how the limit was set.
 const RANDOM: f64 = 0.33;
 
-/// Diagnostics of maximum likelihood that stand for a random moment.
-pub const MOMENTS: [&str; 3] =
-    ["white_moment_rudder_deg_root_s", "moment_walk_rudder_deg_per_root_s", "gusts_sd_rudder_deg"];
-
 /// Why an answer is to be taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -69,7 +65,7 @@ impl Recommendation {
     pub fn of(trials: &[Trial], output_error: Option<&Estimate>, maximum_likelihood: Option<&Estimate>) -> Self {
         let lack = output_error.and_then(|estimate| LackOfFit::of(trials, &estimate.response));
         let is_random = lack.and_then(|lack| lack.unexplained()).is_some_and(|share| share >= RANDOM);
-        let has_moment = |own: &Estimate| own.diagnostics.iter().any(|(name, _)| MOMENTS.contains(name));
+        let has_moment = |own: &Estimate| own.noise.is_some_and(|noise| !noise.moment.is_none());
         let has_noise = trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0));
         let reason = match maximum_likelihood.filter(|own| own.K().ci95.is_some()) {
             Some(_) if has_noise => Reason::RudderNoise,

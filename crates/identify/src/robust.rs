@@ -1,5 +1,6 @@
 //! Errors of a least-squares estimate whose residual is coloured.
 
+use document::{Code, Warning};
 use estimation::column::dot;
 use estimation::covariance::newey_west;
 use nalgebra::Matrix3;
@@ -9,10 +10,10 @@ use crate::estimate::{Covariance, Uncertainty};
 /// A residual whose neighbours are correlated by more than this is called coloured, if chance does not explain it.
 const COLOURED: f64 = 0.2;
 
-/// The error a method quotes: that of a white residual where it is white, else the robust one, with a sentence on it.
+/// The error a method quotes: that of a white residual where it is white, else the robust one, with a warning.
 /// Where neighbours differ in sign the robust error would be smaller than the white one, which a record of two
 /// instruments read in turn does not deserve: the white one stays.
-pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<String>) {
+pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<Warning>) {
     if !is_coloured(lag1, rows) {
         return (Uncertainty::Covariance(white), None);
     }
@@ -21,13 +22,13 @@ pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usi
             "the residual is coloured (lag-1 autocorrelation {lag1:.2}): intervals are from the Newey-West covariance; \
              the model lacks an effect, or the noise of the compass is correlated"
         );
-        return (Uncertainty::Covariance(robust.clone()), Some(warning));
+        return (Uncertainty::Covariance(robust.clone()), Some(Code::ColouredResidual.warning(warning)));
     }
     let warning = format!(
         "the residual alternates from reading to reading (lag-1 autocorrelation {lag1:.2}), as where two instruments that \
          disagree are read in turn: intervals take it for white; look at the heading"
     );
-    (Uncertainty::Covariance(white), Some(warning))
+    (Uncertainty::Covariance(white), Some(Code::ColouredResidual.warning(warning)))
 }
 
 /// Whether neighbours are correlated by more than is usual, and by more than chance.

@@ -2,6 +2,7 @@
 //! given are right. All of them move K′, T′ and the rate of the rudder, so numbers that ships hardly have are a reason
 //! to look. Within what ships have nothing is noticed: a rudder that is read a fifth too large is not.
 
+use document::{Code, Warning};
 use ship::Particulars;
 use ship::angle::to_deg;
 use ship::particulars::{USUAL_K_OVER_T_PRIME, USUAL_K_PRIME, USUAL_T_PRIME, usual_rudder_rate_deg_s};
@@ -20,12 +21,12 @@ const READ: f64 = 0.05;
 /// ten. A ship that gathers way is steered when she has most of it.
 const OTHER_SPEED: f64 = 1.25;
 
-/// What is unusual of an estimate and of the records it is from, in one sentence; `None` where nothing is.
+/// What is unusual of an estimate and of the records it is from; `None` where nothing is.
 ///
 /// Length and speed that contradict each other or the record go before all else. For the rest the records have to be
 /// zig-zags: a turn alone hardly tells K′ = K L/U, T′ = T U/L and K′/T′. `ship` belongs to the clock of the estimate,
 /// `records` have their own.
-pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Trial]) -> Option<String> {
+pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Trial]) -> Option<Warning> {
     if let Some(scale) = records.iter().find_map(other_scale) {
         return Some(scale);
     }
@@ -43,10 +44,10 @@ pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Tria
     let has_speed = records.iter().all(|record| record.channel(Channel::Speed).is_some());
     let given = if has_speed { "length" } else { "length and speed" };
     (!found.is_empty()).then(|| {
-        format!(
+        Code::UnusualShip.warning(format!(
             "{}: check the scale of the rudder, the clock, and the {given} given; the record alone cannot show such an error",
             found.join(", ")
-        )
+        ))
     })
 }
 
@@ -55,18 +56,18 @@ const ONE_SCALE: &str =
     "length and speed have to be of one scale and that of the record, both of the ship or both of the model";
 
 /// Why length and speed are not of one scale, with the cure: no ship has their Froude number.
-pub fn unusual_froude_number(Particulars { length, speed }: Particulars) -> Option<String> {
+pub fn unusual_froude_number(Particulars { length, speed }: Particulars) -> Option<Warning> {
     let froude = HullParticulars { length, speed, ..HullParticulars::default() }.froude_number();
     let [low, high] = USUAL_FROUDE_NUMBER;
     (!(low..=high).contains(&froude)).then(|| {
-        format!(
+        Code::UnusualShip.warning(format!(
             "{length} m at {speed:.3} m/s is a Froude number of {froude:.3} (ships have {low} to {high}): {ONE_SCALE}"
-        )
+        ))
     })
 }
 
 /// The same of a record, which may also sail at another speed than is given.
-fn other_scale(record: &Trial) -> Option<String> {
+fn other_scale(record: &Trial) -> Option<Warning> {
     let own = record.particulars()?;
     if let Some(unusual) = unusual_froude_number(own) {
         return Some(unusual);
@@ -77,9 +78,9 @@ fn other_scale(record: &Trial) -> Option<String> {
     let is_other = largest > 0.0 && !(1.0 / OTHER_SPEED..=OTHER_SPEED).contains(&(largest / speed));
     is_other.then(|| {
         let name = record.name();
-        format!(
+        Code::UnusualShip.warning(format!(
             "{name} sails at {largest:.3} m/s at most, and {speed:.3} m/s is given as its approach speed: {ONE_SCALE}"
-        )
+        ))
     })
 }
 
@@ -117,7 +118,7 @@ mod tests {
         let record = case.trial().with_particulars(ship);
         let method = output_error::Settings::default().build().expect("defaults");
         let estimate = method.identify(std::slice::from_ref(&record)).expect("a fit");
-        suspicion(&estimate, Some(ship), &[record])
+        suspicion(&estimate, Some(ship), &[record]).map(|warning| warning.text)
     }
 
     #[test]
@@ -150,7 +151,9 @@ mod tests {
             unknown: Vec::new(),
         };
         let record = Trial::new("model", model.origin().clone(), columns).expect("a record");
-        let given = |length, speed| other_scale(&record.clone().with_particulars(Particulars { length, speed }));
+        let given = |length, speed| {
+            other_scale(&record.clone().with_particulars(Particulars { length, speed })).map(|warning| warning.text)
+        };
         let other = given(320.0, 7.97).expect("another speed");
         assert!(other.starts_with("model sails at 1.180 m/s at most, and 7.970 m/s is given") && other.contains(cure));
         assert_eq!(given(7.0, 1.18), None);

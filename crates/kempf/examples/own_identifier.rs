@@ -50,6 +50,7 @@ impl Identifier for Differences {
             robust: None,
             stop: StopReason::Direct,
             evaluations: 1,
+            noise: None,
             diagnostics: Vec::new(),
             warnings: Vec::new(),
         })

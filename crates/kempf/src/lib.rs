@@ -8,11 +8,12 @@
 //! | describe a ship, its effects, a hull | [`ship`] |
 //! | read a measured record, find its overshoots | [`trial`] |
 //! | find manoeuvres in a long log | [`find`] |
-//! | draw the track of a turn | [`predict::motion`] |
+//! | draw the track of a turn | [`simulate::motion`] |
 //! | predict a manoeuvre that was not made, with intervals | [`predict`] |
 //! | make a record | [`simulate`] |
 //! | find K, T and δ_r with their intervals | [`identify`] |
 //! | find what a first-order model lacks | [`trace`](mod@trace) |
+//! | read what a fit, trace or prediction wrote | [`document`] |
 //! | read a scenario file | [`scenario`] |
 //! | run one to rows and summarise them | [`campaign`] |
 //! | hold methods against each other on published records | [`campaign::benchmark`] |
@@ -38,7 +39,7 @@
 //! own in a study.
 
 pub use trial::find;
-pub use {campaign, identify, predict, scenario, ship, simulate, trace, trial};
+pub use {campaign, document, identify, predict, scenario, ship, simulate, trace, trial};
 
 /// What most programs need, under one `use`.
 pub mod prelude {

@@ -10,6 +10,8 @@
 //!
 //! Source: MSC/Circ.1053 (2002), 3.4.1.2 and 3.4.1.3.
 
+use document::identified_ship::{IdentifiedShip, is_same_length};
+use document::{Code, Warning};
 use indexmap::IndexMap;
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -20,7 +22,6 @@ use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
 use crate::helm_replay::{DrawResult, SteeredZigZag};
-use crate::identified_ship::{IdentifiedShip, is_same_length};
 use crate::interval::PredictionInterval;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::prediction::{drawn, enough};
@@ -63,7 +64,7 @@ pub struct Corrected {
     /// B, told of the ship in the condition of the trial.
     pub ballast: PredictionInterval,
     /// Why it says little; empty where nothing speaks against it.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// A record that was corrected to another loading.
@@ -81,14 +82,14 @@ pub struct Correction {
     /// Its figures by name; empty where the record is neither a zig-zag nor a turn.
     pub figures: IndexMap<String, Corrected>,
     /// What is to be said of all of them.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Where two models differ that are to be held against each other, before they are scaled to a record; `loading` is
 /// that of the first.
 ///
 /// Structures are those of the most probable member. Source: MSC/Circ.1053 (2002), 3.4.1.3: B and F by one method.
-pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str) -> Vec<String> {
+pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str) -> Vec<Warning> {
     let structure = |known: &IdentifiedShip| {
         if !known.hulls.is_empty() {
             return String::from("a hull");
@@ -116,9 +117,10 @@ pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str)
     warnings
 }
 
-/// Two models that differ in something, the first at `loading`.
-pub fn different(what: &str, full: &str, trial: &str, loading: &str) -> String {
-    format!("different {what}: {full} at {loading}, {trial} in the condition of the trial")
+/// The warning of two models that differ in something, the first at `loading`.
+pub fn different(what: &str, full: &str, trial: &str, loading: &str) -> Warning {
+    let text = format!("different {what}: {full} at {loading}, {trial} in the condition of the trial");
+    Code::ModelsApart.warning(text)
 }
 
 /// Draws of one ship after the other; `None` for one that does not come to the end.
@@ -159,7 +161,8 @@ pub fn correct(
         && (own / other - 1.0).abs() > SAME_SPEED
     {
         let [own, other] = [own, other].map(|speed| format!("{speed:.2} m/s"));
-        warnings.push(different("approach speeds", &own, &other, loading) + "; F/B has this difference in it");
+        let Warning { code, text, .. } = different("approach speeds", &own, &other, loading);
+        warnings.push(code.warning(text + "; F/B has this difference in it"));
     }
     let zigzag = Measured::of(record).ok().filter(|zigzag| zigzag.executes.len() > 1);
     let made = match &zigzag {
@@ -173,7 +176,8 @@ pub fn correct(
     ] {
         enough(format!("{} ({condition})", record.name()), own.iter().flatten().count(), draws)?;
         if ship.is_unseen(made.rudder, own.iter().flatten().map(|result| result.largest_rate)) {
-            warnings.push(format!("the model {condition} is extrapolated beyond its records"));
+            let text = format!("the model {condition} is extrapolated beyond its records");
+            warnings.push(Code::ModelsApart.warning(text));
         }
     }
     let readings: Vec<f64> = drawn(draws, |replicate| {
@@ -259,23 +263,23 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
     let [full, ballast, factor, result] = columns.map(|mut column| PredictionInterval::of(&mut column));
     let (full, ballast, factor, result) = (full?, ballast?, factor?, result?);
     let [low, high] = ballast.ci90.map(short);
-    let mut warnings = Vec::new();
+    let mut doubts = Vec::new();
     if ballast.ci90.iter().any(|end| end * ballast.median.signum() < NEAR_ZERO * ballast.median.abs()) {
-        warnings.push(format!("B is near zero (90 % [{low}, {high}]), so F/B says little"));
+        doubts.push(format!("B is near zero (90 % [{low}, {high}]), so F/B says little"));
     }
     let half = 0.5 * (factor.ci90[1] - factor.ci90[0]) / factor.median.abs();
     if half > WIDE {
-        warnings.push(format!("F/B is known to ±{:.0} % only", 100.0 * half));
+        doubts.push(format!("F/B is known to ±{:.0} % only", 100.0 * half));
     }
     let reach = 1.645 * sd;
     if measured.value + reach < ballast.ci90[0] || measured.value - reach > ballast.ci90[1] {
         let measured = short(measured.value);
-        warnings
-            .push(format!("the model of the trial does not do what was measured: {measured}, outside its 90 % interval [{low}, {high}]"));
+        doubts.push(format!("the model of the trial does not do what was measured: {measured}, outside its 90 % interval [{low}, {high}]"));
     }
     if share < 1.0 {
-        warnings.push(format!("{:.0} % of the pairs of drawn ships come that far", 100.0 * share));
+        doubts.push(format!("{:.0} % of the pairs of drawn ships come that far", 100.0 * share));
     }
+    let warnings = doubts.into_iter().map(|text| Code::Correction.warning(text)).collect();
     Some(Corrected { measured: measured.value, sd: measured.sd, result, factor, full, ballast, warnings })
 }
 
@@ -333,7 +337,7 @@ mod tests {
     fn without_doubt_the_answer_is_the_truth() {
         let [full, ballast] = ships().map(|mut known| {
             (known.members[0].covariance, known.members[0].fitted) = (Vec::new(), Vec::new());
-            known.noise.moment = crate::identified_ship::Moment::None;
+            known.noise.moment = document::RandomMoment::None;
             if let Some(gear) = &mut known.gear {
                 gear.sd_rad_s = 0.0;
             }
@@ -398,7 +402,7 @@ mod tests {
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);
         let time = &found.figures[1];
         assert!(time.factor.median > 1.1, "slower at full load: {time:?}");
-        assert!(found.warnings[0].starts_with("different approach speeds"), "{:?}", found.warnings);
+        assert!(found.warnings[0].text.starts_with("different approach speeds"), "{:?}", found.warnings);
     }
 
     #[test]
@@ -408,7 +412,7 @@ mod tests {
         full.members[0].effects.clear();
         full.length_m = Some(300.0);
         let said = differences(&full, &ballast, FULL_LOAD);
-        assert!(said[0].contains("nonlinear_damping") && said[1].contains("300 m"), "{said:?}");
+        assert!(said[0].text.contains("nonlinear_damping") && said[1].text.contains("300 m"), "{said:?}");
     }
 
     /// A model that says nothing of the trial says so, and a reading far off it is told.
@@ -422,10 +426,11 @@ mod tests {
         let trial = record(&exact, "zig-zag:20/20", 0, from_deg(0.1));
         let found = correct(&full, &vague, &trial, FULL_LOAD, 200).expect("most sail");
         let first = &found.figures["first_overshoot_deg"];
-        assert!(first.warnings.iter().any(|warning| warning.starts_with("F/B is known to ±")), "{first:?}");
+        assert!(first.warnings.iter().any(|warning| warning.text.starts_with("F/B is known to ±")), "{first:?}");
         let strange = correct(&full, &full, &trial, FULL_LOAD, 100).expect("sails");
-        let outside =
-            |figure: &Corrected| figure.warnings.iter().any(|warning| warning.contains("outside its 90 % interval ["));
+        let outside = |figure: &Corrected| {
+            figure.warnings.iter().any(|warning| warning.text.contains("outside its 90 % interval ["))
+        };
         assert!(strange.figures.values().any(outside), "{:?}", strange.figures);
     }
 }

@@ -1,21 +1,24 @@
 //! The document of a prediction and the curves beside it: what files hold, pages and figures are made from, and Python
 //! gets.
 
+use document::identified_ship::ValidityRange;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::correction::{Correction, FULL_LOAD};
 use crate::form::ImoFormEntry;
-use crate::identified_ship::ValidityRange;
 use crate::imo::PredictedCriterion;
 use crate::prediction::{Bands, ManoeuvreCurves, Prediction};
 use crate::replay::RecordReplay;
 
+/// What `schema` says.
+pub const SCHEMA: &str = "predict/2";
+
 /// `predict.json`. Its curves, which stand as `skip` where they are of use, are in a file beside it: PredictCurves.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictDocument {
-    /// `predict/1`.
-    #[schemars(extend("const" = "predict/1"))]
+    /// `predict/2`.
+    #[schemars(extend("const" = "predict/2"))]
     pub schema: String,
     /// The models that are mixed.
     pub models: Vec<ModelWeight>,
@@ -137,7 +140,7 @@ mod tests {
         let particulars = mixture.particulars();
         let form = form::fill(&manoeuvres, particulars, "fit.json", &[], None);
         let document = PredictDocument {
-            schema: "predict/1".into(),
+            schema: SCHEMA.into(),
             models: vec![ModelWeight { file: "fit.json".into(), weight: 1.0 }],
             draws: 20,
             imo: imo::criteria(&manoeuvres, particulars.expect("made up")),

@@ -5,11 +5,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use indexmap::IndexMap;
 use ship::Particulars;
 use ship::angle::to_deg;
+use simulate::motion::turning_circle;
 use simulate::{HelmOrder, Manoeuvre};
 use trial::manoeuvre::INITIAL_TURN;
 
 use crate::interval::PredictionInterval;
-use crate::motion::turning_circle;
 use crate::simulated_manoeuvre::{PlanarMotion, SimulatedManoeuvre};
 use crate::standard::EXECUTES;
 

@@ -311,9 +311,9 @@ fn loading(tested: &[TestedManoeuvre]) -> ImoFormEntry {
 mod tests {
     use super::*;
     use crate::correction;
-    use crate::identified_ship::IdentifiedShip;
     use crate::mixture::ShipMixture;
     use crate::testing;
+    use document::identified_ship::IdentifiedShip;
     use ship::angle::from_deg;
     use trial::Trial;
 

@@ -7,9 +7,6 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | what is known of a ship, as files hold it | [`identified_ship`] |
-//! | speed and drift of a turn, tracks, turning circles | [`motion`] |
-//! | a hull as files hold it | [`stored_hull`] |
 //! | ships drawn from it | [`mixture`] |
 //! | the manoeuvres, and what ends them | [`standard`] |
 //! | figures of merit | [`figures`] |
@@ -26,30 +23,27 @@
 
 pub mod correction;
 pub mod document;
+pub mod drawable_hull;
 pub mod error;
 pub mod figures;
 pub mod form;
 mod helm_replay;
-pub mod identified_ship;
 pub mod imo;
 pub mod interval;
 mod line;
 pub mod mixture;
-pub mod motion;
 pub mod prediction;
 pub mod replay;
 mod root;
 pub mod simulated_manoeuvre;
 pub mod standard;
 pub mod steady;
-pub mod stored_hull;
 #[cfg(test)]
 mod testing;
 pub mod turn;
 
 pub use document::PredictDocument;
 pub use error::PredictError;
-pub use identified_ship::IdentifiedShip;
 pub use interval::PredictionInterval;
 pub use mixture::{ShipMixture, UncertaintySource};
 pub use prediction::Prediction;

@@ -1,6 +1,7 @@
 //! Ships drawn from what is known: a structure by its probability, parameters by their covariance, and what chance adds
 //! to one trial. Every source can be switched off, so that the share of each in an interval can be told.
 
+use document::{IdentifiedShip, IdentifiedShipError, RandomMoment, RandomYawMoment, WeightedStructure};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
@@ -9,10 +10,9 @@ use ship::{Regressor, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Wind};
 use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
 
+use crate::drawable_hull::DrawableHull;
 use crate::error::PredictError;
-use crate::identified_ship::{IdentifiedShip, KnownNoise, Moment, WeightedStructure};
 use crate::root::root_of;
-use crate::stored_hull::DrawableHull;
 
 /// Where an interval comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -191,31 +191,31 @@ impl ShipMixture {
         let approach = doubt(UncertaintySource::InitialState, of_rate * known.approach_yaw_rate_rad_s);
         let of_hull = part.hull.as_ref().map_or(0.0, |hull| hull.known.beginning_yaw_rate_rad_s);
         let error = doubt(UncertaintySource::ProcessNoise, of_beginning * of_hull);
-        let noise = if has(UncertaintySource::ProcessNoise) { part.noise(known) } else { KnownNoise::default() };
+        let is_random = has(UncertaintySource::ProcessNoise);
+        let moment = if is_random { part.moment(known) } else { RandomMoment::None };
         DrawnShip {
             response: part.model.clone().with(values),
             hull,
             gear,
-            disturbances: self.disturbances(&noise, part.hull.is_some()),
+            disturbances: self.disturbances(moment, part.hull.is_some()),
             yaw_rate: approach + error,
             key,
         }
     }
 
-    fn disturbances(&self, noise: &KnownNoise, has_hull: bool) -> Disturbances {
-        let sd = noise.moment_sd_rudder_rad;
+    fn disturbances(&self, moment: RandomMoment, has_hull: bool) -> Disturbances {
         let mut disturbances = Disturbances { wind: self.wind.filter(|_| has_hull), ..Disturbances::default() };
-        match noise.moment {
-            Moment::None => {}
-            Moment::White => {
+        match moment {
+            RandomMoment::None => {}
+            RandomMoment::White { rudder_rad_root_s } => {
                 let correlation_time = WHITE * self.timescale;
-                disturbances.gusts = Some(GaussMarkov { sd: sd / (2.0 * correlation_time).sqrt(), correlation_time });
-            }
-            Moment::OrnsteinUhlenbeck => {
-                let correlation_time = noise.moment_correlation_s.unwrap_or(self.timescale);
+                let sd = rudder_rad_root_s / (2.0 * correlation_time).sqrt();
                 disturbances.gusts = Some(GaussMarkov { sd, correlation_time });
             }
-            Moment::Walk => disturbances.random_walk = sd,
+            RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad, correlation_s } => {
+                disturbances.gusts = Some(GaussMarkov { sd: sd_rudder_rad, correlation_time: correlation_s });
+            }
+            RandomMoment::Walk { rudder_rad_per_root_s } => disturbances.random_walk = rudder_rad_per_root_s,
         }
         disturbances
     }
@@ -250,7 +250,7 @@ fn likeliest<'a>(parts: impl DoubleEndedIterator<Item = &'a DrawableStructure>) 
 /// A weight that is one; `stored` is what the file says.
 fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
     let is_weight = weight.is_finite() && weight >= 0.0;
-    if is_weight { Ok(weight) } else { Err(PredictError::Value { key: "weight", value: stored }) }
+    if is_weight { Ok(weight) } else { Err(IdentifiedShipError::Value { key: "weight", value: stored }.into()) }
 }
 
 impl DrawableStructure {
@@ -271,13 +271,12 @@ impl DrawableStructure {
     }
 
     /// What is random in yaw: what the form of the hull leaves, or what the structures do.
-    fn noise(&self, ship: &IdentifiedShip) -> KnownNoise {
-        let Some(moment) = self.hull.as_ref().map(|hull| hull.known.moment) else { return ship.noise };
-        KnownNoise {
-            moment: if moment.deviation_rudder_rad > 0.0 { Moment::OrnsteinUhlenbeck } else { Moment::None },
-            moment_sd_rudder_rad: moment.deviation_rudder_rad,
-            moment_correlation_s: Some(moment.correlation_s),
-            ..ship.noise
+    fn moment(&self, ship: &IdentifiedShip) -> RandomMoment {
+        let Some(moment) = self.hull.as_ref().map(|hull| hull.known.moment) else { return ship.noise.moment };
+        let RandomYawMoment { deviation_rudder_rad: sd_rudder_rad, correlation_s } = moment;
+        match sd_rudder_rad > 0.0 {
+            true => RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad, correlation_s },
+            false => RandomMoment::None,
         }
     }
 
@@ -311,8 +310,8 @@ impl DrawableStructure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stored_hull::StoredHull;
     use crate::testing;
+    use document::stored_hull::StoredHull;
 
     /// Mean and covariance of the draws are those that are known.
     #[test]
@@ -387,7 +386,7 @@ mod tests {
     fn a_rudder_logged_late_is_told_and_steered_on_time() {
         let mut known = testing::known();
         let late = ship::effects::SteeringLag::DeadTime;
-        known.members[0].effects.push(crate::identified_ship::StoredEffect {
+        known.members[0].effects.push(document::identified_ship::StoredEffect {
             id: ship::effects::Effect::id(&late).into(),
             form: ship::effects::Effect::form(&late).into(),
             constants: Vec::new(),
@@ -416,7 +415,7 @@ mod tests {
     fn a_model_that_needs_what_is_not_there_is_refused() {
         let mut known = testing::known();
         let (id, form) = ("sway_coupling_measured".into(), "measured sway".into());
-        known.members[0].effects[0] = crate::identified_ship::StoredEffect { id, form, constants: vec![1.0] };
+        known.members[0].effects[0] = document::identified_ship::StoredEffect { id, form, constants: vec![1.0] };
         let error = ShipMixture::new(vec![(known, 1.0)]).expect_err("refused").to_string();
         assert!(error.contains("sway") && error.contains("--without sway"), "{error}");
     }

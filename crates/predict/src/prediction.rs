@@ -1,5 +1,6 @@
 //! A manoeuvre predicted: every figure of merit with its intervals and where they come from, and bands of its curves.
 
+use document::identified_ship::ValidityRange;
 use estimation::statistics::median;
 use indexmap::IndexMap;
 use rayon::prelude::*;
@@ -11,7 +12,6 @@ use trial::manoeuvre::{from_words, to_words};
 
 use crate::error::PredictError;
 use crate::figures::{self, Figures};
-use crate::identified_ship::ValidityRange;
 use crate::interval::{PredictionInterval, band};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::simulated_manoeuvre::{SimulatedManoeuvre, period};
@@ -253,10 +253,9 @@ fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identified_ship::Moment;
     use crate::testing;
 
-    fn mixture(change: impl Fn(&mut crate::identified_ship::IdentifiedShip)) -> ShipMixture {
+    fn mixture(change: impl Fn(&mut document::identified_ship::IdentifiedShip)) -> ShipMixture {
         let mut known = testing::known();
         change(&mut known);
         testing::mixture(known)
@@ -272,7 +271,7 @@ mod tests {
         let sure = mixture(|known| {
             known.members[0].covariance.clear();
             known.members[0].fitted.clear();
-            known.noise.moment = Moment::None;
+            known.noise.moment = document::RandomMoment::None;
             known.gear.as_mut().expect("made up").sd_rad_s = 0.0;
             known.approach_yaw_rate_rad_s = 0.0;
         });

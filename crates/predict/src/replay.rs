@@ -1,6 +1,5 @@
 //! A recorded rudder replayed and held against its record: the record is not fitted, so it says whether intervals hold.
 
-use crate::motion::Current;
 use indexmap::IndexMap;
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -9,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use ship::Polyline;
 use ship::angle::to_deg;
 use simulate::disturbance::Wind;
+use simulate::motion::Current;
 use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
@@ -252,8 +252,8 @@ fn turns(trial: &Trial, made: &[SimulatedManoeuvre], timescale: f64, current: Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::IdentifiedShip;
     use crate::testing;
+    use document::IdentifiedShip;
     use ship::angle::from_deg;
     use trial::{Channel, Columns};
 

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 use ship::vessel::prime::FASTEST;
+use simulate::motion;
 use simulate::simulation::{Simulated, Truth};
 use simulate::vessel::Solver;
 use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};
 use trial::{Channel, Trial};
 
 use crate::mixture::DrawnShip;
-use crate::motion;
 
 /// Rows per time of the ship.
 const ROWS: f64 = 20.0;

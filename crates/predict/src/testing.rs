@@ -1,5 +1,9 @@
 //! A ship that tests know.
 
+use document::{
+    HeadingNoise, IdentifiedShip, KnownGear, RandomMoment, RandomYawMoment, StoredCoefficient, StoredEffect,
+    StoredHull, ValidityRange, WeightedStructure,
+};
 use nalgebra::DMatrix;
 use ship::angle::from_deg;
 use ship::vessel::prime::HullForm;
@@ -7,10 +11,6 @@ use ship::vessel::prior::HullParticulars;
 use simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
 use trial::Trial;
 
-use crate::identified_ship::{
-    IdentifiedShip, KnownGear, KnownNoise, Moment, RandomYawMoment, StoredCoefficient, StoredEffect, StoredHull,
-    ValidityRange, WeightedStructure,
-};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::standard;
 
@@ -33,11 +33,9 @@ pub(crate) fn known() -> IdentifiedShip {
             covariance: (0..4).map(|i| (0..4).map(|j| correlation(i, j) * sd[i] * sd[j]).collect()).collect(),
             degrees_of_freedom: None,
         }],
-        noise: KnownNoise {
+        noise: HeadingNoise {
             heading_sd_rad: from_deg(0.1),
-            moment: Moment::White,
-            moment_sd_rudder_rad: from_deg(0.3),
-            moment_correlation_s: None,
+            moment: RandomMoment::White { rudder_rad_root_s: from_deg(0.3) },
         },
         gear: Some(KnownGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
         approach_yaw_rate_rad_s: from_deg(0.01),

@@ -1,10 +1,10 @@
 //! A rudder that is put over and held, as a record shows it: its figures, and those of drawn ships under the same
 //! rudder.
 
-pub use crate::motion::Current;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use ship::Polyline;
+pub use simulate::motion::Current;
 use simulate::{Purpose, StreamKey};
 use trial::{Channel, Trial};
 
@@ -26,7 +26,7 @@ pub fn current_of(trial: &Trial) -> Option<Current> {
     let rows: Vec<usize> = trial.observed_rows().filter(is_there).filter(is_turning).collect();
     let of = |values: &[f64]| -> Vec<f64> { rows.iter().map(|&row| values[row]).collect() };
     let track: Vec<[f64; 2]> = rows.iter().map(|&row| [north[row], east[row]]).collect();
-    crate::motion::current(&of(trial.time()), &of(trial.heading()), &track)
+    simulate::motion::current(&of(trial.time()), &of(trial.heading()), &track)
 }
 
 /// A record whose positions no current has moved, and the current that was taken out: the one that is given, else the

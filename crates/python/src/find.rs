@@ -1,11 +1,13 @@
 //! `find`: the manoeuvres inside long logs.
 
+use document::Warnings;
 use pyo3::prelude::*;
 use study::commands::find::found;
-use study::documents as document;
+use study::documents;
 use study::options::FindRequest;
 
 use crate::asked::request;
+use crate::record::sentences;
 use crate::wait::patiently;
 
 /// The document of the manoeuvres, and the warnings; `words` are options of the command line.
@@ -13,8 +15,8 @@ use crate::wait::patiently;
 pub fn find(py: Python<'_>, logs: Vec<String>, words: Vec<String>) -> PyResult<(String, Vec<String>)> {
     patiently(py, move || {
         let asked: FindRequest = request(words.into_iter().chain([String::from("--")]).chain(logs).collect())?;
-        let mut warnings = Vec::new();
+        let mut warnings = Warnings::default();
         let found = found(&asked, &mut warnings)?;
-        Ok((document::of(&found)?, warnings))
+        Ok((documents::of(&found)?, sentences(&warnings.ranked())))
     })
 }

@@ -1,20 +1,21 @@
 //! `fit`: every method on the records together.
 
+use document::{Warning, Warnings};
 use identify::Estimate;
 use identify::replay::replay;
 use pyo3::prelude::*;
 use scenario::failure::Failure;
 use scenario::name;
-use study::documents as document;
+use study::documents;
 use study::outside::SAME_LABEL;
-use study::records::warn_of_repetition;
+use study::records::repetitions;
 use study::work;
 use trial::Trial;
 
 use crate::curve::{ReplayArrays, curve};
 use crate::earlier::{ModelText, earlier};
 use crate::own::{OwnMethods, PyIdentifier};
-use crate::record::{PyRecord, read_warnings, trials};
+use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
 
 /// What came out, with what its figures are made from.
@@ -56,8 +57,7 @@ pub fn fit(
     priors: Vec<ModelText>,
 ) -> PyResult<PyFit> {
     // The document has what reading warned of, as that of the command; Python has been told before.
-    let mut warnings = [read_warnings(&records), read_warnings(&validate)].concat();
-    let told = warnings.len();
+    let told: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
     let (records, others) = (trials(&records), trials(&validate));
     patiently(py, move || {
         let priors = earlier(&priors)?;
@@ -69,12 +69,12 @@ pub fn fit(
             }
             methods.push((label, Box::new(PyIdentifier(function))));
         }
-        warn_of_repetition(&records, &others, &mut warnings);
-        let done = work::fit::fit([&records, &others], &methods, &priors, true, &mut warnings)?;
-        warnings.drain(..told);
-        warnings.extend(done.document.of_methods(true));
+        let mut warnings = Warnings::default();
+        warnings.extend(told.iter().cloned().chain(repetitions(&records, &others)));
+        let done = work::fit::fit([&records, &others], &methods, &priors, true, warnings)?;
+        let warnings = sentences(done.document.of_answer().filter(|warning| !told.contains(warning)));
         Ok(PyFit {
-            text: document::text(&done.document).map_err(Failure::work)?,
+            text: documents::text(&done.document).map_err(Failure::work)?,
             warnings,
             trials: [done.together.trials, done.together.others].concat(),
             answers: done.answers.into_iter().map(|(entry, estimate)| (entry.method, estimate)).collect(),

@@ -2,15 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use document::Warnings;
 use pyo3::prelude::*;
 use scenario::failure::Failure;
-use study::documents as document;
+use study::documents;
 use study::options::PredictRequest;
 use study::work::predict::{self as work, PredictInput, StoredModel};
 
 use crate::asked::request;
 use crate::earlier::{ModelText, earlier};
-use crate::record::{PyRecord, trials};
+use crate::record::{PyRecord, sentences, trials};
 use crate::wait::patiently;
 
 /// The document of a prediction and the warnings. `models` are names of files, with the text of those that are none;
@@ -28,7 +29,7 @@ pub fn predict(
         let names = models.iter().map(|(name, _)| name.clone());
         let mut asked: PredictRequest = request(words.into_iter().chain([String::from("--")]).chain(names).collect())?;
         asked.replays = records.iter().map(|record| PathBuf::from(record.name())).collect();
-        let mut warnings = Vec::new();
+        let mut warnings = Warnings::default();
         let read = |(name, text): &(String, Option<String>)| match text {
             Some(text) => StoredModel::of_document(name, text, asked.method.as_deref(), asked.calm, &mut warnings),
             None => StoredModel::of_file(Path::new(name), &asked, &mut warnings),
@@ -38,6 +39,6 @@ pub fn predict(
         let input =
             PredictInput { models: &models, earlier: &earlier, ballast: &[], records, current: None, declared: None };
         let predicted = work::predict(&asked, input, true, &mut warnings)?;
-        Ok((document::text(&predicted).map_err(Failure::work)?, warnings))
+        Ok((documents::text(&predicted).map_err(Failure::work)?, sentences(&warnings.ranked())))
     })
 }

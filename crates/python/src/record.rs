@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use document::{Warning, Warnings};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use scenario::failure::Failure;
 use scenario::name;
 use study::options::ReadingOptions;
-use study::records::{expand, file_of, of_log, read_all};
+use study::records::{expand, file_of, of_log, read_all, source};
 use trial::channel::TIME_COLUMN;
 use trial::{Channel, Log, Sidecar, Trial};
 
@@ -20,8 +21,7 @@ use crate::wait::patiently;
 pub struct PyRecord {
     /// The record.
     pub trial: Trial,
-    #[pyo3(get)]
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 impl PyRecord {
@@ -32,8 +32,13 @@ impl PyRecord {
 }
 
 /// What reading some records warned of, in their order.
-pub fn read_warnings(records: &[Py<PyRecord>]) -> Vec<String> {
-    records.iter().flat_map(|record| record.get().warnings.clone()).collect()
+pub fn read_warnings(records: &[Py<PyRecord>]) -> impl Iterator<Item = Warning> {
+    records.iter().flat_map(|record| record.get().warnings.clone())
+}
+
+/// Warnings as Python has them.
+pub fn sentences<'a>(warnings: impl IntoIterator<Item = &'a Warning>) -> Vec<String> {
+    warnings.into_iter().map(Warning::to_string).collect()
 }
 
 /// The records that Python handed in.
@@ -45,6 +50,11 @@ pub fn trials(records: &[Py<PyRecord>]) -> Vec<Trial> {
 impl PyRecord {
     fn __len__(&self) -> usize {
         self.trial.len()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        sentences(&self.warnings)
     }
 
     #[getter]
@@ -117,9 +127,9 @@ pub fn read(py: Python<'_>, path: PathBuf, words: Vec<String>) -> PyResult<Vec<P
     patiently(py, move || {
         let options: ReadingOptions = request(words)?;
         let one = |file: PathBuf| {
-            let mut warnings = Vec::new();
+            let mut warnings = Warnings::default();
             let mut trials = read_all(std::slice::from_ref(&file), &options, &mut warnings)?;
-            Ok(PyRecord { trial: trials.remove(0), warnings })
+            Ok(PyRecord { trial: trials.remove(0), warnings: warnings.ranked() })
         };
         expand(std::slice::from_ref(&path))?.into_iter().map(one).collect()
     })
@@ -158,10 +168,10 @@ pub fn of_table(
     let sidecar = sidecar.map(|text| Sidecar::parse(text, &Sidecar::beside(&path))).transpose();
     let sidecar = sidecar.map_err(Failure::input)?;
     let mut log = Log::of_bytes(&path, table, None, sidecar.as_ref()).map_err(Failure::input)?;
-    let shown = |warning: String| format!("{}: {warning}", path.display());
-    let mut warnings: Vec<String> = std::mem::take(&mut log.warnings).into_iter().map(shown).collect();
+    let mut warnings = Warnings::default();
+    warnings.extend(source(&path).of(std::mem::take(&mut log.warnings)));
     let trial = of_log(log, &path, options, &mut warnings)?;
-    Ok(PyRecord { trial, warnings })
+    Ok(PyRecord { trial, warnings: warnings.ranked() })
 }
 
 /// Columns as the text of a table, with as many digits as a number needs.

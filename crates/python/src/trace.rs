@@ -1,17 +1,17 @@
 //! `trace`: what a first-order ship lacks.
 
+use document::Warnings;
 use pyo3::prelude::*;
 use scenario::failure::Failure;
-use study::documents as document;
-use study::documents::curves::TracedRecord;
+use study::documents::{self, curves::TracedRecord};
 use study::options::TraceRequest;
-use study::records::warn_of_repetition;
+use study::records::repetitions;
 use study::work;
 
 use crate::asked::request;
 use crate::curve::{ReplayArrays, curve};
 use crate::earlier::{ModelText, earlier};
-use crate::record::{PyRecord, trials};
+use crate::record::{PyRecord, sentences, trials};
 use crate::wait::patiently;
 
 /// What came out, with what its figures are made from.
@@ -52,8 +52,8 @@ pub fn trace(
         // The records are here already; the command line asks for the name of one.
         let asked: TraceRequest = request([words, vec![String::from("record")]].concat())?;
         let (records, others) = (work::trace::without(&asked, records), work::trace::without(&asked, others));
-        let mut warnings = Vec::new();
-        warn_of_repetition(&records, &others, &mut warnings);
+        let mut warnings = Warnings::default();
+        warnings.extend(repetitions(&records, &others));
         let traced = work::trace::trace(
             [&records, &others],
             &work::trace::settings(&asked)?,
@@ -61,8 +61,8 @@ pub fn trace(
             true,
             &mut warnings,
         )?;
-        let text = document::text(&traced.document).map_err(Failure::work)?;
+        let text = documents::text(&traced.document).map_err(Failure::work)?;
         let records = traced.curves()?.records;
-        Ok(PyTrace { text, warnings, records })
+        Ok(PyTrace { text, warnings: sentences(&warnings.ranked()), records })
     })
 }

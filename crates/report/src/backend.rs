@@ -6,9 +6,10 @@ use std::cell::RefCell;
 use std::convert::Infallible;
 use std::fmt::Write as _;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use plotters::drawing::DrawingAreaErrorKind;
-use plotters::style::RGBColor;
+use plotters::style::{Color as _, RGBColor};
 use plotters_backend::text_anchor::{HPos, VPos};
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontStyle,
@@ -18,7 +19,7 @@ use plotters_backend::{
 use crate::changes::Changes;
 use crate::fonts::{FAMILY_WITH_FALLBACK, LINE, text_width};
 use crate::markup::{is_markup, runs};
-use crate::palette::Dash;
+use crate::palette::{Dash, PAPER};
 use crate::printable::is_printable;
 
 /// Units to one point on the page: 2.4 to a dot at 600 dpi, so rounding to whole units is never seen.
@@ -79,7 +80,7 @@ struct SvgDocument {
     /// Style and data of the path that is being lengthened.
     path: Option<(String, String)>,
     group: Option<OpenGroup>,
-    changes: Changes,
+    changes: Arc<Changes>,
 }
 
 /// The backend. Clones write into the same document.
@@ -91,7 +92,7 @@ pub(crate) struct Svg {
 
 impl Svg {
     /// An empty sheet of this width in points.
-    pub(crate) fn new(width: f64, changes: Changes) -> Self {
+    pub(crate) fn new(width: f64, changes: Arc<Changes>) -> Self {
         let document = SvgDocument { elements: String::new(), path: None, group: None, changes };
         Self { width: units(width).max(1) as u32, document: Rc::new(RefCell::new(document)) }
     }
@@ -124,7 +125,7 @@ impl Svg {
         let mut document = self.document.borrow_mut();
         document.close_group();
         let (across, down) = (self.width, units(height).max(1));
-        let paper = document.colour((255, 255, 255));
+        let paper = document.colour(PAPER.to_backend_color());
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.3}pt\" height=\"{height:.3}pt\" \
              viewBox=\"0 0 {across} {down}\">\n<g font-family=\"{FAMILY_WITH_FALLBACK}\" stroke-linejoin=\"bevel\">\n\
@@ -194,7 +195,7 @@ impl SvgDocument {
         };
     }
 
-    fn colour(&self, (red, green, blue): (u8, u8, u8)) -> String {
+    fn colour(&self, BackendColor { rgb: (red, green, blue), .. }: BackendColor) -> String {
         let RGBColor(red, green, blue) = self.changes.of(RGBColor(red, green, blue));
         format!("#{red:02X}{green:02X}{blue:02X}")
     }
@@ -208,7 +209,7 @@ impl SvgDocument {
     }
 
     fn line(&mut self, points: &[BackendCoord], style: &impl BackendStyle) {
-        let (BackendColor { alpha, rgb }, width) = (style.color(), style.stroke_width());
+        let (ink, width) = (style.color(), style.stroke_width());
         if points.len() < 2 {
             return;
         }
@@ -218,11 +219,11 @@ impl SvgDocument {
         let dash = self.group.as_ref().and_then(|open| open.group.dash);
         let pattern = dash.map_or(0.0, |(dash, width)| dash.iter().sum::<f64>() * width * UNITS);
         let solid = pattern > 0.0 && length > MAX_REPEATS * pattern;
-        let (colour, faint) = (self.colour(rgb), opacity("stroke", alpha));
+        let (colour, faint) = (self.colour(ink), opacity("stroke", ink.alpha));
         let solid = if solid { " stroke-dasharray=\"none\"" } else { "" };
         let attributes = format!("fill=\"none\" stroke=\"{colour}\"{faint} stroke-width=\"{width}\"{solid}");
         let steps: Vec<String> = steps().map(|(dx, dy)| format!("{dx} {dy}")).collect();
-        self.lengthen(attributes, &format!("M{} {}l{}", points[0].0, points[0].1, steps.join(" ")), alpha < 1.0);
+        self.lengthen(attributes, &format!("M{} {}l{}", points[0].0, points[0].1, steps.join(" ")), ink.alpha < 1.0);
     }
 }
 
@@ -280,28 +281,28 @@ impl DrawingBackend for Svg {
         path: I,
         style: &S,
     ) -> BackendResult {
-        let BackendColor { alpha, rgb } = style.color();
+        let ink = style.color();
         let points: Vec<BackendCoord> = path.into_iter().collect();
-        if alpha == 0.0 || points.len() < 3 {
+        if ink.alpha == 0.0 || points.len() < 3 {
             return Ok(());
         }
         let mut document = self.document.borrow_mut();
         points.iter().for_each(|point| document.reach(*point, 0));
         let corners: Vec<String> = points.iter().map(|(x, y)| format!("{x},{y}")).collect();
-        let (colour, faint) = (document.colour(rgb), opacity("fill", alpha));
+        let (colour, faint) = (document.colour(ink), opacity("fill", ink.alpha));
         document.put(&format!("<polygon fill=\"{colour}\"{faint} points=\"{}\"/>\n", corners.join(" ")));
         Ok(())
     }
 
     /// A disc; a ring, which plotters draws at the value of an error bar, would lie below its mark and is left out.
     fn draw_circle<S: BackendStyle>(&mut self, at: BackendCoord, radius: u32, style: &S, fill: bool) -> BackendResult {
-        let BackendColor { alpha, rgb } = style.color();
+        let ink = style.color();
         let mut document = self.document.borrow_mut();
         if fill {
             document.reach(at, radius as i32);
-            let (colour, faint, width) = (document.colour(rgb), opacity("stroke", alpha), 2 * radius.max(1));
+            let (colour, faint, width) = (document.colour(ink), opacity("stroke", ink.alpha), 2 * radius.max(1));
             let attributes = format!("stroke=\"{colour}\"{faint} stroke-width=\"{width}\" stroke-linecap=\"round\"");
-            document.lengthen(attributes, &format!("M{} {}h0", at.0, at.1), alpha < 1.0);
+            document.lengthen(attributes, &format!("M{} {}h0", at.0, at.1), ink.alpha < 1.0);
         }
         Ok(())
     }
@@ -329,7 +330,7 @@ impl DrawingBackend for Svg {
             FontTransform::Rotate180 => turned(180),
             FontTransform::Rotate270 => turned(270),
         };
-        let (fill, font) = (document.colour(style.color().rgb), (10.0 * size).round() / 10.0);
+        let (fill, font) = (document.colour(style.color()), (10.0 * size).round() / 10.0);
         for (number, line) in text.split('\n').enumerate().filter(|(_, line)| !line.trim().is_empty()) {
             let base = (f64::from(y) + first + LINE * size * number as f64).round();
             let run = |(is_italic, run): (bool, &str)| match is_italic {
@@ -371,7 +372,6 @@ mod tests {
     use plotters::coord::Shift;
     use plotters::drawing::{DrawingArea, IntoDrawingArea as _};
     use plotters::element::{Circle, PathElement, Polygon};
-    use plotters::style::Color as _;
     use plotters::style::text_anchor::HPos;
 
     use super::*;
@@ -380,7 +380,7 @@ mod tests {
     use crate::palette::{DASHED, INK};
 
     fn drawn(fill: impl FnOnce(&DrawingArea<Svg, Shift>, &Svg) -> Plotted) -> String {
-        let svg = Svg::new(100.0, Changes::default());
+        let svg = Svg::new(100.0, Arc::default());
         fill(&svg.clone().into_drawing_area(), &svg).unwrap();
         svg.finish(30.0)
     }

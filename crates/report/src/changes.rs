@@ -1,17 +1,16 @@
 //! What a style changes in a finished drawing besides sizes: one colour for another, and the ends of axes.
 
+use std::collections::BTreeMap;
+
 use crate::axis::Axis;
 use crate::markup::is_markup;
 use plotters::style::RGBColor;
 
-/// Most colours that can be changed.
-pub(crate) const COLOURS: usize = 16;
-
 /// Colours in the place of others, and ends of axes by their titles.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Changes {
-    pub colours: [Option<(RGBColor, RGBColor)>; COLOURS],
-    pub limits: &'static [(String, [f64; 2])],
+    pub colours: Vec<(RGBColor, RGBColor)>,
+    pub limits: BTreeMap<String, [f64; 2]>,
 }
 
 /// Reads `#0072B2`.
@@ -24,7 +23,7 @@ pub(crate) fn colour(text: &str) -> Option<RGBColor> {
 impl Changes {
     /// The colour in whose place this one stands.
     pub(crate) fn of(&self, own: RGBColor) -> RGBColor {
-        self.colours.iter().flatten().find(|(old, _)| *old == own).map_or(own, |(_, new)| *new)
+        self.colours.iter().find(|(old, _)| *old == own).map_or(own, |(_, new)| *new)
     }
 
     /// The axis of a title with the ends that are given for it. A list of names stays, as does a logarithmic axis that

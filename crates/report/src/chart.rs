@@ -70,19 +70,19 @@ impl Chart {
     }
 
     /// Place of a pair of values, also outside the frame.
-    pub(crate) fn place(&self, pair: (f64, f64)) -> Option<PagePoint> {
-        self.reach(pair).filter(|_| self.has_place(&pair))
+    pub(crate) fn place(&self, x: f64, y: f64) -> Option<PagePoint> {
+        self.reach(x, y).filter(|_| self.has_place(&(x, y)))
     }
 
     /// The same of values that are numbers; what has no place on a logarithmic axis lies far beyond its lower end.
-    pub(crate) fn reach(&self, (x, y): (f64, f64)) -> Option<PagePoint> {
+    pub(crate) fn reach(&self, x: f64, y: f64) -> Option<PagePoint> {
         let (across, up) = self.data.map_coordinate(&(x, y));
         (!x.is_nan() && !y.is_nan()).then_some((f64::from(across) / UNITS, f64::from(up) / UNITS))
     }
 
     /// Place of a pair of values inside the frame.
-    pub(crate) fn inside(&self, pair: (f64, f64)) -> Option<PagePoint> {
-        self.place(pair).filter(|place| self.rect.contains(*place))
+    pub(crate) fn inside(&self, x: f64, y: f64) -> Option<PagePoint> {
+        self.place(x, y).filter(|place| self.rect.contains(*place))
     }
 
     /// Draws elements at values, all that belong to a group.
@@ -146,13 +146,13 @@ impl Chart {
         colour: RGBAColor,
     ) -> Plotted {
         let dot = |pair| Circle::new(pair, units(radius).max(1) as u32, colour.filled()).into_dyn();
-        self.draw(SvgGroup::named(name), pairs.into_iter().filter(|pair| self.inside(*pair).is_some()).map(dot))
+        self.draw(SvgGroup::named(name), pairs.into_iter().filter(|&(x, y)| self.inside(x, y).is_some()).map(dot))
     }
 
     /// A marker at a pair inside the frame, whole where it stands on it.
-    pub(crate) fn marker(&self, name: Option<&str>, pair: (f64, f64), radius: f64, look: &Look) -> Plotted {
-        let is_inside = self.inside(pair).is_some();
-        self.draw(SvgGroup::named(name), marker(pair, radius, look).into_iter().filter(|_| is_inside))
+    pub(crate) fn marker(&self, name: Option<&str>, x: f64, y: f64, radius: f64, look: &Look) -> Plotted {
+        let is_inside = self.inside(x, y).is_some();
+        self.draw(SvgGroup::named(name), marker((x, y), radius, look).into_iter().filter(|_| is_inside))
     }
 
     /// An interval, with an arrow head at an end that lies beyond the frame; returns whether one does. An end without
@@ -160,7 +160,7 @@ impl Chart {
     pub(crate) fn bar(&self, name: Option<&str>, bar: &Bar, theme: &Theme) -> Plotted<bool> {
         let Bar { y, ends, is_capped, stroke } = *bar;
         let [lo, hi] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-f64::MAX, f64::MAX));
-        let [Some((left, height)), Some((right, _))] = [lo, hi].map(|end| self.reach((end, y))) else {
+        let [Some((left, height)), Some((right, _))] = [lo, hi].map(|end| self.reach(end, y)) else {
             return Ok(false);
         };
         let width = units(theme.marker).max(2) as u32;

@@ -62,7 +62,7 @@ impl PlotCurve {
     }
 
     /// The 95 % contour of a normal distribution in two dimensions, closed; empty when the covariance is none.
-    pub fn contour95((x, y): (f64, f64), [[a, b], [_, c]]: [[f64; 2]; 2]) -> Self {
+    pub fn contour95([x, y]: [f64; 2], [[a, b], [_, c]]: [[f64; 2]; 2]) -> Self {
         // Cholesky: a point of the unit circle goes to L times it.
         let l11 = a.sqrt();
         let l21 = b / l11;

@@ -1,7 +1,8 @@
 //! Tables and journal-grade figures of stored results.
 //!
 //! This crate draws what it is handed and computes no science: every number in a table or a figure comes in as plain
-//! data, in the units a reader sees (degrees, seconds). It knows no ship, no trial and no method beyond its name.
+//! data, in the units a reader sees (degrees, seconds). Of the field it has the names of methods with their colours, the
+//! axes of heading, rudder and yaw rate, and the figure of a zig-zag; it depends on no crate of ships or trials.
 //!
 //! | to learn about | read |
 //! |---|---|
@@ -61,5 +62,5 @@ pub use markup::symbol;
 pub use page::{Page, PageFigure};
 pub use palette::CurveOrigin;
 pub use style::Style;
-pub use table::{Alignment, Table, TableColumn};
+pub use table::{Alignment, Table, TableColumn, TableHead};
 pub use theme::Theme;

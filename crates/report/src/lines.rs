@@ -41,16 +41,15 @@ pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String>
         let longer = lines.last().map(|line| format!("{line} {word}"));
         match longer.filter(|line| text_width(line, size, bold) <= width) {
             Some(line) => *lines.last_mut().expect("a longer line extends one that is there") = line,
-            None => broken(word, size, bold, width, &mut lines),
+            None => lines.extend(broken(word, size, bold, width)),
         }
     }
     lines
 }
 
-/// Adds a word to the lines, in several of them where it is too long for one. What has no room for a letter stays
-/// whole.
-fn broken(word: &str, size: f64, bold: bool, width: f64, lines: &mut Vec<String>) {
-    let mut rest = word;
+/// A word in several lines where it is too long for one. What has no room for a letter stays whole.
+fn broken(word: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
+    let (mut lines, mut rest) = (Vec::new(), word);
     while text_width(rest, size, bold) > width {
         let ends = rest.char_indices().map(|(start, letter)| start + letter.len_utf8());
         let fitting: Vec<usize> = ends.take_while(|end| text_width(&rest[..*end], size, bold) <= width).collect();
@@ -60,6 +59,7 @@ fn broken(word: &str, size: f64, bold: bool, width: f64, lines: &mut Vec<String>
         rest = &rest[*end..];
     }
     lines.push(rest.to_owned());
+    lines
 }
 
 #[cfg(test)]

@@ -184,7 +184,7 @@ impl Page {
 mod tests {
     use super::*;
     use crate::figures::Panels;
-    use crate::table::TableColumn;
+    use crate::table::TableHead;
 
     #[test]
     fn blocks_stand_apart_in_every_form() {
@@ -192,7 +192,7 @@ mod tests {
         page.words("a*b\n<b>c");
         page.say("  ");
         page.part("Numbers");
-        let mut table = Table::new(vec![TableColumn::left("K")]);
+        let mut table = Table::new(TableHead::default().texts(["K"]));
         table.push(["0.1"]);
         page.table(table);
         page.figures([PageFigure::new("fit", "a*b", Panels::default())]);

@@ -2,6 +2,8 @@
 //! Panels of one column share the horizontal axis, panels of one row the vertical one. The page is split into drawing
 //! areas of plotters, whose charts draw mesh, axes, ticks and labels; the figures draw the data.
 
+use std::sync::Arc;
+
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::drawing::IntoDrawingArea as _;
 use plotters::style::text_anchor::HPos;
@@ -56,9 +58,9 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// So many panels with the same axes, in rows of `across`; the last row may not be full.
-    pub(crate) fn alike(count: usize, across: usize, column: AxisSide, row: (AxisSide, f64)) -> Self {
-        let rows = vec![row; count.div_ceil(across)];
+    /// So many panels with the same axes, in rows of `across` and so many points high; the last row may not be full.
+    pub(crate) fn alike(count: usize, across: usize, column: AxisSide, row: AxisSide, height: f64) -> Self {
+        let rows = vec![(row, height); count.div_ceil(across)];
         Self { panels: Some(count), columns: vec![column; across], rows, ..Self::default() }
     }
 }
@@ -87,9 +89,9 @@ pub(crate) struct Sheet {
 
 impl Sheet {
     pub(crate) fn new(theme: &Theme, title: Option<&str>) -> Plotted<Self> {
-        let svg = Svg::new(theme.width, theme.changes);
+        let svg = Svg::new(theme.width, Arc::clone(&theme.changes));
         let canvas = Canvas { area: svg.clone().into_drawing_area(), svg };
-        let mut sheet = Self { theme: *theme, canvas, y: 0.5 * theme.small_font, edge: 0.0 };
+        let mut sheet = Self { theme: theme.clone(), canvas, y: 0.5 * theme.small_font, edge: 0.0 };
         if let Some(title) = title {
             let text = TextLine { bold: true, ..TextLine::new("", theme.title_font, HPos::Center) };
             let lines = balanced(title, theme.title_font, true, theme.width - 2.0 * theme.small_font);
@@ -110,7 +112,7 @@ impl Sheet {
 
     /// The key, centred above what follows.
     pub(crate) fn legend(&mut self, entries: &[KeyEntry]) -> Plotted {
-        let theme = self.theme;
+        let theme = self.theme.clone();
         let room = theme.width - 2.0 * theme.small_font;
         let fewest = key::rows(entries, room, &theme).len();
         // Rows of equal length look better than full rows and a rest.
@@ -194,19 +196,19 @@ impl Sheet {
 
     /// Draws a grid into a strip of the page: its left edge and its width, points. The left margin of the grid is the
     /// least one.
-    pub(crate) fn grid_within(&mut self, grid: Grid, (left, width): (f64, f64)) -> Plotted<Vec<Chart>> {
-        let page = self.theme;
+    pub(crate) fn grid_within(&mut self, grid: Grid, left: f64, width: f64) -> Plotted<Vec<Chart>> {
+        let page = self.theme.width;
         let margin = self.left_margin(&grid).max(grid.left.unwrap_or(0.0));
         // The strip is laid out like a page that ends where it ends.
         (self.theme.width, self.edge) = (left + width, left);
         let charts = self.grid(Grid { left: Some(left + margin), ..grid });
-        (self.theme, self.edge) = (page, 0.0);
+        (self.theme.width, self.edge) = (page, 0.0);
         charts
     }
 
     /// Draws mesh, axes and labels of the panels and returns their charts, row by row.
     pub(crate) fn grid(&mut self, grid: Grid) -> Plotted<Vec<Chart>> {
-        let theme = self.theme;
+        let theme = self.theme.clone();
         let (count, gap) = (grid.columns.len().max(1), Self::gap(&theme));
         let left = grid.left.unwrap_or_else(|| self.left_margin(&grid));
         let inner = theme.width - left - Self::right_margin(&theme) - gap * (count - 1) as f64;
@@ -231,7 +233,7 @@ impl Sheet {
                     head.draw(&self.canvas, (column.left, self.y - above * theme.small_font), room, &theme)?;
                 }
                 let is_last = row * count + number + count >= total;
-                let chart = self.chart(column, (&up, *height), [number == 0, is_last])?;
+                let chart = self.chart(column, &up, *height, [number == 0, is_last])?;
                 let axes = [(column.side.axis.described(), &*grid.columns[number].title), (up.axis.described(), title)];
                 self.canvas.svg.panel(chart.bounds(), axes);
                 lowest = lowest.max(if is_last { self.y + height + column.below } else { 0.0 });
@@ -251,7 +253,7 @@ impl Sheet {
 
     /// A chart of plotters with its mesh, axes, ticks, labels and titles, the last two where they are asked for: at the
     /// left, and below.
-    fn chart(&self, x: &GridColumn, (y, height): (&AxisSide, f64), labelled: [bool; 2]) -> Plotted<Chart> {
+    fn chart(&self, x: &GridColumn, y: &AxisSide, height: f64, labelled: [bool; 2]) -> Plotted<Chart> {
         let theme = &self.theme;
         let tick = self.tick_length();
         let beside = if labelled[0] { x.left - self.edge - 0.5 * theme.small_font } else { tick };

@@ -1,11 +1,12 @@
 //! A style of one's own over a theme: sizes, colours and limits of axes, as a program reads them from a file.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::changes::{COLOURS, Changes, colour};
+use crate::changes::{Changes, colour};
 use crate::palette::{BEFORE, CurveOrigin, DIMENSION, GRID, HEADING, INK, PAPER, RECORD, RUDDER, method_ids};
 use crate::theme::Theme;
 use plotters::style::RGBColor;
@@ -127,12 +128,12 @@ impl Style {
             thin: theme.thin * line,
             marker: theme.marker * marker,
             dot: theme.dot * marker,
-            changes: Changes { colours: self.colours()?, limits: self.limits()? },
+            changes: Arc::new(Changes { colours: self.colours()?, limits: self.limits()?.clone() }),
             ..theme
         })
     }
 
-    fn colours(&self) -> Result<[Option<(RGBColor, RGBColor)>; COLOURS], StyleError> {
+    fn colours(&self) -> Result<Vec<(RGBColor, RGBColor)>, StyleError> {
         let mut found: Vec<(&str, RGBColor, RGBColor)> = Vec::new();
         for (name, text) in &self.colours {
             let Some((_, old)) = coloured().find(|(known, _)| known == name) else {
@@ -150,18 +151,14 @@ impl Style {
                 None => found.push((name, old, new)),
             }
         }
-        let mut colours = [None; COLOURS];
-        colours.iter_mut().zip(&found).for_each(|(place, (_, old, new))| *place = Some((*old, *new)));
-        Ok(colours)
+        Ok(found.into_iter().map(|(_, old, new)| (old, new)).collect())
     }
 
-    /// The limits, kept for as long as the program runs: a theme is copied into every figure.
-    fn limits(&self) -> Result<&'static [(String, [f64; 2])], StyleError> {
+    fn limits(&self) -> Result<&BTreeMap<String, [f64; 2]>, StyleError> {
         let wrong = self.limits.iter().find(|(_, [lo, hi])| !(lo.is_finite() && hi.is_finite() && lo < hi));
         match wrong {
             Some((title, found)) => Err(StyleError::Limits { title: title.clone(), found: *found }),
-            None if self.limits.is_empty() => Ok(&[]),
-            None => Ok(self.limits.clone().into_iter().collect::<Vec<_>>().leak()),
+            None => Ok(&self.limits),
         }
     }
 }

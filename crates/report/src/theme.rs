@@ -1,6 +1,8 @@
 //! Sizes of a figure: everything is in points (1/72 inch) on the finished page, so one theme decides whether a figure
 //! can be read. Colours are in [`crate::palette`]; where things go is decided in the module `sheet`.
 
+use std::sync::Arc;
+
 use crate::changes::Changes;
 use crate::error::ReportError;
 
@@ -15,7 +17,7 @@ pub const WIDTH_MM: [f64; 2] = [60.0, 400.0];
 pub const DPI: [f64; 2] = [72.0, 1200.0];
 
 /// Sizes of a figure, in points on the finished page.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Theme {
     pub(crate) width: f64,
     pub(crate) dpi: f64,
@@ -36,7 +38,7 @@ pub struct Theme {
     /// Radius of a measured point.
     pub(crate) dot: f64,
     /// What a style changes besides sizes.
-    pub(crate) changes: Changes,
+    pub(crate) changes: Arc<Changes>,
 }
 
 impl Theme {
@@ -53,7 +55,7 @@ impl Theme {
             thin: 0.75,
             marker: 3.0,
             dot: 1.4,
-            changes: Changes::default(),
+            changes: Arc::default(),
         }
     }
 
@@ -84,13 +86,13 @@ impl Theme {
             thin: 0.5 + share * 0.1,
             marker: 1.9 + share * 0.4,
             dot: 0.9 + share * 0.2,
-            changes: Changes::default(),
+            changes: Arc::default(),
         }
     }
 
     /// Titles that a style gives limits by and that are not among these.
-    pub fn limits_without_axis(&self, titles: &[String]) -> Vec<&'static str> {
-        let wanted = self.changes.limits.iter().map(|(title, _)| title.as_str());
+    pub fn limits_without_axis(&self, titles: &[String]) -> Vec<&str> {
+        let wanted = self.changes.limits.keys().map(String::as_str);
         wanted.filter(|wanted| !titles.iter().any(|title| title == wanted)).collect()
     }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use kempf_report::{Table, TableColumn};
+use kempf_report::{Table, TableHead};
 
 /// Largest box that may stand out of the text, points.
 const OVERFULL: f64 = 5.0;
@@ -21,22 +21,20 @@ fn tables() -> Vec<Table> {
             .collect::<Vec<_>>()
             .join(" ")
     };
-    let mut characters = Table::new([TableColumn::left("character"), TableColumn::decimal("K̂ of √T′").unit("1/s")])
+    let mut characters = Table::new(TableHead::default().texts(["character"]).numbers(["K̂ of √T′"]).unit("1/s"))
         .titled(format!("{} & {} \\ ~^_#$%{{}}<>|\"'`", words(CHARACTERS), words(LETTERS)))
         .labelled("characters");
     for c in LETTERS.chars() {
         characters.push([format!("[{c}] * ψ̇"), "0.1003 ± 0.0007".to_owned()]);
     }
-    let mut marks = Table::new([TableColumn::left("mark"), TableColumn::right("n")]);
+    let mut marks = Table::new(TableHead::default().texts(["mark"]).counts(["n"]));
     for c in CHARACTERS.chars().chain((32..127).map(char::from)) {
         marks.push([format!("{c}"), "12".to_owned()]);
     }
-    let mut heads = vec![TableColumn::left("trial"), TableColumn::left("method"), TableColumn::right("failed")];
+    let mut head = TableHead::default().texts(["trial", "method"]).counts(["failed"]);
     for index in ["K", "T", "K/T"] {
-        heads.push(TableColumn::decimal(format!("{index} median")).unit("%"));
-        heads.push(TableColumn::left("95 %"));
-        heads.push(TableColumn::decimal(format!("{index} coverage")).unit("%"));
-        heads.push(TableColumn::decimal("sd/bound"));
+        head = head.numbers([format!("{index} median")]).unit("%").texts(["95 %"]);
+        head = head.numbers([format!("{index} coverage")]).unit("%").numbers(["sd/bound"]);
     }
     let row = |number: usize| {
         let name = ["output-error", "characteristic-points", "integral-least-squares"][number % 3];
@@ -47,17 +45,16 @@ fn tables() -> Vec<Table> {
         cells
     };
     let wide = |rows: usize| {
-        let mut table = Table::new(heads.clone()).titled(format!("Errors of K and T in {rows} rows")).labelled("wide");
+        let mut table = Table::new(head.clone()).titled(format!("Errors of K and T in {rows} rows")).labelled("wide");
         (0..rows).for_each(|number| table.push(row(number)));
         table
     };
-    let mut prose = Table::new([TableColumn::left("key"), TableColumn::left("meaning"), TableColumn::left("where")]);
+    let mut prose = Table::new(TableHead::default().texts(["key", "meaning", "where"]));
     let sentence = "what a ship is asked to do in words, which may well be many of them and never end, as here";
     (0..30).for_each(|number| prose.push([format!("key{number}"), sentence.repeat(number % 4), sentence.into()]));
     let mut few = prose.clone();
     few.rows.truncate(4);
-    let mut plain =
-        Table::new([TableColumn::decimal("value"), TableColumn::right("count"), TableColumn::decimal("words")]);
+    let mut plain = Table::new(TableHead::default().numbers(["value"]).counts(["count"]).numbers(["words"]));
     plain.push(["1e5", "123456", "n/a"]);
     plain.push(["[1, 2]", "–", "no number"]);
     vec![
@@ -69,7 +66,7 @@ fn tables() -> Vec<Table> {
         prose,
         few,
         plain,
-        Table::new([TableColumn::left("a")]),
+        Table::new(TableHead::default().texts(["a"])),
         Table::default(),
     ]
 }

@@ -1,5 +1,5 @@
-//! Effects of a scenario: their keys with units, declared once in [`NUMBERS`], and from them the parameters of
-//! [`ship::effects`], each checked against the range its effect declares.
+//! Effects of a scenario: from numbers by the keys that [`ship::effects`] declares their parameters, each checked against
+//! the range its effect declares.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
@@ -8,8 +8,7 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, json};
 use ship::Regressor;
-use ship::angle::DEGREE;
-use ship::effects::{Effect, Formula, listed};
+use ship::effects::{Effect, FileNumber, FileRole, Formula, meaning};
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ShortNumber};
 use toml::{Table, Value};
@@ -25,104 +24,37 @@ const FORMULA: &str = "formula";
 #[derive(Debug, Clone, Deserialize, Serialize)]
 pub struct EffectWire(Table);
 
-/// A number of an effect: identifier and form of the effect, the key and what it means.
-type EffectNumber = (&'static str, &'static str, &'static str, &'static str);
-
-/// What holds when the exponent of the gain is left out; all other numbers are needed.
-const GAIN_EXPONENT: (&str, f64) = ("gain-exponent", 2.0);
-
-/// Every number of every effect that a scenario can add, in the order of lists and of the parameters.
-#[rustfmt::skip]
-const NUMBERS: [EffectNumber; 24] = [
-    ("second_order", "sway coupling", "T2-s", "Smaller time constant T2."),
-    ("second_order", "sway coupling", "T3-s", "Time constant T3 of the rudder rate."),
-    ("nonlinear_damping", "r³", "n3-s2-per-deg2", "+ n3 r³ on the left (Norrbin, Bech)."),
-    ("nonlinear_damping", "r|r|", "n2-s-per-deg", "+ n2 r|r| on the left."),
-    ("nonlinear_damping", "r²", "n11-s-per-deg", "+ n11 r² on the left."),
-    ("wind_moment", "steady wind", "rudder-deg", "Largest moment, as rudder angle."),
-    ("wind_moment", "steady wind", "from-deg", "Direction the wind comes from, clockwise from north."),
-    ("speed_loss", "modelled speed", "loss-s-per-deg2", "Rate of loss for a squared yaw rate of 1 deg²/s²."),
-    ("speed_loss", "modelled speed", "recovery-s", "Time in which the speed comes back."),
-    ("speed_loss", "modelled speed", "gain-exponent", "Power of the speed in the gain of the rudder."),
-    ("steering_lag", "dead time", "dead-time-s", "Dead time."),
-    ("steering_lag", "first-order lag", "first-order-s", "Time constant of a first-order lag."),
-    ("rudder_saturation", "stall", "c3-per-deg2", "Coefficient c3."),
-    ("rudder_deadband", "backlash", "backlash-deg", "Width of a backlash."),
-    ("rudder_deadband", "dead band", "dead-band-deg", "Width of a dead band."),
-    ("port_starboard_asymmetry", "gain by side", "gain-share",
-     "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard."),
-    ("port_starboard_asymmetry", "moment by drift", "moment-by-drift-s",
-     "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn."),
-    ("moment_drift", "linear trend", "rudder-deg-per-s", "Change of the moment, as rudder angle."),
-    ("transient_disturbance", "moment for a while", "rudder-deg", "Largest moment, as rudder angle."),
-    ("transient_disturbance", "moment for a while", "centre-s", "Time of its middle."),
-    ("transient_disturbance", "moment for a while", "duration-s", "How long it lasts."),
-    ("wave_yaw", "narrow band", "sd-deg", "Standard deviation of the heading they add."),
-    ("wave_yaw", "narrow band", "frequency-rad-s", "Frequency of encounter."),
-    ("wave_yaw", "narrow band", "damping", "Relative damping: the smaller, the narrower the band."),
-];
-
-/// What the effects are; of several forms one is given.
-const MEANINGS: [(&str, &str); 11] = [
-    ("second_order", "Sway coupling: T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ'."),
-    ("nonlinear_damping", "Damping that grows with the yaw rate; one of these."),
-    ("wind_moment", "A yaw moment of steady wind, by the heading."),
-    ("speed_loss", "Speed that falls in the turn: K ~ U, T ~ 1/U."),
-    ("steering_lag", "A rudder that acts later than the one recorded; one of these."),
-    ("rudder_saturation", "Stall: the rudder acts as δ − c3 δ³."),
-    ("rudder_deadband", "Play between the recorded rudder and the one that acts; one of these."),
-    ("port_starboard_asymmetry", "A ship that turns more readily to one side; one of these."),
-    ("moment_drift", "A slow trend of the yaw moment."),
-    ("transient_disturbance", "A moment for a part of the record."),
-    ("wave_yaw", "Narrow-band yaw from waves."),
-];
-
 /// An effect in one of the forms in which a scenario adds it, with the keys of its numbers.
 struct EffectForm {
     effect: Arc<dyn Effect>,
     keys: Vec<NumberKey>,
 }
 
-/// The forms in the order of [`NUMBERS`].
+/// The forms in the order of the list of effects, keys in the order of their parameters.
 static FORMS: LazyLock<Vec<EffectForm>> = LazyLock::new(|| {
-    let mut forms: Vec<EffectForm> = Vec::new();
-    for (id, form, key, meaning) in NUMBERS {
-        let effect = listed(id, form);
-        let number = match key == GAIN_EXPONENT.0 {
-            true => NumberKey::optional(key, meaning, Some(GAIN_EXPONENT.1)),
-            false => NumberKey::required(key, meaning),
-        };
-        match forms.last_mut().filter(|last| is_same(last.effect.as_ref(), effect.as_ref())) {
-            Some(form) => form.keys.push(number),
-            None => forms.push(EffectForm { effect, keys: vec![number] }),
-        }
-    }
-    forms
+    let form = |effect: Arc<dyn Effect>| {
+        let keys = effect.in_file()?.into_iter().map(NumberKey::from).collect();
+        Some(EffectForm { effect, keys })
+    };
+    ship::effects::all().into_iter().filter_map(form).collect()
 });
 
-fn is_same(one: &dyn Effect, other: &dyn Effect) -> bool {
-    (one.id(), one.form()) == (other.id(), other.form())
+/// The effects that a scenario can add.
+static IDS: LazyLock<Vec<&str>> = LazyLock::new(|| {
+    let mut ids: Vec<&str> = FORMS.iter().map(|form| form.effect.id()).collect();
+    ids.dedup();
+    ids
+});
+
+impl From<FileNumber> for NumberKey {
+    fn from(FileNumber { key, meaning, default, .. }: FileNumber) -> Self {
+        Self { key, meaning, is_required: default.is_none(), default }
+    }
 }
 
 /// The forms of an effect; none where there is no such effect.
 fn forms_of(id: &str) -> Vec<&'static EffectForm> {
     FORMS.iter().filter(|form| form.effect.id() == id).collect()
-}
-
-/// Size in SI of the unit of a key.
-fn unit(key: &str) -> f64 {
-    const PER_DEGREE: f64 = 1.0 / DEGREE;
-    match key {
-        key if key.ends_with("-per-deg2") => PER_DEGREE * PER_DEGREE,
-        key if key.ends_with("-per-deg") => PER_DEGREE,
-        key => simulate::error::unit(key),
-    }
-}
-
-/// The keys a scenario has for an effect in one of its forms; `None` for a form that needs a measured record.
-pub fn keys(effect: &dyn Effect) -> Option<String> {
-    let form = FORMS.iter().find(|form| is_same(form.effect.as_ref(), effect))?;
-    Some(form.keys.iter().map(|own| own.key).collect::<Vec<_>>().join(", "))
 }
 
 /// The effects with nothing left out.
@@ -141,11 +73,10 @@ fn asked<'a>(
     entry: &'a NamedNumbers,
     place: &KeyPath,
 ) -> Result<(&'static EffectForm, KeyPath, &'a BTreeMap<String, f64>), KeyFault> {
-    let ids = MEANINGS.map(|(id, _)| id);
-    let (id, key, numbers) = number_table::only(entry, place, &ids)?;
+    let (id, key, numbers) = number_table::only(entry, place, &IDS)?;
     let forms = forms_of(id);
     if forms.is_empty() {
-        return Err(KeyFault::name(key, format!("no effect is called `{id}`"), "no such name", suggestion(id, &ids)));
+        return Err(KeyFault::name(key, format!("no effect is called `{id}`"), "no such name", suggestion(id, &IDS)));
     }
     let known: Vec<NumberKey> = forms.iter().flat_map(|form| form.keys.iter().copied()).collect();
     number_table::refuse_unknown(numbers, &known, &key)?;
@@ -281,19 +212,19 @@ struct EffectParameter {
     unit: f64,
 }
 
-/// The parameters of an effect; nonlinear damping is written for T r' + r and stored for r', divided by T.
+/// The parameters of an effect on a ship with this 1/T, 1/s.
 fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f64) -> Vec<EffectParameter> {
-    let one = |own: &NumberKey| {
-        let written = numbers.get(own.key).copied().or(own.default).unwrap_or(f64::NAN);
-        let unit = unit(own.key) * if form.effect.id() == "nonlinear_damping" { inverse_time } else { 1.0 };
-        EffectParameter { value: written * unit, key: own.key, written, unit }
+    let keys = form.effect.in_file().unwrap_or_default();
+    let setting = |number: &FileNumber| {
+        let written = numbers.get(number.key).copied().or(number.default).unwrap_or(f64::NAN);
+        let unit = number.unit * if number.role == FileRole::OverT { inverse_time } else { 1.0 };
+        EffectParameter { value: written * unit, key: number.key, written, unit }
     };
-    let settings: Vec<EffectParameter> = form.keys.iter().map(one).collect();
-    if let ("wind_moment", [moment, from]) = (form.effect.id(), settings.as_slice()) {
-        // w sin 2(ψ_w − ψ) by its components along sin and cos of 2ψ.
+    let settings: Vec<EffectParameter> = keys.iter().map(setting).collect();
+    if let ([_, FileNumber { role: FileRole::Direction, .. }], [strength, from]) = (&keys[..], &settings[..]) {
         let twice = 2.0 * from.value;
         let component = |share: f64| match from.written.is_finite() {
-            true => EffectParameter { value: moment.value * share, ..*moment },
+            true => EffectParameter { value: strength.value * share, ..*strength },
             false => EffectParameter { ..*from },
         };
         return vec![component(twice.sin()), component(-twice.cos())];
@@ -303,11 +234,14 @@ fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f6
 
 /// The effects: a list, each with one key, its id.
 pub fn schema(_: &mut SchemaGenerator) -> Schema {
-    let effects = MEANINGS.into_iter().map(|(id, meaning)| {
+    let effects = IDS.iter().map(|&id| {
         let forms: Vec<_> = forms_of(id).iter().map(|form| number_table::schema(&form.keys)).collect();
-        let below = if let [form] = forms.as_slice() { form.clone() } else { json!({ "oneOf": forms }) };
+        let (below, end) = match forms.as_slice() {
+            [form] => (form.clone(), "."),
+            _ => (json!({ "oneOf": forms }), "; one of these."),
+        };
         let mut effect = closed(Map::from_iter([(id.to_owned(), below)]), vec![id]);
-        effect["description"] = meaning.into();
+        effect["description"] = (meaning(id).to_owned() + end).into();
         effect
     });
     let formula = json!({

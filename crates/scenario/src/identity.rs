@@ -100,28 +100,24 @@ fn shortened(value: Option<&Value>) -> String {
 
 /// Keys in which two documents differ, with dots, entries of lists counted from 0, and both values in words.
 pub fn differences(there: &Table, here: &Table) -> Vec<String> {
-    let mut found = Vec::new();
-    compare_tables("", there, here, &mut found);
-    found
+    differences_below("", there, here)
 }
 
-fn compare_tables(path: &str, there: &Table, here: &Table, found: &mut Vec<String>) {
+fn differences_below(path: &str, there: &Table, here: &Table) -> Vec<String> {
     let only = here.keys().filter(|name| !there.contains_key(*name));
-    for name in there.keys().chain(only) {
-        compare(&format!("{path}{name}"), there.get(name), here.get(name), found);
-    }
+    let of = |name: &String| differences_at(&format!("{path}{name}"), there.get(name), here.get(name));
+    there.keys().chain(only).flat_map(of).collect()
 }
 
-fn compare(key: &str, there: Option<&Value>, here: Option<&Value>, found: &mut Vec<String>) {
+fn differences_at(key: &str, there: Option<&Value>, here: Option<&Value>) -> Vec<String> {
     match (there, here) {
-        (Some(Value::Table(one)), Some(Value::Table(other))) => compare_tables(&format!("{key}."), one, other, found),
-        (Some(Value::Array(one)), Some(Value::Array(other))) => {
-            for index in 0..one.len().max(other.len()) {
-                compare(&format!("{key}.{index}"), one.get(index), other.get(index), found);
-            }
+        (Some(Value::Table(there)), Some(Value::Table(here))) => differences_below(&format!("{key}."), there, here),
+        (Some(Value::Array(there)), Some(Value::Array(here))) => {
+            let of = |index: usize| differences_at(&format!("{key}.{index}"), there.get(index), here.get(index));
+            (0..there.len().max(here.len())).flat_map(of).collect()
         }
-        (Some(one), Some(other)) if same(one, other) => {}
-        (there, here) => found.push(format!("`{key}`: {} there, {} here", shortened(there), shortened(here))),
+        (Some(there), Some(here)) if same(there, here) => Vec::new(),
+        _ => vec![format!("`{key}`: {} there, {} here", shortened(there), shortened(here))],
     }
 }
 

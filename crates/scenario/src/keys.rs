@@ -60,24 +60,18 @@ impl<'a> SchemaWalk<'a> {
         let is_required =
             |name: &str| table["required"].as_array().is_some_and(|names| names.iter().any(|known| known == name));
         for (name, value) in fields(table) {
-            self.key(&format!("{path}{name}"), (value, &Value::Null), is_required(name), keys);
+            self.key(&format!("{path}{name}"), value, &Value::Null, is_required(name), keys);
         }
         // Of a choice the key is described where the choice is.
         for variant in table["oneOf"].as_array().into_iter().flatten() {
             for (name, value) in fields(variant) {
-                self.key(&format!("{path}{name}"), (value, variant), false, keys);
+                self.key(&format!("{path}{name}"), value, variant, false, keys);
             }
         }
     }
 
-    /// A key, and those below it.
-    fn key(
-        &self,
-        key: &str,
-        (written, variant): (&'a Value, &'a Value),
-        is_required: bool,
-        keys: &mut Vec<ScenarioKey>,
-    ) {
+    /// A key with what is written for it in a variant of its table, and those below it.
+    fn key(&self, key: &str, written: &'a Value, variant: &'a Value, is_required: bool, keys: &mut Vec<ScenarioKey>) {
         let mut value = self.resolved(written);
         let kind = |value: &'a Value| value["type"].as_str().or(value["type"][0].as_str());
         let list = kind(value).filter(|kind| *kind == "array").map(|_| self.resolved(&value["items"]));

@@ -44,7 +44,6 @@ pub mod words;
 
 pub use answers::Answers;
 pub use cell::{DesignCell, Refusal, TrialSpecification};
-pub use effect::keys as effect_keys;
 pub use identity::{Script, hex};
 pub use method::{Method, MethodName, Procedure, TRACE, identify};
 pub use predictions::Predictions;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ::ship::ships::Model;
 use ::ship::{Particulars, Regressor, Ship, ShortNumber};
-use predict::motion::{Planar, PlanarShip};
+use simulate::motion::{Planar, PlanarShip};
 use simulate::{Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
 use crate::problem::{KeyFault, KeyPath};
@@ -31,7 +31,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     let also = wire.also.iter().enumerate().map(|(index, own)| {
         let what = format!("in the further record {}", index + 1);
         let record = Simulation { recording: own.recording.unwrap_or(wire.recording), ..simulation.clone() };
-        further(own, record, (KeyPath::dotted("also").child(index), &what), folder)
+        further(own, record, KeyPath::dotted("also").child(index), &what, folder)
     });
     let also = also.collect::<Result<_, _>>()?;
     // A validation is in a calm and perfectly recorded, so that the error of a replay is that of the response.
@@ -42,7 +42,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
             sensors: Sensors::default(),
             ..simulation.clone()
         };
-        further(own, record, (KeyPath::dotted("validation"), "in the validation manoeuvre"), folder)
+        further(own, record, KeyPath::dotted("validation"), "in the validation manoeuvre", folder)
     });
     let validation = validation.transpose()?;
     let base = match &ship.model {
@@ -112,7 +112,8 @@ pub fn of_validation(trial: &Recording) -> Recording {
 fn further(
     wire: &FurtherWire,
     record: Simulation,
-    (place, what): (KeyPath, &str),
+    place: KeyPath,
+    what: &str,
     folder: &Path,
 ) -> Result<Simulation, KeyFault> {
     let checked = manoeuvre(&wire.manoeuvre, folder).and_then(|manoeuvre| {

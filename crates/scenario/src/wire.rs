@@ -2,8 +2,8 @@
 //! believed yet; [`crate::resolve`] turns it into specifications the engine accepts. How a trial is made is declared in
 //! [`simulate`] itself.
 
-use predict::motion::PlanarCoefficients;
 use serde::{Deserialize, Serialize};
+use simulate::motion::PlanarCoefficients;
 use simulate::{BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear};
 
 use crate::draw::DrawWire;

@@ -209,7 +209,7 @@ pub(crate) fn shown(value: f64) -> ShortNumber {
 }
 
 /// Size in SI of the unit that the name of a key says.
-pub fn unit(key: &str) -> f64 {
+fn unit(key: &str) -> f64 {
     if key.split(['-', '.']).any(|word| word == "deg") { DEGREE } else { 1.0 }
 }
 

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | the whole specification, and the result | [`simulation`] |
 //! | what can be steered, and when its closed form is used | [`vessel`] |
+//! | speed and drift of a turn, tracks, turning circles | [`motion`] |
 //! | zig-zag, turning circle, pull-out, replay | [`trial::manoeuvre`] |
 //! | who reads the compass and turns the wheel | [`helm`] |
 //! | rate limit, lag, dead time and dead band of the rudder | [`gear`] |
@@ -57,6 +58,7 @@ pub mod error;
 pub mod gear;
 pub mod helm;
 pub mod limits;
+pub mod motion;
 pub mod recording;
 pub mod sensor;
 pub mod simulation;

@@ -434,12 +434,6 @@ pub enum Described {
     Overview,
     /// What `publish` says
     Publish,
-    /// What `doctor` says
-    Doctor,
-    /// What `completions` says
-    Completions,
-    /// What `man` says
-    Man,
     /// What every command says on standard error when it fails
     Error,
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use document::{Code, Source, Warning, Warnings};
 use estimation::statistics::upper_median;
 use report::number::fixed;
 use ship::angle::KNOT;
@@ -64,12 +65,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 
 /// Opens a log; what the reader noticed goes to `warnings`. `columns` is a description of its columns, or a folder
 /// that holds one for it; the channels of `others` are joined with it.
-pub fn open(
-    path: &Path,
-    columns: Option<&Path>,
-    others: &[PathBuf],
-    warnings: &mut Vec<String>,
-) -> Result<Log, Failure> {
+pub fn open(path: &Path, columns: Option<&Path>, others: &[PathBuf], warnings: &mut Warnings) -> Result<Log, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
         return Err(Failure::input(format!(
@@ -89,9 +85,13 @@ pub fn open(
         .or_else(|| columns.filter(|columns| !columns.is_dir()).map(Path::to_path_buf))
         .or_else(|| Sidecar::found_beside(path));
     let mut log = Log::open(path, sidecar.as_deref(), others).map_err(refused)?;
-    let found = std::mem::take(&mut log.warnings);
-    warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", called(path).display())));
+    warnings.extend(source(called(path)).of(std::mem::take(&mut log.warnings)));
     Ok(log)
+}
+
+/// A record as the source of warnings; `path` is what messages call it.
+pub fn source(path: &Path) -> Source {
+    Source::Record(path.display().to_string())
 }
 
 /// Why a file is no record, with the file told apart.
@@ -110,11 +110,7 @@ fn refused(error: ReadError) -> Failure {
 /// Reads the records that are to be identified: of each the part that was asked for, or its zig-zag.
 ///
 /// Fails when one cannot be read, and when a log holds several zig-zags and nobody said which.
-pub fn read_all(
-    paths: &[PathBuf],
-    options: &ReadingOptions,
-    warnings: &mut Vec<String>,
-) -> Result<Vec<Trial>, Failure> {
+pub fn read_all(paths: &[PathBuf], options: &ReadingOptions, warnings: &mut Warnings) -> Result<Vec<Trial>, Failure> {
     let files = expand(paths)?;
     let one_only = [
         ("--with-columns", !options.with_columns.is_empty()),
@@ -131,21 +127,21 @@ pub fn read_all(
 pub fn read_others(
     paths: &[PathBuf],
     options: &ReadingOptions,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<Vec<Trial>, Failure> {
     let (columns, ship) = (options.columns.clone(), options.ship.clone());
     let plain = ReadingOptions { columns, ship, ..ReadingOptions::default() };
     expand(paths)?.iter().map(|path| read(path, &plain, warnings)).collect()
 }
 
-fn read(path: &Path, options: &ReadingOptions, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
+fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
     of_log(open(path, options.columns.as_deref(), &options.with_columns, warnings)?, called(path), options, warnings)
 }
 
 /// The record that a log holds: the part that was asked for, or its zig-zag. `path` is what messages call it.
 ///
 /// Fails when that part is no record, and when the log holds several zig-zags and nobody said which.
-pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
+pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
     let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
     let log = if from.is_some() || until.is_some() {
         log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(refused)?
@@ -154,7 +150,7 @@ pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Ve
     };
     let ship = ship(&log, path, options, warnings)?;
     let ReadRecord { trial, warnings: found } = log.into_trial(ship).map_err(refused)?;
-    warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
+    warnings.extend(source(path).of(found));
     with_hull(trial, path, &options.ship.form)
 }
 
@@ -208,7 +204,7 @@ pub fn manoeuvres(log: &Log) -> Vec<FoundManoeuvre> {
 }
 
 /// The manoeuvre that was asked for; else the zig-zag where the log holds one and much beside it.
-fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String>) -> Result<Log, Failure> {
+fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Warnings) -> Result<Log, Failure> {
     let file = path.display();
     if asked.is_none() && log.has_declared_part() {
         return Ok(log);
@@ -224,10 +220,11 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
             match zigzags.as_slice() {
                 [] => {
                     if found.iter().any(|one| one.manoeuvre.is_none()) {
-                        warnings.push(format!(
-                            "{file}: no zig-zag is recognised, the whole record is used; `study find {file}` lists what \
-                             is; for a part, write `from-s` and `until-s` under [part] of its sidecar"
-                        ));
+                        let text = format!(
+                            "no zig-zag is recognised, the whole record is used; `study find {file}` lists what is; for \
+                             a part, write `from-s` and `until-s` under [part] of its sidecar"
+                        );
+                        warnings.push(Code::WholeRecord, source(path), text);
                     }
                     return Ok(log);
                 }
@@ -242,13 +239,14 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
     if asked.is_none() && beside <= REST * (until - from) {
         return Ok(log);
     }
-    warnings.push(format!(
-        "{file}: the {} from {} to {} is used, the rest is left out; for another part, write `from-s` and `until-s` under \
-         [part] of its sidecar",
+    let text = format!(
+        "the {} from {} to {} is used, the rest is left out; for another part, write `from-s` and `until-s` under [part] \
+         of its sidecar",
         manoeuvre.name(),
         at(&log, from),
         at(&log, until)
-    ));
+    );
+    warnings.push(Code::Part, source(path), text);
     log.part(from, until).map_err(refused)
 }
 
@@ -272,29 +270,26 @@ fn ship(
     log: &Log,
     path: &Path,
     options: &ReadingOptions,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<Option<Particulars>, Failure> {
     let Some(length) = options.ship.scale.length_m else { return Ok(None) };
     if let Some(speed) = options.ship.scale.speed() {
         return Ok(Some(Particulars { length, speed }));
     }
-    let file = path.display();
     let first = log.channel(Channel::Speed).map(|speed| &speed[..speed.len().div_ceil(10)]);
     let speeds = first.into_iter().flatten().copied().filter(|speed| *speed > 0.0);
     let Some(speed) = upper_median(speeds) else {
         let advice = "add --speed-kn or --speed-m-s to --length-m";
         return Err(Failure::about(path, format!("the record has no speed; {advice}")));
     };
-    warnings.push(format!(
-        "{file}: the approach speed is taken from the record, {} kn in its first tenth",
-        fixed(speed / KNOT, 2)
-    ));
+    let text = format!("the approach speed is taken from the record, {} kn in its first tenth", fixed(speed / KNOT, 2));
+    warnings.push(Code::Scale, source(path), text);
     Ok(Some(Particulars { length, speed }))
 }
 
-/// Says why records that have a speed or positions tell no track.
-pub fn warn_of_no_track(shown: &RecordFacts, warnings: &mut Vec<String>) {
-    warnings.extend(shown.no_track.clone());
+/// Why records that have a speed or positions tell no track.
+pub fn no_track(shown: &RecordFacts) -> Option<Warning> {
+    shown.no_track.as_ref().map(|why| Code::NoTrack.warning(why))
 }
 
 /// What a negative dead time of so many seconds says, and what mends it.
@@ -308,16 +303,14 @@ pub fn rudder_logged_late(late: f64) -> String {
 
 /// The same record counts only once: given twice for identification its errors come out too small, and on a record that
 /// was fitted there is nothing to validate.
-pub fn warn_of_repetition(trials: &[Trial], others: &[Trial], warnings: &mut Vec<String>) {
+pub fn repetitions(trials: &[Trial], others: &[Trial]) -> Vec<Warning> {
     let is_in = |records: &[Trial], own: &Trial| records.iter().any(|other| file_of(other).1 == file_of(own).1);
-    let twice = trials.iter().enumerate().filter(|(number, own)| is_in(&trials[..*number], own)).map(|(_, own)| {
-        let file = file_of(own).0;
-        format!("{file}: given twice with the same content; it counts twice, and the intervals are too narrow")
-    });
-    warnings.extend(twice.chain(others.iter().filter(|own| is_in(trials, own)).map(|own| {
-        let file = file_of(own).0;
-        format!("{file}: used for identification and for validation; the error on it validates nothing")
-    })));
+    let twice = trials.iter().enumerate().filter(|(number, own)| is_in(&trials[..*number], own)).map(|(_, own)| own);
+    let in_both = others.iter().filter(|own| is_in(trials, own));
+    let narrow = "given twice with the same content; it counts twice, and the intervals are too narrow";
+    let idle = "used for identification and for validation; the error on it validates nothing";
+    let all = twice.map(|own| (own, narrow)).chain(in_both.map(|own| (own, idle)));
+    all.map(|(own, text)| Warning::new(Code::Repetition, source_of(own), text)).collect()
 }
 
 /// A name for every record: its own, with a number where several have the same.
@@ -340,6 +333,11 @@ pub fn default_folder(trials: &[Trial], command: &str) -> PathBuf {
         1 => format!("{first}-{command}"),
         several => format!("{first}-and-{}-more-{command}", several - 1),
     })
+}
+
+/// A record as the source of warnings.
+pub fn source_of(trial: &Trial) -> Source {
+    Source::Record(file_of(trial).0.to_owned())
 }
 
 /// File and hash of a measured record.

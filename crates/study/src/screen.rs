@@ -3,6 +3,7 @@
 //! not sent: a path, a file or a stored label may hold it.
 
 use std::borrow::Cow;
+use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
 use report::Table;
@@ -75,7 +76,7 @@ pub struct CommandOutput<'a> {
 /// document stand alone on standard output, and notes go to standard error.
 ///
 /// Fails as [`say`] does.
-pub fn tell(common: &Common, output: &CommandOutput, warnings: &[String]) -> Result<(), Failure> {
+pub fn tell(common: &Common, output: &CommandOutput, warnings: &[impl Display]) -> Result<(), Failure> {
     let CommandOutput { words: [before, behind], table, notes, document } = output;
     let note = |line: &str| {
         if !common.quiet {
@@ -99,7 +100,7 @@ pub fn tell(common: &Common, output: &CommandOutput, warnings: &[String]) -> Res
 }
 
 /// Writes warnings to standard error, one a line, unless none are wanted.
-pub fn warn_of(common: &Common, warnings: &[String]) {
+pub fn warn_of(common: &Common, warnings: &[impl Display]) {
     let wanted = warnings.iter().filter(|_| !common.quiet);
     wanted.for_each(|warning| warn(&format!("warning: {warning}")));
 }

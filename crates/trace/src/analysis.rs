@@ -5,6 +5,8 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use document::HeadingNoise;
+use document::trace::Document;
 use identify::hull::HullEstimate;
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
@@ -16,7 +18,6 @@ use crate::average::{Average, AveragedModel};
 use crate::base::Base;
 use crate::candidates;
 use crate::comparison::{RecordComparison, ReplayResult, before, starts};
-use crate::document::Document;
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::{self, Full};
@@ -31,6 +32,7 @@ use crate::report;
 use crate::rudder::{self, RudderError};
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
+use crate::shape::{self, ShapeAnalysis};
 use crate::structures::{self, Structures};
 use crate::watcher::{NoWatcher, Watcher};
 use crate::weights::NoiseLaw;
@@ -53,6 +55,8 @@ pub struct Analysis {
     pub structures: Structures,
     /// The full model and the noise that it leaves.
     pub full: Full,
+    /// That noise, its sizes being means over the records.
+    pub noise: HeadingNoise,
     /// Hulls of three degrees of freedom that stand beside the structures.
     pub hulls: Vec<HullEstimate>,
     pub(crate) problem: FittedRecords,
@@ -88,9 +92,8 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// Analyses records of one ship. `validation` records only judge: nothing else depends on them.
 ///
 /// Readings of the compass that belong to no ship are left out of all records, and listed; a rudder with errors of its
-/// instrument is replaced by the one behind its readings. Fails when a setting is out
-/// of its range, when an effect that was asked for cannot be in the model, and when the base cannot be fitted or
-/// replayed.
+/// instrument is replaced by the one behind its readings. Fails when a setting is out of its range, when an effect that was
+/// asked for cannot be in the model, and when the base cannot be fitted or replayed.
 ///
 /// ```
 /// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
@@ -136,18 +139,18 @@ pub fn watched(
     let problem = FittedRecords::new(records, response.inverse_T, time);
     let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_errors);
     let members = structures.members();
-    let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, (&full.law, &members), hulls, settings, time);
+    let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, &full.law, &members, hulls, settings, time);
     let (mut identification, mut no_nearer) = fit(&[])?;
     let location = locate(&problem, &full, &structures, &candidates, settings);
-    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, (&location, &rudder_errors));
+    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_errors);
     let hulls = hulls::fit(&trials, settings, &identification, &remainder);
     (identification, no_nearer) = if hulls.is_empty() { (identification, no_nearer) } else { fit(&hulls)? };
     let unseen = AveragedModel { members: &members, hulls: &hulls, law: &full.law, known: None, time };
     let judged = unseen.all_compared(&validation, &response, settings.thorough)?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let folds = || leave_one_out(&trials, &problem, (&full, &structures), &hulls, watcher);
+    let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, watcher);
     let left_out = if is_folded { folds() } else { Vec::new() };
-    let document = report::TraceParts {
+    let parts = report::TraceParts {
         trials: &trials,
         settings,
         base: &base,
@@ -163,10 +166,11 @@ pub fn watched(
         rudder_errors: &rudder_errors,
         no_nearer,
         problem: &problem,
-    }
-    .document();
+    };
+    let (document, noise) = (parts.document(), HeadingNoise::mean(&parts.heading_noise()).unwrap_or_default());
     Ok(Analysis {
         document,
+        noise,
         base: base.estimate,
         identification,
         validation: judged,
@@ -222,7 +226,8 @@ fn candidates_of(
 fn fitted(
     trials: &[Trial],
     base: &Base,
-    (law, members): (&NoiseLaw, &[(f64, &StructureFit)]),
+    law: &NoiseLaw,
+    members: &[(f64, &StructureFit)],
     hulls: &[HullEstimate],
     &Settings { thorough, .. }: &Settings,
     time: f64,
@@ -279,6 +284,12 @@ impl Analysis {
     pub fn innovations(&self) -> Vec<Innovations> {
         let best = self.structures.all.first();
         best.map_or_else(Vec::new, |best| innovations(&self.problem, &best.fit.residual, &self.full.law))
+    }
+
+    /// Moments of a shape in what the most probable structure leaves, against every random law; `None` where its
+    /// parameters cannot be told apart.
+    pub fn shapes(&self) -> Option<ShapeAnalysis> {
+        shape::analysis(&self.problem, &self.structures.all.first()?.fit, &self.full.law)
     }
 
     /// The members of the average as predictions take them.

@@ -144,3 +144,27 @@ fn median(weights: &[f64], columns: &[&[f64]], row: usize, total: f64) -> f64 {
     });
     found.map_or(f64::NAN, |(value, _)| *value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Weights 0.5, 0.3 and 0.2: the mean is theirs, and the median reaches half of their sum, whatever the order of the
+    /// members.
+    #[test]
+    fn where_a_member_runs_away_a_row_is_the_weighted_median() {
+        let columns: [&[f64]; 3] = [&[1.0, 4.0], &[2.0, 2.0], &[90.0, 3.0]];
+        let combined = |errors: &[f64]| combination(&[0.5, 0.3, 0.2], errors).expect("members")(&columns);
+        let near = |values: Vec<f64>, expected: [f64; 2]| {
+            assert!(
+                values.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-12),
+                "{values:?}"
+            );
+        };
+        near(combined(&[1.0, 1.0, 2.9]), [19.1, 3.2]);
+        near(combined(&[1.0, 1.0, 3.1]), [1.0, 3.0]);
+        let skewed = combination(&[0.2, 0.2, 0.6], &[1.0, 1.0, 3.1]).expect("members");
+        near(skewed(&columns), [90.0, 3.0]);
+        assert!(combination(&[], &[]).is_none());
+    }
+}

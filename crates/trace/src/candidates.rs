@@ -131,9 +131,9 @@ mod tests {
     use trial::{Conditions, DeclaredWeather};
 
     use super::*;
-    use crate::document::Outcome;
     use crate::testing::{TrialPlan, record, ship};
     use crate::{EffectId, Settings, trace};
+    use document::trace::Outcome;
 
     fn trials() -> [Trial; 2] {
         let trial = record(&ship(Vec::new()), TrialPlan::default());

@@ -1,9 +1,11 @@
 //! Models against records: errors of the recorded rudder replayed, before and after, on the records that were fitted
 //! and on others. Nothing is fitted here but initial states, and moments of the record beside the plain errors.
 
+use document::trace::ErrorsEntry;
 use estimation::statistics::wilson;
 use identify::replay::{Replay, replay};
 use rayon::prelude::*;
+use ship::angle::to_deg;
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
@@ -80,6 +82,23 @@ impl ReplayResult {
     pub fn width(&self) -> Option<f64> {
         let band = self.band.as_ref().filter(|band| !band.is_empty())?;
         Some(2.0 * band.iter().sum::<f64>() / band.len() as f64)
+    }
+}
+
+impl From<&ReplayResult> for ErrorsEntry {
+    fn from(on: &ReplayResult) -> Self {
+        let errors = &on.errors;
+        let horizon = HORIZONS.iter().zip(errors.horizon);
+        Self {
+            heading_rmse_deg: to_deg(errors.heading),
+            yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
+            overshoot_error_deg: errors.overshoot.map(to_deg),
+            horizon_rmse_deg: horizon.map(|(length, error)| (format!("{length:.0}"), error.map(to_deg))).collect(),
+            band_coverage_95: on.coverage().map(|own| own.share()),
+            band_width_95_deg: on.width().map(to_deg),
+            with_own_bias_deg: errors.with_moment.map(|with| to_deg(with.bias)),
+            with_own_moment_deg: errors.with_moment.map(|with| to_deg(with.slow)),
+        }
     }
 }
 

@@ -23,7 +23,8 @@ const MOST: usize = 4;
 pub fn leave_one_out(
     trials: &[Trial],
     problem: &FittedRecords,
-    (full, structures): (&Full, &Structures),
+    full: &Full,
+    structures: &Structures,
     hulls: &[HullEstimate],
     watcher: &dyn Watcher,
 ) -> Vec<Option<RecordComparison>> {

@@ -6,7 +6,6 @@ mod band;
 pub mod base;
 pub mod candidates;
 pub mod comparison;
-pub mod document;
 pub mod empirical;
 pub mod fit;
 pub mod full;
@@ -39,7 +38,7 @@ pub mod weights;
 mod words;
 
 pub use analysis::{Analysis, trace, watched};
-pub use document::{Document, Verdict};
+pub use document::trace::{Document, Verdict};
 pub use remainder::{IMPROBABLE, Innovations};
 pub use selection::{EffectId, Selection};
 pub use settings::{Rule, Settings, TraceError};

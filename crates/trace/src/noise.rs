@@ -12,6 +12,7 @@
 
 use std::sync::OnceLock;
 
+use document::RandomMoment;
 use estimation::kalman::{MOST, Step, System, Whitener};
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
@@ -152,6 +153,20 @@ impl NoiseColour {
     pub fn freedom(&self) -> usize {
         self.wander.map_or(0, |(kind, _)| kind.freedom()) + if self.waves.is_some() { 3 } else { 0 }
     }
+
+    /// The random moment of a record whose white noise has a variance (rad²), as rudder angle of a ship of |K/T| `gain`.
+    pub fn moment(&self, variance: f64, longest: f64, gain: f64) -> RandomMoment {
+        let Some((kind, level)) = self.wander else { return RandomMoment::None };
+        let size = kind.size(level * variance, longest) / gain;
+        match (kind, kind.correlation(longest)) {
+            (CorrelatedNoise::White, _) => RandomMoment::White { rudder_rad_root_s: size },
+            (CorrelatedNoise::Walk, _) => RandomMoment::Walk { rudder_rad_per_root_s: size },
+            (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(correlation_s)) => {
+                RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: size, correlation_s }
+            }
+            _ => RandomMoment::None,
+        }
+    }
 }
 
 /// Transitions of what wanders over every step of a record, for level 1.
@@ -263,7 +278,7 @@ impl RecordNoise {
         let steps = known.iter().map(step).collect();
         let beside = colour.waves.filter(|_| own > 0).map(|_| own);
         let states = own + if colour.waves.is_some() { 2 } else { 0 };
-        (System::of_rows(steps, initial, (&of_row, &self.variances), beside), states)
+        (System::of_rows(steps, initial, &of_row, &self.variances, beside), states)
     }
 }
 

@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use document::trace::Outcome;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use trial::Trial;
 
 use crate::analysis::Analysis;
-use crate::document::Outcome;
 use crate::fit::FittedRecords;
 use crate::model::Term;
 use crate::record::PreparedRecord;

@@ -68,7 +68,8 @@ impl Remainder {
         structures: &Structures,
         identification: &[RecordComparison],
         trials: &[Trial],
-        (location, rudder_errors): (&Location, &[Option<RudderError>]),
+        location: &Location,
+        rudder_errors: &[Option<RudderError>],
     ) -> Self {
         let Some(best) = structures.all.first() else {
             return Self { holds: true, is_founded: true, is_unexplained: false, signature: None };

@@ -3,24 +3,25 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use document::trace::*;
+use document::{HeadingNoise, Quantity, RandomMoment};
 use estimation::mixture::{MixtureSummary, NormalMixture, NormalPair, ratio};
 use estimation::residuals::{GappedSeries, whiteness};
 use ship::angle::to_deg;
 use ship::effects::{self, Effect, Parameter};
 use ship::particulars::prime_unit;
 use ship::{Particulars, Regressor};
-use trial::{Quantity, Trial};
+use trial::Trial;
 
 use crate::base::Base;
 use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME, is_becalmed};
 use crate::comparison::{RecordComparison, ReplayResult};
-use crate::document::*;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::Full;
 use crate::location::Location;
 use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::EffectNaming;
-use crate::noise::CorrelatedNoise;
+use crate::record::PreparedRecord;
 use crate::remainder::Remainder;
 use crate::rudder::RudderError;
 use crate::settings::Settings;
@@ -115,7 +116,6 @@ impl TraceParts<'_> {
                 after: self.whiteness(|one| &one.after),
             },
             noise: self.noise(),
-            next_trial: String::new(),
             model: ModelEntry {
                 equations: match effects.is_empty() {
                     true => vec!["T r' + r = K (δ + δ_r)".into()],
@@ -378,33 +378,35 @@ impl TraceParts<'_> {
         whiteness(&series.collect::<Vec<_>>()).into()
     }
 
-    fn noise(&self) -> Vec<RecordNoiseEntry> {
+    /// The noise of every fitted record.
+    pub fn heading_noise(&self) -> Vec<HeadingNoise> {
         let law = &self.full.law;
         let gain = self.structures.all.first().map_or(self.base.estimate.response.K_over_T, |best| best.fit.theta[1]);
-        let longest = self.problem.longest();
-        let of = |(number, trial): (usize, &Trial)| {
+        let of = |(variance, record): (&f64, &PreparedRecord)| HeadingNoise {
+            heading_sd_rad: (variance * record.full_readings as f64).sqrt(),
+            moment: law.colour.moment(*variance, self.problem.longest(), gain.abs()),
+        };
+        law.variance.iter().zip(&self.problem.records).map(of).collect()
+    }
+
+    fn noise(&self) -> Vec<RecordNoiseEntry> {
+        let law = &self.full.law;
+        let of = |(number, noise): (usize, HeadingNoise)| {
             let variance = law.variance[number];
-            let reading = variance * self.problem.records[number].full_readings as f64;
-            let wander = law.colour.wander;
-            let heading = wander.filter(|(kind, _)| kind.is_of_heading());
-            let moment = wander.filter(|(kind, _)| !kind.is_of_heading());
-            let correlation = wander.and_then(|(kind, _)| kind.correlation(longest));
+            let heading = law.colour.wander.filter(|(kind, _)| kind.is_of_heading());
+            let (kind, correlation) = match noise.moment {
+                RandomMoment::OrnsteinUhlenbeck { correlation_s, .. } => (noise.moment.kind(), Some(correlation_s)),
+                other => (other.kind(), None),
+            };
             RecordNoiseEntry {
-                file: words::file_of(trial),
-                heading_sd_deg: to_deg(reading.sqrt()),
+                file: words::file_of(&self.trials[number]),
+                heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
-                heading_correlation_s: heading.and(correlation),
+                heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation(self.problem.longest())),
                 heading_wander: heading.map(|_| if law.is_of_model() { "model" } else { "compass" }.into()),
-                moment: match moment {
-                    Some((CorrelatedNoise::White, _)) => "white",
-                    Some((CorrelatedNoise::OrnsteinUhlenbeck(_), _)) => "ornstein-uhlenbeck",
-                    Some((CorrelatedNoise::Walk, _)) => "walk",
-                    _ => "none",
-                }
-                .into(),
-                moment_sd_rudder_deg: moment
-                    .map(|(kind, level)| to_deg(kind.size(level * variance, longest) / gain.abs())),
-                moment_correlation_s: moment.and(correlation),
+                moment: kind,
+                moment_sd_rudder_deg: (!noise.moment.is_none()).then(|| to_deg(noise.moment.size())),
+                moment_correlation_s: correlation,
                 waves_sd_deg: law.colour.waves.map(|sea| to_deg(sea.sd * variance.sqrt())),
                 waves_frequency_rad_s: law.colour.waves.map(|sea| sea.frequency),
                 describes_what_is_left: self.remainder.holds,
@@ -412,7 +414,7 @@ impl TraceParts<'_> {
                 outliers_s: self.outliers[number].clone(),
             }
         };
-        self.trials.iter().enumerate().map(of).collect()
+        self.heading_noise().into_iter().enumerate().map(of).collect()
     }
 }
 

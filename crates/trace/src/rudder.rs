@@ -21,7 +21,7 @@ mod pieces;
 use std::borrow::Cow;
 
 use estimation::statistics::median;
-use identify::{Identifier, maximum_likelihood};
+use identify::maximum_likelihood;
 use rayon::prelude::*;
 use ship::angle::{from_deg, to_deg};
 use trial::Trial;
@@ -88,7 +88,7 @@ fn smoothed(trial: &Trial) -> Option<(Trial, RudderError)> {
     }
     let path: Vec<f64> =
         pieces.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t))).collect();
-    let error = error_of(time, (angle, &path), &pieces, rounding)?;
+    let error = error_of(time, angle, &path, &pieces, rounding)?;
     let clean = trial.clone().with_rudder(path)?;
     let is_nearer = log_likelihood(trial)? > log_likelihood(&clean)? + BELIEVED;
     match (is_nearer, quantum > 0.0) {
@@ -133,12 +133,7 @@ fn lasts(left: &[f64]) -> bool {
 }
 
 /// The error of readings about the rudder behind them; `None` where it is no noise but a motion that lasts.
-fn error_of(
-    time: &[f64],
-    (angle, path): (&[f64], &[f64]),
-    pieces: &[RudderPiece],
-    rounding: f64,
-) -> Option<RudderError> {
+fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], rounding: f64) -> Option<RudderError> {
     let left: Vec<f64> = angle.iter().zip(path).map(|(angle, path)| angle - path).collect();
     if rounding == 0.0 && lasts(&left) {
         return None;
@@ -169,7 +164,7 @@ fn log_likelihood(trial: &Trial) -> Option<f64> {
         ..maximum_likelihood::Settings::default()
     };
     let method = settings.build().expect("default settings are valid");
-    method.identify(std::slice::from_ref(trial)).ok()?.diagnostic("log_likelihood")
+    method.log_likelihood(std::slice::from_ref(trial))
 }
 
 /// Fall of −2 log of the likelihood from which another noise is believed beside errors of the rudder.

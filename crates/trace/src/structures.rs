@@ -117,7 +117,7 @@ fn weigh(
         search.keep(vec![full.fit.clone()]);
         return search.result();
     }
-    search.look((full.fit.theta.clone(), full.fit.initial.clone()), &none);
+    search.look(&full.fit.theta, &full.fit.initial, &none);
     let mut seen: Vec<Vec<TermName>> = Vec::new();
     for _ in 0..ROUNDS {
         let Some(top) = search.top().map(|top| top.fit.clone()).filter(|top| !seen.contains(&names(&top.structure)))
@@ -128,9 +128,9 @@ fn weigh(
         // What may stand in the place of a term shows when it is taken away.
         for out in 0..top.structure.terms.len() {
             let less = search.without(&top, out);
-            search.look(search.unfold(&less), &search.terms_of(&less));
+            search.look(&search.unfold(&less), &less.initial, &search.terms_of(&less));
         }
-        search.look(search.unfold(&top), &search.terms_of(&top));
+        search.look(&search.unfold(&top), &top.initial, &search.terms_of(&top));
         search.swap(&top);
     }
     search.polish();
@@ -139,16 +139,16 @@ fn weigh(
 
 impl StructureSearch<'_> {
     /// Weighs all subsets round a point of the full model, and refits the best.
-    fn look(&mut self, at: (Vec<f64>, Vec<[f64; 2]>), about: &[bool]) {
+    fn look(&mut self, theta: &[f64], initial: &[[f64; 2]], about: &[bool]) {
         let structure = &self.full.fit.structure;
-        let normal = self.problem.posterior(structure, &at.0, &at.1, &self.weights);
+        let normal = self.problem.posterior(structure, theta, initial, &self.weights);
         let odds: Vec<f64> = structure.terms.iter().map(|term| self.odds(term, 1e6)).collect();
-        let Some(quadratic) = Quadratic::new(&normal, structure, &at.0, &odds) else { return };
+        let Some(quadratic) = Quadratic::new(&normal, structure, theta, &odds) else { return };
         if self.visibility.is_empty() {
             self.visibility = self.visibility(&quadratic);
         }
         let hopeful = quadratic.best(about);
-        self.fit_all(hopeful.iter().map(|chosen| self.start(&quadratic, chosen, &at)).collect());
+        self.fit_all(hopeful.iter().map(|chosen| self.start(&quadratic, chosen, theta, initial)).collect());
         self.latest = Some(quadratic);
     }
 
@@ -246,7 +246,8 @@ impl StructureSearch<'_> {
         &self,
         quadratic: &Quadratic,
         chosen: &[bool],
-        at: &(Vec<f64>, Vec<[f64; 2]>),
+        theta: &[f64],
+        initial: &[[f64; 2]],
     ) -> (Structure, Vec<f64>, Vec<[f64; 2]>) {
         let structure = &self.full.fit.structure;
         let out: Vec<&Removable> =
@@ -258,8 +259,8 @@ impl StructureSearch<'_> {
             true => next().clamp(entry.prior.lowest, entry.prior.highest),
             false => *own,
         };
-        let all: Vec<f64> = structure.entries().into_iter().zip(&at.0).map(value).collect();
-        let initial = at.1.iter().map(|_| [next(), next()]).collect();
+        let all: Vec<f64> = structure.entries().into_iter().zip(theta).map(value).collect();
+        let initial = initial.iter().map(|_| [next(), next()]).collect();
         let mut theta = all[..structure.base_count()].to_vec();
         let mut terms = Vec::new();
         for ((term, range), _) in structure.terms.iter().zip(structure.ranges()).zip(chosen).filter(|(_, kept)| **kept)
@@ -289,8 +290,8 @@ impl StructureSearch<'_> {
             .max_by(|one, other| one.height.total_cmp(&other.height))
     }
 
-    /// A point of the full model: that of a fit, with everything else neutral.
-    fn unfold(&self, fit: &StructureFit) -> (Vec<f64>, Vec<[f64; 2]>) {
+    /// Parameters of the full model: those of a fit, with everything else neutral.
+    fn unfold(&self, fit: &StructureFit) -> Vec<f64> {
         let structure = &self.full.fit.structure;
         let mut theta = fit.theta[..structure.base_count()].to_vec();
         let own: BTreeMap<TermName, &[f64]> = fit
@@ -309,7 +310,7 @@ impl StructureSearch<'_> {
                 }
             }
         }
-        (theta, fit.initial.clone())
+        theta
     }
 
     fn result(self) -> Structures {

@@ -2,7 +2,6 @@
 //! are tried at every place with the response of the base in closed form, beside all unknowns of the full model.
 
 use estimation::column::dot;
-use estimation::levenberg_marquardt::Normal;
 use nalgebra::{Cholesky, DVector, Dyn};
 use ship::first_order::Transition;
 
@@ -28,22 +27,23 @@ pub fn places(
     let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
     let normal = posterior(&linear, &fit.structure, &fit.theta, weights);
     let Some(factor) = normal.matrix.clone().cholesky() else { return vec![None; terms.len()] };
-    terms.iter().map(|term| place(problem, fit, weights, term, (&linear, &normal, &factor))).collect()
+    let explained = factor.solve(&normal.gradient);
+    terms.iter().map(|term| place(problem, fit, weights, term, &linear, &factor, &explained)).collect()
 }
 
-/// The best place of one moment beside a linearised fit.
+/// The best place of one moment beside a linearised fit, whose unknowns step by `explained`.
 fn place(
     problem: &FittedRecords,
     fit: &StructureFit,
     weights: &Weights,
     term: &Term,
-    (linear, normal, factor): (&Linear, &Normal, &Cholesky<f64, Dyn>),
+    linear: &Linear,
+    factor: &Cholesky<f64, Dyn>,
+    explained: &DVector<f64>,
 ) -> Option<Vec<f64>> {
     let number = term.only.unwrap_or(0);
     let record = &problem.records[number];
     let block = linear.blocks[number].white(number, weights);
-    let explained = factor.solve(&normal.gradient);
-
     let (a, b) = (fit.theta[0], fit.theta[1]);
     let times: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
     let (start, duration) = (record.time[0], record.duration());
@@ -70,7 +70,7 @@ fn place(
             block.products(&column, &mut cross);
             let prior = term.priors[0].sd.powi(-2);
             let own = dot(&column, &column) - cross.dot(&factor.solve(&cross)) + prior;
-            let with = dot(&column, &block.residual) - cross.dot(&explained);
+            let with = dot(&column, &block.residual) - cross.dot(explained);
             let gain = with * with / own;
             if best.as_ref().is_none_or(|(most, _)| gain > *most) {
                 let middle = if lasts { from } else { from + 0.5 * length };

@@ -1,10 +1,10 @@
 //! The sentences of a trace.
 
+use document::trace::{BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict};
 use ship::angle::to_deg;
 use trial::{Origin, Trial};
 
 use crate::comparison::BandCoverage;
-use crate::document::{BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict};
 use crate::naming::EffectNaming;
 use crate::signature::Signature;
 

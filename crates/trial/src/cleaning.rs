@@ -4,6 +4,8 @@
 
 pub(crate) mod readings;
 
+use document::{Code, Warning};
+
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
 use crate::words::{counted, instant};
@@ -57,8 +59,8 @@ pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bo
         && last.is_none_or(|last| (value - last).abs() > NO_READING)
 }
 
-/// Cleans the columns; a sentence for everything that was done. The single readings it was done to go to `rejected`.
-pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<String> {
+/// Cleans the columns; a warning of everything that was done. The single readings it was done to go to `rejected`.
+pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let mut done = Vec::new();
     done.extend(leave_out_no_rudder(columns, rejected));
     done.extend(straighten_rudder(columns));
@@ -73,7 +75,7 @@ pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) 
 }
 
 /// Leaves out rows whose rudder angle no rudder has, where they are few.
-fn leave_out_no_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<String> {
+fn leave_out_no_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
     let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > NO_RUDDER).collect();
     let rest = rudder.iter().map(|delta| delta.abs()).filter(|size| *size <= NO_RUDDER).fold(0.0, f64::max);
@@ -86,12 +88,12 @@ fn leave_out_no_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading
     let mut keep = vec![true; columns.time.len()];
     wild.iter().for_each(|&row| keep[row] = false);
     columns.retain(&keep);
-    Some(format!(
+    Some(Code::RejectedReadings.warning(format!(
         "{} with a rudder angle no rudder has ({:.0}°) left out, {}; between its neighbours the rudder runs straight",
         counted(wild.len(), "row"),
         largest.to_degrees(),
         times
-    ))
+    )))
 }
 
 /// 2nd, 3rd, 4th, …
@@ -183,7 +185,7 @@ pub(crate) fn draw_line(time: &[f64], values: &mut [f64], from: usize, to: usize
 }
 
 /// Draws straight lines between the new values of a rudder that is repeated in between.
-fn straighten_rudder(columns: &mut Columns) -> Option<String> {
+fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;
     let rhythm = Rhythm::of(rudder)?;
@@ -191,14 +193,14 @@ fn straighten_rudder(columns: &mut Columns) -> Option<String> {
     for pair in new.windows(2) {
         draw_line(time, rudder, pair[0], pair[1]);
     }
-    Some(format!(
+    Some(Code::MissingValues.warning(format!(
         "the rudder is new in every {} row only and repeated in between; between the new values it runs straight",
         ordinal(rhythm.every)
-    ))
+    )))
 }
 
 /// Takes the repetitions of a channel as missing.
-fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<String> {
+fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
     let values = columns.channels.get_mut(&channel)?;
     let rhythm = Rhythm::of(values)?;
     let left = (0..values.len()).filter(|&row| rhythm.is_new(row)).count();
@@ -211,7 +213,8 @@ fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<String> {
         }
     }
     let (name, every) = (channel.spoken(), ordinal(rhythm.every));
-    Some(format!("the {name} is new in every {every} row only; its repetitions are taken as missing"))
+    let text = format!("the {name} is new in every {every} row only; its repetitions are taken as missing");
+    Some(Code::MissingValues.warning(text))
 }
 
 /// Whether a channel keeps one value over as many readings as a freeze has.
@@ -229,7 +232,7 @@ fn rests(values: &[f64]) -> bool {
 
 /// Takes a heading as missing where it stood still: it leaves the value faster than the ship turns, or the ship turned
 /// before and after by much more than the heading resolves.
-fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<String> {
+fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     if !rests(heading) {
@@ -271,7 +274,8 @@ fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Op
     let rows: Vec<usize> = frozen.iter().flat_map(|rows| &rows[1..]).copied().collect();
     reject(Channel::Heading, time, heading, &rows, rejected);
     rows.into_iter().for_each(|row| heading[row] = f64::NAN);
-    (!told.is_empty()).then(|| format!("the heading is frozen {}; it is taken as missing there", told.join(", ")))
+    let text = || format!("the heading is frozen {}; it is taken as missing there", told.join(", "));
+    (!told.is_empty()).then(|| Code::MissingValues.warning(text()))
 }
 
 #[cfg(test)]
@@ -279,7 +283,7 @@ mod tests {
     use super::*;
 
     pub(super) fn clean(columns: &mut Columns) -> Vec<String> {
-        super::clean(columns, &mut Vec::new())
+        super::clean(columns, &mut Vec::new()).into_iter().map(|warning| warning.text).collect()
     }
 
     /// A zig-zag by hand: the rudder goes to 10° and back at 2.5°/s, the heading swings; 10 Hz, 300 s.

@@ -5,10 +5,10 @@
 //! in deep unrestricted water and calm weather, at the test speed: at least 90 % of the speed at 85 % of the maximum
 //! engine output. A record does not show whether that was so. L and V have to be of the same scale as the record.
 
+use document::Quantity;
 use ship::Particulars;
 use ship::angle::to_deg;
 
-use crate::quantity::Quantity;
 use crate::zigzag::{Pair, ZigZag};
 
 /// Shortest ship that the criteria are for, m.

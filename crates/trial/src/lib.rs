@@ -34,7 +34,6 @@ pub mod manoeuvre;
 pub mod names;
 pub mod noise_model;
 pub mod plausibility;
-mod quantity;
 pub mod reader;
 pub mod record;
 pub mod scale;
@@ -49,9 +48,9 @@ pub mod zigzag;
 
 pub use channel::Channel;
 pub use conditions::{Conditions, DeclaredWeather, Loading};
+pub use document::Quantity;
 pub use file::FileError;
 pub use manoeuvre::Manoeuvre;
-pub use quantity::Quantity;
 pub use reader::{Log, ReadError, ReadRecord, read, read_with};
 pub use record::wind::relative_wind;
 pub use record::{Columns, Corner, Noise, Origin, RejectedReading, Trial, TrialError};

@@ -1,36 +1,6 @@
 //! What is random in a record.
 
-use serde::{Deserialize, Serialize};
-
-/// The random yaw moment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Moment {
-    /// None.
-    #[default]
-    None,
-    /// White: the yaw rate wanders.
-    White,
-    /// Ornstein–Uhlenbeck: gusts with a correlation time.
-    OrnsteinUhlenbeck,
-    /// Random walk: the moment itself wanders.
-    Walk,
-}
-
-impl Moment {
-    /// All of them, from the fewest parameters to the most.
-    pub const ALL: [Self; 4] = [Self::None, Self::White, Self::Walk, Self::OrnsteinUhlenbeck];
-
-    /// The word used in tables and JSON.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::White => "white",
-            Self::OrnsteinUhlenbeck => "ornstein-uhlenbeck",
-            Self::Walk => "walk",
-        }
-    }
-}
+pub use document::Moment;
 
 /// All that is random in a record, in SI units and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]

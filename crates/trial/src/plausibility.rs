@@ -9,6 +9,7 @@ mod alternation;
 mod regression;
 mod rudder;
 
+use document::{Code, Warning};
 use estimation::statistics::upper_median;
 use ship::angle::to_deg;
 use thiserror::Error;
@@ -136,18 +137,15 @@ const NOTABLE_SHARE: f64 = 0.4;
 /// Fails with [`Implausible`] when nothing moves, a unit is off by the factor between degrees and radians, or rudder,
 /// heading and yaw rate contradict each other in sign. The sign of the rudder is that of b = K/T in ψ = c₀ + c₁ t + c₂
 /// t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle that of ∫δ dψ.
-pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
-    let mut warnings = Vec::new();
-    ranges(trial, &mut warnings)?;
+pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausible> {
+    let mut warnings = Vec::from_iter(ranges(trial)?);
     two_inputs(trial)?;
     let turns = range_deg(trial.heading()) > TURNED_DEG;
     let response = if turns { turn_with_rudder(trial) } else { rudder_on_heading(trial) };
-    yaw_rate(trial, response, &mut warnings)?;
-    rudder_sign(trial, response, &mut warnings)?;
-    rudder_movements(trial, &mut warnings);
-    rate_of_turn(trial, &mut warnings);
-    gaps(trial, &mut warnings);
-    warnings.extend(missing_headings(trial));
+    warnings.extend(yaw_rate(trial, response)?);
+    warnings.extend(rudder_sign(trial, response)?);
+    warnings.extend(rudder_movements(trial));
+    warnings.extend([rate_of_turn(trial), gaps(trial), missing_headings(trial)].into_iter().flatten());
     Ok(warnings)
 }
 
@@ -197,7 +195,7 @@ pub(crate) fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
 }
 
 /// Does anything move, and do heading and rudder move by comparable amounts?
-fn ranges(trial: &Trial, warnings: &mut Vec<String>) -> Result<(), Implausible> {
+fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     let (heading_deg, rudder_deg) = (range_deg(trial.heading()), range_deg(trial.rudder()));
     let largest_deg = to_deg(trial.rudder().iter().fold(0.0, |largest: f64, delta| largest.max(delta.abs())));
     if heading_deg < STILL_DEG && rudder_deg < STILL_DEG {
@@ -211,10 +209,9 @@ fn ranges(trial: &Trial, warnings: &mut Vec<String>) -> Result<(), Implausible> 
         return Err(Implausible::HeadingConstant { heading_deg, rudder_deg });
     }
     if rudder_deg < STILL_DEG {
-        warnings.push(format!(
-            "the rudder stays at {largest_deg:.2}°, so this record alone does not show the response to it"
-        ));
-        return Ok(());
+        let text =
+            format!("the rudder stays at {largest_deg:.2}°, so this record alone does not show the response to it");
+        return Ok(Some(Code::RudderAtRest.warning(text)));
     }
     let ratio = heading_deg / rudder_deg;
     // 40° are 0.70 rad. In a zig-zag the heading moves 0.9 to 3 times as far as the rudder, in a turning circle up to
@@ -223,11 +220,10 @@ fn ranges(trial: &Trial, warnings: &mut Vec<String>) -> Result<(), Implausible> 
         if heading_deg > 1.0 && ratio > 20.0 {
             return Err(Implausible::RudderInRadians { largest_deg, heading_deg });
         }
-        warnings.push(format!(
+        return Ok(Some(Code::AngleUnit.warning(format!(
             "the rudder never exceeds {largest_deg:.3}°; if all angles are in radians under names that say degrees, name \
              the columns rudder_rad and heading_rad"
-        ));
-        return Ok(());
+        ))));
     }
     let reversals = reversals(trial.rudder());
     if ratio > if reversals >= 2 { 40.0 } else { 500.0 } {
@@ -241,9 +237,9 @@ fn ranges(trial: &Trial, warnings: &mut Vec<String>) -> Result<(), Implausible> 
         if reversals <= REVERSALS_OF_A_DITHER {
             return Err(in_radians);
         }
-        warnings.push(in_radians.to_string());
+        return Ok(Some(Code::AngleUnit.warning(in_radians.to_string())));
     }
-    Ok(())
+    Ok(None)
 }
 
 /// Does a channel come from one sensor?
@@ -257,18 +253,15 @@ fn two_inputs(trial: &Trial) -> Result<(), Implausible> {
 }
 
 /// Does the yaw rate belong to the heading?
-fn yaw_rate(trial: &Trial, response: Option<PartialSlope>, warnings: &mut Vec<String>) -> Result<(), Implausible> {
+fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warning>, Implausible> {
     let Some(slope) = yaw_rate_on_heading(trial).filter(|_| range_deg(trial.heading()) > STILL_DEG) else {
-        return Ok(());
+        return Ok(None);
     };
     let ratio = slope.value;
     if slope.share < 0.9 {
-        if slope.share < 0.5 {
-            let percent = 100.0 * slope.share;
-            warnings
-                .push(format!("the yaw rate explains only {percent:.0} % of the change of heading; check that column"));
-        }
-        return Ok(());
+        let percent = 100.0 * slope.share;
+        let text = format!("the yaw rate explains only {percent:.0} % of the change of heading; check that column");
+        return Ok((slope.share < 0.5).then(|| Code::YawRate.warning(text)));
     }
     if (40.0..=75.0).contains(&ratio.abs()) || (40.0..=75.0).contains(&ratio.abs().recip()) {
         return Err(Implausible::YawRateUnit { ratio });
@@ -278,49 +271,44 @@ fn yaw_rate(trial: &Trial, response: Option<PartialSlope>, warnings: &mut Vec<St
         let culprit = if heading_follows_rudder { "yaw-rate" } else { "heading" };
         return Err(Implausible::YawRateSign { ratio, culprit });
     }
-    if !(0.8..=1.25).contains(&ratio) {
-        warnings.push(format!(
+    Ok((!(0.8..=1.25).contains(&ratio)).then(|| {
+        Code::YawRate.warning(format!(
             "the heading changes {ratio:.2} times as much as the integral of the yaw rate; check the calibration of both"
-        ));
-    }
-    Ok(())
+        ))
+    }))
 }
 
 /// Does the ship turn to the side of its rudder?
-fn rudder_sign(trial: &Trial, response: Option<PartialSlope>, warnings: &mut Vec<String>) -> Result<(), Implausible> {
+fn rudder_sign(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warning>, Implausible> {
     let moved = range_deg(trial.rudder()) >= MOVED_DEG && range_deg(trial.heading()) >= ANSWERED_DEG;
-    let Some(slope) = response.filter(|_| moved) else { return Ok(()) };
-    if slope.value < 0.0 {
-        let (heading_deg, share_percent) = (range_deg(trial.heading()), 100.0 * slope.share);
-        if heading_deg > TURNED_DEG {
-            // A circle is one movement of the rudder: enough to ask, not to refuse.
-            warnings.push(Implausible::TurnsAgainstRudder { heading_deg, share_percent }.to_string());
-            return Ok(());
-        }
-        let flipped = Implausible::RudderFlipped { gain: slope.value, share_percent };
-        if slope.share >= DECISIVE_SHARE {
-            return Err(flipped);
-        }
-        if slope.share >= NOTABLE_SHARE {
-            warnings.push(flipped.to_string());
-        }
+    let Some(slope) = response.filter(|slope| moved && slope.value < 0.0) else { return Ok(None) };
+    let (heading_deg, share_percent) = (range_deg(trial.heading()), 100.0 * slope.share);
+    let told = |flipped: Implausible| Some(Code::RudderSign.warning(flipped.to_string()));
+    if heading_deg > TURNED_DEG {
+        // A circle is one movement of the rudder: enough to ask, not to refuse.
+        return Ok(told(Implausible::TurnsAgainstRudder { heading_deg, share_percent }));
     }
-    Ok(())
+    let flipped = Implausible::RudderFlipped { gain: slope.value, share_percent };
+    match slope.share {
+        DECISIVE_SHARE.. => Err(flipped),
+        NOTABLE_SHARE.. => Ok(told(flipped)),
+        _ => Ok(None),
+    }
 }
 
 /// Does the ship turn as fast as ships and models do?
-fn rate_of_turn(trial: &Trial, warnings: &mut Vec<String>) {
+fn rate_of_turn(trial: &Trial) -> Option<Warning> {
     if range_deg(trial.rudder()) < MOVED_DEG || range_deg(trial.heading()) < ANSWERED_DEG {
-        return;
+        return None;
     }
     let rate_deg_s = to_deg(mean_rate(trial.time(), trial.heading()));
-    if !(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s) {
-        warnings.push(format!(
+    (!(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s)).then(|| {
+        Code::TimeUnit.warning(format!(
             "the ship turns at {rate_deg_s:.2e}°/s on average, ships and models in a manoeuvre at {} to {}°/s: check the unit of the \
              time (t_s, t_ms, t_min)",
             MEAN_RATE_DEG_S[0], MEAN_RATE_DEG_S[1]
-        ));
-    }
+        ))
+    })
 }
 
 /// Mean size of the rate of turn, rad/s, from changes of heading over a hundredth of the record each; NaN without two
@@ -351,7 +339,7 @@ const MISSED: f64 = 1.5;
 
 /// Counts the headings that are missing in rows of the record, and names the longest gap; what was left out as a wrong
 /// reading has its own warning.
-fn missing_headings(trial: &Trial) -> Option<String> {
+fn missing_headings(trial: &Trial) -> Option<Warning> {
     let (time, read) = (trial.time(), trial.observed_rows().collect::<Vec<_>>());
     let usual = upper_median(read.windows(2).map(|rows| time[rows[1]] - time[rows[0]]))?;
     let (mut count, mut longest) = (0, (0.0, 0.0));
@@ -364,12 +352,12 @@ fn missing_headings(trial: &Trial) -> Option<String> {
         }
     }
     let (begin, gap) = longest;
-    (count > 0)
-        .then(|| format!("{} missing; the longest gap, {gap:.1} s, begins at {begin:.1} s", counted(count, "heading")))
+    let text = || format!("{} missing; the longest gap, {gap:.1} s, begins at {begin:.1} s", counted(count, "heading"));
+    (count > 0).then(|| Code::MissingValues.warning(text()))
 }
 
 /// Names gaps in time that are long against the sampling.
-fn gaps(trial: &Trial, warnings: &mut Vec<String>) {
+fn gaps(trial: &Trial) -> Option<Warning> {
     let period = trial.sampling_period();
     let steps = trial.time().windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
     let mut longest = (0.0, 0.0);
@@ -381,17 +369,17 @@ fn gaps(trial: &Trial, warnings: &mut Vec<String>) {
             longest = (begin, step);
         }
     }
-    if count > 0 {
+    (count > 0).then(|| {
         let (begin, step) = longest;
         let under_way = match moved {
             0 => String::new(),
             _ => format!("; in {moved} of them the rudder moved at an unknown time, which makes K and T wrong"),
         };
-        warnings.push(format!(
+        Code::Gap.warning(format!(
             "{count} {} longer than ten sampling periods ({period:.3} s); the longest, {step:.1} s, begins at {begin:.1} s{under_way}",
             if count == 1 { "gap" } else { "gaps" }
-        ));
-    }
+        ))
+    })
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Records of similar ships of different length: which have a scale in common, how all are brought to that of
 //! the first, and whether a number that was found at each scale is the same in prime units. It fits nothing.
 
+use document::Quantity;
 use ship::Particulars;
 use thiserror::Error;
 
-use crate::quantity::Quantity;
 use crate::record::Trial;
 
 /// Lengths that differ by no more than this share are those of one ship. Speeds of one ship are no scales: whether K

@@ -179,13 +179,13 @@ fn check_values(text: &str, document: &DeTable) -> Result<(), Fault> {
         let value = if table.is_empty() { values.get(key) } else { values.get(table).and_then(|own| own.get(key)) };
         let Some(value) = value else { continue };
         if let Some((false, expected)) = rule(table, key, &kind, value) {
-            return Err(unfit(text, document, (table, key), expected));
+            return Err(unfit(text, document, table, key, expected));
         }
     }
     Ok(())
 }
 
-fn unfit(text: &str, document: &DeTable, (table, key): (&str, &str), expected: &'static str) -> Fault {
+fn unfit(text: &str, document: &DeTable, table: &str, key: &str, expected: &'static str) -> Fault {
     let place = place(document, table, key);
     let found = place.clone().and_then(|place| text.get(place)).map(shortened).unwrap_or_default();
     (place, SidecarProblem::Value { key: key.to_owned(), found, expected })
@@ -230,11 +230,11 @@ fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Cond
     let particulars = declared.then_some(Particulars { length: hull.length, speed: hull.speed });
     let mut conditions = Conditions { particulars, ..form };
     if let Some(key) = conditions.join(hull) {
-        return Err(unfit(text, document, ("form", key), "what [ship] says, or nothing"));
+        return Err(unfit(text, document, "form", key, "what [ship] says, or nothing"));
     }
     if let Some((key, expected)) = conditions.contradiction() {
         let table = if place_of_key(document, "form", key).is_some() { "form" } else { "ship" };
-        return Err(unfit(text, document, (table, key), expected));
+        return Err(unfit(text, document, table, key, expected));
     }
     if has_form && let Err(error) = conditions.hull.check() {
         let own = place_of_key(document, "ship", error.key).or_else(|| place_of_key(document, "form", error.key));

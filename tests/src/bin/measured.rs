@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
+use document::trace::RecordNoiseEntry;
 use kempf_tests::autopilot;
 use kempf_tests::measured::analysis::{
     MeasuredAnalysis, ReplayError, SetSummary, WHOLE, WINDOWS_20_S, WINDOWS_60_S, named,
@@ -17,11 +18,10 @@ use kempf_tests::measured::tracing::{MeasuredTrace, trace_files};
 use kempf_tests::measured::{charts, folder, into_results};
 use kempf_tests::stability;
 use report::number::{fixed, significant};
-use report::{Table, TableColumn, Theme};
+use report::{Table, TableHead, Theme};
 use study::documents::trace::TraceDocument;
 use study::options::PageFigures;
 use trace::Document;
-use trace::document::RecordNoiseEntry;
 
 /// Cases whose whole report is kept: record, and whether the wind is withheld.
 const KEPT: [(&str, bool); 2] = [("zigzag_20_10_s", false), ("zigzag_20", false)];
@@ -154,15 +154,9 @@ fn with_prior(set: &'static MeasuredSet, scratch: &Path) -> Outcome<Vec<Measured
 
 /// A line for every set.
 fn sets_table(summaries: &[SetSummary]) -> Table {
-    let mut table = Table::new([
-        TableColumn::left("set"),
-        TableColumn::right("records"),
-        TableColumn::decimal("heading before").unit("deg"),
-        TableColumn::decimal("after").unit("deg"),
-        TableColumn::decimal("held out ratio"),
-        TableColumn::decimal("held out ratio, windows of 60 s"),
-        TableColumn::left("named"),
-    ]);
+    let head = TableHead::default().texts(["set"]).counts(["records"]).numbers(["heading before", "after"]).unit("deg");
+    let head = head.numbers(["held out ratio", "held out ratio, windows of 60 s"]).texts(["named"]);
+    let mut table = Table::new(head);
     for own in summaries {
         table.push([
             own.name.to_owned(),
@@ -215,18 +209,10 @@ America Maru; rudders positive to port.";
 const KEPT_REPORTS: &str = "## Reports\n\nWhole, with figures:\n\n";
 
 fn errors_table() -> Table {
-    Table::new([
-        TableColumn::left("fitted record"),
-        TableColumn::left("found"),
-        TableColumn::decimal("heading before").unit("deg"),
-        TableColumn::decimal("after").unit("deg"),
-        TableColumn::decimal("ratio"),
-        TableColumn::decimal("held out: heading ratio"),
-        TableColumn::decimal("held out: windows of 20 s"),
-        TableColumn::decimal("held out: windows of 60 s"),
-        TableColumn::decimal("held out: inside the band").unit("%"),
-        TableColumn::decimal("held out: width of the band").unit("deg"),
-    ])
+    let head = TableHead::default().texts(["fitted record", "found"]).numbers(["heading before", "after"]).unit("deg");
+    let ratios = ["ratio", "held out: heading ratio", "held out: windows of 20 s", "held out: windows of 60 s"];
+    let head = head.numbers(ratios).numbers(["held out: inside the band"]).unit("%");
+    Table::new(head.numbers(["held out: width of the band"]).unit("deg"))
 }
 
 /// One line of the table.
@@ -268,14 +254,8 @@ fn geometric_means(of: &[&MeasuredAnalysis]) -> Vec<String> {
 
 /// What a trace says of records without a zig-zag: a line each, or why there is none.
 fn closed_loop(scratch: &Path) -> Outcome<Table> {
-    let mut table = Table::new([
-        TableColumn::left("record"),
-        TableColumn::left("found"),
-        TableColumn::left("verdict"),
-        TableColumn::decimal("heading before").unit("deg"),
-        TableColumn::decimal("after").unit("deg"),
-        TableColumn::left("noise"),
-    ]);
+    let head = TableHead::default().texts(["record", "found", "verdict"]).numbers(["heading before", "after"]);
+    let mut table = Table::new(head.unit("deg").texts(["noise"]));
     for record in autopilot::ALL {
         let source = folder().join("full_scale_closed_loop").join(record.file);
         let Ok(text) = fs::read_to_string(&source) else {
@@ -320,7 +300,7 @@ fn noise(noise: &RecordNoiseEntry) -> String {
     }
     if let Some(sd) = noise.moment_sd_rudder_deg {
         let time = noise.moment_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));
-        parts.push(format!("moment ({}) {} deg{time}", noise.moment, significant(sd, 2)));
+        parts.push(format!("moment ({}) {} deg{time}", noise.moment.as_str(), significant(sd, 2)));
     }
     if let (Some(sd), Some(frequency)) = (noise.waves_sd_deg, noise.waves_frequency_rad_s) {
         parts.push(format!("waves {} deg at {} rad/s", significant(sd, 2), significant(frequency, 2)));

@@ -253,7 +253,7 @@ fn is_one_message(message: &str) -> bool {
 
 fn is_a_reading(ReadRecord { trial, warnings }: &ReadRecord) {
     for warning in warnings {
-        is_one_message(warning);
+        is_one_message(&warning.text);
     }
     assert!(trial.len() >= Trial::FEWEST_ROWS);
     assert!(trial.time().iter().all(|time| time.is_finite()), "a time that is not finite");

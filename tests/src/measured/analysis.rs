@@ -1,10 +1,10 @@
 //! What a trace of measured records says of them: errors before and after, and what was named.
 
+use document::trace::{BeforeAfter, EffectEntry, ErrorsEntry};
 use estimation::statistics::median;
 use report::number::fixed;
 use study::documents::trace::TraceDocument;
 use trace::Document;
-use trace::document::{BeforeAfter, EffectEntry, ErrorsEntry};
 
 use super::sets::MeasuredSet;
 

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use document::Warnings;
 use study::options::ReadingOptions;
 use study::records::read_others;
 use trial::Trial;
@@ -74,7 +75,7 @@ impl MeasuredSet {
     /// Fails with what the reader says of it.
     pub fn read(&self, record: &str, scratch: &Path) -> Outcome<Trial> {
         let options = reading(Some(self.sidecars()));
-        let read = read_others(&[self.file(record, scratch)?], &options, &mut Vec::new());
+        let read = read_others(&[self.file(record, scratch)?], &options, &mut Warnings::default());
         read.map_err(|failure| failure.to_string())?.pop().ok_or_else(|| format!("{record}: no record").into())
     }
 }

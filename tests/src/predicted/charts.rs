@@ -109,8 +109,8 @@ fn curve(track: &TurnTrack) -> PlotCurve {
     PlotCurve::new(east, north)
 }
 
-/// A circle from above.
-pub fn track((number, own): (usize, &PredictedTrack)) -> PageFigure {
+/// A circle from above, the one of this number.
+pub fn track(number: usize, own: &PredictedTrack) -> PageFigure {
     let drawn = own.drawn.iter().take(SHOWN);
     let drawn = drawn.map(|(east, north)| PlotCurve::new(east.as_slice(), north.as_slice()));
     let mut layers: Vec<Layer> =

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use campaign::known::{self, RecordFacts};
+use document::IdentifiedShip;
 use predict::steady::SteadyCurve;
 use predict::turn::{HeldTurn, without_current};
-use predict::{IdentifiedShip, Prediction, ShipMixture};
+use predict::{Prediction, ShipMixture};
 use ship::Particulars;
 use ship::angle::to_deg;
 use trace::Settings;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use campaign::statistics::{Statistic, share};
 use report::number::{MISSING, fixed, interval, significant, supported};
-use report::{Page, Table, TableColumn, Theme};
+use report::{Page, Table, TableHead, Theme};
 
 use super::charts;
 use super::figure::{FigureKind, ForecastFigure, ForecastGroup, ForecastScore, KINDS};
@@ -48,14 +48,8 @@ fn cells(group: &str, kind: &str, unit: &str, score: &ForecastScore) -> Vec<Stri
 
 /// The table of the page: groups and kinds of figure, and all kinds of a group together.
 fn scores(figures: &[ForecastFigure]) -> Table {
-    let mut table = Table::new([
-        TableColumn::left("what from what"),
-        TableColumn::left("figure"),
-        TableColumn::right("n"),
-        TableColumn::right("error"),
-        TableColumn::right("held [%]"),
-        TableColumn::right("width"),
-    ]);
+    let head = TableHead::default().texts(["what from what", "figure"]);
+    let mut table = Table::new(head.counts(["n", "error", "held [%]", "width"]));
     let judged = those(figures, |own| own.kind().is_some());
     let whole =
         |words: &str, own: &[&ForecastFigure]| ForecastScore::of(own).map(|score| cells(words, "all", "", &score));
@@ -75,7 +69,7 @@ fn scores(figures: &[ForecastFigure]) -> Table {
 
 /// What was to be reached, and what is.
 fn reached(figures: &[ForecastFigure]) -> Table {
-    let mut table = Table::new([TableColumn::left("to reach"), TableColumn::left("reached"), TableColumn::left("met")]);
+    let mut table = Table::new(TableHead::default().texts(["to reach", "reached", "met"]));
     let mut row = |what: &str, is: String, met: bool| {
         table.push([what.to_owned(), is, String::from(if met { "yes" } else { "no" })]);
     };
@@ -129,19 +123,9 @@ fn in_per_cent(share: Option<Statistic>) -> String {
 
 /// Every figure, a row each.
 fn rows(figures: &[ForecastFigure]) -> Table {
-    let mut table = Table::new([
-        TableColumn::left("what from what"),
-        TableColumn::left("fitted"),
-        TableColumn::left("trial"),
-        TableColumn::left("figure"),
-        TableColumn::decimal("measured"),
-        TableColumn::decimal("median"),
-        TableColumn::decimal("lower 90"),
-        TableColumn::decimal("upper 90"),
-        TableColumn::left("held"),
-        TableColumn::decimal("width over value"),
-        TableColumn::left("judged as"),
-    ]);
+    let head = TableHead::default().texts(["what from what", "fitted", "trial", "figure"]);
+    let head = head.numbers(["measured", "median", "lower 90", "upper 90"]).texts(["held"]);
+    let mut table = Table::new(head.numbers(["width over value"]).texts(["judged as"]));
     for own in figures {
         let [low, high] = own.compared.interval.ci90;
         let number = |value: f64| significant(value, 5);
@@ -185,7 +169,7 @@ pub fn write(forecasts: &Forecasts, results: &Path) -> Outcome<()> {
     page.say(headline(figures));
     page.table(reached(figures));
     page.figures([charts::overshoots(figures)]);
-    page.figures(tracks.iter().enumerate().map(charts::track));
+    page.figures(tracks.iter().enumerate().map(|(number, track)| charts::track(number, track)));
     page.figures([charts::steady(steady), charts::rates(steady), charts::coverage(figures)]);
     page.part("How well, figure by figure");
     page.say(SCORES);

@@ -1,7 +1,7 @@
 //! What a trace said, and whether it is right.
 
+use document::trace::{EffectEntry, LocatedEntry};
 use ship::angle::from_deg;
-use trace::document::{EffectEntry, LocatedEntry};
 use trace::shape::Dependence;
 use trace::{Analysis, Verdict};
 

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use campaign::statistics::share;
+use document::trace::LocatedEntry;
 use report::number::{MISSING, fixed, significant};
-use report::{PageFigure, Table, TableColumn};
+use report::{PageFigure, Table, TableHead};
 use ship::angle::to_deg;
-use trace::document::LocatedEntry;
 
 use super::chart;
 use super::judged::{Answer, Judgement, NEAR, NEAR_PERIOD, Named};
@@ -36,26 +36,10 @@ pub fn markdown(truths: &[Truth], outcomes: &[Outcome]) -> String {
 
 /// A line for every trial.
 pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
-    let mut table = Table::new([
-        TableColumn::left("truth"),
-        TableColumn::left("group"),
-        TableColumn::decimal("noise").unit("deg"),
-        TableColumn::right("trial"),
-        TableColumn::decimal("likelihood ratio"),
-        TableColumn::left("judgement"),
-        TableColumn::left("verdict"),
-        TableColumn::left("named"),
-        TableColumn::left("aliases"),
-        TableColumn::left("times").unit("s"),
-        TableColumn::left("depends on"),
-        TableColumn::left("form"),
-        TableColumn::left("nats"),
-        TableColumn::left("from").unit("s"),
-        TableColumn::left("until").unit("s"),
-        TableColumn::decimal("moment").unit("deg"),
-        TableColumn::decimal("heading before").unit("deg"),
-        TableColumn::decimal("heading after").unit("deg"),
-    ]);
+    let head = TableHead::default().texts(["truth", "group"]).numbers(["noise"]).unit("deg").counts(["trial"]);
+    let head = head.numbers(["likelihood ratio"]).texts(["judgement", "verdict", "named", "aliases"]);
+    let head = head.texts(["times"]).unit("s").texts(["depends on", "form", "nats"]).texts(["from", "until"]).unit("s");
+    let mut table = Table::new(head.numbers(["moment", "heading before", "heading after"]).unit("deg"));
     for outcome in outcomes {
         let answer = outcome.answer.as_ref();
         let text = |of: &dyn Fn(&Named) -> String| {
@@ -246,22 +230,12 @@ fn how() -> String {
 
 /// The ships of one group at both noises.
 fn table(truths: &[Truth], outcomes: &[Outcome], group: Group, counted: &[Counted]) -> Table {
-    let mut columns = vec![
-        TableColumn::left("truth"),
-        TableColumn::decimal("noise").unit("deg"),
-        TableColumn::decimal("likelihood ratio"),
-        TableColumn::right("trials"),
-        TableColumn::left("right").unit("%"),
-    ];
-    columns.extend(counted.iter().map(|(heading, _)| TableColumn::right(*heading)));
-    columns.extend([
-        TableColumn::right("and more"),
-        TableColumn::decimal("before").unit("× noise"),
-        TableColumn::decimal("after").unit("× noise"),
-        TableColumn::decimal("moment").unit("deg"),
-        TableColumn::left("named and located"),
-    ]);
-    let mut table = Table::new(columns);
+    let head = TableHead::default().texts(["truth"]).numbers(["noise"]).unit("deg").numbers(["likelihood ratio"]);
+    let head = head.counts(["trials"]).texts(["right"]).unit("%");
+    let head = head.counts(counted.iter().map(|(heading, _)| *heading));
+    let head = head.counts(["and more"]).numbers(["before", "after"]).unit("× noise");
+    let head = head.numbers(["moment"]).unit("deg").texts(["named and located"]);
+    let mut table = Table::new(head);
     for cell in outcomes.chunk_by(|one, other| (one.ship, one.noise_deg) == (other.ship, other.noise_deg)) {
         let (truth, noise_deg) = (&truths[cell[0].ship], cell[0].noise_deg);
         if Group::of(truth) != group {
@@ -292,7 +266,7 @@ fn table(truths: &[Truth], outcomes: &[Outcome], group: Group, counted: &[Counte
 
 /// The equations, and what is right to say of them.
 fn equations(truths: &[Truth]) -> Table {
-    let mut table = Table::new([TableColumn::left("truth"), TableColumn::left("equation"), TableColumn::left("right")]);
+    let mut table = Table::new(TableHead::default().texts(["truth", "equation", "right"]));
     for truth in truths {
         let right = match truth.kind {
             Kind::Listed { right, alias: [] } => right.join(", "),

@@ -5,8 +5,8 @@ use std::fmt;
 use std::sync::Arc;
 
 use ::trace::Analysis;
-use ::trace::document::EffectEntry;
 use ::trace::record::PreparedRecord;
+use document::trace::EffectEntry;
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, Outside, registry};
 use scenario::failure::Failure;

@@ -220,7 +220,7 @@ impl Running {
             let bound = bound.zip(truth).map(|(sd, truth)| 100.0 * sd[place] / truth.abs());
             let error = |end: f64, truth: f64| 100.0 * (end - truth) / truth.abs();
             let interval = intervals[place].zip(truth).map(|(ends, truth)| ends.map(|end| error(end, truth)));
-            index.add((row.replicate, errors[place]), bound, interval, answers[place]);
+            index.add(row.replicate, errors[place], bound, interval, answers[place]);
         }
         row.heading_rmse_deg.into_iter().for_each(|error| self.heading.add(error));
         row.validation_rmse_deg.into_iter().for_each(|error| self.validation.add(error));
@@ -297,7 +297,8 @@ impl IndexSums {
     /// Adds the error of a trial, the bound and the errors of the ends of the interval, all per cent, and the answer.
     fn add(
         &mut self,
-        (replicate, error): (u64, Option<f64>),
+        replicate: u64,
+        error: Option<f64>,
         bound: Option<f64>,
         interval: Option<[f64; 2]>,
         value: Option<f64>,

@@ -82,7 +82,7 @@ impl Points {
     pub fn find(samples: &Samples, base: Option<f64>, half_width: Option<f64>, width_share: f64) -> Self {
         let time = &samples.time;
         let (lo, hi) = extremes(&samples.heading);
-        let approach = approach(samples, base, (lo, hi));
+        let approach = approach(samples, base, [lo, hi]);
         let mean = |rows: Range<usize>| samples.heading[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
         let (base, base_from) = match (base, &approach) {
             (Some(base), _) => (base, BaseHeadingOrigin::Given),
@@ -123,7 +123,7 @@ impl Points {
 }
 
 /// Rows before the first execute, rudder amidships and heading on course.
-fn approach(samples: &Samples, base: Option<f64>, (lo, hi): (f64, f64)) -> Option<Range<usize>> {
+fn approach(samples: &Samples, base: Option<f64>, [lo, hi]: [f64; 2]) -> Option<Range<usize>> {
     let largest = samples.rudder.iter().fold(0.0_f64, |largest, delta| largest.max(delta.abs()));
     let end = samples.rudder.iter().position(|delta| delta.abs() > APPROACH * largest)?;
     let course = samples.heading[..end].iter().sum::<f64>() / end as f64;

@@ -120,7 +120,7 @@ fn the_base_course_is_read_off_the_approach_or_owned_up_to() {
     assert!(straight.warnings.is_empty(), "{:?}", straight.warnings);
     for (course_deg, word) in [(0.0, "heading 0"), (350.0, "middle")] {
         let estimate = identify(four_seconds(), &[turned(&Case::default(), course_deg, 0)]);
-        assert!(estimate.warnings[0].contains(word), "{:?}", estimate.warnings);
+        assert!(estimate.warnings[0].text.contains(word), "{:?}", estimate.warnings);
         let [k, t] = errors(&estimate);
         assert!(k.abs() < 1.0 && t.abs() < 1.0, "K {k:+.2} %, T {t:+.2} %");
     }

@@ -1,6 +1,7 @@
 //! K, T and δ_r as somebody else found them, and the estimate that is made of them.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
+use document::{Code, Warning};
 use nalgebra::{Matrix3, Vector3};
 use ship::FirstOrder;
 
@@ -75,20 +76,21 @@ impl Answer {
             robust: None,
             stop: StopReason::Outside,
             evaluations: 0,
+            noise: None,
             diagnostics: Vec::new(),
-            warnings: warning.into_iter().map(str::to_owned).collect(),
+            warnings: Vec::from_iter(warning),
         })
     }
 
     /// The covariance of (K, T, δ_r), and what has to be said of it; `None` where K or T has no error, or what is given
     /// is no covariance.
-    fn covariance(&self) -> Option<(Matrix3<f64>, Option<&'static str>)> {
+    fn covariance(&self) -> Option<(Matrix3<f64>, Option<Warning>)> {
         match self.errors {
             Errors::Unknown => None,
             Errors::Deviations([K, T, rudder_bias]) => {
                 let variance = |sd: Option<f64>| sd.filter(|sd| sd.is_finite() && *sd >= 0.0).map(|sd| sd * sd);
                 let diagonal = Vector3::new(variance(K)?, variance(T)?, variance(rudder_bias).unwrap_or(0.0));
-                Some((Matrix3::from_diagonal(&diagonal), Some(UNCORRELATED)))
+                Some((Matrix3::from_diagonal(&diagonal), Some(Code::IndependentErrors.warning(UNCORRELATED))))
             }
             Errors::Covariance(matrix) => is_covariance(&matrix).then_some((matrix, None)),
         }
@@ -139,7 +141,7 @@ mod tests {
         };
         let alone = estimate(Errors::Deviations(sd.map(Some)));
         check(&alone);
-        assert_eq!(alone.warnings, [UNCORRELATED]);
+        assert_eq!(alone.warnings, [Code::IndependentErrors.warning(UNCORRELATED)]);
         let mut matrix = Matrix3::from_diagonal(&Vector3::from(sd.map(|sd| sd * sd)));
         (matrix[(0, 1)], matrix[(1, 0)]) = (0.9 * sd[0] * sd[1], 0.9 * sd[0] * sd[1]);
         let correlated = estimate(Errors::Covariance(matrix));

@@ -26,6 +26,8 @@ pub use curve::FourierFit;
 pub use fundamental::Fundamental;
 pub use profile::MOST_HARMONICS;
 
+use document::{Code, Warning};
+
 use crate::error::IdentifyError;
 use crate::estimate::StopReason;
 
@@ -83,22 +85,22 @@ pub(crate) fn diagnostics(fits: &[Fitted]) -> Vec<(&'static str, f64)> {
 }
 
 /// What a reader should know of the fits.
-pub(crate) fn warnings(fits: &[Fitted]) -> Vec<String> {
+pub(crate) fn warnings(fits: &[Fitted]) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for Fitted { curve, stop, .. } in fits {
         if *stop == StopReason::RangeLimit {
-            warnings.push(format!(
+            warnings.push(Code::AtBound.warning(format!(
                 "the best fundamental, {:.5} rad/s, lies at the end of the searched range",
                 curve.fundamental
-            ));
+            )));
         }
         if curve.condition > TRUSTED_CONDITION {
-            warnings.push(format!(
+            warnings.push(Code::IllConditioned.warning(format!(
                 "the basis is ill-conditioned (condition number {:.1e}, one period of the series is {:.0} s): its \
                  coefficients cancel each other and its derivatives are poor near the ends",
                 curve.condition,
                 std::f64::consts::TAU / curve.fundamental
-            ));
+            )));
         }
     }
     warnings

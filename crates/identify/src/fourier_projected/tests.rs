@@ -85,7 +85,7 @@ fn truncation_is_told_from_noise() {
     let warned = |noise_deg: f64| {
         let case = Case { noise_deg, ..zigzag(10.0, 20.0) };
         let settings = Settings { harmonics: Order::Fixed(8), ..Settings::default() };
-        estimate(settings, &case).warnings.iter().any(|warning| warning.contains("not white noise"))
+        estimate(settings, &case).warnings.iter().any(|warning| warning.text.contains("not white noise"))
     };
     assert!(warned(0.0) && !warned(1.0));
 }

@@ -247,8 +247,8 @@ impl Objective for HullObjective<'_> {
             let read = track.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
             let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);
             let of_speed = Some(weight(speed, track.time.len() as f64));
-            add(normal, &hull, track, (&track.whole, &starts.whole), weight(whole, read), of_speed);
-            add(normal, &hull, track, (&track.cuts, &starts.windows), weight(window, read), None);
+            add(normal, &hull, track, &track.whole, &starts.whole, weight(whole, read), of_speed);
+            add(normal, &hull, track, &track.cuts, &starts.windows, weight(window, read), None);
         }
         value
     }
@@ -259,7 +259,8 @@ fn add(
     normal: &mut Normal,
     hull: &PrimeHull<Dual<DIRECTIONS>>,
     track: &HullTrack,
-    (cuts, rates): (&[usize], &[f64]),
+    cuts: &[usize],
+    rates: &[f64],
     weight: f64,
     of_speed: Option<f64>,
 ) {

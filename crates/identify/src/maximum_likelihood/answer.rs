@@ -1,5 +1,6 @@
 //! From the largest likelihood to an estimate: covariance from the information, and what a reader should know.
 
+use document::{Code, HeadingNoise, RandomMoment, Warning};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use ship::angle::to_deg;
 use ship::first_order::State;
@@ -144,8 +145,9 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
     let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.innovations.as_slice()));
     let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, readings);
     let mut warnings = Vec::from_iter(warning);
-    warnings.extend(response.is_course_unstable().then(|| COURSE_UNSTABLE.into()));
-    warnings.extend(at_bound.then(|| format!("T = {} s is at its bound or beyond", ShortNumber(response.T()))));
+    warnings.extend(response.is_course_unstable().then(|| Code::CourseUnstable.warning(COURSE_UNSTABLE)));
+    let beyond = || format!("T = {} s is at its bound or beyond", ShortNumber(response.T()));
+    warnings.extend(at_bound.then(|| Code::AtBound.warning(beyond())));
     let noises: Vec<NoiseModel> = (records.iter().zip(places.iter().zip(parts)))
         .map(|(record, (place, part))| place.noise(gain, part.variance.sqrt(), record.has_gyro()))
         .collect();
@@ -168,13 +170,14 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
             (false, false) => StopReason::IterationLimit,
         },
         evaluations: chosen.evaluations,
+        noise: Some(HeadingNoise { heading_sd_rad: noises[0].heading_sd, moment: random_moment(&noises[0], gain) }),
         diagnostics,
         warnings,
     })
 }
 
 /// What a reader should know of readings that belong to no ship.
-fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
+fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for ((trial, record), found) in trials.iter().zip(&chosen.records).zip(&chosen.outliers) {
         let (name, time) = (trial.name(), &record.track.time);
@@ -184,17 +187,18 @@ fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<String> {
         };
         if !found.spikes.is_empty() {
             let (count, times) = (found.spikes.len(), times(&found.spikes));
-            warnings.push(format!("{name}: headings far from those around are left out ({count}), at t = {times} s"));
+            let text = format!("{name}: headings far from those around are left out ({count}), at t = {times} s");
+            warnings.push(Code::RejectedReadings.warning(text));
         }
         if !found.jumps.is_empty() {
             let times = times(&found.jumps);
-            warnings.push(format!("{name}: the heading jumps and stays off at t = {times} s; the jumps are estimated"));
+            let text = format!("{name}: the heading jumps and stays off at t = {times} s; the jumps are estimated");
+            warnings.push(Code::HeadingJump.warning(text));
         }
     }
     if chosen.too_many {
-        warnings.push(
-            "more than a tenth of the headings are far from those around: none is left out; check the compass".into(),
-        );
+        let text = "more than a tenth of the headings are far from those around: none is left out; check the compass";
+        warnings.push(Code::OddHeadings.warning(text));
     }
     warnings
 }
@@ -209,13 +213,16 @@ fn of_noise(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'static str
     ];
     diagnostics.extend(noise.heading_correlation.map(|time| ("heading_correlation_s", time)));
     diagnostics.extend(noise.yaw_rate_sd.map(|sd| ("yaw_rate_sd_deg_s", to_deg(sd))));
-    let level = to_deg(noise.moment_level / gain);
-    match noise.moment {
-        Moment::None => {}
-        Moment::White => diagnostics.push(("white_moment_rudder_deg_root_s", level)),
-        Moment::Walk => diagnostics.push(("moment_walk_rudder_deg_per_root_s", level)),
-        Moment::OrnsteinUhlenbeck => {
-            diagnostics.extend([("gusts_sd_rudder_deg", level), ("gusts_correlation_s", noise.moment_correlation)]);
+    match random_moment(noise, gain) {
+        RandomMoment::None => {}
+        RandomMoment::White { rudder_rad_root_s: size } => {
+            diagnostics.push(("white_moment_rudder_deg_root_s", to_deg(size)));
+        }
+        RandomMoment::Walk { rudder_rad_per_root_s: size } => {
+            diagnostics.push(("moment_walk_rudder_deg_per_root_s", to_deg(size)));
+        }
+        RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: sd, correlation_s } => {
+            diagnostics.extend([("gusts_sd_rudder_deg", to_deg(sd)), ("gusts_correlation_s", correlation_s)]);
         }
     }
     diagnostics.extend((noise.rudder_sd > 0.0).then(|| ("rudder_sd_deg", to_deg(noise.rudder_sd))));
@@ -232,18 +239,34 @@ fn of_noise(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'static str
     diagnostics
 }
 
-/// What is random beside a white compass error, in words.
-fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<String> {
-    let mut parts = Vec::new();
-    let degrees = to_deg(noise.moment_level / gain);
+/// The random moment of a noise as the rudder angle of a ship of K/T = `gain`.
+fn random_moment(noise: &NoiseModel, gain: f64) -> RandomMoment {
+    let rudder = noise.moment_level / gain;
     match noise.moment {
-        Moment::None => {}
-        Moment::White => parts.push(format!("a white yaw moment of {degrees:.3} deg √s of rudder")),
-        Moment::Walk => parts.push(format!("a yaw moment that walks by {degrees:.3} deg/√s of rudder")),
-        Moment::OrnsteinUhlenbeck => parts.push(format!(
-            "gusts of {degrees:.3} deg of rudder with a correlation time of {:.0} s",
-            noise.moment_correlation
-        )),
+        Moment::None => RandomMoment::None,
+        Moment::White => RandomMoment::White { rudder_rad_root_s: rudder },
+        Moment::Walk => RandomMoment::Walk { rudder_rad_per_root_s: rudder },
+        Moment::OrnsteinUhlenbeck => {
+            RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: rudder, correlation_s: noise.moment_correlation }
+        }
+    }
+}
+
+/// The warning of what is random beside a white compass error.
+fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<Warning> {
+    let mut parts = Vec::new();
+    match random_moment(noise, gain) {
+        RandomMoment::None => {}
+        RandomMoment::White { rudder_rad_root_s: size } => {
+            parts.push(format!("a white yaw moment of {:.3} deg √s of rudder", to_deg(size)));
+        }
+        RandomMoment::Walk { rudder_rad_per_root_s: size } => {
+            parts.push(format!("a yaw moment that walks by {:.3} deg/√s of rudder", to_deg(size)));
+        }
+        RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: sd, correlation_s } => {
+            let sd = to_deg(sd);
+            parts.push(format!("gusts of {sd:.3} deg of rudder with a correlation time of {correlation_s:.0} s"));
+        }
     }
     if noise.rudder_sd > 0.0 {
         parts.push(format!("a rudder error of {:.3} deg", to_deg(noise.rudder_sd)));
@@ -252,8 +275,8 @@ fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<String> {
         let sd = to_deg(noise.heading_sd);
         parts.push(format!("a compass error of {sd:.3} deg with a correlation time of {time:.1} s"));
     }
-    (!parts.is_empty())
-        .then(|| format!("{}: beside the white noise of the compass there is {}", trial.name(), parts.join(" and ")))
+    let told = || format!("{}: beside the white noise of the compass there is {}", trial.name(), parts.join(" and "));
+    (!parts.is_empty()).then(|| Code::Noise.warning(told()))
 }
 
 /// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial of known truth and known noise: the smallest covariance an

@@ -283,18 +283,19 @@ fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
 }
 
 impl RecordAtPoint {
-    /// What a record says at known steering, under the noise of a place whose filter may take another 1/T.
+    /// What a record says at known steering, under the noise of a place whose filter may take another 1/T, `filtered`.
     pub fn new(
         record: &Record,
         inverse_time: f64,
         steering: [f64; 2],
-        noise: (&NoiseVector, f64),
+        noise: &NoiseVector,
+        filtered: f64,
         readings: usize,
     ) -> Option<Self> {
-        let white = record.white(inverse_time, &noise.0.parameters(noise.1))?;
-        let weight = Weight::new(record, noise.0, &white, readings);
+        let white = record.white(inverse_time, &noise.parameters(filtered))?;
+        let weight = Weight::new(record, noise, &white, readings);
         let variance = weight.variance(steering[0], steering[1]);
-        Self::of(record, inverse_time, steering, white, (&weight, variance))
+        Self::of(record, inverse_time, steering, white, &weight, variance)
     }
 
     fn of(
@@ -302,7 +303,8 @@ impl RecordAtPoint {
         inverse_time: f64,
         [gain, offset]: [f64; 2],
         white: White,
-        (weight, variance): (&Weight, f64),
+        weight: &Weight,
+        variance: f64,
     ) -> Option<Self> {
         let constant = (2.0 * std::f64::consts::PI * variance).ln();
         let deviance = weight.readings * constant + weight.square(gain, offset) / variance + white.filter.log_variance;
@@ -333,8 +335,10 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[NoiseVec
     let (steering, variances) = weigh(&weights)?;
     let steering: [f64; 2] = steering.into();
     let parts = columns.into_iter().zip(weights.iter().zip(variances)).zip(records);
-    let parts = parts.map(|((white, weight), record)| RecordAtPoint::of(record, inverse_time, steering, white, weight));
-    let parts = parts.collect::<Option<Vec<_>>>()?;
+    let part = |((white, (weight, variance)), record)| {
+        RecordAtPoint::of(record, inverse_time, steering, white, weight, variance)
+    };
+    let parts = parts.map(part).collect::<Option<Vec<_>>>()?;
     let deviance = parts.iter().map(|part| part.deviance).sum::<f64>();
     let motion: Matrix3<f64> = parts.iter().map(|part| part.motion / part.variance).sum();
     let determinant = parts.iter().map(|part| part.determinant).sum::<f64>() + motion.determinant().ln();

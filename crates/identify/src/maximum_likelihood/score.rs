@@ -83,7 +83,7 @@ impl Linearised {
         // A moment and a rudder error go through the ship.
         let by_ship = if place.moment != Moment::None || place.rudder {
             let by = DIFFERENCE * (a.abs() + record.track.duration().recip());
-            let there = RecordAtPoint::new(record, a, steering, (place, a + by), all)?;
+            let there = RecordAtPoint::new(record, a, steering, place, a + by, all)?;
             Slope::new(part, &there, by, &motion)
         } else {
             let none = vec![0.0; part.readings];
@@ -93,7 +93,7 @@ impl Linearised {
         for entry in place.entries(record.has_gyro()) {
             let mut moved = *place;
             moved.log[entry] += DIFFERENCE;
-            let there = RecordAtPoint::new(record, a, steering, (&moved, a), all)?;
+            let there = RecordAtPoint::new(record, a, steering, &moved, a, all)?;
             let mut slope = Slope::new(part, &there, DIFFERENCE, &motion);
             if is_tied && entry == RUDDER {
                 // A smaller compass error makes the same rudder error larger in its units.

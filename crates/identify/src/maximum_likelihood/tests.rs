@@ -192,7 +192,7 @@ fn outliers_are_left_out_and_listed() {
         let found = identify(std::slice::from_ref(&trial));
         assert_eq!(found.diagnostic("left_out"), Some(spikes), "{:?}", found.warnings);
         assert_eq!(found.diagnostic("jumps"), Some(jumps), "{:?}", found.warnings);
-        assert!(found.warnings.iter().any(|warning| warning.contains("t = ")), "{:?}", found.warnings);
+        assert!(found.warnings.iter().any(|warning| warning.text.contains("t = ")), "{:?}", found.warnings);
         for (one, other) in [(found.K(), expected.K()), (found.T(), expected.T())] {
             let sd = other.sd.expect("known");
             assert!((one.value - other.value).abs() < sd, "{} against {} ± {sd}", one.value, other.value);
@@ -219,7 +219,7 @@ fn a_coloured_compass_is_named() {
     let found = identify(&[record("coloured", truth.time, heading, truth.rudder)]);
     let time = found.diagnostic("heading_correlation_s").expect("coloured");
     assert!((1.5..10.0).contains(&time), "{time}");
-    assert!(found.warnings.iter().any(|warning| warning.contains("compass error")), "{:?}", found.warnings);
+    assert!(found.warnings.iter().any(|warning| warning.text.contains("compass error")), "{:?}", found.warnings);
 }
 
 /// Bounds under a walk are those of a calm where it is small, and wider where it is not; a gyro narrows them.

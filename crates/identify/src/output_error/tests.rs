@@ -155,8 +155,8 @@ fn a_time_constant_at_the_end_of_the_search_says_so() {
         let found = |smallest| bounded(smallest).build().expect("valid").identify(&trial).expect("steered");
         let (free, held) = (found(1.0), found(2.0 * case.T));
         assert_eq!(free.stop, StopReason::Converged);
-        assert!(free.warnings.iter().all(|warning| !warning.contains("at its bound")));
+        assert!(free.warnings.iter().all(|warning| !warning.text.contains("at its bound")));
         assert_eq!(held.stop, StopReason::RangeLimit, "T = {} s", held.response.T());
-        assert!(held.warnings.iter().any(|warning| warning.contains("at its bound")), "{:?}", held.warnings);
+        assert!(held.warnings.iter().any(|warning| warning.text.contains("at its bound")), "{:?}", held.warnings);
     }
 }

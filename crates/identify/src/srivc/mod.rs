@@ -26,6 +26,7 @@ mod record;
 #[cfg(test)]
 mod tests;
 
+use document::Code;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
@@ -136,7 +137,7 @@ impl Identifier for Srivc {
         let (uncertainty, warning) = crate::robust::judge(white, &robust_covariance, residuals.lag1, residuals.count);
         let mut warnings = Vec::from_iter(warning);
         if inverse_time < 0.0 {
-            warnings.push("course-unstable: 1/T is negative, and so are K and T".into());
+            warnings.push(Code::CourseUnstable.warning("course-unstable: 1/T is negative, and so are K and T"));
         }
         Ok(Estimate {
             response: FirstOrder { inverse_T: inverse_time, K_over_T: b, rudder_bias: bias / b },
@@ -144,6 +145,7 @@ impl Identifier for Srivc {
             robust: Some(robust_covariance),
             stop: StopReason::Converged,
             evaluations: evaluations + iterations + 1,
+            noise: None,
             diagnostics: vec![
                 ("iterations", iterations as f64),
                 ("r_squared", 1.0 - residuals.rss / residuals.total),

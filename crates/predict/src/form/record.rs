@@ -1,13 +1,13 @@
 //! Records as the form of MSC/Circ.1053 takes them: which of its manoeuvres each is, and what it shows of it.
 
 use ship::angle::to_deg;
+use simulate::motion::Current;
 use trial::zigzag::BaseCourseSource;
 use trial::{Loading, Quantity, Trial, ZigZag as Measured};
 
 use crate::correction::Correction;
 use crate::helm_replay;
 use crate::imo::{ABOUT, CIRCLE, CIRCLE_RUDDER, FormManoeuvre, TEN, TWENTY};
-use crate::motion::Current;
 use crate::turn::{self, HeldTurn};
 
 /// Yaw rate of a straight approach as a share of the largest of the record.

@@ -92,10 +92,10 @@ fn of_record(tested: &TestedManoeuvre) -> Vec<String> {
             ));
         }
         if let Some(correction) = record.correction {
-            remarks.extend(correction.warnings.iter().map(|caveat| format!("correction to full load: {caveat}")));
+            remarks.extend(correction.warnings.iter().map(|own| format!("correction to full load: {}", own.text)));
             for (name, figure) in correction.figures.iter().filter(|(name, _)| tested.figure(name).is_some()) {
                 let name = name.replace('_', " ");
-                remarks.extend(figure.warnings.iter().map(|caveat| format!("correction of {name}: {caveat}")));
+                remarks.extend(figure.warnings.iter().map(|own| format!("correction of {name}: {}", own.text)));
             }
         }
     }

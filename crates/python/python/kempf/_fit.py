@@ -13,7 +13,7 @@ from ._options import strings, warn, whole
 from ._own import Estimator, natives_of
 from ._quantity import Quantity, number
 from ._record import Record, natives
-from ._result import Model, Result, models
+from ._result import Model, Result, models, sentence
 
 
 @dataclass(frozen=True)
@@ -264,10 +264,7 @@ def _result(native: _kempf.Fit) -> FitResult:
     return FitResult(
         methods=tuple(Method._of(entry) for entry in document["methods"]),
         records=tuple(RecordEntry._of(entry) for entry in document["trials"]),
-        warnings=(
-            *document.get("warnings", ()),
-            *(f"{one['method']}: {said}" for one in document["methods"] for said in one["warnings"]),
-        ),
+        warnings=tuple(sentence(one) for one in document.get("warnings", ())),
         _text=native.text,
         _native=native,
     )

@@ -6,7 +6,7 @@ import json
 import os
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Iterable, Optional, Sequence, Union
+from typing import Any, ClassVar, Iterable, Mapping, Optional, Sequence, Union
 
 from . import _table
 from ._kempf import KempfError
@@ -42,6 +42,13 @@ class Result:
 
     def _repr_html_(self) -> str:
         return _table.page(*self._table())
+
+
+def sentence(warning: Mapping[str, Any]) -> str:
+    """A warning of a document in words, behind the record, file or method that it is of."""
+    source = warning["source"]
+    text: str = warning["text"]
+    return text if isinstance(source, str) else f"{next(iter(source.values()))}: {text}"
 
 
 #: What is known of a ship: a result of :func:`kempf.fit` or :func:`kempf.trace`, or the path of its file.

@@ -28,9 +28,9 @@ pub(super) fn room(data: &Panels, theme: &Theme) -> f64 {
 
 /// Where a name points: the rightmost point of its layer in the frame; one without bound is at the edge.
 fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
-    let place = |pair: (f64, f64)| match pair.1.is_infinite() {
-        true => Some((chart.across(pair.0)?, chart.rect.y)),
-        false => chart.inside(pair),
+    let place = |(x, y): (f64, f64)| match y.is_infinite() {
+        true => Some((chart.across(x)?, chart.rect.y)),
+        false => chart.inside(x, y),
     };
     layer.curve.pairs().filter_map(place).max_by(|one, other| one.0.total_cmp(&other.0))
 }

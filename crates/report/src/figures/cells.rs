@@ -131,10 +131,10 @@ pub(super) fn cells(data: &CellMap, theme: &Theme) -> Plotted<Drawing> {
     // The frame stands at the edges of the cells.
     let column = AxisSide::new(Axis::columns(&data.columns), data.titles[0].as_str());
     let row = AxisSide::new(Axis::rows(&data.rows, 0.5), data.titles[1].as_str());
-    let row = (row, data.rows.len().max(1) as f64 * data.pitch(theme));
+    let height = data.rows.len().max(1) as f64 * data.pitch(theme);
     let heads = data.panels.iter().map(|(head, _)| Some(KeyEntry::new(KeySample::Nothing, head.as_ref()?))).collect();
     let shading = Shading::of(data);
-    let grid = Grid { heads, ..Grid::alike(data.panels.len().max(1), data.across(theme), column, row) };
+    let grid = Grid { heads, ..Grid::alike(data.panels.len().max(1), data.across(theme), column, row, height) };
     for (chart, (_, rows)) in sheet.grid(grid)?.iter().zip(&data.panels) {
         let places = rows.iter().enumerate().flat_map(|(y, row)| (0..row.len()).map(move |x| (x, y)));
         let cells: Vec<PlacedCell> = places
@@ -161,7 +161,7 @@ fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) ->
     if shading.high <= shading.low {
         return Ok(());
     }
-    let theme = sheet.theme;
+    let theme = sheet.theme.clone();
     let value = |along: f64| if shading.is_log { 10f64.powf(along) } else { along };
     let (low, high) = (value(shading.low), value(shading.high));
     let axis = match division {
@@ -176,7 +176,7 @@ fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) ->
         let corners = [(at(number as f64), -0.5), (high, 0.5)];
         Rectangle::new(corners, shading.colour(at(number as f64 + 0.5)).0.filled()).into_dyn()
     };
-    for chart in sheet.grid_within(grid, (0.25 * theme.width, 0.5 * theme.width))? {
+    for chart in sheet.grid_within(grid, 0.25 * theme.width, 0.5 * theme.width)? {
         chart.draw(SvgGroup::default(), (0..PIECES).map(piece))?;
         chart.frame(&theme)?;
     }
@@ -252,7 +252,7 @@ impl PlacedCell<'_> {
     /// Its numbers, and its outline over the hairs of its neighbours.
     fn label(&self, chart: &Chart) -> Plotted {
         let (theme, is_shares) = (self.theme, self.shading.is_shares);
-        let corner = |side: f64| chart.place((self.x + side, self.y + side));
+        let corner = |side: f64| chart.place(self.x + side, self.y + side);
         let (Some((left, top)), Some((right, bottom))) = (corner(-0.5), corner(0.5)) else { return Ok(()) };
         if let Some(outline) = self.cell.outline {
             let stroke = outline_stroke(if outline == Outline::Right { SOLID } else { DOTTED }, theme);

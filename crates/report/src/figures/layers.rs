@@ -111,7 +111,7 @@ pub(super) fn annotated(
                 is_cut = is_beyond(&grid, stack);
             }
             outside.is_cut |= is_cut;
-            let drawn = sheet.grid_within(grid, (column as f64 * (part + gap), part))?;
+            let drawn = sheet.grid_within(grid, column as f64 * (part + gap), part)?;
             draw(&drawn, stack, theme, &mut outside)?;
             if data.names_aside {
                 outside.names.extend(aside::of_stack(&drawn, stack, columns(stack, theme), theme)?);
@@ -238,7 +238,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         (Some(_), Some((row, height)), Some(column)) => Grid {
             shared_title: Some(row.title.clone()),
             heads,
-            ..Grid::alike(stack.panels.len(), count, column.clone(), (AxisSide::new(row.axis.clone(), ""), *height))
+            ..Grid::alike(stack.panels.len(), count, column.clone(), AxisSide::new(row.axis.clone(), ""), *height)
         },
         _ => Grid { columns, rows, heads, ..Grid::default() },
     };
@@ -309,7 +309,7 @@ fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Pl
 fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Plotted {
     let is_cloud = |layer: &&Layer| matches!(layer.kind, LayerKind::Cloud(_));
     let Some(layer) = panel.layers.first().filter(is_cloud) else { return Ok(()) };
-    let outside = layer.curve.finite().filter(|pair| chart.inside(*pair).is_none()).count();
+    let outside = layer.curve.finite().filter(|&(x, y)| chart.inside(x, y).is_none()).count();
     let note = match (layer.curve.finite().count(), outside) {
         (0, _) => String::from("no estimate"),
         (_, 0) => return Ok(()),
@@ -333,10 +333,10 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
         LayerKind::Cloud(colour) => chart.dots(name, layer.curve.finite(), 0.75 * theme.dot, colour.mix(0.45))?,
         LayerKind::Marks(marks) => draw_marks(chart, theme, layer, marks, outside)?,
         LayerKind::Ships(colour, headings) => {
-            for (pair, heading) in layer.curve.pairs().zip(headings).filter(|(_, heading)| heading.is_finite()) {
+            for ((x, y), heading) in layer.curve.pairs().zip(headings).filter(|(_, heading)| heading.is_finite()) {
                 let (sine, cosine) = heading.to_radians().sin_cos();
                 let ship = |place| hull(at(place), (sine, -cosine), 1.6 * theme.small_font, *colour);
-                chart.inside(pair).map(ship).map_or(Ok(()), |ship| chart.canvas.elements(ship))?;
+                chart.inside(x, y).map(ship).map_or(Ok(()), |ship| chart.canvas.elements(ship))?;
             }
         }
         LayerKind::Words(..) => {}
@@ -349,8 +349,8 @@ fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Plotted {
     let LayerKind::Words(colour, is_above, words) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
     let (right, down, anchor) = if *is_above { (right, -down, HPos::Left) } else { (-right, down, HPos::Right) };
-    for (pair, words) in layer.curve.pairs().zip(words) {
-        let Some((x, y)) = chart.inside(pair) else { continue };
+    for ((x, y), words) in layer.curve.pairs().zip(words) {
+        let Some((x, y)) = chart.inside(x, y) else { continue };
         let text = TextLine { colour: *colour, ..TextLine::new(words, theme.small_font, anchor) };
         chart.canvas.text_on_ground((x + right, y + down), &text)?;
     }
@@ -361,7 +361,7 @@ fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Plotted {
 fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> Plotted<usize> {
     let rect = chart.rect;
     let mut count = 0;
-    for (x, y) in curve.finite().filter_map(|pair| chart.place(pair)) {
+    for (x, y) in curve.finite().filter_map(|(x, y)| chart.place(x, y)) {
         let edge = y.clamp(rect.y, rect.bottom());
         if edge != y {
             let x = x.clamp(rect.x, rect.right());

@@ -327,7 +327,7 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
         RowKind::Mark(look, value, interval) => {
             let of_interval = interval.map(|ends| bar(ends, is_alone, Stroke::solid(look.colour, theme.line)));
             let beyond = of_interval.transpose()?.unwrap_or(false);
-            Ok(mark(chart, theme, item, (*value, y), is_alone)? || beyond)
+            Ok(mark(chart, theme, item, *value, y, is_alone)? || beyond)
         }
         RowKind::Thin(ends) => bar(*ends, false, Stroke::solid(HEADING, theme.line)),
         RowKind::Thick(ends) => bar(*ends, false, thick_stroke(theme)),
@@ -344,11 +344,11 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
 }
 
 /// A mark at a value and a height, or an arrow with its number where it lies beyond the axis; returns whether it does.
-fn mark(chart: &Chart, theme: &Theme, item: &RowItem, (value, y): (f64, f64), is_alone: bool) -> Plotted<bool> {
+fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alone: bool) -> Plotted<bool> {
     let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
-    let place = chart.reach((value.clamp(-f64::MAX, f64::MAX), y));
+    let place = chart.reach(value.clamp(-f64::MAX, f64::MAX), y);
     let Some((x, height)) = place.filter(|place| !chart.rect.contains(*place)) else {
-        return chart.marker(item.name.as_deref(), (value, y), theme.marker, look).map(|()| false);
+        return chart.marker(item.name.as_deref(), value, y, theme.marker, look).map(|()| false);
     };
     let (edge, side) = if x > chart.rect.x { (chart.rect.right(), 1.0) } else { (chart.rect.x, -1.0) };
     let size = 0.65 * theme.small_font;
@@ -378,7 +378,7 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
         chart.area(name, outline, look.colour.mix(0.28))?;
     }
     chart.rectangle([q[1], q[3]], [y - 0.13, y + 0.13], look.colour.mix(0.85))?;
-    let Some((middle, height)) = chart.inside((q[2], y)) else { return Ok(()) };
+    let Some((middle, height)) = chart.inside(q[2], y) else { return Ok(()) };
     let apart = 1.6 * theme.marker;
     if chart.across(q[4]).zip(chart.across(q[0])).is_some_and(|(hi, lo)| hi - lo < 2.0 * theme.marker) {
         let ends = format!("{} to {}", significant(q[0], 2), significant(q[4], 2));
@@ -391,5 +391,5 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
         }
     }
     let median = Look { hollow: true, ..CurveOrigin::Truth.look() };
-    chart.marker(None, (q[2], y), 0.6 * theme.marker, &median)
+    chart.marker(None, q[2], y, 0.6 * theme.marker, &median)
 }

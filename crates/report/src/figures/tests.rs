@@ -81,7 +81,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let cloud = |(number, origin): (usize, CurveOrigin)| {
         let count = if number == 6 { 0 } else { n };
         let ellipse = PlotCurve::contour95(
-            (0.1, 0.0),
+            [0.1, 0.0],
             [[0.1, 0.05], [0.05, 0.1]].map(|row| row.map(|v: f64| v * (1 + number) as f64)),
         );
         let layers = vec![

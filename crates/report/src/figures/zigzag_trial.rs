@@ -214,7 +214,7 @@ impl Dimensions<'_> {
 
     /// Vertical dimension line from the heading of the execute to the extremum, with its angle beyond the curve.
     fn overshoot(&self, number: usize, overshoot: &OvershootMark) -> Plotted {
-        let place = |mark: &ZigZagMark| self.chart.inside((mark.t_s, mark.heading_deg));
+        let place = |mark: &ZigZagMark| self.chart.inside(mark.t_s, mark.heading_deg);
         let (Some(peak), Some(start)) = (place(&overshoot.extremum), place(&overshoot.execute)) else { return Ok(()) };
         let size = self.theme.small_font;
         let foot = (peak.0, start.1);

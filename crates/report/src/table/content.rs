@@ -4,82 +4,9 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::width::{Alignment, align};
+use super::head::{TableColumn, TableHead};
+use super::width::align;
 use crate::printable::escaped;
-
-/// A column of a table.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct TableColumn {
-    /// What the column holds.
-    pub heading: String,
-    /// Its unit, without brackets.
-    pub unit: Option<String>,
-    /// How its cells are aligned.
-    pub alignment: Alignment,
-    /// Whether its cells are intervals of the column before it, `[low, high]`; other programs read two columns.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub interval: bool,
-}
-
-impl TableColumn {
-    /// A column of words.
-    pub fn left(heading: impl Into<String>) -> Self {
-        Self { heading: heading.into(), ..Self::default() }
-    }
-
-    /// A column of whole numbers.
-    pub fn right(heading: impl Into<String>) -> Self {
-        Self { alignment: Alignment::Right, ..Self::left(heading) }
-    }
-
-    /// A column of numbers with decimals.
-    pub fn decimal(heading: impl Into<String>) -> Self {
-        Self { alignment: Alignment::Decimal, ..Self::left(heading) }
-    }
-
-    /// The 95 % intervals of the column before.
-    pub fn interval() -> Self {
-        Self { interval: true, ..Self::left("95 %") }
-    }
-
-    /// Columns by their heads, parted by `|`: words; whole numbers behind `>`, numbers with decimals behind `.`, the
-    /// intervals of the column before behind `~`; a unit in brackets at the end.
-    pub fn all(heads: &str) -> Vec<Self> {
-        let column = |head: &str| {
-            let (mark, name) = match head.split_at_checked(1) {
-                Some((mark @ ("." | ">" | "~"), name)) => (mark, name),
-                _ => ("", head),
-            };
-            let (heading, unit) = match name.strip_suffix(']').and_then(|name| name.rsplit_once(" [")) {
-                Some((heading, unit)) => (heading, Some(unit.to_owned())),
-                None => (name, None),
-            };
-            let alignment = match mark {
-                "." => Alignment::Decimal,
-                ">" => Alignment::Right,
-                _ => Alignment::Left,
-            };
-            Self { heading: heading.to_owned(), unit, alignment, interval: mark == "~" }
-        };
-        heads.split('|').map(|head| column(head.trim())).collect()
-    }
-
-    /// The same column with a unit.
-    pub fn unit(self, unit: impl Into<String>) -> Self {
-        Self { unit: Some(unit.into()), ..self }
-    }
-
-    /// Heading and unit, as in `K [1/s]`.
-    pub(super) fn head(&self) -> String {
-        // An interval stands beside the column whose unit it has.
-        if self.interval { self.heading.clone() } else { self.named(&self.heading) }
-    }
-
-    /// Another heading with the unit of this column.
-    pub(super) fn named(&self, heading: &str) -> String {
-        self.unit.as_ref().map_or_else(|| heading.to_owned(), |unit| format!("{heading} [{unit}]"))
-    }
-}
 
 /// A table: columns, and rows of cells. `None` is a missing cell; a row shorter than the columns is filled up with
 /// missing cells and what is beyond the last column is not shown.
@@ -98,13 +25,8 @@ pub struct Table {
 
 impl Table {
     /// An empty table.
-    pub fn new(columns: impl Into<Vec<TableColumn>>) -> Self {
-        Self { columns: columns.into(), ..Self::default() }
-    }
-
-    /// An empty table with the columns of [`TableColumn::all`].
-    pub fn headed(heads: &str) -> Self {
-        Self::new(TableColumn::all(heads))
+    pub fn new(head: TableHead) -> Self {
+        Self { columns: head.columns, ..Self::default() }
     }
 
     /// The same table with a title.

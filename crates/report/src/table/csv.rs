@@ -125,7 +125,7 @@ fn is_number(text: &str) -> bool {
 mod tests {
     use super::*;
     use crate::number;
-    use crate::table::TableColumn;
+    use crate::table::TableHead;
 
     #[test]
     fn numbers_can_be_read_back() {
@@ -140,9 +140,7 @@ mod tests {
 
     #[test]
     fn an_interval_is_two_numbers() {
-        let columns =
-            [TableColumn::left("method"), TableColumn::decimal("K").unit("1/s"), TableColumn::interval().unit("1/s")];
-        let mut table = Table::new(columns);
+        let mut table = Table::new(TableHead::default().texts(["method"]).numbers(["K"]).unit("1/s").interval());
         table.push(["one", "0.1", "[−0.2, 4×10⁻¹]"]);
         table.push(["two", number::MISSING, number::MISSING]);
         assert!(table.to_text().contains("[−0.2, 4×10⁻¹]"));

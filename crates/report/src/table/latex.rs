@@ -2,7 +2,8 @@
 //! one page it is scaled down to the width of the text; what is too long runs over pages, a wide one best in landscape.
 //! Any LaTeX with the packages named in its first line compiles it.
 
-use super::content::{Table, TableColumn};
+use super::content::Table;
+use super::head::TableColumn;
 use super::latex_text::{escape, script, worded};
 use super::width::{Alignment, columns as characters};
 

@@ -1,6 +1,7 @@
 //! A table in Markdown (the GitHub flavour).
 
-use super::content::{Table, TableColumn};
+use super::content::Table;
+use super::head::TableColumn;
 use super::width::{self, Alignment};
 use crate::markdown::text as escape;
 

@@ -4,13 +4,15 @@
 
 mod content;
 mod csv;
+mod head;
 mod latex;
 mod latex_text;
 mod markdown;
 mod text;
 mod width;
 
-pub use content::{Table, TableColumn};
+pub use content::Table;
+pub use head::{TableColumn, TableHead};
 pub use width::Alignment;
 
 #[cfg(test)]
@@ -18,7 +20,16 @@ mod tests {
     use super::*;
 
     pub(super) fn sample() -> Table {
-        let mut table = Table::headed("method | .K [1/s] | .ψ rms [°] | >n").titled("Estimates & errors");
+        let mut table = Table::new(
+            TableHead::default()
+                .texts(["method"])
+                .numbers(["K"])
+                .unit("1/s")
+                .numbers(["ψ rms"])
+                .unit("°")
+                .counts(["n"]),
+        )
+        .titled("Estimates & errors");
         table.push(["output-error", "0.1003 ± 0.0007", "0.10", "271"]);
         table.push(["least_squares", "−0.25", "–", "12"]);
         table.push(["fourier|pub, \"5\"", "12.5", "100.5"]);
@@ -90,8 +101,8 @@ least_squares,-0.25,,12
 
     #[test]
     fn latex_of_wide_tables_is_scaled_and_of_long_ones_over_pages() {
-        let names = (0..12).map(|i| TableColumn::decimal(format!("quantity {i}")).unit("1/s"));
-        let mut table = Table::new([TableColumn::left("method")].into_iter().chain(names).collect::<Vec<_>>());
+        let names = (0..12).map(|i| format!("quantity {i}"));
+        let mut table = Table::new(TableHead::default().texts(["method"]).numbers(names).unit("1/s"));
         (0..5).for_each(|_| table.push([&["one"][..], &["(1.234 ± 0.012)×10⁻⁵"; 12]].concat()));
         let text = table.to_latex();
         assert!(text.contains("\\begin{adjustbox}{max width=\\linewidth}"), "{text}");
@@ -103,7 +114,7 @@ least_squares,-0.25,,12
 
     #[test]
     fn text_from_outside_is_only_text() {
-        let mut table = Table::new([TableColumn::left("=A1"), TableColumn::left("<b>\u{1b}[31m")]).titled("\u{7}");
+        let mut table = Table::new(TableHead::default().texts(["=A1", "<b>\u{1b}[31m"])).titled("\u{7}");
         table.push(["=HYPERLINK(\"http://a\")", "\u{1b}]0;x\n"]);
         table.push(["[2.5, 3]", "<script>|`&lt;"]);
         for text in [table.to_text(), table.to_markdown(), table.to_csv(), table.to_latex()] {
@@ -119,7 +130,7 @@ least_squares,-0.25,,12
 
     #[test]
     fn empty_tables_are_only_headings() {
-        assert_eq!(Table::new([TableColumn::left("a"), TableColumn::decimal("b")]).to_text(), "a  b\n─  ─\n");
+        assert_eq!(Table::new(TableHead::default().texts(["a"]).numbers(["b"])).to_text(), "a  b\n─  ─\n");
         assert_eq!(Table::default().to_csv(), "\n");
         assert!(Table::default().to_latex().starts_with('%'));
     }

@@ -1,6 +1,7 @@
 //! Play between the recorded and the acting rudder.
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use crate::angle::DEGREE;
 use estimation::number::Real;
 
 /// Backlash of half-width g: the acting rudder follows only when the recorded one has taken up the play, so it stays
@@ -24,7 +25,7 @@ impl Effect for Backlash {
             id: "rudder_deadband",
             form: "backlash",
             equation: "T r' + r = K (δ_e + δ_r), |δ_e − δ| ≤ g (play)",
-            parameters: &[Self::HALF_WIDTH],
+            parameters: &const { [Self::HALF_WIDTH.in_file("backlash-deg", DEGREE, "Width of a backlash.")] },
         }
     }
 

@@ -3,9 +3,10 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::dynamics::{Measured, Regressor};
 use estimation::number::Real;
 
+use super::file_number::{FileNumber, FileRole};
+use crate::dynamics::{Measured, Regressor};
 use crate::number::Tangent;
 use crate::particulars::{self, Dimension};
 
@@ -28,6 +29,8 @@ pub struct Parameter {
     pub highest: f64,
     /// Whether the parameter changes sign when port and starboard are exchanged.
     pub odd: bool,
+    /// How it stands in a scenario file; `None` where none has it.
+    pub file: Option<FileNumber>,
 }
 
 impl Parameter {
@@ -41,12 +44,30 @@ impl Parameter {
         [neutral, typical]: [f64; 2],
         [lowest, highest]: [f64; 2],
     ) -> Self {
-        Self { key, symbol, unit, neutral, typical, lowest, highest, odd: false }
+        Self { key, symbol, unit, neutral, typical, lowest, highest, odd: false, file: None }
     }
 
     /// The same for one that changes its sign then.
     pub const fn odd(words: [&'static str; 3], sizes: [f64; 2], ends: [f64; 2]) -> Self {
         Self { odd: true, ..Self::even(words, sizes, ends) }
+    }
+
+    /// The same with what a scenario file has for it: a number that cannot be left out, its key and the size of its unit
+    /// in SI.
+    pub(super) const fn in_file(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
+        Self { file: Some(FileNumber { key, unit, meaning, role: FileRole::Value, default: None }), ..self }
+    }
+
+    /// The same in another role.
+    pub(super) const fn in_role(self, role: FileRole) -> Self {
+        let Some(number) = self.file else { return self };
+        Self { file: Some(FileNumber { role, ..number }), ..self }
+    }
+
+    /// The same with a number that holds where the file has none.
+    pub(super) const fn by_default(self, default: f64) -> Self {
+        let Some(number) = self.file else { return self };
+        Self { file: Some(FileNumber { default: Some(default), ..number }), ..self }
     }
 
     /// Whether its dimension is not known.
@@ -169,6 +190,11 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
     /// The parameters, in the order in which their values travel.
     fn parameters(&self) -> &'static [Parameter] {
         self.description().parameters
+    }
+
+    /// How its parameters stand in a scenario file; `None` of a form that needs a measured record.
+    fn in_file(&self) -> Option<Vec<FileNumber>> {
+        self.parameters().iter().map(|parameter| parameter.file).collect()
     }
 
     /// The measured channel it needs; without it the effect is silent.

@@ -5,12 +5,15 @@ use std::sync::{Arc, LazyLock};
 
 use super::backlash::Backlash;
 use super::effect::{Description, Effect, Parameter, Places};
+use super::file_number::FileRole::{Direction, OverT};
+use super::file_number::{PER_DEGREE, PER_DEGREE_SQUARED};
 use super::formula::{Formula, ListedFormula, ListedPrior};
 use super::second_order::SecondOrder;
 use super::speed_loss::SpeedLoss;
 use super::steering_lag::SteeringLag;
 use super::transient_disturbance::TransientDisturbance;
 use super::wave_yaw::WaveYaw;
+use crate::angle::DEGREE;
 use ListedEffect::{Row, Rust};
 
 /// An effect of the list in one of its forms.
@@ -22,13 +25,15 @@ pub(super) enum ListedEffect {
 }
 
 /// A row: identifier, form and equation for people; where it acts and the formula; its constants in the order in which
-/// the formula names them; mean, standard deviation and largest value of these in records of some manoeuvres.
+/// the formula names them, with what a scenario file has for each; mean, standard deviation and largest value of these
+/// in records of some manoeuvres.
 ///
 /// At [`Places::RUDDER`] the formula is the angle that acts, from `delta` alone, rad; at [`Places::MOMENT`] a yaw
 /// acceleration, rad/s²: `K_over_T` times a moment as an angle of the rudder.
 const fn row(
     [id, form, equation]: [&'static str; 3],
-    (acts, formula): (Places, &'static str),
+    acts: Places,
+    formula: &'static str,
     parameters: &'static [Parameter],
     prior: ListedPrior,
 ) -> ListedEffect {
@@ -59,16 +64,19 @@ pub(super) static LIST: [ListedEffect; 22] = [
     // Divided by T a coefficient stays regular when 1/T passes through zero. Without dimension: r³ within 8, r|r|
     // within 1.2, r² (damping that differs by side) within 0.4.
     row(["nonlinear_damping", "r³", "T r' + r + n₃ r³ = K (δ + δ_r)"],
-        (Places::MOMENT, "-n3_over_T * r * r * r"),
-        &[Parameter::even(["n3_over_T", "n₃/T", "s/rad²"], [0.0, 40.0], [0.0, 1e7])],
+        Places::MOMENT, "-n3_over_T * r * r * r",
+        &[Parameter::even(["n3_over_T", "n₃/T", "s/rad²"], [0.0, 40.0], [0.0, 1e7])
+            .in_file("n3-s2-per-deg2", PER_DEGREE_SQUARED, "+ n3 r³ on the left (Norrbin, Bech).").in_role(OverT)],
         |about| Some([0.0, 8.0 * about.time, ANY])),
     row(["nonlinear_damping", "r|r|", "T r' + r + n₂ r|r| = K (δ + δ_r)"],
-        (Places::MOMENT, "-n2_over_T * r * abs(r)"),
-        &[Parameter::even(["n2_over_T", "n₂/T", "1/rad"], [0.0, 0.7], [0.0, 1e4])],
+        Places::MOMENT, "-n2_over_T * r * abs(r)",
+        &[Parameter::even(["n2_over_T", "n₂/T", "1/rad"], [0.0, 0.7], [0.0, 1e4])
+            .in_file("n2-s-per-deg", PER_DEGREE, "+ n2 r|r| on the left.").in_role(OverT)],
         |_| Some([0.0, 1.2, ANY])),
     row(["nonlinear_damping", "r²", "T r' + r + n₁₁ r² = K (δ + δ_r)"],
-        (Places::MOMENT, "-n11_over_T * r * r"),
-        &[Parameter::odd(["n11_over_T", "n₁₁/T", "1/rad"], [0.0, 0.2], [-1e3, 1e3])],
+        Places::MOMENT, "-n11_over_T * r * r",
+        &[Parameter::odd(["n11_over_T", "n₁₁/T", "1/rad"], [0.0, 0.2], [-1e3, 1e3])
+            .in_file("n11-s-per-deg", PER_DEGREE, "+ n11 r² on the left.").in_role(OverT)],
         |_| Some([0.0, 0.4, ANY])),
     // The moment of a moderate wind is that of 0.025 rad of rudder.
     weather(["wind_moment", "measured wind", "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)"],
@@ -78,8 +86,10 @@ pub(super) static LIST: [ListedEffect; 22] = [
     // w sin 2(ψ_w − ψ): steady wind of unknown strength and direction.
     weather(["wind_moment", "steady wind", "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)"],
         "K_over_T * (w_c * cos(2 * psi) + w_s * sin(2 * psi))",
-        &[Parameter::odd(["w_c", "w_c", "rad"], [0.0, 0.02], [-0.6, 0.6]),
-          Parameter::even(["w_s", "w_s", "rad"], [0.0, 0.02], [-0.6, 0.6])],
+        &[Parameter::odd(["w_c", "w_c", "rad"], [0.0, 0.02], [-0.6, 0.6])
+            .in_file("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
+          Parameter::even(["w_s", "w_s", "rad"], [0.0, 0.02], [-0.6, 0.6])
+            .in_file("from-deg", DEGREE, "Direction the wind comes from, clockwise from north.").in_role(Direction)],
         |_| Some([0.0, 0.025, ANY])),
     Rust(|| Arc::new(SpeedLoss::Modelled)),
     Rust(|| Arc::new(SpeedLoss::Measured { approach_speed: 1.0 })),
@@ -91,30 +101,35 @@ pub(super) static LIST: [ListedEffect; 22] = [
     // blade, is δ − ⅔ δ³; a hull that turns takes some of the angle away. A larger rudder has the larger effect as far
     // as the records go: c₃ < 1/(3 δ²).
     row(["rudder_saturation", "stall", "T r' + r = K (δ − c₃ δ³ + δ_r)"],
-        (Places::RUDDER, "delta - c3 * delta * delta * delta"),
-        &[Parameter::even(["c3", "c₃", "1/rad²"], [0.0, 0.5], [-2.0, 5.0])],
+        Places::RUDDER, "delta - c3 * delta * delta * delta",
+        &[Parameter::even(["c3", "c₃", "1/rad²"], [0.0, 0.5], [-2.0, 5.0])
+            .in_file("c3-per-deg2", PER_DEGREE_SQUARED, "Coefficient c3.")],
         |about| Some([0.0, 0.4, (about.rudder * about.rudder * 3.0).recip()])),
     Rust(|| Arc::new(Backlash)),
     // Angles below g do not act, larger ones act less g.
     row(["rudder_deadband", "dead band", "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)"],
-        (Places::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))"),
-        &[Backlash::HALF_WIDTH],
+        Places::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))",
+        &[Backlash::HALF_WIDTH.in_file("dead-band-deg", DEGREE, "Width of a dead band.")],
         |about| Some(Backlash::prior(about))),
     // The gain is 1 + a to starboard and 1 − a to port.
     row(["port_starboard_asymmetry", "gain by side", "T r' + r = K (δ + a |δ| + δ_r)"],
-        (Places::RUDDER, "delta + a * abs(delta)"),
-        &[Parameter::odd(["a", "a", "1"], [0.0, 0.05], [-0.8, 0.8])],
+        Places::RUDDER, "delta + a * abs(delta)",
+        &[Parameter::odd(["a", "a", "1"], [0.0, 0.05], [-0.8, 0.8])
+            .in_file("gain-share", 1.0, "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard.")],
         |_| Some([0.0, 0.12, ANY])),
     // A moment that is even in the yaw rate, and so in the drift that goes with it. A rudder whose inflow is
     // straightened differently on either side has it (Yasukawa and Yoshimura 2015, γ_R).
     row(["port_starboard_asymmetry", "moment by drift", "T r' + r = K (δ + c_r |r| + δ_r)"],
-        (Places::MOMENT, "K_over_T * c_r * abs(r)"),
-        &[Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])],
+        Places::MOMENT, "K_over_T * c_r * abs(r)",
+        &[Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])
+            .in_file("moment-by-drift-s", 1.0,
+                     "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn.")],
         |about| Some([0.0, 0.1 * about.time, ANY])),
     // The start of a record keeps the trend apart from δ_r.
     weather(["moment_drift", "linear trend", "T r' + r = K (δ + δ_r + m (t − t₀))"],
         "K_over_T * m * (t - start)",
-        &[Parameter::odd(["m", "m", "rad/s"], [0.0, 7e-5], [-0.01, 0.01])],
+        &[Parameter::odd(["m", "m", "rad/s"], [0.0, 7e-5], [-0.01, 0.01])
+            .in_file("rudder-deg-per-s", DEGREE, "Change of the moment, as rudder angle.")],
         |about| Some([0.0, 0.02 / about.duration, ANY])),
     Rust(|| Arc::new(TransientDisturbance::Passing)),
     Rust(|| Arc::new(TransientDisturbance::Lasting { edge: 1.0 })),
@@ -122,9 +137,24 @@ pub(super) static LIST: [ListedEffect; 22] = [
     // The moment of a drifting hull is N_v u v, so it falls with the measured speed. N_v/N_δ of hulls is −3 ± 1.5
     // without dimension.
     row(["sway_coupling_measured", "measured sway", "T r' + r = K (δ + δ_r + c_v q v), q = U/U₀"],
-        (Places::MOMENT, "K_over_T * c_v * (q * v)"),
+        Places::MOMENT, "K_over_T * c_v * (q * v)",
         &[Parameter::even(["c_v", "c_v", "rad s/m"], [0.0, 0.1], [-100.0, 100.0])],
         |about| about.sway.map(|speed| [-3.0 / speed, 1.5 / speed, ANY])),
+];
+
+/// What the effects are that a scenario can add.
+const MEANINGS: [(&str, &str); 11] = [
+    ("second_order", "Sway coupling: T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ'"),
+    ("nonlinear_damping", "Damping that grows with the yaw rate"),
+    ("wind_moment", "A yaw moment of steady wind, by the heading"),
+    ("speed_loss", "Speed that falls in the turn: K ~ U, T ~ 1/U"),
+    ("steering_lag", "A rudder that acts later than the one recorded"),
+    ("rudder_saturation", "Stall: the rudder acts as δ − c3 δ³"),
+    ("rudder_deadband", "Play between the recorded rudder and the one that acts"),
+    ("port_starboard_asymmetry", "A ship that turns more readily to one side"),
+    ("moment_drift", "A slow trend of the yaw moment"),
+    ("transient_disturbance", "A moment for a part of the record"),
+    ("wave_yaw", "Narrow-band yaw from waves"),
 ];
 
 static ALL: LazyLock<Vec<Arc<dyn Effect>>> = LazyLock::new(|| {
@@ -143,6 +173,11 @@ static ALL: LazyLock<Vec<Arc<dyn Effect>>> = LazyLock::new(|| {
 /// 0, edge of a lasting moment 1 s.
 pub fn all() -> Vec<Arc<dyn Effect>> {
     ALL.clone()
+}
+
+/// What an effect is, without a full stop; empty of one that no scenario can add.
+pub fn meaning(id: &str) -> &'static str {
+    MEANINGS.iter().find(|(other, _)| *other == id).map_or("", |(_, meaning)| meaning)
 }
 
 /// The effect of the list with this identifier and form.

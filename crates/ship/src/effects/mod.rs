@@ -9,6 +9,7 @@
 
 mod backlash;
 mod effect;
+mod file_number;
 mod formula;
 pub mod instant;
 mod list;
@@ -23,8 +24,9 @@ pub use backlash::Backlash;
 pub use effect::{
     Acts, Description, Effect, EffectReal, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale, SwayCoupling,
 };
+pub use file_number::{FileNumber, FileRole};
 pub use formula::{Formula, FormulaError, Sides};
-pub use list::{all, listed};
+pub use list::{all, listed, meaning};
 pub use second_order::SecondOrder;
 pub use speed_loss::SpeedLoss;
 pub use steering_lag::SteeringLag;

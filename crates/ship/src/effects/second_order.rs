@@ -9,9 +9,11 @@ use estimation::number::Real;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SecondOrder;
 
+#[rustfmt::skip]
 const PARAMETERS: [Parameter; 2] = [
-    Parameter::even(["T2", "T₂", "s"], [1.0, 2.5], [0.02, 600.0]),
-    Parameter::even(["T3", "T₃", "s"], [1.0, 6.2], [-600.0, 2000.0]),
+    Parameter::even(["T2", "T₂", "s"], [1.0, 2.5], [0.02, 600.0]).in_file("T2-s", 1.0, "Smaller time constant T2."),
+    Parameter::even(["T3", "T₃", "s"], [1.0, 6.2], [-600.0, 2000.0])
+        .in_file("T3-s", 1.0, "Time constant T3 of the rudder rate."),
 ];
 
 impl Effect for SecondOrder {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale};
+use super::file_number::PER_DEGREE_SQUARED;
 use crate::dynamics::Regressor;
 use crate::particulars::Dimension;
 use estimation::number::Real;
@@ -40,10 +41,15 @@ impl SpeedLoss {
     pub const FREE_STREAM: [f64; 2] = [1.0, 2.0];
 }
 
+#[rustfmt::skip]
 const MODELLED: [Parameter; 3] = [
-    Parameter::even(["c_u", "c_u", "s/rad²"], [0.0, 15.0], [0.0, 1e5]),
-    Parameter::even(["T_u", "T_u", "s"], [100.0, 100.0], [1.0, 1e4]),
-    Parameter::even(["m_b", "m_b", "1"], [2.0, 2.0], [0.0, 3.0]),
+    Parameter::even(["c_u", "c_u", "s/rad²"], [0.0, 15.0], [0.0, 1e5])
+        .in_file("loss-s-per-deg2", PER_DEGREE_SQUARED, "Rate of loss for a squared yaw rate of 1 deg²/s²."),
+    Parameter::even(["T_u", "T_u", "s"], [100.0, 100.0], [1.0, 1e4])
+        .in_file("recovery-s", 1.0, "Time in which the speed comes back."),
+    Parameter::even(["m_b", "m_b", "1"], [2.0, 2.0], [0.0, 3.0])
+        .in_file("gain-exponent", 1.0, "Power of the speed in the gain of the rudder.")
+        .by_default(SpeedLoss::FREE_STREAM[1]),
 ];
 const MEASURED: [Parameter; 2] = [
     Parameter::even(["m_a", "m_a", "1"], [0.0, 1.0], [-1.0, 3.0]),

@@ -12,8 +12,13 @@ pub enum SteeringLag {
     FirstOrder,
 }
 
-const DEAD_TIME: [Parameter; 1] = [Parameter::even(["tau", "τ", "s"], [0.0, 1.0], [-20.0, 20.0])];
-const FIRST_ORDER: [Parameter; 1] = [Parameter::even(["tau_E", "τ_E", "s"], [0.0, 1.0], [0.0, 30.0])];
+const DEAD_TIME: [Parameter; 1] =
+    [Parameter::even(["tau", "τ", "s"], [0.0, 1.0], [-20.0, 20.0]).in_file("dead-time-s", 1.0, "Dead time.")];
+const FIRST_ORDER: [Parameter; 1] = [Parameter::even(["tau_E", "τ_E", "s"], [0.0, 1.0], [0.0, 30.0]).in_file(
+    "first-order-s",
+    1.0,
+    "Time constant of a first-order lag.",
+)];
 
 /// A lag shorter than this, s, is below the resolution of any record and passes the rudder through.
 const SHORTEST_LAG: f64 = 0.02;

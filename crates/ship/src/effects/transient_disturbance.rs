@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use super::instant::{EDGE_ROWS, INSTANT, REACH};
+use crate::angle::DEGREE;
 use crate::particulars::Dimension;
 use estimation::number::Real;
 
@@ -22,9 +23,9 @@ pub enum TransientDisturbance {
 const MOMENT: Parameter = Parameter::odd(["m", "m", "rad"], [0.0, 0.03], [-0.6, 0.6]);
 
 const PASSING: [Parameter; 3] = [
-    MOMENT,
-    Parameter { key: "t_c", symbol: "t_c", ..INSTANT },
-    Parameter::even(["d", "d", "s"], [30.0, 30.0], [0.5, 1e5]),
+    MOMENT.in_file("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
+    Parameter { key: "t_c", symbol: "t_c", ..INSTANT }.in_file("centre-s", 1.0, "Time of its middle."),
+    Parameter::even(["d", "d", "s"], [30.0, 30.0], [0.5, 1e5]).in_file("duration-s", 1.0, "How long it lasts."),
 ];
 
 const LASTING: [Parameter; 2] = [MOMENT, INSTANT];

@@ -1,6 +1,7 @@
 //! Yaw from first-order waves: random, narrow-banded, added to the heading that is seen.
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Parameter, Places, Proposal};
+use crate::angle::DEGREE;
 use crate::narrow_band::NarrowBand;
 use estimation::number::Real;
 
@@ -8,10 +9,14 @@ use estimation::number::Real;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WaveYaw;
 
+#[rustfmt::skip]
 const PARAMETERS: [Parameter; 3] = [
-    Parameter::even(["sigma_w", "σ_w", "rad"], [0.0, 7e-3], [0.0, 0.2]),
-    Parameter::even(["omega0", "ω₀", "rad/s"], [0.6, 0.6], [0.02, 20.0]),
-    Parameter::even(["zeta", "ζ", "1"], [0.1, 0.1], [0.005, 0.7]),
+    Parameter::even(["sigma_w", "σ_w", "rad"], [0.0, 7e-3], [0.0, 0.2])
+        .in_file("sd-deg", DEGREE, "Standard deviation of the heading they add."),
+    Parameter::even(["omega0", "ω₀", "rad/s"], [0.6, 0.6], [0.02, 20.0])
+        .in_file("frequency-rad-s", 1.0, "Frequency of encounter."),
+    Parameter::even(["zeta", "ζ", "1"], [0.1, 0.1], [0.005, 0.7])
+        .in_file("damping", 1.0, "Relative damping: the smaller, the narrower the band."),
 ];
 
 impl Effect for WaveYaw {

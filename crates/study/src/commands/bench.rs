@@ -153,7 +153,7 @@ pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, commo
         notes: &notes,
         document: &results.json().on("describe", &folder.path().join(BENCH))?,
     };
-    screen::tell(common, &output, &[])
+    screen::tell(common, &output, &[] as &[&str])
 }
 
 /// Who takes part: the methods of the project, or those of them that are named, and outside estimators behind them.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use campaign::folder::ResultFolder;
 use campaign::manifest;
-use report::Table;
+use report::{Table, TableHead};
 use scenario::failure::Failure;
 
 use super::reply;
@@ -42,7 +42,7 @@ pub fn run(common: &Common) -> Result<(), Failure> {
             written.as_ref().map_or_else(|error| error.message.clone(), |()| format!("works in {}", folder.display())),
         ),
     ];
-    let mut table = Table::headed("what | found");
+    let mut table = Table::new(TableHead::default().texts(["what", "found"]));
     found.iter().for_each(|(name, value)| table.push([name, value.as_str()]));
     let found = found.into_iter().map(|(name, value)| (name.replace(' ', "_"), value)).collect();
     reply(common, &DoctorAnswer { found }, common.format.render(&table).trim_end())?;

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use report::Table;
+use document::Warnings;
 use report::number::{MISSING, fixed, optional};
+use report::{Table, TableHead};
 use trial::file::called;
 
 use crate::documents;
@@ -27,12 +28,12 @@ fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
 /// The manoeuvres of every log, for other programs.
 ///
 /// Fails when a log cannot be read.
-pub fn found(request: &FindRequest, warnings: &mut Vec<String>) -> Result<FindAnswer, Failure> {
+pub fn found(request: &FindRequest, warnings: &mut Warnings) -> Result<FindAnswer, Failure> {
     let one = |file: &PathBuf| entry(file, request, warnings);
     Ok(FindAnswer { logs: files(request)?.iter().map(one).collect::<Result<_, Failure>>()? })
 }
 
-fn entry(file: &Path, request: &FindRequest, warnings: &mut Vec<String>) -> Result<LogEntry, Failure> {
+fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<LogEntry, Failure> {
     let log = open(file, request.columns.as_deref(), &request.with_columns, warnings)?;
     Ok(LogEntry::of(called(file), &log, &manoeuvres(&log)))
 }
@@ -41,10 +42,10 @@ fn entry(file: &Path, request: &FindRequest, warnings: &mut Vec<String>) -> Resu
 ///
 /// Fails when a log cannot be read.
 pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
-    let mut warnings = Vec::new();
+    let mut warnings = Warnings::default();
     if common.format == Format::Json {
         documents::say(&found(request, &mut warnings)?)?;
-        screen::warn_of(common, &warnings);
+        screen::warn_of(common, &warnings.ranked());
         return Ok(());
     }
     for file in &files(request)? {
@@ -67,14 +68,14 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         let remarks: String = remarked.map(|one| format!("{}: {}\n", one.trial, one.remarks.join(" "))).collect();
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
-    screen::warn_of(common, &warnings);
+    screen::warn_of(common, &warnings.ranked());
     Ok(())
 }
 
 fn table(found: &[ManoeuvreEntry]) -> Table {
-    let mut table = Table::headed(
-        ".--trial | manoeuvre | .from [s] | .until [s] | clock | .executes | .rudder [deg] | .heading [deg]",
-    );
+    let head = TableHead::default().numbers(["--trial"]).texts(["manoeuvre"]).numbers(["from", "until"]).unit("s");
+    let head = head.texts(["clock"]).numbers(["executes"]).numbers(["rudder", "heading"]).unit("deg");
+    let mut table = Table::new(head);
     for one in found {
         let clock = one.clock.as_ref().map(|[from, until]| format!("{from} to {until}"));
         table.push([

@@ -5,13 +5,14 @@ use std::path::Path;
 
 use campaign::folder::ResultFolder;
 use campaign::outside::keep_log;
+use document::{Warning, Warnings};
 use report::Theme;
 use scenario::failure::Failure;
 
-use crate::documents::fit::{FIT, FitCurves, FitDocument};
-use crate::documents::{self, CURVES, folder_for, read_json};
+use crate::documents::fit::{FIT, FIT_SCHEMA, FitCurves, FitDocument};
+use crate::documents::{self, CURVES, folder_for, read_document, read_json};
 use crate::options::{Common, FitRequest};
-use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
+use crate::records::{default_folder, read_all, read_others, repetitions};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{curve_tables, fit_page};
@@ -24,10 +25,10 @@ use crate::work::fit::{fit, methods};
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let methods = methods(&request.methods, &request.external, common.seed)?;
     let priors = EarlierModel::of_files(&request.priors)?;
-    let mut warnings = Vec::new();
+    let mut warnings = Warnings::default();
     let trials = read_all(&request.trials, &request.reading, &mut warnings)?;
     let others = read_others(&request.validate, &request.reading, &mut warnings)?;
-    warn_of_repetition(&trials, &others, &mut warnings);
+    warnings.extend(repetitions(&trials, &others));
     let theme = request.style.theme()?;
     let place = folder_for(FIT, &common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
     let hold = || ResultFolder::hold(&place);
@@ -37,7 +38,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     for (label, outside) in outside {
         early.iter().for_each(|folder| keep_log(outside, label, folder));
     }
-    let fit = fit([&trials, &others], &methods, &priors, common.quiet, &mut warnings)?;
+    let fit = fit([&trials, &others], &methods, &priors, common.quiet, warnings)?;
     let folder = early.map_or_else(hold, Ok)?;
     documents::keep_with_curves(&folder, FIT, &fit.document, &fit.curves())?;
     show(&folder, folder.path(), theme.as_ref(), common)
@@ -47,7 +48,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
 ///
 /// Fails when a file is missing or was not written by this program.
 pub fn show(into: &ResultFolder, from: &Path, theme: Option<&Theme>, common: &Common) -> Result<(), Failure> {
-    let (document, text): (FitDocument, String) = read_json(&from.join(FIT), "fit")?;
+    let (document, text): (FitDocument, String) = read_document(&from.join(FIT), FIT_SCHEMA)?;
     let (curves, _): (FitCurves, String) = read_json(&from.join(CURVES), "fit")?;
     curve_tables::write_replays(&curves, into)?;
     write_page(into, fit_page::page(&document, &curves), theme)?;
@@ -56,16 +57,17 @@ pub fn show(into: &ResultFolder, from: &Path, theme: Option<&Theme>, common: &Co
     let head = format!("{verdict}{}\n", fit_page::headline(&document, &curves));
     let table = fit_page::answers(&document, &curves);
     let output = CommandOutput { words: [&head, ""], table: &table, notes: &rest, document: &text };
-    screen::tell(common, &output, &shortened(document.ranked_warnings()))
+    screen::tell(common, &output, &shortened(document.of_answer()))
 }
 
 /// Warnings that stand on the screen.
 const ON_SCREEN: usize = 3;
 
 /// The first warnings, and how many there are beside them.
-fn shortened(mut warnings: Vec<String>) -> Vec<String> {
-    let more = warnings.len().saturating_sub(ON_SCREEN);
-    warnings.truncate(ON_SCREEN);
-    warnings.extend((more > 0).then(|| format!("{more} more in {REPORT}")));
-    warnings
+fn shortened<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<String> {
+    let mut lines: Vec<String> = warnings.map(Warning::to_string).collect();
+    let more = lines.len().saturating_sub(ON_SCREEN);
+    lines.truncate(ON_SCREEN);
+    lines.extend((more > 0).then(|| format!("{more} more in {REPORT}")));
+    lines
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use identify::{IdentifierSettings, external, registry};
-use report::Table;
 use report::number::MISSING;
+use report::{Table, TableHead};
 use ship::angle::KNOT;
 use ship::vessel::prior::{self, Assumed, Formula, Particular};
 use ship::{effects, ships};
@@ -17,7 +17,6 @@ use trial::Channel;
 use trial::names::{self, ColumnMeaning};
 use trial::sidecar::{self, Key, Sidecar};
 
-use scenario::effect_keys;
 use scenario::failure::Failure;
 use scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 
@@ -72,7 +71,7 @@ pub fn run(request: &ListRequest, common: &Common) -> Result<(), Failure> {
 }
 
 fn identifiers() -> Result<Table, Failure> {
-    let mut table = Table::headed("id | method | settings");
+    let mut table = Table::new(TableHead::default().texts(["id", "method", "settings"]));
     // No program is started by default; the command stands for any.
     let outside = IdentifierSettings::External(external::Settings::new(["python3", "mine.py"]));
     for settings in registry::defaults().into_iter().chain([outside]) {
@@ -89,18 +88,21 @@ fn keys(settings: &IdentifierSettings) -> String {
 }
 
 fn effects() -> Table {
-    let mut table = Table::headed("id | form | keys in a scenario | equation | parameters");
+    let mut table =
+        Table::new(TableHead::default().texts(["id", "form", "keys in a scenario", "equation", "parameters"]));
     for effect in effects::all() {
         let parameters: Vec<String> =
             effect.parameters().iter().map(|parameter| format!("{} [{}]", parameter.symbol, parameter.unit)).collect();
-        let keys = effect_keys(effect.as_ref()).unwrap_or_else(|| MISSING.to_owned());
+        let keys = effect.in_file().map(|numbers| numbers.iter().map(|own| own.key).collect::<Vec<_>>().join(", "));
+        let keys = keys.unwrap_or_else(|| MISSING.to_owned());
         table.push([effect.id(), effect.form(), &keys, effect.equation(), &parameters.join(", ")]);
     }
     table
 }
 
 fn ships() -> Table {
-    let mut table = Table::headed("id | ship | .L [m] | .V [kn] | source");
+    let head = TableHead::default().texts(["id", "ship"]).numbers(["L"]).unit("m").numbers(["V"]).unit("kn");
+    let mut table = Table::new(head.texts(["source"]));
     for ship in ships::all() {
         let number = |value: Option<f64>| report::number::optional(value, 1);
         table.push([
@@ -126,7 +128,7 @@ fn ships() -> Table {
 
 /// Keys of a trial whose name begins with `part`, without it.
 fn keys_below(part: &str) -> Table {
-    let mut table = Table::headed("key | unit | default | meaning");
+    let mut table = Table::new(TableHead::default().texts(["key", "unit", "default", "meaning"]));
     for ScenarioKey { key, unit, default, meaning } in keys_of_scenario() {
         if let Some(key) = key.strip_prefix(part) {
             // A table shows the marks of code as they are.
@@ -138,7 +140,7 @@ fn keys_below(part: &str) -> Table {
 
 /// What columns may be called.
 fn columns() -> Table {
-    let mut table = Table::headed("holds | names | understood as well");
+    let mut table = Table::new(TableHead::default().texts(["holds", "names", "understood as well"]));
     let usual = |wanted: &dyn Fn(ColumnMeaning) -> bool| {
         let names: Vec<&str> = names::names().filter(|(_, said)| wanted(*said)).map(|(name, _)| name).collect();
         names.join(", ")
@@ -163,7 +165,7 @@ fn columns() -> Table {
 }
 
 fn sidecar() -> Table {
-    let mut table = Table::headed("key | value | meaning");
+    let mut table = Table::new(TableHead::default().texts(["key", "value", "meaning"]));
     for Key { key, value, meaning } in sidecar::keys() {
         table.push([&key, &value, &meaning.replace('`', "")]);
     }
@@ -187,7 +189,8 @@ fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Fail
         Some(file) => Failure::about(file, error),
         None => Failure::input(error),
     })?;
-    let mut table = Table::headed("key | symbol | .mean | .sd | formula | source");
+    let mut table =
+        Table::new(TableHead::default().texts(["key", "symbol"]).numbers(["mean", "sd"]).texts(["formula", "source"]));
     let digits = |value: f64| report::number::significant(value, 3);
     for Assumed { key, value, sd, formula } in prior.assumed {
         let symbol = Particular::named(key).map_or("", |particular| particular.symbol);

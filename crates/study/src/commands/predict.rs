@@ -3,13 +3,15 @@
 
 use std::path::{Path, PathBuf};
 
+use document::{Warning, Warnings};
 use predict::PredictDocument;
+use predict::document::SCHEMA;
 use predict::turn::{self, Current};
 use report::Theme;
 use trial::file::called;
 use trial::{Sidecar, Trial};
 
-use crate::documents::{self, CURVES, PREDICT, folder_for, read_json};
+use crate::documents::{self, CURVES, PREDICT, folder_for, read_document, read_json};
 use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
 use crate::screen::{self, CommandOutput};
@@ -35,7 +37,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         ));
     }
     let place = folder_for(PREDICT, &common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
-    let mut warnings = Vec::new();
+    let mut warnings = Warnings::default();
     let mut read = |paths: &[PathBuf]| -> Result<Vec<StoredModel>, Failure> {
         paths.iter().map(|path| StoredModel::of_file(path, request, &mut warnings)).collect()
     };
@@ -52,7 +54,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&place)?;
     documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
-    show(&folder, folder.path(), theme.as_ref(), common, &warnings)
+    show(&folder, folder.path(), theme.as_ref(), common, &warnings.ranked())
 }
 
 /// Draws a prediction from the `predict.json` and the curves of a folder, into `into`, and tells what it says.
@@ -63,9 +65,9 @@ pub fn show(
     from: &Path,
     theme: Option<&Theme>,
     common: &Common,
-    warnings: &[String],
+    warnings: &[Warning],
 ) -> Result<(), Failure> {
-    let (document, text): (PredictDocument, String) = read_json(&from.join(PREDICT), "predict")?;
+    let (document, text): (PredictDocument, String) = read_document(&from.join(PREDICT), SCHEMA)?;
     let predicted = &document.with_curves(read_json(&from.join(CURVES), "predict")?.0);
     for (stem, table) in predict_curves::curves(predicted) {
         into.write(&format!("{stem}.csv"), table)?;
@@ -97,7 +99,7 @@ fn default_folder(model: &Path) -> PathBuf {
 }
 
 /// The current that a record shows.
-fn current_from(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Current, Failure> {
+fn current_from(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Current, Failure> {
     let records = read_others(std::slice::from_ref(&path.to_owned()), &request.reading(), warnings)?;
     records.first().and_then(turn::current_of).ok_or_else(|| {
         Failure::input(format!(

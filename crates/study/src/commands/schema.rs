@@ -16,8 +16,8 @@ use std::path::Path;
 
 use crate::documents;
 use crate::documents::answers::{
-    CheckAnswer, CommandAnswer, CompletionsAnswer, DoctorAnswer, ListAnswer, ManAnswer, OverviewAnswer, PublishAnswer,
-    ShardAnswer, SidecarAnswer, SimulateAnswer, StudyAnswer, Versioned,
+    CheckAnswer, CommandAnswer, ListAnswer, OverviewAnswer, PublishAnswer, ShardAnswer, SidecarAnswer, SimulateAnswer,
+    StudyAnswer, Versioned,
 };
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
@@ -66,9 +66,6 @@ pub fn schema(what: Described) -> Schema {
         Described::SidecarAnswer => answer::<SidecarAnswer>(),
         Described::Overview => answer::<OverviewAnswer>(),
         Described::Publish => answer::<PublishAnswer>(),
-        Described::Doctor => answer::<DoctorAnswer>(),
-        Described::Completions => answer::<CompletionsAnswer>(),
-        Described::Man => answer::<ManAnswer>(),
         Described::Error => of::<ErrorDocument>(),
     }
 }

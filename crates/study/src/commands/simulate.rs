@@ -8,7 +8,7 @@ use campaign::folder::ResultFolder;
 use campaign::task::Task;
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
-use report::Table;
+use report::{Table, TableHead};
 use scenario::Scenario;
 use scenario::failure::{Failure, OnPath};
 
@@ -60,7 +60,7 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
 
 /// Writes which record is of which trial, and what it takes to make the trials again.
 fn list(scenario: &Scenario, tasks: &[Task], names: &[String], folder: &ResultFolder) -> Result<(), Failure> {
-    let mut table = Table::headed("record | cell | label | replicate | also");
+    let mut table = Table::new(TableHead::default().texts(["record", "cell", "label", "replicate", "also"]));
     for (task, name) in tasks.iter().zip(names) {
         let file = |number: usize| format!("{}.csv", part_name(name, number));
         let cell = &scenario.cells[task.cell];

@@ -4,15 +4,17 @@
 use std::path::Path;
 
 use campaign::folder::ResultFolder;
+use document::trace::SCHEMA;
+use document::{Warning, Warnings};
 use report::Theme;
 use scenario::failure::Failure;
 
 use crate::documents::curves::TraceCurves;
 use crate::documents::trace::{TRACE, TraceDocument};
-use crate::documents::{folder_for, read_json};
+use crate::documents::{folder_for, read_document};
 use crate::interrupt;
 use crate::options::{Common, TraceRequest};
-use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
+use crate::records::{default_folder, read_all, read_others, repetitions};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::trace_page;
@@ -27,15 +29,15 @@ use crate::work::trace::{STOPPED, settings, trace, without};
 pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let (theme, settings) = (request.style.theme()?, settings(request)?);
     let priors = EarlierModel::of_files(&request.priors)?;
-    let mut warnings = Vec::new();
+    let mut warnings = Warnings::default();
     let trials = without(request, read_all(&request.trials, &request.reading, &mut warnings)?);
     let others = without(request, read_others(&request.validate, &request.reading, &mut warnings)?);
-    warn_of_repetition(&trials, &others, &mut warnings);
+    warnings.extend(repetitions(&trials, &others));
     let place = folder_for(TRACE, &common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
     let traced = trace([&trials, &others], &settings, &priors, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&place)?;
     traced.write(&folder)?;
-    show(&folder, folder.path(), theme.as_ref(), common, &warnings)?;
+    show(&folder, folder.path(), theme.as_ref(), common, &warnings.ranked())?;
     if interrupt::is_asked() { Err(Failure::work(STOPPED)) } else { Ok(()) }
 }
 
@@ -47,9 +49,9 @@ pub fn show(
     from: &Path,
     theme: Option<&Theme>,
     common: &Common,
-    warnings: &[String],
+    warnings: &[Warning],
 ) -> Result<(), Failure> {
-    let (document, text): (TraceDocument, String) = read_json(&from.join(TRACE), "trace")?;
+    let (document, text): (TraceDocument, String) = read_document(&from.join(TRACE), SCHEMA)?;
     let curves = TraceCurves::of(&document, from)?;
     write_page(into, trace_page::page(&document, &curves, steady::of_ship(&document.ship).as_ref()), theme)?;
     let notes = format!("\nresults: {}", into.path().join(TRACE).display());

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use campaign::answer::MethodEntry;
 use campaign::stored_figures::Replays;
-use predict::IdentifiedShip;
+use document::{IdentifiedShip, Source, Warning};
 use report::PlotCurve;
 use report::figures::ZigzagTrial;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ use crate::records::file_of;
 pub const FIT: &str = "fit.json";
 
 /// What `schema` says.
-pub const FIT_SCHEMA: &str = "fit/1";
+pub const FIT_SCHEMA: &str = "fit/2";
 
 /// The method whose fit is drawn on its own where it has one.
 const SHOWN: &str = "output-error";
@@ -80,8 +80,8 @@ pub struct ZigZagEntry {
 /// `fit.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FitDocument {
-    /// `fit/1`.
-    #[schemars(extend("const" = "fit/1"))]
+    /// `fit/2`.
+    #[schemars(extend("const" = "fit/2"))]
     pub schema: String,
     /// The records.
     pub trials: Vec<TrialEntry>,
@@ -113,9 +113,9 @@ pub struct FitDocument {
     /// Every zig-zag identified alone, where there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single_records: Option<SingleRecords>,
-    /// What was noticed when the records were read.
+    /// What a reader should know of records and answers, the worst first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl FitDocument {
@@ -130,50 +130,21 @@ impl FitDocument {
         answered().find(|method| *method == SHOWN).or_else(|| answered().next()).map(String::as_str)
     }
 
-    /// Everything that a reader should know of the answer to take, what costs most first: doubts about the records,
-    /// what the method says of itself, and what was mended or chosen when the records were read.
-    pub fn ranked_warnings(&self) -> Vec<String> {
-        let is_mended = |warning: &&String| MENDED.iter().any(|words| warning.contains(words));
-        let doubts = self.warnings.iter().filter(|warning| !is_mended(warning)).cloned();
-        let mended = self.warnings.iter().filter(is_mended).cloned();
-        doubts.chain(self.of_methods(true)).chain(mended).collect()
+    /// Everything that a reader should know of the answer to take, what costs most first.
+    pub fn of_answer(&self) -> impl Iterator<Item = &Warning> {
+        self.warnings.iter().filter(|own| !self.is_note(own))
     }
 
     /// What methods say of answers that are not to be taken: some say it of nearly every record.
-    pub fn notes(&self) -> Vec<String> {
-        self.of_methods(false).collect()
+    pub fn notes(&self) -> impl Iterator<Item = &Warning> {
+        self.warnings.iter().filter(|own| self.is_note(own))
     }
 
-    /// Warnings of the method whose answer is to be taken, or of all others.
-    pub fn of_methods(&self, taken: bool) -> impl Iterator<Item = String> {
-        let is_taken = |entry: &MethodEntry| self.verdict.as_ref().is_some_and(|own| own.method == entry.method);
-        let entries = self.methods.iter().filter(move |entry| is_taken(entry) == taken);
-        entries.flat_map(|entry| entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)))
+    fn is_note(&self, warning: &Warning) -> bool {
+        let taken = self.verdict.as_ref().map(|verdict| &verdict.method);
+        matches!(&warning.source, Source::Method(method) if Some(method) != taken)
     }
 }
-
-/// Words of warnings that cost nothing in K and T: a fault was mended, a choice was made, or only a track suffers. What
-/// has none of them is a doubt.
-const MENDED: [&str; 18] = [
-    "left out",
-    "taken as missing",
-    "taken as positive",
-    "taken from",
-    "understood by their names",
-    "columns without a unit",
-    "is read as",
-    "decimal comma",
-    "passed over",
-    "missing; the longest gap",
-    "runs straight",
-    "is the mean of",
-    "are over ground",
-    "is magnetic",
-    "the time is that of",
-    "no checksum",
-    "can be predicted",
-    "loses no speed",
-];
 
 /// Every zig-zag of some records alone: whether K and T of a first-order response depend on the amplitude.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

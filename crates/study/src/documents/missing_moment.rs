@@ -1,5 +1,7 @@
 //! The yaw moment that the base lacks on every fitted record, and its tables.
 
+use std::collections::BTreeMap;
+
 use ::trace::Verdict;
 use ::trace::missing_moment::{MissingMoment, Over, Panel};
 use campaign::curves::degrees;
@@ -48,6 +50,64 @@ pub struct PanelEntry {
     pub inside: Vec<String>,
 }
 
+/// The moment of one record as it is read from its tables; a column that is not there is empty.
+pub struct MissingMomentCurves {
+    /// Times, s.
+    pub time: Vec<f64>,
+    /// The moment, deg of rudder.
+    pub moment: Vec<f64>,
+    /// The ends of its 95 % band, deg of rudder.
+    pub band: [Vec<f64>; 2],
+    /// What the explanation makes of it, deg of rudder.
+    pub explained: Vec<f64>,
+    /// The curves over the channels, in the order of the entry.
+    pub over: Vec<ChannelCurve>,
+}
+
+/// The moment over one channel, in the units of figures.
+pub struct ChannelCurve {
+    /// The channel; `None` of one that no table has.
+    pub over: Option<Over>,
+    /// The channel at the times of the moment.
+    pub rows: Vec<f64>,
+    /// Places of the curve.
+    pub x: Vec<f64>,
+    /// The moment there, deg of rudder.
+    pub moment: Vec<f64>,
+    /// Half the width of its 95 % band, deg of rudder.
+    pub half_width: Vec<f64>,
+    /// What the explanation makes of it, deg of rudder.
+    pub explained: Vec<f64>,
+}
+
+impl MissingMomentCurves {
+    /// The curves of an entry from the tables of [`over_time`] and [`over_channels`].
+    pub fn read(entry: &MissingMomentEntry, [time, channels]: &[BTreeMap<String, Vec<f64>>; 2]) -> Self {
+        let of = |table: &BTreeMap<String, Vec<f64>>, name: &str| table.get(name).cloned().unwrap_or_default();
+        let channel = |PanelEntry { column: name, .. }: &PanelEntry| ChannelCurve {
+            over: Over::ALL.into_iter().find(|over| column(*over).0 == name),
+            rows: of(time, name),
+            x: of(channels, name),
+            moment: of(channels, &format!("{name}_{MOMENT}")),
+            half_width: of(channels, &format!("{name}_{HALF_WIDTH}")),
+            explained: of(channels, &format!("{name}_{EXPLAINED}")),
+        };
+        Self {
+            time: of(time, TIME),
+            moment: of(time, MOMENT),
+            band: BAND.map(|end| of(time, end)),
+            explained: of(time, EXPLAINED),
+            over: entry.over.iter().map(channel).collect(),
+        }
+    }
+}
+
+const TIME: &str = "t_s";
+const MOMENT: &str = "moment_rudder_deg";
+const BAND: [&str; 2] = ["lower95_rudder_deg", "upper95_rudder_deg"];
+const HALF_WIDTH: &str = "half_width95_rudder_deg";
+const EXPLAINED: &str = "explained_rudder_deg";
+
 /// Name of a channel in a table, and whether it is an angle.
 fn column(over: Over) -> (&'static str, bool) {
     match over {
@@ -66,15 +126,15 @@ fn shown(over: Over, values: &[f64]) -> Vec<f64> {
 
 /// The rows: moment with its band, what the explanation makes of it, and every channel that was recorded.
 pub fn over_time(missing: &MissingMoment) -> String {
-    let end = |k: usize| (0..missing.time.len()).map(|row| to_deg(missing.interval(row)[k])).collect();
     let mut columns = CurveTable::default();
-    columns.push("t_s", missing.time.clone());
-    columns.push("moment_rudder_deg", degrees(&missing.moment));
+    columns.push(TIME, missing.time.clone());
+    columns.push(MOMENT, degrees(&missing.moment));
     columns.push("sd_rudder_deg", degrees(&missing.sd));
-    columns.push("lower95_rudder_deg", end(0));
-    columns.push("upper95_rudder_deg", end(1));
+    for (k, name) in BAND.into_iter().enumerate() {
+        columns.push(name, (0..missing.time.len()).map(|row| to_deg(missing.interval(row)[k])).collect());
+    }
     if let Some(explained) = missing.explained.first() {
-        columns.push("explained_rudder_deg", degrees(explained));
+        columns.push(EXPLAINED, degrees(explained));
     }
     for (over, values) in &missing.channels {
         columns.push(column(*over).0, shown(*over, values));
@@ -92,10 +152,10 @@ pub fn over_channels(missing: &MissingMoment) -> String {
         let (name, curve) = (column(panel.over).0, &panel.curve);
         columns.push(name, shown(panel.over, &curve.x));
         let about = |values: &[f64]| values.iter().map(|value| to_deg(value + mean)).collect::<Vec<f64>>();
-        columns.push(format!("{name}_moment_rudder_deg"), about(&curve.moment));
-        columns.push(format!("{name}_half_width95_rudder_deg"), degrees(&curve.half_width));
+        columns.push(format!("{name}_{MOMENT}"), about(&curve.moment));
+        columns.push(format!("{name}_{HALF_WIDTH}"), degrees(&curve.half_width));
         if let Some(other) = curve.others.first() {
-            columns.push(format!("{name}_explained_rudder_deg"), about(other));
+            columns.push(format!("{name}_{EXPLAINED}"), about(other));
         }
     }
     columns.text()

@@ -74,9 +74,31 @@ pub fn keep_with_curves(
 /// Fails when the file cannot be read or is none of this program.
 pub fn read_json<T: DeserializeOwned>(path: &Path, command: &str) -> Result<(T, String), Failure> {
     let text = read_text(path)?;
-    let document = serde_json::from_str(&text)
-        .map_err(|error| Failure::about(path, format!("{error}; make it again with `study {command}`")))?;
+    let document = serde_json::from_str(&text).map_err(|error| unread(path, error, command))?;
     Ok((document, text))
+}
+
+/// The document of this schema that a command wrote, and its text.
+///
+/// Fails as [`read_json`] does, and for a document of another version.
+pub fn read_document<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<(T, String), Failure> {
+    #[derive(serde::Deserialize)]
+    struct Stated {
+        schema: String,
+    }
+    let command = schema.split('/').next().unwrap_or_default();
+    let (stated, text): (Stated, String) = read_json(path, command)?;
+    if stated.schema != schema {
+        let what = format!("schema = {:?}, expected {schema:?}", stated.schema);
+        return Err(Failure::about(path, format!("{what}; make it again with `study {command}`")));
+    }
+    let document = serde_json::from_str(&text).map_err(|error| unread(path, error, command))?;
+    Ok((document, text))
+}
+
+/// Why a document is none of this program.
+fn unread(path: &Path, error: serde_json::Error, command: &str) -> Failure {
+    Failure::about(path, format!("{error}; make it again with `study {command}`"))
 }
 
 /// Most bytes of a document or a table of curves.

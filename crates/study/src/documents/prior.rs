@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use document::{Code, Warning};
 use identify::hull::ExpectationCheck;
 use report::number::{fixed, significant};
 use serde::{Deserialize, Serialize};
@@ -111,11 +112,15 @@ impl EarlierTrials {
     }
 
     /// The warning of a conflict.
-    pub fn warning(&self) -> Option<String> {
-        self.conflict.then_some(())?;
+    pub fn warning(&self) -> Option<Warning> {
+        self.conflict.then(|| Code::EarlierTrials.warning(self.contradiction()))
+    }
+
+    /// How far the records are from the models, and what to do.
+    fn contradiction(&self) -> String {
         let files = self.models.iter().map(|own| own.file.as_str()).collect::<Vec<_>>().join(", ");
         let cure = "make sure that it is the same ship in the same condition, or leave --prior out";
-        let Some(nearest) = self.hulls.first() else { return Some(format!("--prior {files}: {NOT_NEAR}; {cure}")) };
+        let Some(nearest) = self.hulls.first() else { return format!("--prior {files}: {NOT_NEAR}; {cure}") };
         let moved = nearest.moved.iter().filter(|(_, shift)| shift.abs() >= MOVED).take(NAMED);
         let moved = moved.map(|(key, shift)| {
             let means = meaning(key).map_or_else(String::new, |means| format!(" ({means})"));
@@ -123,6 +128,6 @@ impl EarlierTrials {
         });
         let moved = moved.collect::<Vec<_>>().join(", ");
         let what = if moved.is_empty() { String::new() } else { format!("; farthest from it: {moved}") };
-        Some(format!("--prior {files}: the records contradict it ({}){what}; {cure}", nearest.numbers()))
+        format!("--prior {files}: the records contradict it ({}){what}; {cure}", nearest.numbers())
     }
 }

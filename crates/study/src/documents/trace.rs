@@ -1,8 +1,8 @@
 //! `trace.json`: what the analysis says, and beside it the files of curves and what is known of the ship.
 
-use ::trace::Document;
-use ::trace::document::BeforeAfter;
-use predict::IdentifiedShip;
+use document::IdentifiedShip;
+use document::trace::BeforeAfter;
+use document::trace::Document;
 use scenario::name::slug;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
@@ -23,6 +23,8 @@ pub struct TraceDocument {
     /// What the analysis says.
     #[serde(flatten)]
     pub trace: Document,
+    /// The trial that would tell most.
+    pub next_trial: String,
     /// The records, first the fitted ones, and the files of their curves.
     pub records: Vec<RecordEntry>,
     /// The yaw moment that the base lacks on every fitted record.

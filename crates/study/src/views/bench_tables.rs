@@ -5,7 +5,7 @@ use campaign::benchmark::cases::{BenchCase, Naming};
 use campaign::benchmark::naming::{NamingLine, total};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use report::number::{MISSING, fixed, significant};
-use report::{Table, TableColumn};
+use report::{Table, TableHead};
 
 /// What stands for a figure that an answer which failed decides.
 const FAILED: &str = "failed";
@@ -41,11 +41,11 @@ fn count(count: usize) -> String {
 }
 
 /// Columns of a board behind those of `first`.
-fn columns(first: &str, reference: &str, indices: bool) -> Vec<TableColumn> {
-    let held = if indices { " | .intervals hold K [%] | .hold T [%]" } else { "" };
-    TableColumn::all(&format!(
-        "{first} | .median | 95 % | .90 % within | >failed | .over {reference} | 95 % | .better [%] | .mean rank{held}"
-    ))
+fn columns(first: TableHead, reference: &str, indices: bool) -> TableHead {
+    let head = first.numbers(["median"]).texts(["95 %"]).numbers(["90 % within"]).counts(["failed"]);
+    let head = head.numbers([format!("over {reference}")]).texts(["95 %"]).numbers(["better"]).unit("%");
+    let held = ["intervals hold K", "hold T"].into_iter().filter(|_| indices);
+    head.numbers(["mean rank"]).numbers(held).unit("%")
 }
 
 fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
@@ -74,14 +74,15 @@ fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
 /// One board.
 pub fn board(results: &BenchDocument, board: &Board) -> Table {
     let indices = board.task == BenchTask::Indices;
-    let mut table = Table::new(columns("method", &results.reference, indices));
+    let mut table = Table::new(columns(TableHead::default().texts(["method"]), &results.reference, indices));
     board.standings.iter().for_each(|standing| table.push(cells(standing, indices)));
     table
 }
 
 /// All boards below each other, for a person.
 pub fn leaderboard(results: &BenchDocument) -> Table {
-    let mut table = Table::new(columns("task | records | >n | method", &results.reference, true));
+    let first = TableHead::default().texts(["task", "records"]).counts(["n"]).texts(["method"]);
+    let mut table = Table::new(columns(first, &results.reference, true));
     for board in &results.boards {
         for standing in &board.standings {
             let mut line = vec![board.task.id().to_owned(), board.field.clone(), board.cases.to_string()];
@@ -94,13 +95,11 @@ pub fn leaderboard(results: &BenchDocument) -> Table {
 
 /// All boards with all their numbers, for a program.
 pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
-    let mut table = Table::headed(
-        "task | records | cases | clusters | method | failed | median | median lower 95 | \
-            median upper 95 | 90 % within | 90 % within lower 95 | 90 % within upper 95 | \
-            over reference | over reference lower 95 | over reference upper 95 | better [%] | \
-            better lower 95 [%] | better upper 95 [%] | mean rank | intervals hold K [%] | \
-            intervals hold T [%]",
-    );
+    let with_ends = |name: &str| ["", " lower 95", " upper 95"].map(|end| format!("{name}{end}"));
+    let head = TableHead::default().texts(["task", "records", "cases", "clusters", "method", "failed"]);
+    let head = head.texts(["median", "90 % within", "over reference"].iter().flat_map(|name| with_ends(name)));
+    let head = head.texts(with_ends("better")).unit("%").texts(["mean rank"]);
+    let mut table = Table::new(head.texts(["intervals hold K", "intervals hold T"]).unit("%"));
     let text = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let all = |figure: Option<ScoreFigure>| match figure {
         None => vec![String::new(); 3],
@@ -126,9 +125,7 @@ fn median(own: Option<(f64, usize)>) -> String {
 
 /// Medians set by set, methods side by side.
 pub fn sets(results: &BenchDocument) -> Table {
-    let mut columns = TableColumn::all("task | set | >n");
-    columns.extend(results.methods.iter().map(TableColumn::decimal));
-    let mut table = Table::new(columns);
+    let mut table = Table::new(TableHead::default().texts(["task", "set"]).counts(["n"]).numbers(&results.methods));
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
         let head = [task.id().to_owned(), set, cases.to_string()];
         table.push(head.into_iter().chain(methods.into_iter().map(median)));
@@ -138,11 +135,10 @@ pub fn sets(results: &BenchDocument) -> Table {
 
 /// One method on every set, beside the reference.
 pub fn of_method(results: &BenchDocument, method: &str) -> Table {
-    let mut columns = TableColumn::all("task | set | >n | .median | >failed");
+    let head = TableHead::default().texts(["task", "set"]).counts(["n"]).numbers(["median"]).counts(["failed"]);
     let place = |label: &str| results.methods.iter().position(|own| own == label);
     let reference = place(&results.reference).filter(|_| method != results.reference);
-    columns.extend(reference.map(|_| TableColumn::decimal(format!("median of {}", results.reference))));
-    let mut table = Table::new(columns);
+    let mut table = Table::new(head.numbers(reference.map(|_| format!("median of {}", results.reference))));
     let Some(own) = place(method) else { return table };
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
         let Some((_, failed)) = methods[own] else { continue };
@@ -154,7 +150,7 @@ pub fn of_method(results: &BenchDocument, method: &str) -> Table {
 
 /// One method on every board.
 pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
-    let mut table = Table::new(columns("task | >n", &results.reference, true));
+    let mut table = Table::new(columns(TableHead::default().texts(["task"]).counts(["n"]), &results.reference, true));
     for board in &results.boards {
         for (place, standing) in board.standings.iter().enumerate().filter(|(_, own)| own.method == method) {
             let mut line = cells(standing, board.task == BenchTask::Indices);
@@ -168,8 +164,8 @@ pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
 }
 
 fn naming_table<'a>(first: &str, lines: impl Iterator<Item = (&'a str, NamingLine)>) -> Table {
-    let said = Naming::ALL.map(Naming::words).join(" | >");
-    let mut table = Table::headed(&format!("method | {first} | >n | >{said} | >failed | .named [%]"));
+    let head = TableHead::default().texts(["method", first]).counts(["n"]).counts(Naming::ALL.map(Naming::words));
+    let mut table = Table::new(head.counts(["failed"]).numbers(["named"]).unit("%"));
     for (ships, line) in lines {
         let head = [line.method.clone(), ships.to_owned(), line.named.of.to_string()];
         table.push(head.into_iter().chain(line.counts.map(count)).chain([count(line.failed), share(line.named)]));
@@ -194,7 +190,7 @@ pub fn naming(results: &BenchDocument, method: Option<&str>) -> Table {
 
 /// The ranking over all predictions.
 pub fn overall(results: &BenchDocument) -> Table {
-    let mut table = Table::headed("method | .mean rank | 95 %");
+    let mut table = Table::new(TableHead::default().texts(["method"]).numbers(["mean rank"]).texts(["95 %"]));
     for (method, rank) in results.overall.iter().flat_map(|overall| &overall.standings) {
         table.push([method.clone(), value(*rank), ends(*rank)]);
     }
@@ -203,7 +199,12 @@ pub fn overall(results: &BenchDocument) -> Table {
 
 /// The sets and their records.
 pub fn present(results: &BenchDocument) -> Table {
-    let mut table = Table::headed("set | >trials | record | manoeuvre | file | SHA-256");
+    let mut table = Table::new(TableHead::default().texts(["set"]).counts(["trials"]).texts([
+        "record",
+        "manoeuvre",
+        "file",
+        "SHA-256",
+    ]));
     for set in &results.sets {
         for (place, record) in set.records.iter().enumerate() {
             let first = |text: String| if place == 0 { text } else { String::new() };
@@ -220,10 +221,10 @@ pub fn present(results: &BenchDocument) -> Table {
 
 /// One row for every answer.
 pub fn rows(results: &BenchDocument) -> Table {
-    let mut table = Table::headed(
-        "task | records | set | trial | fitted | scored | method | score | K error [%] | \
-            T error [%] | K held | T held | missing | said | named | failure",
-    );
+    let head = TableHead::default();
+    let head = head.texts(["task", "records", "set", "trial", "fitted", "scored", "method", "score"]);
+    let head = head.texts(["K error", "T error"]).unit("%");
+    let mut table = Table::new(head.texts(["K held", "T held", "missing", "said", "named", "failure"]));
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let truth = |value: Option<bool>| value.map_or_else(String::new, |value| value.to_string());
     for case in &results.cases {

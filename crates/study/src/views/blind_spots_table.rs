@@ -1,7 +1,7 @@
 //! The table of the sizes from which on effects are named: `blind-spots.csv`, and in the report.
 
 use report::number::{fixed, significant};
-use report::{Table, TableColumn};
+use report::{Table, TableHead};
 
 use super::tracing_table::has_several;
 use campaign::design::Design;
@@ -18,13 +18,10 @@ pub fn table(spots: &[BlindSpot], design: &Design) -> Table {
     let of_sizes = axis_of_sizes(design);
     let other_axes = design.axes.iter().enumerate().filter(|(axis, _)| Some(*axis) != of_sizes);
     let several = has_several(design);
-    let mut columns = Vec::from([TableColumn::left("effect")]);
-    columns.extend(other_axes.map(|(_, name)| TableColumn::left(name)));
-    columns.extend(several.then(|| TableColumn::left("method")));
-    columns.extend(TableColumn::all(
-        "unit | >smallest | >largest | >trials | >at the largest [%] | >named in 90 % from | >low | >high",
-    ));
-    let mut table = Table::new(columns);
+    let head = TableHead::default().texts(["effect"]).texts(other_axes.map(|(_, name)| name));
+    let head = head.texts(several.then_some("method")).texts(["unit"]).counts(["smallest", "largest", "trials"]);
+    let head = head.counts(["at the largest"]).unit("%").counts(["named in 90 % from", "low", "high"]);
+    let mut table = Table::new(head);
     for spot in spots {
         let [smallest, largest] = spot.ends();
         let within = |size: f64| match size {

@@ -1,7 +1,7 @@
 //! Tables of predictions in a study: whether intervals hold, figure by figure.
 
 use report::number::{fixed, optional, significant};
-use report::{Table, TableColumn};
+use report::{Table, TableHead};
 
 use super::predict_tables::words;
 use super::tables::{head, place};
@@ -11,12 +11,9 @@ use campaign::summary::{CriterionTally, PredictionSummary};
 
 /// Every figure of every cell and method.
 pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
-    let mut columns = head(design);
-    columns.extend(TableColumn::all(
-        "figure | unit | >trials | .inside 90 % [%] | .lower 95 [%] | .upper 95 [%] | .of the ship | .bias | .rms error | \
-         .width",
-    ));
-    let mut table = Table::new(columns);
+    let head = head(design).texts(["figure", "unit"]).counts(["trials"]);
+    let head = head.numbers(["inside 90 %", "lower 95", "upper 95"]).unit("%");
+    let mut table = Table::new(head.numbers(["of the ship", "bias", "rms error", "width"]));
     for line in lines {
         let mut cells = place(design, line.cell, line.method);
         let (name, unit) = words(&line.name);
@@ -30,10 +27,8 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
 
 /// All figures of a cell and a method together: the mean of their shares, and the lowest and the highest of them.
 pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
-    let mut columns = head(design);
-    let heads = ">figures | >trials | .inside 90 % [%] | .lowest [%] | .highest [%] | lowest of | highest of";
-    columns.extend(TableColumn::all(heads));
-    let mut table = Table::new(columns);
+    let head = head(design).counts(["figures", "trials"]).numbers(["inside 90 %", "lowest", "highest"]).unit("%");
+    let mut table = Table::new(head.texts(["lowest of", "highest of"]));
     for group in lines.chunk_by(|one, other| (one.cell, one.method) == (other.cell, other.method)) {
         let [first, ..] = group else { continue };
         let mut cells = place(design, first.cell, first.method);
@@ -58,9 +53,9 @@ pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
     if limited.is_empty() {
         return None;
     }
-    let heads = "criterion | method | >trials | >ships within it | .told rightly [%] | .lower 95 [%] | .upper 95 [%] | \
-                 .told wrongly [%] | .lower 95 [%] | .upper 95 [%]";
-    let mut table = Table::new(TableColumn::all(heads));
+    let head = TableHead::default().texts(["criterion", "method"]).counts(["trials", "ships within it"]);
+    let told = ["told rightly", "lower 95", "upper 95", "told wrongly", "lower 95", "upper 95"];
+    let mut table = Table::new(head.numbers(told).unit("%"));
     for ((name, method), own) in limited {
         let trials: u64 = own.iter().map(|(line, _)| line.trials).sum();
         let count = |of: fn(&CriterionTally) -> u64| own.iter().map(|(_, told)| of(told)).sum::<u64>();

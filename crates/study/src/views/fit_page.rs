@@ -1,7 +1,7 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
 use campaign::answer::MethodEntry;
-use identify::recommended::{MOMENTS, Reason, ResidualKind};
+use identify::recommended::{Reason, ResidualKind};
 use report::markdown::text;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, Table};
@@ -43,10 +43,9 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     page.table(answers(document, curves));
     page.say(MODEL);
     page.say(FILES);
-    let warnings = document.ranked_warnings();
-    if !warnings.is_empty() {
+    if document.of_answer().next().is_some() {
         page.part("Warnings");
-        page.list(warnings.iter().map(|entry| text(entry)));
+        page.list(document.of_answer().map(|entry| text(&entry.to_string())));
     }
     let notes = notes(document, curves);
     if !notes.trim().is_empty() {
@@ -66,10 +65,9 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
             table.into_iter().for_each(|table| page.table(table));
         }
     }
-    let remarks = document.notes();
-    if !remarks.is_empty() {
+    if document.notes().next().is_some() {
         page.folded_part("Notes");
-        page.list(remarks.iter().map(|entry| text(entry)));
+        page.list(document.notes().map(|entry| text(&entry.to_string())));
     }
     page.folded_part("Figures");
     page.figures(figures);
@@ -148,7 +146,7 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let other = verdict.contradicted_by.as_ref();
     let Some(other) = document.methods.iter().find(|entry| Some(&entry.method) == other) else { return String::new() };
     let name = &other.method;
-    let has_moment = other.diagnostics.keys().any(|key| MOMENTS.contains(&key.as_str()));
+    let has_moment = other.noise.is_some_and(|noise| !noise.moment.is_none());
     let why = match verdict.reason {
         Reason::NearestReplay if has_moment => "a random moment explains part of the manoeuvre in it",
         Reason::NearestReplay => "look at both replays",

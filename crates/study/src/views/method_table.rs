@@ -3,7 +3,7 @@
 
 use identify::StopReason;
 use report::number::{self, MISSING};
-use report::{Table, TableColumn};
+use report::{Table, TableHead};
 
 use campaign::answer::{MethodEntry, Status};
 use trial::Quantity;
@@ -11,17 +11,12 @@ use trial::Quantity;
 /// One row per method; `validated` names the records of the validation columns.
 pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
     let remarks = entries.iter().any(|entry| !remark(entry).is_empty());
-    let mut columns = vec![TableColumn::left("method")];
+    let mut head = TableHead::default().texts(["method"]);
     for (symbol, unit) in [("K", "1/s"), ("T", "s"), ("δ_r", "deg")] {
-        columns.push(TableColumn::decimal(symbol).unit(unit));
-        columns.push(TableColumn::interval().unit(unit));
+        head = head.numbers([symbol]).unit(unit).interval();
     }
-    columns.push(TableColumn::decimal("rms ψ").unit("deg"));
-    columns.extend(validated.iter().map(|name| TableColumn::decimal(format!("on {name}")).unit("deg")));
-    if remarks {
-        columns.push(TableColumn::left("remark"));
-    }
-    let mut table = Table::new(columns);
+    head = head.numbers(["rms ψ"]).unit("deg").numbers(validated.iter().map(|name| format!("on {name}"))).unit("deg");
+    let mut table = Table::new(head.texts(remarks.then_some("remark")));
     for entry in entries {
         let mut cells = vec![entry.method.clone()];
         match &entry.parameters {
@@ -103,6 +98,7 @@ mod tests {
             robust: None,
             stop,
             evaluations: 1,
+            noise: None,
             diagnostics: Vec::new(),
             warnings: Vec::new(),
         };

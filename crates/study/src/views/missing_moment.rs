@@ -1,14 +1,14 @@
 //! The yaw moment that the base lacks on every fitted record: its figure, and the sentence on it.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
 use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
 use report::{PlotCurve, symbol};
+use trace::missing_moment::Over;
 
-use crate::documents::missing_moment::MissingMomentEntry;
+use crate::documents::missing_moment::{ChannelCurve, MissingMomentCurves, MissingMomentEntry, PanelEntry};
 
 /// Panels of a figure at most.
 const PANELS: usize = 4;
@@ -17,14 +17,14 @@ const PANELS: usize = 4;
 const REACHES: [f64; 2] = [8.0, 2.5];
 
 /// Title of an axis over a channel.
-fn title_of(column: &str) -> String {
-    match column {
-        "yaw_rate_deg_s" => format!("yaw rate {} [°/s]", symbol("r")),
-        "rudder_deg" => format!("rudder {} [°]", symbol("δ")),
-        "heading_deg" => format!("heading {} [°]", symbol("ψ")),
-        "speed_m_s" => format!("speed {} [m/s]", symbol("U")),
-        "sway_m_s" => format!("sway velocity {} [m/s]", symbol("v")),
-        _ => String::from("relative wind from [° off the bow]"),
+fn title_of(over: Over) -> String {
+    match over {
+        Over::YawRate => format!("yaw rate {} [°/s]", symbol("r")),
+        Over::Rudder => format!("rudder {} [°]", symbol("δ")),
+        Over::Heading => format!("heading {} [°]", symbol("ψ")),
+        Over::Speed => format!("speed {} [m/s]", symbol("U")),
+        Over::Sway => format!("sway velocity {} [m/s]", symbol("v")),
+        Over::WindFrom => String::from("relative wind from [° off the bow]"),
     }
 }
 
@@ -35,14 +35,6 @@ fn percent(share: Option<f64>) -> String {
         Some(share) if share < 0.01 => String::from("explains less than 1 % of the variance"),
         Some(share) => format!("explains {:.0} % of the variance", 100.0 * share),
     }
-}
-
-/// A table that was read.
-type MomentTable = BTreeMap<String, Vec<f64>>;
-
-/// A column of a table; empty where there is none.
-fn values(table: &MomentTable, name: &str) -> Vec<f64> {
-    table.get(name).cloned().unwrap_or_default()
 }
 
 /// The moment with its band, and what the known explanation makes of it.
@@ -57,32 +49,32 @@ fn banded(known: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], explai
     layers
 }
 
-/// The figure of one record, from its tables over time and over the channels.
-pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[MomentTable; 2]) -> Panels {
+/// The figure of one record.
+pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panels {
     let known = entry.explanation.as_ref();
     let over = |x: Ruler, height: f64, reach: f64, layers: Vec<Layer>| {
         let moment = Ruler::decimal("moment [° rudder]").within(reach, Some(0.0));
         Stack::over(x, vec![(PanelRow::zeroed(moment, height), layers)])
     };
-    let over_time = |name: &str| PlotCurve::new(values(time, "t_s"), values(time, name));
-    let ends = ["moment_rudder_deg", "lower95_rudder_deg", "upper95_rudder_deg"].map(over_time);
-    let moment = banded(known, ends, over_time("explained_rudder_deg"));
+    let over_time = |values: &Vec<f64>| PlotCurve::new(curves.time.clone(), values.clone());
+    let [lower, upper] = &curves.band;
+    let moment = banded(known, [&curves.moment, lower, upper].map(over_time), over_time(&curves.explained));
     let mut stacks = vec![over(Ruler::time(), 0.24, REACHES[0], moment)];
-    let (shown, others): (Vec<_>, Vec<_>) = entry.over.iter().partition(|own| own.shows);
-    stacks.extend(shown.iter().take(PANELS).map(|own| {
-        let name = &own.column;
-        let of = |what: &str| values(channels, &format!("{name}_{what}_rudder_deg"));
-        let curve = |y: Vec<f64>| PlotCurve::new(values(channels, name), y);
-        let (moment, half) = (of("moment"), of("half_width95"));
-        let edge = |side: f64| curve(moment.iter().zip(&half).map(|(m, half)| m + side * half).collect());
-        let rows = PlotCurve::new(values(time, name), values(time, "moment_rudder_deg"));
+    let panels = entry.over.iter().zip(&curves.over);
+    let (shown, others): (Vec<_>, Vec<_>) = panels.partition(|(own, _)| own.shows);
+    stacks.extend(shown.into_iter().take(PANELS).map(|(own, channel): (&PanelEntry, &ChannelCurve)| {
+        let ChannelCurve { moment, half_width, .. } = channel;
+        let curve = |y: Vec<f64>| PlotCurve::new(channel.x.clone(), y);
+        let edge = |side: f64| curve(moment.iter().zip(half_width).map(|(m, half)| m + side * half).collect());
+        let rows = PlotCurve::new(channel.rows.clone(), curves.moment.clone());
         let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.1)];
-        layers.extend(banded(known, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(of("explained"))));
-        let mut stack = over(Ruler::decimal(title_of(name)), 0.2, REACHES[1], layers);
+        layers.extend(banded(known, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(channel.explained.clone())));
+        let mut stack =
+            over(Ruler::decimal(channel.over.map_or_else(|| own.channel.clone(), title_of)), 0.2, REACHES[1], layers);
         (stack.panels[0].head, stack.is_half) = (Some(percent(own.variance_share)), true);
         stack
     }));
-    let others: Vec<&str> = others.iter().map(|own| own.channel.as_str()).collect();
+    let others: Vec<&str> = others.iter().map(|(own, _)| own.channel.as_str()).collect();
     let others = match others.is_empty() {
         true => String::new(),
         false => format!(" Not drawn, because zero lies inside the band: {}.", others.join(", ")),

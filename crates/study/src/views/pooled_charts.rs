@@ -104,11 +104,12 @@ const FAR: f64 = 3.0;
 pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
         let bound =
-            design.cells[detail.cell].bound_percent2.map(|covariance| PlotCurve::contour95((0.0, 0.0), covariance));
+            design.cells[detail.cell].bound_percent2.map(|covariance| PlotCurve::contour95([0.0; 2], covariance));
         let panel = |(method, own): (usize, &MethodDetail)| {
             let (origin, cloud) = (origin(design, method), own.cloud.as_ref());
             let (x, y) = cloud.map(|cloud| cloud.points.iter().copied().unzip()).unwrap_or_default();
-            let ellipse = cloud.map_or_else(PlotCurve::default, |own| PlotCurve::contour95(own.centre, own.covariance));
+            let ellipse =
+                cloud.map_or_else(PlotCurve::default, |own| PlotCurve::contour95(own.centre.into(), own.covariance));
             let mut layers = vec![
                 Layer::new("", PlotCurve { x, y }, LayerKind::Cloud(origin.look().colour)),
                 Layer::line("", ellipse, Pen::new(origin.look().colour).width(1.3)),

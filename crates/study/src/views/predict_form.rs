@@ -5,7 +5,7 @@ use predict::form::{DECIMALS, ImoFormEntry, STOPPING, TRACK_REACH_LENGTHS};
 use predict::interval::PredictionInterval;
 use report::markdown::text;
 use report::number::{fixed, significant};
-use report::{Page, Table};
+use report::{Page, Table, TableHead};
 
 use super::bench_figures::capital;
 
@@ -45,14 +45,15 @@ pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
         if !section.is_empty() {
             page.part(capital(section));
         }
-        let mut table = Table::headed("entry | value | unit | source");
+        let mut table = Table::new(TableHead::default().texts(["entry", "value", "unit", "source"]));
         for entry in own {
             table.push([entry.field.clone(), filled(entry), unit(entry).to_owned(), entry.source.clone()]);
         }
         page.table(table);
     }
     page.part("Test results");
-    let mut table = Table::headed("test | result | side | value | unit | IMO criterion | source");
+    let mut table =
+        Table::new(TableHead::default().texts(["test", "result", "side", "value", "unit", "IMO criterion", "source"]));
     for entry in tested.into_iter().flat_map(|(_, own)| own) {
         table.push([
             entry.section.clone(),

@@ -106,7 +106,7 @@ fn corrected_from(document: &PredictDocument) -> String {
 
 /// What is to be said of whole records that were corrected, a line each.
 fn doubts(document: &PredictDocument) -> impl Iterator<Item = String> {
-    document.corrected.iter().flat_map(|own| own.warnings.iter().map(|doubt| format!("{}: {doubt}", own.name)))
+    document.corrected.iter().flat_map(|own| own.warnings.iter().map(|doubt| format!("{}: {}", own.name, doubt.text)))
 }
 
 const READING: &str = "Every row is a figure of merit of ships that are drawn from the model: a structure by its probability, \

@@ -3,8 +3,8 @@
 use predict::correction::Corrected;
 use predict::interval::PredictionInterval;
 use predict::{PredictDocument, Prediction};
-use report::Table;
 use report::number::{MISSING, fixed, significant, with_uncertainty};
+use report::{Table, TableHead};
 
 /// Name and unit of a figure whose unit is the end of its name.
 pub fn words(name: &str) -> (String, &'static str) {
@@ -36,7 +36,8 @@ fn cells(interval: &PredictionInterval) -> [String; 3] {
 
 /// Every figure of every manoeuvre and of every record.
 pub fn figures(document: &PredictDocument) -> Table {
-    let mut table = Table::headed("manoeuvre | figure | unit | .median | 50 % | 90 % | mostly from | remark");
+    let head = TableHead::default().texts(["manoeuvre", "figure", "unit"]).numbers(["median"]);
+    let mut table = Table::new(head.texts(["50 %", "90 %", "mostly from", "remark"]));
     let mut push = |manoeuvre: &str, name: &str, interval: &PredictionInterval, source: String, remark: String| {
         let ((name, unit), [median, half, most]) = (words(name), cells(interval));
         table.push([manoeuvre.to_owned(), name, unit.to_owned(), median, half, most, source, remark]);
@@ -66,7 +67,9 @@ pub fn figures(document: &PredictDocument) -> Table {
 
 /// The criteria of IMO.
 pub fn criteria(document: &PredictDocument) -> Table {
-    let mut table = Table::headed("criterion | manoeuvre | .limit | unit | .median | 90 % | .passes [%] | remark");
+    let head = TableHead::default().texts(["criterion", "manoeuvre"]).numbers(["limit"]).texts(["unit"]);
+    let head = head.numbers(["median"]).texts(["90 %"]).numbers(["passes"]).unit("%");
+    let mut table = Table::new(head.texts(["remark"]));
     for criterion in &document.imo {
         let [median, _, most] = cells(&criterion.interval);
         table.push([
@@ -85,10 +88,9 @@ pub fn criteria(document: &PredictDocument) -> Table {
 
 /// Every figure that was corrected to another loading.
 pub fn corrected(document: &PredictDocument) -> Table {
-    let mut table = Table::headed(
-        "record | figure | unit | T measured | .F/B | F/B 90 % | .R | R 50 % | R 90 % | \
-            remark",
-    );
+    let head = TableHead::default().texts(["record", "figure", "unit", "T measured"]).numbers(["F/B"]);
+    let head = head.texts(["F/B 90 %"]).numbers(["R"]).texts(["R 50 %", "R 90 %", "remark"]);
+    let mut table = Table::new(head);
     for correction in &document.corrected {
         for (name, Corrected { measured, sd, factor, result, warnings, .. }) in &correction.figures {
             let ([factor, _, of_factor], [median, half, most]) = (cells(factor), cells(result));
@@ -96,7 +98,8 @@ pub fn corrected(document: &PredictDocument) -> Table {
                 Some(_) => with_uncertainty(*measured, *sd),
                 None => fixed(*measured, result.decimals()),
             };
-            let ((name, unit), remark) = (words(name), warnings.join("; "));
+            let doubts: Vec<&str> = warnings.iter().map(|doubt| doubt.text.as_str()).collect();
+            let ((name, unit), remark) = (words(name), doubts.join("; "));
             let record = correction.name.clone();
             table.push([record, name, unit.to_owned(), measured, factor, of_factor, median, half, most, remark]);
         }

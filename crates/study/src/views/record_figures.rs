@@ -1,7 +1,7 @@
 //! Figures of records that `study fit`, `study trace` and `study predict` have in common: a record with models of it
 //! over time, the phase plane, and the diagram of steady turns.
 
-use predict::identified_ship::ValidityRange;
+use document::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
 use report::figures::{Division, Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;

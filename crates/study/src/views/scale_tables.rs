@@ -1,7 +1,7 @@
 //! What was found at each scale beside what was found at all of them together, in words and tables.
 
 use report::number::{MISSING, fixed, uncertain};
-use report::{Table, TableColumn};
+use report::{Table, TableHead};
 use ship::Particulars;
 use trial::{Quantity, Scaling};
 
@@ -31,15 +31,10 @@ pub fn sentence(model: &ComparedModel) -> String {
 
 /// The table of one model.
 pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
-    let mut columns = TableColumn::all("term | all together");
-    columns.extend(
-        scales
-            .groups
-            .iter()
-            .map(|group| TableColumn::left(scale_name(Particulars { length: group.length_m, speed: group.speed_m_s }))),
-    );
-    columns.extend(TableColumn::all(".difference [sd] | verdict"));
-    let mut table = Table::new(columns);
+    let groups = scales.groups.iter();
+    let groups = groups.map(|group| scale_name(Particulars { length: group.length_m, speed: group.speed_m_s }));
+    let head = TableHead::default().texts(["term", "all together"]).texts(groups);
+    let mut table = Table::new(head.numbers(["difference"]).unit("sd").texts(["verdict"]));
     let number = |quantity: &Quantity| match quantity.value.is_finite() {
         true => uncertain(quantity.value, quantity.sd),
         false => MISSING.to_owned(),
@@ -57,7 +52,8 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
 
 /// K' and T' with their intervals, one row for every name.
 pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
-    let mut table = Table::headed("method | .K′ | ~95 % | sd | .T′ | ~95 % | sd");
+    let head = TableHead::default().texts(["method"]).numbers(["K′"]).interval().texts(["sd"]);
+    let mut table = Table::new(head.numbers(["T′"]).interval().texts(["sd"]));
     let sd =
         |quantity: &Quantity| quantity.sd.map_or_else(|| MISSING.to_owned(), |sd| report::number::significant(sd, 2));
     for (name, k, t) in rows {

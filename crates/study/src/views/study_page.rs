@@ -82,7 +82,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
         let warnings = showcase
             .methods
             .iter()
-            .flat_map(|entry| entry.warnings.iter().map(|warning| text(&format!("{}: {warning}", entry.method))));
+            .flat_map(|own| own.warnings.iter().map(|warning| text(&format!("{}: {warning}", own.entry.method))));
         page.list(warnings);
         page.figures(at(&|place| place == FigurePlace::Showcase(index)));
     }

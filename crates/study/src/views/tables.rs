@@ -2,8 +2,9 @@
 
 use campaign::stored_figures::Reference;
 use report::number::{self, MISSING};
-use report::{Table, TableColumn};
+use report::{Table, TableHead};
 
+use campaign::answer::MethodEntry;
 use campaign::design::Design;
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
@@ -13,7 +14,8 @@ use scenario::MethodName;
 
 /// The table of a showcase: the methods, and below them the truth and the published values.
 pub fn showcase(showcase: &Showcase) -> Table {
-    let mut table = super::method_table::table(&showcase.methods, &[]);
+    let entries: Vec<MethodEntry> = showcase.methods.iter().map(|shown| shown.entry.clone()).collect();
+    let mut table = super::method_table::table(&entries, &[]);
     let references = [("truth", showcase.intervals.truth), ("published", showcase.intervals.published)];
     for (name, reference) in references {
         if let Some(Reference { k_per_s, t_s }) = reference {
@@ -26,19 +28,15 @@ pub fn showcase(showcase: &Showcase) -> Table {
 
 /// Every figure of methods in cells, for other programs: `summary.csv`. An interval is two columns.
 pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
-    let mut columns = head(design);
-    columns.extend(["trials", "failed"].map(TableColumn::right));
+    let mut head = head(design).counts(["trials", "failed"]);
     for index in ["K", "T", "K/T"] {
-        columns.extend(ERRORS.iter().flat_map(|(name, unit, _)| with_ends(&format!("{index} {name}"), unit)));
+        head = ERRORS.iter().fold(head, |head, (name, unit, _)| with_ends(head, &format!("{index} {name}"), unit));
     }
-    columns.extend(
-        ["failure rate", "heading error", "validation error", "validation error 90 %"]
-            .into_iter()
-            .zip(["%", "deg", "deg", "deg"])
-            .flat_map(|(name, unit)| with_ends(name, unit)),
-    );
-    columns.push(TableColumn::decimal("evaluations"));
-    let mut table = Table::new(columns);
+    head = with_ends(head, "failure rate", "%");
+    for name in ["heading error", "validation error", "validation error 90 %"] {
+        head = with_ends(head, name, "deg");
+    }
+    let mut table = Table::new(head.numbers(["evaluations"]));
     for line in lines {
         let record = &line.record;
         let mut cells = place(design, line.cell, line.method);
@@ -78,13 +76,13 @@ const ERRORS: [ErrorFigure; 15] = [
 ];
 
 /// One column for every axis, and the method.
-pub fn head(design: &Design) -> Vec<TableColumn> {
-    head_of_cells(design).into_iter().chain([TableColumn::left("method")]).collect()
+pub fn head(design: &Design) -> TableHead {
+    head_of_cells(design).texts(["method"])
 }
 
 /// One column for every axis.
-pub fn head_of_cells(design: &Design) -> Vec<TableColumn> {
-    design.axes.iter().map(|axis| TableColumn::left(axis.clone())).collect()
+pub fn head_of_cells(design: &Design) -> TableHead {
+    TableHead::default().texts(&design.axes)
 }
 
 /// A cell and a method, in the columns of [`head`].
@@ -93,11 +91,10 @@ pub fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
     labels.chain([design.methods[method].label.clone()]).collect()
 }
 
-fn with_ends(name: &str, unit: &'static str) -> [TableColumn; 3] {
-    ["", " lower 95", " upper 95"].map(|end| {
-        let column = TableColumn::decimal(format!("{name}{end}"));
-        if unit.is_empty() { column } else { column.unit(unit) }
-    })
+/// Columns of a figure and the ends of its interval behind those of `head`.
+fn with_ends(head: TableHead, name: &str, unit: &str) -> TableHead {
+    let head = head.numbers(["", " lower 95", " upper 95"].map(|end| format!("{name}{end}")));
+    if unit.is_empty() { head } else { head.unit(unit) }
 }
 
 /// A figure and the ends of its interval with the digits of a machine.
@@ -110,14 +107,12 @@ fn all_digits(figure: Option<Statistic>) -> [String; 3] {
 pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     let records = || summary.methods.iter().map(|line| &line.record);
     let validated = records().any(|record| record.validation_rmse_deg.is_some());
-    let mut columns = head(design);
-    columns.push(TableColumn::right("failed"));
+    let mut head = head(design).counts(["failed"]);
     for index in ["K", "T"] {
-        let heads = format!(".{index} median [%] | .{index} rms [%] | ~95 % [%] | >coverage [%] | .sd/bound");
-        columns.extend(TableColumn::all(&heads));
+        head = head.numbers(["median", "rms"].map(|figure| format!("{index} {figure}"))).unit("%").interval();
+        head = head.counts(["coverage"]).unit("%").numbers(["sd/bound"]);
     }
-    columns.extend(validated.then(|| TableColumn::decimal("validation").unit("deg")));
-    let mut table = Table::new(columns);
+    let mut table = Table::new(head.numbers(validated.then_some("validation")).unit("deg"));
     for line in &summary.methods {
         let mut cells = place(design, line.cell, line.method);
         cells.extend(brief(&line.record));
@@ -141,8 +136,12 @@ fn brief(record: &Performance) -> Vec<String> {
 
 /// One row per method over all cells.
 pub fn overall(summary: &Summary, design: &Design) -> Table {
-    let of = |index: &str| format!(".{index} median size [%] | ~95 % [%] | .90 % [%] | >coverage [%]");
-    let mut table = Table::headed(&format!("method | >failed | {} | {} | .validation [deg]", of("K"), of("T")));
+    let mut head = TableHead::default().texts(["method"]).counts(["failed"]);
+    for index in ["K", "T"] {
+        head = head.numbers([format!("{index} median size")]).unit("%").interval();
+        head = head.numbers(["90 %"]).unit("%").counts(["coverage"]).unit("%");
+    }
+    let mut table = Table::new(head.numbers(["validation"]).unit("deg"));
     for (method, record) in design.methods.iter().zip(&summary.overall) {
         let mut cells = vec![method.label.clone(), format!("{}/{}", record.failed(), record.trials)];
         for errors in [&record.k, &record.t] {
@@ -171,14 +170,13 @@ pub fn for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
 
 /// Every method against the reference on the same trials: `pairs.csv`.
 pub fn pairs(lines: &[PairSummary], reference: &MethodName, design: &Design) -> Table {
-    let mut columns = head(design);
-    columns.extend(TableColumn::all("reference | >trials"));
+    let mut head = head(design).texts(["reference"]).counts(["trials"]);
     for index in ["K", "T"] {
-        columns.extend(with_ends(&format!("{index} rms difference"), "%"));
-        columns.extend(with_ends(&format!("{index} rms ratio"), ""));
-        columns.extend(with_ends(&format!("{index} closer"), "%"));
+        for (figure, unit) in [("rms difference", "%"), ("rms ratio", ""), ("closer", "%")] {
+            head = with_ends(head, &format!("{index} {figure}"), unit);
+        }
     }
-    let mut table = Table::new(columns);
+    let mut table = Table::new(head);
     for line in lines {
         let mut cells = place(design, line.cell, line.method);
         cells.extend([reference.label.clone(), line.trials.to_string()]);

@@ -2,9 +2,9 @@
 //! records that were not fitted, the evidence, the innovations, the moment that the base lacks, and the residuals from
 //! several sides.
 
-use ::trace::document::{BeforeAfter, ErrorsEntry, Outcome};
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use campaign::curves::{curve, degrees, phase_curve, phase_of};
+use document::trace::{BeforeAfter, ErrorsEntry, Outcome};
 use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
 use identify::replay::Replay;
 use report::figures::{
@@ -21,6 +21,7 @@ use super::record_figures::{ModelOverTime, over_time, phase_plane};
 use super::trace_tables::{horizon, term};
 use super::{innovation_figure, missing_moment};
 use crate::documents::curves::{TraceCurves, TracedRecord};
+use crate::documents::missing_moment::{MissingMomentCurves, MissingMomentEntry};
 use crate::documents::trace::{RecordEntry, TraceDocument, slugs, suffix};
 
 /// Lines of a spectrum whose frequencies differ by no more than this factor are averaged into one.
@@ -61,10 +62,11 @@ pub fn innovations(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFi
 /// The moment that the base lacks on every fitted record.
 pub fn moments(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let names = document.names();
-    let figure = |(entry, tables): (&crate::documents::missing_moment::MissingMomentEntry, &_)| {
+    let figure = |(entry, tables): (&MissingMomentEntry, _)| {
         let number = names.iter().position(|name| *name == entry.record).unwrap_or(0);
         let stem = format!("missing-moment-{}", slugs(&names)[number]);
-        PageFigure::new(stem, missing_moment::sentence(entry), missing_moment::figure(entry, tables))
+        let curves = MissingMomentCurves::read(entry, tables);
+        PageFigure::new(stem, missing_moment::sentence(entry), missing_moment::figure(entry, &curves))
     };
     document.missing_moment.iter().zip(&curves.moments).map(figure).collect()
 }

@@ -1,8 +1,8 @@
 //! The figure that says what a trace found: the first fitted record and one that was held out, each with the models
 //! before and after, and what these leave of the heading.
 
-use ::trace::document::BeforeAfter;
 use campaign::curves::curve;
+use document::trace::BeforeAfter;
 use report::figures::{Division, Layer, LayeredPanel, PanelRow, Panels, Ruler, Stack};
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure};

@@ -1,11 +1,11 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
-use ::trace::document::{Outcome, ParameterEntry};
-use predict::identified_ship::ValidityRange;
+use document::identified_ship::ValidityRange;
+use document::trace::{Outcome, ParameterEntry};
 use predict::steady::SteadyCurve;
 use report::markdown::text;
 use report::number::{fixed, significant};
-use report::{Page, PageFigure, Table};
+use report::{Page, PageFigure, Table, TableHead};
 use ship::ShortNumber;
 use ship::vessel::prime::meaning;
 
@@ -42,7 +42,7 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
-    behind += &format!("\nnext trial: {}", trace.next_trial);
+    behind += &format!("\nnext trial: {}", document.next_trial);
     [before, behind]
 }
 
@@ -157,7 +157,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     }
     what_is_left(&mut page, document);
     page.part("Next trial");
-    page.say(&document.trace.next_trial);
+    page.say(&document.next_trial);
     page.folded_part("Every record");
     page.table(all_errors(document));
     page.say(ERRORS);
@@ -279,7 +279,7 @@ fn model(document: &TraceDocument) -> String {
 
 /// What these records cannot tell: effects from each other, and effects at all.
 fn aliases(document: &TraceDocument) -> Table {
-    let mut table = Table::headed("effect | these records cannot tell it from");
+    let mut table = Table::new(TableHead::default().texts(["effect", "these records cannot tell it from"]));
     for effect in document.trace.effects.iter().filter(|effect| !effect.alias_forms.is_empty()) {
         table.push([tables::term(&effect.id, &effect.form, effect.only.as_ref()), effect.alias_forms.join(", ")]);
     }

@@ -1,10 +1,11 @@
 //! Tables of a trace, from its document alone.
 
-use ::trace::document::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
 use ::trace::replay_errors::HORIZONS;
-use predict::stored_hull::StoredCoefficient;
-use report::Table;
+use document::Moment;
+use document::stored_hull::StoredCoefficient;
+use document::trace::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
+use report::{Table, TableHead};
 use ship::angle::to_deg;
 use ship::vessel::prime::meaning;
 use trial::Quantity;
@@ -45,7 +46,8 @@ pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
 
 /// Named effects with their parameters.
 pub fn effects(document: &TraceDocument) -> Table {
-    let mut table = Table::headed("effect | .probability | .ΔBIC | parameters | not told from");
+    let head = TableHead::default().texts(["effect"]).numbers(["probability", "ΔBIC"]);
+    let mut table = Table::new(head.texts(["parameters", "not told from"]));
     for effect in &document.trace.effects {
         let asked = if effect.asked { ", asked for" } else { "" };
         let parameters: Vec<String> = effect.parameters.values().map(value).collect();
@@ -62,12 +64,14 @@ pub fn effects(document: &TraceDocument) -> Table {
 
 /// Errors before and after on some records.
 pub fn errors(records: &[RecordErrors]) -> Table {
-    let horizons = HORIZONS.map(|length| format!(".every {length:.0} s [deg]")).join(" | ");
-    let rest = ".yaw rate [deg/s] | .overshoots [deg] | .after/before | .band covers [%] | .band width [deg]";
     let mut judged = records.iter().flat_map(|one| [&one.errors.before, &one.errors.after]);
     let with_moments = judged.any(|own| own.with_own_bias_deg.or(own.with_own_moment_deg).is_some());
-    let moments = if with_moments { " | .own bias [deg] | .own moment [deg]" } else { "" };
-    let mut table = Table::headed(&format!("record | use | model | .heading [deg]{moments} | {horizons} | {rest}"));
+    let moments = ["own bias", "own moment"].into_iter().filter(|_| with_moments);
+    let head = TableHead::default().texts(["record", "use", "model"]).numbers(["heading"]).unit("deg");
+    let head = head.numbers(moments).unit("deg").numbers(HORIZONS.map(|length| format!("every {length:.0} s")));
+    let head = head.unit("deg").numbers(["yaw rate"]).unit("deg/s").numbers(["overshoots"]).unit("deg");
+    let head = head.numbers(["after/before"]).numbers(["band covers"]).unit("%").numbers(["band width"]).unit("deg");
+    let mut table = Table::new(head);
     let three = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 3);
     for RecordErrors { name, used, errors } in records {
         let ratio = errors.after.heading_rmse_deg / errors.before.heading_rmse_deg;
@@ -107,7 +111,8 @@ const DEPARTS: f64 = 1.0;
 
 /// Coefficients of the hulls that are not as expected, the farthest first.
 pub fn hulls(document: &TraceDocument) -> Table {
-    let mut table = Table::headed("hull | coefficient | .value | .expected | .departure [sd] | what it can mean");
+    let head = TableHead::default().texts(["hull", "coefficient"]).numbers(["value", "expected"]);
+    let mut table = Table::new(head.numbers(["departure"]).unit("sd").texts(["what it can mean"]));
     for hull in &document.ship.hulls {
         let mut far: Vec<&StoredCoefficient> =
             hull.coefficients.iter().filter(|own| own.departure().abs() >= DEPARTS).collect();
@@ -134,9 +139,9 @@ pub fn parameters(document: &TraceDocument) -> Table {
     let model = &document.trace.model;
     let remarks = model.parameters.iter().any(|parameter| parameter.at_bound);
     let is_prime = model.indices.prime.is_some();
-    let prime = if is_prime { " | prime | value | 95 % interval" } else { "" };
-    let remark = if remarks { " | remark" } else { "" };
-    let mut table = Table::headed(&format!("parameter | value | 95 % interval | unit{prime} | record{remark}"));
+    let prime = ["prime", "value", "95 % interval"].into_iter().filter(|_| is_prime);
+    let head = TableHead::default().texts(["parameter", "value", "95 % interval", "unit"]).texts(prime);
+    let mut table = Table::new(head.texts(["record"]).texts(remarks.then_some("remark")));
     let mut push = |symbol: &str, (own, unit): (Quantity, String), prime: Option<Quantity>, rest: [&str; 2]| {
         let mut cells = vec![symbol.to_owned(), uncertain(own.value, own.sd), interval(own.ci95), unit];
         let prime = prime.map(|prime| [primed(symbol), uncertain(prime.value, prime.sd), interval(prime.ci95)]);
@@ -160,7 +165,8 @@ pub fn parameters(document: &TraceDocument) -> Table {
 
 /// What became of every candidate.
 pub fn candidates(document: &TraceDocument) -> Table {
-    let mut table = Table::headed("candidate | form | outcome | .probability | .ΔBIC | p | .visibility");
+    let head = TableHead::default().texts(["candidate", "form", "outcome"]).numbers(["probability", "ΔBIC"]);
+    let mut table = Table::new(head.texts(["p"]).numbers(["visibility"]));
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
     for one in &document.trace.candidates {
         if one.forms.is_empty() {
@@ -190,7 +196,8 @@ const NEGLIGIBLE: f64 = 1e-3;
 
 /// The structures with their probabilities.
 pub fn structures(document: &TraceDocument) -> Table {
-    let mut table = Table::headed("structure | .probability | in the average");
+    let mut table =
+        Table::new(TableHead::default().texts(["structure"]).numbers(["probability"]).texts(["in the average"]));
     for one in document.trace.structures.iter().filter(|one| one.member || one.weight > NEGLIGIBLE) {
         let of = |own: &TermEntry| term(&own.id, &own.form, own.only.as_ref());
         let terms: Vec<String> = one.effects.iter().map(of).collect();
@@ -202,7 +209,8 @@ pub fn structures(document: &TraceDocument) -> Table {
 
 /// The noise of every fitted record.
 pub fn noise(document: &TraceDocument) -> Table {
-    let mut table = Table::headed("record | .heading, white [deg] | beside it | headings left out at [s]");
+    let head = TableHead::default().texts(["record"]).numbers(["heading, white"]).unit("deg").texts(["beside it"]);
+    let mut table = Table::new(head.texts(["headings left out at"]).unit("s"));
     for own in &document.trace.noise {
         let name = document.records.iter().find(|record| record.file == own.file).map_or(&own.file, |one| &one.name);
         let beside = coloured(own);
@@ -221,14 +229,14 @@ pub fn noise(document: &TraceDocument) -> Table {
 pub fn coloured(own: &RecordNoiseEntry) -> Vec<String> {
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
     let size = two(own.moment_sd_rudder_deg);
-    let moment = match own.moment.as_str() {
-        "white" => Some(format!("a white yaw moment of {size}° of rudder averaged over 1 s")),
-        "ornstein-uhlenbeck" => {
+    let moment = match own.moment {
+        Moment::White => Some(format!("a white yaw moment of {size}° of rudder averaged over 1 s")),
+        Moment::OrnsteinUhlenbeck => {
             let time = two(own.moment_correlation_s);
             Some(format!("gusts of {size}° of rudder that last about {time} s"))
         }
-        "walk" => Some(format!("a yaw moment that walks by {size}°/√s of rudder")),
-        _ => None,
+        Moment::Walk => Some(format!("a yaw moment that walks by {size}°/√s of rudder")),
+        Moment::None => None,
     };
     let heading = own.heading_wander_sd_deg.map(|sd| {
         let whose = if own.heading_wander.as_deref() == Some("model") { "model" } else { "compass" };

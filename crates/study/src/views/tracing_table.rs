@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use report::number::{self, MISSING};
-use report::{Table, TableColumn};
+use report::{Table, TableHead};
 
 use super::tables::head_of_cells;
 use super::trace_charts::calibration;
@@ -20,20 +20,15 @@ use trace::Verdict;
 /// trial, and of those of the validation manoeuvre, whose band is that of the parameters alone since it has no noise.
 pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_digits: bool) -> Table {
     let several = has_several(design);
-    let mut columns = head_of_cells(design);
-    columns.extend(several.then(|| TableColumn::left("method")));
-    columns.extend(TableColumn::all("missing | >trials"));
-    for name in ["all named", "exact", "false names", "named where clear"] {
-        let ends = if all_digits { format!(" | .{name} low [%] | .{name} high [%]") } else { String::new() };
-        columns.extend(TableColumn::all(&format!(".{name} [%]{ends}")));
-    }
-    columns.push(TableColumn::right(format!("clear (margin above {CLEAR:.0})")));
-    columns.extend(Verdict::ALL.map(|verdict| TableColumn::right(verdict.as_str())));
-    columns.extend(TableColumn::all(
-        ".heading before [deg] | .heading after [deg] | .validation before [deg] | \
-         .validation after [deg] | .expected likelihood ratio | .band covers [%] | .band covers validation [%] | named",
-    ));
-    let mut table = Table::new(columns);
+    let ends: &[&str] = if all_digits { &["", " low", " high"] } else { &[""] };
+    let shares = ["all named", "exact", "false names", "named where clear"];
+    let shares = shares.iter().flat_map(|name| ends.iter().map(move |end| format!("{name}{end}")));
+    let head = head_of_cells(design).texts(several.then_some("method")).texts(["missing"]).counts(["trials"]);
+    let head = head.numbers(shares).unit("%").counts([format!("clear (margin above {CLEAR:.0})")]);
+    let head = head.counts(Verdict::ALL.map(Verdict::as_str));
+    let head = head.numbers(["heading before", "heading after", "validation before", "validation after"]).unit("deg");
+    let head = head.numbers(["expected likelihood ratio"]).numbers(["band covers", "band covers validation"]).unit("%");
+    let mut table = Table::new(head.texts(["named"]));
     for line in lines {
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
         cells.extend(several.then(|| design.methods[line.method].label.clone()));
@@ -63,10 +58,8 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
 
 /// Effects by the probability that was given to them, over all cells.
 pub fn reliability(lines: &[TraceSummary]) -> Table {
-    let mut table = Table::headed(
-        ">probability from [%] | >to [%] | >effects | .mean probability [%] | .present [%] | \
-            .low [%] | .high [%]",
-    );
+    let head = TableHead::default().counts(["probability from", "to"]).unit("%").counts(["effects"]);
+    let mut table = Table::new(head.numbers(["mean probability", "present", "low", "high"]).unit("%"));
     for (range, ends) in calibration(lines).iter().zip(CALIBRATION.windows(2)) {
         let mean = (range.effects > 0).then(|| 100.0 * range.sum / range.effects as f64);
         let present = share(range.present, range.effects);
@@ -92,11 +85,8 @@ pub fn has_several(design: &Design) -> bool {
 /// All cells of one kind together, a line each of every trace: nothing missing, one effect, several, a hull.
 pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
     let several = has_several(design);
-    let mut columns = Vec::from_iter(several.then(|| TableColumn::left("method")));
-    columns.extend(TableColumn::all(
-        "cells | >number | >trials | all named [%] | exact [%] | false names [%] | named where clear [%]",
-    ));
-    let mut table = Table::new(columns);
+    let head = TableHead::default().texts(several.then_some("method")).texts(["cells"]).counts(["number", "trials"]);
+    let mut table = Table::new(head.texts(["all named", "exact", "false names", "named where clear"]).unit("%"));
     let kind = |line: &TraceSummary| match line.missing.len() {
         0 => "nothing missing",
         _ if line.is_hull() => "a hull",

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use campaign::earlier::hulls_of;
 use campaign::known::RecordFacts;
+use document::stored_hull::rows_of;
+use document::{Code, IdentifiedShip, Warning};
 use identify::hull::{self, EarlierHull, ExpectationCheck, Likeness, is_other_froude_number};
-use predict::IdentifiedShip;
-use predict::stored_hull::rows_of;
+use predict::drawable_hull;
 use report::number::fixed;
 use scenario::failure::Failure;
 use ship::vessel::prior::HullParticulars;
@@ -85,9 +86,10 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
     Ok(())
 }
 
-/// Fails where a record counts twice, and where models are given and no hull can be fitted to the records; warns
-/// where the ships sail at other Froude numbers.
-pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<String>) -> Result<(), Failure> {
+/// Checks models beside records; warnings where the ships sail at other Froude numbers.
+///
+/// Fails where a record counts twice, and where models are given and no hull can be fitted to the records.
+pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, Failure> {
     counted_once(models, trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect())?;
     if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
         let what = "--prior cannot be used";
@@ -95,36 +97,50 @@ pub fn check(models: &[EarlierModel], trials: &[Trial], warnings: &mut Vec<Strin
                     steady approach on, or leave --prior out";
         return Err(Failure::about(file_of(&trials[0]).0, format!("{what}: {error}; {cure}")));
     }
-    if let Some(ship) = trials.iter().find_map(Trial::hull) {
-        warn_of_other_speed(models, &ship, warnings);
-    }
-    Ok(())
+    Ok(trials.iter().find_map(Trial::hull).map(|ship| other_speeds(models, &ship)).unwrap_or_default())
 }
 
-/// Warns where the ship of a model sails at another Froude number.
-fn warn_of_other_speed(models: &[EarlierModel], ship: &HullParticulars, warnings: &mut Vec<String>) {
-    for model in models {
+/// Warnings where the ship of a model sails at another Froude number.
+fn other_speeds(models: &[EarlierModel], ship: &HullParticulars) -> Vec<Warning> {
+    let of_model = |model: &EarlierModel| {
         let own = model.hulls[0].particulars;
-        if is_other_froude_number(&own, ship) {
+        is_other_froude_number(&own, ship).then(|| {
             let [one, other] = [own, *ship].map(|ship| fixed(ship.froude_number(), 3));
-            warnings.push(format!(
+            Code::EarlierTrials.warning(format!(
                 "--prior {}: its ship sailed at a Froude number of {one}, that of the records at {other}; coefficients change with \
                  the Froude number, so prefer trials near it",
                 model.file
-            ));
-        }
-    }
+            ))
+        })
+    };
+    models.iter().filter_map(of_model).collect()
 }
 
-/// A ship whose hulls were fitted without the models, with what these tell of her, and what is said of it; `shown` is
-/// what messages call her model, `records` are those in it.
+/// A ship whose hulls were fitted without some models.
+pub struct LaterShip<'a> {
+    /// What messages call her model.
+    pub file: &'a str,
+    /// What is known of her.
+    pub ship: &'a IdentifiedShip,
+    /// The records that are in her model.
+    pub records: &'a BTreeMap<String, String>,
+}
+
+/// A ship after earlier trials.
+pub struct ShipAfterTrials {
+    /// What is known of her.
+    pub ship: IdentifiedShip,
+    /// The models beside her.
+    pub earlier: EarlierTrials,
+    /// Where they contradict her, or are of another speed.
+    pub warnings: Vec<Warning>,
+}
+
+/// A ship with what the models tell of her.
 ///
 /// Fails where she has no hull, where a record would count twice, and where the models have no form of hers.
-pub fn with_earlier(
-    models: &[EarlierModel],
-    (shown, ship, records): (&str, &IdentifiedShip, &BTreeMap<String, String>),
-    warnings: &mut Vec<String>,
-) -> Result<(IdentifiedShip, EarlierTrials), Failure> {
+pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
+    let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
     let own = hulls_of(ship).map_err(|error| Failure::about(shown, error))?;
     let (mut ship, earlier, mut checks) = (ship.clone(), hulls(models), Vec::new());
@@ -133,7 +149,7 @@ pub fn with_earlier(
         let values = stored.coefficients.iter_mut().zip(after.values.iter());
         values.for_each(|(coefficient, value)| coefficient.value = *value);
         stored.covariance = rows_of(&after.covariance);
-        stored.check().map_err(|error| Failure::about(shown, error))?;
+        drawable_hull::check(stored).map_err(|error| Failure::about(shown, error))?;
         checks.extend(check.map(|check| (own.form.as_str(), check)));
     }
     if checks.is_empty() {
@@ -141,11 +157,11 @@ pub fn with_earlier(
                     --prior out";
         return Err(Failure::about(shown, what));
     }
-    warn_of_other_speed(models, &own[0].particulars, warnings);
     checks.sort_by(|one, other| other.1.p_value.total_cmp(&one.1.p_value));
-    let said = said(models, &own[0].particulars, &checks, |_| true);
-    warnings.extend(said.warning());
-    Ok((ship, said))
+    let earlier = said(models, &own[0].particulars, &checks, |_| true);
+    let mut warnings = other_speeds(models, &own[0].particulars);
+    warnings.extend(earlier.warning());
+    Ok(ShipAfterTrials { ship, earlier, warnings })
 }
 
 /// What is said of the models beside a ship after their check, the nearest hull first.
@@ -162,16 +178,9 @@ fn said(
     }
 }
 
-/// What is said of the models beside the records; `None` without any. The warning of a conflict is among `warnings`.
-pub fn entry(
-    models: &[EarlierModel],
-    trials: &[Trial],
-    facts: &RecordFacts,
-    warnings: &mut Vec<String>,
-) -> Option<EarlierTrials> {
+/// What is said of the models beside the records; `None` without any.
+pub fn entry(models: &[EarlierModel], trials: &[Trial], facts: &RecordFacts) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
     let is_member = |form: &str| facts.hulls.iter().any(|own| own.form == form);
-    let entry = said(models, &ship, &facts.checks, is_member);
-    warnings.extend(entry.warning());
-    Some(entry)
+    Some(said(models, &ship, &facts.checks, is_member))
 }

@@ -2,6 +2,8 @@
 //! known of the ship.
 
 use campaign::stored_figures::Replays;
+use document::trace::PrimeIndices;
+use document::{Code, Source, Warning, Warnings};
 use identify::estimate::Uncertainty;
 use identify::recommended::Recommendation;
 use identify::replay::{pooled, replay};
@@ -14,7 +16,6 @@ use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
 use ship::FirstOrder;
 use ship::angle::to_deg;
-use trace::document::PrimeIndices;
 use trial::{Channel, Trial, ZigZag};
 
 use super::earlier::{self, EarlierModel};
@@ -23,9 +24,10 @@ use super::loading::{AGAINST_FORM, speak_against_form};
 use super::single_records;
 use crate::completed::ALL;
 use crate::documents::fit::{FIT_SCHEMA, FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
+use crate::documents::prior::EarlierTrials;
 use crate::documents::verdict::VerdictEntry;
 use crate::outside::{self, Named, NamedCommand};
-use crate::records::{file_of, names, warn_of_no_track};
+use crate::records::{file_of, names, no_track, source_of};
 use crate::scales::{self, RescaledRecords};
 use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
@@ -94,7 +96,7 @@ impl FitResult {
 }
 
 /// Identifies the records together by every method and replays the answers on `others`; the hull about what `priors`
-/// left.
+/// left. The document has `warnings` of the records and those of the fit.
 ///
 /// Fails when the records cannot be brought to one scale, when no method can identify them, and when there are priors
 /// and no hull can be fitted: that is wrong input, not a result.
@@ -103,11 +105,11 @@ pub fn fit(
     methods: &[Named],
     priors: &[EarlierModel],
     quiet: bool,
-    warnings: &mut Vec<String>,
+    mut warnings: Warnings,
 ) -> Result<FitResult, Failure> {
     let together = scales::together(records, others)?;
     let (trials, others) = (&together.trials[..], &together.others[..]);
-    earlier::check(priors, trials, warnings)?;
+    warnings.extend(earlier::check(priors, trials)?);
     let ship = scales::particulars(trials);
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
         .par_iter()
@@ -122,17 +124,20 @@ pub fn fit(
         .collect();
     let entries: Vec<MethodEntry> = answers.iter().map(|(entry, _)| entry.clone()).collect();
     if entries.iter().all(|entry| entry.parameters.is_none()) {
-        return Err(unusable(&records[0], &entries, warnings));
+        return Err(unusable(&records[0], &entries, &warnings.ranked()));
     }
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|own| own.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| suspicion(estimate, ship, records)));
-    let records: Vec<TrialEntry> = records.iter().map(|trial| of_record(trial, warnings)).collect();
+    let zigzags: Vec<_> = records.iter().map(ZigZag::of).collect();
+    warnings
+        .extend(records.iter().zip(&zigzags).filter_map(|(trial, zigzag)| late_begin(trial, zigzag.as_ref().ok()?)));
+    let records: Vec<TrialEntry> = records.iter().zip(&zigzags).map(|(own, zigzag)| trial_entry(own, zigzag)).collect();
     let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
-    warn_of_no_track(&shown, warnings);
-    let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
-    if has_form && speak_against_form(&shown.hulls) {
-        warnings.push(format!("{AGAINST_FORM}; `study predict --load` cannot take this ship to another loading"));
-    }
+    warnings.extend(no_track(&shown));
+    warnings.extend(no_loading(trials, &shown));
+    let earlier_trials = earlier::entry(priors, trials, &shown);
+    warnings.extend(earlier_trials.as_ref().and_then(EarlierTrials::warning));
+    warnings.extend(answers.iter().flat_map(of_answer));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
     };
@@ -142,29 +147,36 @@ pub fn fit(
         zigzag: records[0].zigzag.clone(),
         trials: records,
         ships: answers.iter().filter_map(ship_of).collect(),
-        earlier_trials: earlier::entry(priors, trials, &shown, warnings),
+        earlier_trials,
         scales: every_scale::compared(methods, &answers, &together),
         scaling: together.sentence(),
         length_m: ship.map(|ship| ship.length),
         speed_m_s: ship.map(|ship| ship.speed),
         single_records: single_records::of_records(trials, &preferred(methods, &entries)),
-        warnings: warnings.clone(),
+        warnings: warnings.ranked(),
         methods: entries,
     };
     Ok(FitResult { together, answers, document })
 }
 
-/// A record with its characteristics.
-fn of_record(trial: &Trial, warnings: &mut Vec<String>) -> TrialEntry {
-    let zigzag = ZigZag::of(trial);
-    if zigzag.as_ref().is_ok_and(|zigzag| zigzag.begins_at_reversal) {
-        warnings.push(format!(
-            "{}: the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier if \
-             the log does",
-            file_of(trial).0
-        ));
-    }
-    trial_entry(trial, &zigzag)
+/// What a method says of its answer.
+fn of_answer((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
+    let own = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
+    Source::Method(entry.method.clone()).of(own).collect()
+}
+
+/// The warning of a ship of known draught that cannot be taken to another loading.
+fn no_loading(trials: &[Trial], shown: &RecordFacts) -> Option<Warning> {
+    let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
+    let text = format!("{AGAINST_FORM}; `study predict --load` cannot take this ship to another loading");
+    (has_form && speak_against_form(&shown.hulls)).then(|| Code::NoLoading.warning(text))
+}
+
+/// The warning of a record whose first overshoot cannot be read.
+fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
+    let text = "the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier if the \
+                log does";
+    zigzag.begins_at_reversal.then(|| Warning::new(Code::LateBegin, source_of(trial), text))
 }
 
 /// Which answer is to be taken.
@@ -224,7 +236,7 @@ fn preferred<'a>(methods: &'a [Named], entries: &[MethodEntry]) -> Vec<&'a dyn I
 }
 
 /// The message when no method gives an answer: every reason once.
-fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[String]) -> Failure {
+fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[Warning]) -> Failure {
     let reasons = grouped(entries, |entry| entry.reason.as_deref().unwrap_or("no answer"));
     let mut message = match (entries, reasons.as_slice()) {
         ([only], [(reason, _)]) => format!("{} cannot identify this record: {reason}", only.method),

@@ -4,9 +4,10 @@
 use std::path::Path;
 
 use campaign::earlier::hulls_of;
+use document::stored_hull::StoredHull;
+use document::{Code, IdentifiedShip, Source, Warnings};
 use identify::hull::ExpectedHull;
-use predict::IdentifiedShip;
-use predict::stored_hull::StoredHull;
+use predict::drawable_hull;
 use scenario::failure::Failure;
 use ship::ShortNumber;
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, priors};
@@ -69,7 +70,7 @@ impl DescribedLoading {
         &self,
         shown: &str,
         ship: &IdentifiedShip,
-        warnings: &mut Vec<String>,
+        warnings: &mut Warnings,
     ) -> Result<(IdentifiedShip, f64), Failure> {
         let mut ship = only_hull(shown, ship)?;
         let earlier = hulls_of(&ship).map_err(|error| Failure::about(shown, error))?;
@@ -81,7 +82,7 @@ impl DescribedLoading {
             let hull = ship.hulls[0].at_loading(&to, &own.coefficients, own.law()?);
             Some(StoredHull { propeller_per_s: self.given.propeller_rate, ..hull })
         };
-        let hull = expected.and_then(at_loading).filter(|hull| hull.check().is_ok());
+        let hull = expected.and_then(at_loading).filter(|hull| drawable_hull::check(hull).is_ok());
         let none = || self.refused(format!("the hull of {shown} makes no ship at this loading; check the numbers"));
         ship.hulls = vec![hull.ok_or_else(none)?];
         let faster = to.speed / own.speed;
@@ -92,7 +93,7 @@ impl DescribedLoading {
     }
 
     /// Warns of what is taken as at the trials, though it changes with the loading.
-    fn warn_of_kept(&self, to: &HullParticulars, warnings: &mut Vec<String>) {
+    fn warn_of_kept(&self, to: &HullParticulars, warnings: &mut Warnings) {
         let HullParticulars { block_coefficient, displacement, x_g, propeller_rate, .. } = self.given;
         let kept = [
             ("block-coefficient", to.block_coefficient.filter(|_| block_coefficient.or(displacement).is_none())),
@@ -102,7 +103,8 @@ impl DescribedLoading {
         for (key, value) in kept.into_iter().filter_map(|(key, value)| Some((key, value?))) {
             let advice = "it changes with the loading, so give it where it is known";
             let value = ShortNumber::rounded(value, 4);
-            warnings.push(format!("{}: {key} = {value} is taken, as at the trials; {advice}", self.file));
+            let text = format!("{key} = {value} is taken, as at the trials; {advice}");
+            warnings.push(Code::KeptParticulars, Source::File(self.file.clone()), text);
         }
     }
 
@@ -186,7 +188,8 @@ fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsErro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use predict::stored_hull::{StoredCoefficient, by_keys};
+    use document::Warning;
+    use document::stored_hull::{StoredCoefficient, by_keys};
     use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
 
     /// A tanker in ballast.
@@ -203,7 +206,7 @@ mod tests {
 
     /// Her hull at a loading, and the warnings; at the trial it is half a standard deviation above the formulas, known
     /// to a hundredth of one.
-    fn taken(given: HullParticulars) -> (StoredHull, Vec<String>) {
+    fn taken(given: HullParticulars) -> (StoredHull, Vec<Warning>) {
         let own = formulas(&at_trial());
         let entry = |i: usize, j: usize| if i == j { (0.01 * own[i].sd).powi(2) } else { 0.0 };
         let coefficient = |own: &HullCoefficient| {
@@ -220,10 +223,10 @@ mod tests {
             ..StoredHull::default()
         };
         let ship = IdentifiedShip { hulls: vec![StoredHull::default(), hull], ..IdentifiedShip::default() };
-        let (loading, mut warnings) = (DescribedLoading { file: "full.toml".into(), given }, Vec::new());
+        let (loading, mut warnings) = (DescribedLoading { file: "full.toml".into(), given }, Warnings::default());
         let (mut ship, _) = loading.of_ship("fit.json", &ship, &mut warnings).expect("another loading");
         assert_eq!(ship.hulls.len(), 1);
-        (ship.hulls.remove(0), warnings)
+        (ship.hulls.remove(0), warnings.ranked())
     }
 
     /// The difference of the formulas and the departure of the ship from them, but of what depends on friction or
@@ -262,7 +265,8 @@ mod tests {
             (Some(0.77), Some(3.0), 8.0, Some(1.7))
         );
         assert!(
-            warnings[0].contains("block-coefficient = 0.77 is taken") && warnings[1].contains("x-g-m = 3 is taken")
+            warnings[0].text.contains("block-coefficient = 0.77 is taken")
+                && warnings[1].text.contains("x-g-m = 3 is taken")
         );
         let (hull, warnings) = taken(HullParticulars { displacement: Some(3.2e8), ..bare });
         let told = hull.particulars().expect("known").block_coefficient.expect("told");

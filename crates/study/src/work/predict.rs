@@ -3,27 +3,28 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use document::{Code, IdentifiedShip, Source, Warning, Warnings};
 use identify::hull::Likeness;
 use identify::suspicion::unusual_froude_number;
 use predict::correction::{self, Correction};
-use predict::document::{ModelWeight, OtherLoading};
+use predict::document::{ModelWeight, OtherLoading, SCHEMA};
 use predict::form::{self, FormRecord};
 use predict::replay::RecordReplay;
 use predict::turn::{self, Current};
-use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
+use predict::{PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
 use report::number::fixed;
 use scenario::TRACE;
 use scenario::failure::Failure;
 use ship::Particulars;
 use trial::{Manoeuvre, Trial, file};
 
-use super::earlier::{EarlierModel, with_earlier};
+use super::earlier::{EarlierModel, LaterShip, with_earlier};
 use super::loading::{DescribedLoading, only_hull};
 use super::stored_answer::{StoredAnswer, ships_of, text_of};
 use super::target_scale::{self, Declared, TargetScale, at_scale, is_alike, of_two_scales};
 use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
-use crate::records::{file_of, rudder_logged_late};
+use crate::records::{file_of, rudder_logged_late, source_of};
 
 /// Methods of fit.json in the order in which they are asked; those that are not named come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
@@ -62,7 +63,7 @@ impl StoredModel {
     /// What is known of the ship in a file, as a request asks for it.
     ///
     /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
-    pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Self, Failure> {
+    pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
         let shown = file::called(path).display().to_string();
         Self::of_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
     }
@@ -76,18 +77,20 @@ impl StoredModel {
         text: &str,
         asked: Option<&str>,
         calm: bool,
-        warnings: &mut Vec<String>,
+        warnings: &mut Warnings,
     ) -> Result<Self, Failure> {
         let StoredAnswer { mut ships, verdict, records } = ships_of(shown, text)?;
         // A trace has one answer.
         let asked = asked.filter(|_| !ships.contains_key(TRACE));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
         if asked.is_none() && ships.len() > 1 {
-            warnings.push(format!("{shown}: the answer of {method} is used; --method names another"));
+            let text = format!("the answer of {method} is used; --method names another");
+            warnings.push(Code::Answer, Source::File(shown.to_owned()), text);
         }
         let known = ships.remove(&method).expect("it was found there");
         if let Some(late) = known.rudder_logged_late() {
-            warnings.push(format!("{shown}: {}; she is steered without it", rudder_logged_late(late)));
+            let text = format!("{}; she is steered without it", rudder_logged_late(late));
+            warnings.push(Code::LateRudder, Source::File(shown.to_owned()), text);
         }
         let known = if calm { known.in_calm() } else { Ok(known) };
         let known = known.map_err(|error| Failure::about(shown, error))?;
@@ -95,11 +98,14 @@ impl StoredModel {
     }
 
     /// The same after earlier trials that it has not seen, and what is said of them.
-    fn after(&self, earlier: &[EarlierModel], warnings: &mut Vec<String>) -> Result<(Self, String), Failure> {
-        let (known, said) = with_earlier(earlier, (&self.file, &self.known, &self.records), warnings)?;
+    fn after(&self, earlier: &[EarlierModel], warnings: &mut Warnings) -> Result<(Self, String), Failure> {
+        let own = LaterShip { file: &self.file, ship: &self.known, records: &self.records };
+        let after = with_earlier(earlier, own)?;
+        warnings.extend(after.warnings);
         let mut records = self.records.clone();
         records.extend(earlier.iter().flat_map(|own| own.records.clone()));
-        Ok((Self { known, records, ..self.clone() }, format!("{}: {}", self.file, said.sentence())))
+        let said = format!("{}: {}", self.file, after.earlier.sentence());
+        Ok((Self { known: after.ship, records, ..self.clone() }, said))
     }
 
     /// The same with what another function makes of the ship, which is given the name of the file.
@@ -139,39 +145,49 @@ fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
     kinds
 }
 
-/// The manoeuvres that drawn ships come to the end of, and why the last of the others is lost; `file` is what messages
-/// call the model.
-fn predictions(
-    (kinds, draws): (&[Manoeuvre], usize),
-    mixture: &ShipMixture,
-    file: &str,
-    steps: &ProgressSteps,
-    warnings: &mut Vec<String>,
-) -> Result<(Vec<Prediction>, Option<PredictError>), Failure> {
-    let (mut predictions, mut lost) = (Vec::new(), None);
-    for kind in kinds {
-        let prediction = mixture.predict(kind, draws, true);
-        steps.advance();
-        match prediction {
-            Ok(prediction) => {
-                warnings.extend(prediction.undetermined.iter().map(|(name, interval)| {
-                    let [low, high] = interval.ci90.map(|end| fixed(end, interval.decimals()));
-                    format!(
-                        "{file}: {kind}: {name} is left out: nine tenths of the drawn ships lie from {low} to {high}, so \
-                         the records do not tell it; fit records with positions (north_m, east_m) or sway_m_s"
-                    )
-                }));
-                predictions.push(prediction);
+/// The ships of a mixture that steer manoeuvres.
+struct SteeredShips<'a> {
+    mixture: &'a ShipMixture,
+    /// How many are drawn.
+    draws: usize,
+    /// What messages call the model.
+    file: &'a str,
+}
+
+impl SteeredShips<'_> {
+    /// The manoeuvres that the ships come to the end of, and why the last of the others is lost.
+    fn predictions(
+        &self,
+        kinds: &[Manoeuvre],
+        steps: &ProgressSteps,
+        warnings: &mut Warnings,
+    ) -> Result<(Vec<Prediction>, Option<PredictError>), Failure> {
+        let (mut predictions, mut lost) = (Vec::new(), None);
+        let warning = |text: String| Warning::new(Code::Unpredicted, Source::File(self.file.to_owned()), text);
+        for kind in kinds {
+            let prediction = self.mixture.predict(kind, self.draws, true);
+            steps.advance();
+            match prediction {
+                Ok(prediction) => {
+                    warnings.extend(prediction.undetermined.iter().map(|(name, interval)| {
+                        let [low, high] = interval.ci90.map(|end| fixed(end, interval.decimals()));
+                        warning(format!(
+                            "{kind}: {name} is left out: nine tenths of the drawn ships lie from {low} to {high}, so the \
+                             records do not tell it; fit records with positions (north_m, east_m) or sway_m_s"
+                        ))
+                    }));
+                    predictions.push(prediction);
+                }
+                // One manoeuvre that the model cannot make says nothing of the others.
+                Err(error @ PredictError::Lost { .. }) => {
+                    warnings.extend([warning(format!("{error}; it is left out"))]);
+                    lost = Some(error);
+                }
+                Err(error) => return Err(Failure::about(self.file, error)),
             }
-            // One manoeuvre that the model cannot make says nothing of the others.
-            Err(error @ PredictError::Lost { .. }) => {
-                warnings.push(format!("{file}: {error}; it is left out"));
-                lost = Some(error);
-            }
-            Err(error) => return Err(Failure::about(file, error)),
         }
+        Ok((predictions, lost))
     }
-    Ok((predictions, lost))
 }
 
 /// Predicts the manoeuvres and replays the records.
@@ -182,7 +198,7 @@ pub fn predict(
     request: &PredictRequest,
     input: PredictInput,
     quiet: bool,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<PredictDocument, Failure> {
     let PredictInput { models, earlier, ballast, records, current, declared } = input;
     let (told, said) = after_earlier(models, earlier, warnings)?;
@@ -190,8 +206,7 @@ pub fn predict(
     let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
     warnings.extend(records.iter().filter(|_| ballast.is_empty()).filter_map(|own| validates_nothing(models, own)));
-    let draws = request.draws as usize;
-    let scale = TargetScale::of(&request.scale, &records, declared)?;
+    let (draws, scale) = (request.draws as usize, TargetScale::of(&request.scale, &records, declared)?);
     let mut in_still_water = |record| turn::without_current(target_scale::at_own_scale(record, warnings), current);
     let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
     let mixture = mixture_of(models, scale)?;
@@ -200,15 +215,16 @@ pub fn predict(
     let file = files(models).join(", ");
     let kinds = manoeuvres(request);
     let steps = ProgressSteps::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
-    let (predictions, lost) = predictions((&kinds, draws), &mixture, &file, &steps, warnings)?;
+    let (predictions, lost) =
+        SteeredShips { mixture: &mixture, draws, file: &file }.predictions(&kinds, &steps, warnings)?;
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
         return Err(Failure::about(&file, error));
     }
     let loading = OtherLoading::name(taken.as_ref().map(|(.., load)| load));
     let (mut replays, mut corrections) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
+    let replays_of = ReplayedModels { full: models, ballast, loading: &loading, scale, draws };
     for (record, current) in &records {
-        let (replayed, correction) =
-            held_against((record, *current), ([models, ballast], &loading), (scale, draws), warnings)?;
+        let (replayed, correction) = replays_of.beside(record, *current, warnings)?;
         replays.push(replayed);
         corrections.push(correction);
         steps.advance();
@@ -216,7 +232,7 @@ pub fn predict(
     steps.finish();
     let weight = 1.0 / models.len() as f64;
     let mut document = PredictDocument {
-        schema: String::from("predict/1"),
+        schema: SCHEMA.into(),
         models: files(models).into_iter().map(|file| ModelWeight { file, weight }).collect(),
         draws,
         calm: request.calm,
@@ -243,17 +259,18 @@ pub fn predict(
 fn after_earlier(
     models: &[StoredModel],
     earlier: &[EarlierModel],
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<(Vec<StoredModel>, Vec<String>), Failure> {
     let told = models.iter().filter(|_| !earlier.is_empty()).map(|model| model.after(earlier, warnings));
     Ok(told.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
 }
 
 /// The warning that a record is in one of the models.
-fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<String> {
-    let (file, sha256) = file_of(record);
+fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<Warning> {
+    let (_, sha256) = file_of(record);
     let model = models.iter().find(|model| model.records.contains_key(sha256))?;
-    Some(format!("{file}: {} is fitted to it; the error on it validates nothing", model.file))
+    let text = format!("{} is fitted to it; the error on it validates nothing", model.file);
+    Some(Warning::new(Code::Repetition, source_of(record), text))
 }
 
 /// Puts the form of MSC/Circ.1053 into a document that holds all else.
@@ -279,7 +296,7 @@ fn at_loading(
     path: &Path,
     models: &[StoredModel],
     ballast: &[StoredModel],
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<(Vec<StoredModel>, Vec<StoredModel>, OtherLoading), Failure> {
     let loading = DescribedLoading::of_file(path)?;
     let mut draughts = Vec::new();
@@ -294,47 +311,62 @@ fn at_loading(
     Ok((models, ballast, OtherLoading { file: loading.file, draughts_at_trials_m: draughts, draught_m, factor }))
 }
 
-/// A record beside its replay, and corrected to `loading` where there is a model of its condition; models are those at
-/// that loading and those in the condition of the record.
-fn held_against(
-    (record, current): (&Trial, Option<Current>),
-    ([full, ballast], loading): ([&[StoredModel]; 2], &str),
-    (scale, draws): (Option<TargetScale>, usize),
-    warnings: &mut Vec<String>,
-) -> Result<(RecordReplay, Option<Correction>), Failure> {
-    let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::of_record(scale, record));
-    let file = file_of(record).0;
-    let own = scaled(if ballast.is_empty() { full } else { ballast })?;
-    let replayed = own.replay(record, draws, current).map_err(|error| Failure::about(file, error))?;
-    let Some(replayed) = replayed else {
-        let what = "too few headings at its beginning to say how the ship began";
-        return Err(Failure::about(file, format!("{what}; choose a part under [part] of a sidecar")));
-    };
-    if ballast.is_empty() {
-        return Ok((replayed, None));
-    }
-    let mut correction = match correction::correct(&scaled(full)?, &own, record, loading, draws) {
-        Ok(correction) => correction,
-        Err(error @ PredictError::Lost { .. }) => {
-            warnings.push(format!("{file}: {error}; it is not corrected to {loading}"));
+/// The models that records are held against.
+struct ReplayedModels<'a> {
+    /// Those at the loading that is predicted for.
+    full: &'a [StoredModel],
+    /// Those in the condition of the records; empty where they need no correction.
+    ballast: &'a [StoredModel],
+    /// The name of the loading.
+    loading: &'a str,
+    scale: Option<TargetScale>,
+    draws: usize,
+}
+
+impl ReplayedModels<'_> {
+    /// A record beside its replay, and corrected to the loading where there is a model of its condition.
+    fn beside(
+        &self,
+        record: &Trial,
+        current: Option<Current>,
+        warnings: &mut Warnings,
+    ) -> Result<(RecordReplay, Option<Correction>), Failure> {
+        let Self { full, ballast, loading, scale, draws } = *self;
+        let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::of_record(scale, record));
+        let file = file_of(record).0;
+        let own = scaled(if ballast.is_empty() { full } else { ballast })?;
+        let replayed = own.replay(record, draws, current).map_err(|error| Failure::about(file, error))?;
+        let Some(replayed) = replayed else {
+            let what = "too few headings at its beginning to say how the ship began";
+            return Err(Failure::about(file, format!("{what}; choose a part under [part] of a sidecar")));
+        };
+        if ballast.is_empty() {
             return Ok((replayed, None));
         }
-        Err(error) => return Err(Failure::about(file, error)),
-    };
-    if correction.figures.is_empty() {
-        warnings.push(format!(
-            "{file}: it shows no figure of a zig-zag or a turn from its first execute on; it is not corrected to \
-             {loading}"
-        ));
-        return Ok((replayed, None));
+        let mut correction = match correction::correct(&scaled(full)?, &own, record, loading, draws) {
+            Ok(correction) => correction,
+            Err(error @ PredictError::Lost { .. }) => {
+                let text = format!("{error}; it is not corrected to {loading}");
+                warnings.push(Code::Correction, source_of(record), text);
+                return Ok((replayed, None));
+            }
+            Err(error) => return Err(Failure::about(file, error)),
+        };
+        if correction.figures.is_empty() {
+            let text = format!(
+                "it shows no figure of a zig-zag or a turn from its first execute on; it is not corrected to {loading}"
+            );
+            warnings.push(Code::Correction, source_of(record), text);
+            return Ok((replayed, None));
+        }
+        let mut of_models = correction::differences(&full[0].known, &ballast[0].known, loading);
+        if full[0].method != ballast[0].method {
+            of_models.push(correction::different("methods", &full[0].method, &ballast[0].method, loading));
+        }
+        correction.warnings.splice(0..0, of_models);
+        [correction.full, correction.ballast] = [full, ballast].map(files);
+        Ok((replayed, Some(correction)))
     }
-    let mut of_models = correction::differences(&full[0].known, &ballast[0].known, loading);
-    if full[0].method != ballast[0].method {
-        of_models.push(correction::different("methods", &full[0].method, &ballast[0].method, loading));
-    }
-    correction.warnings.splice(0..0, of_models);
-    [correction.full, correction.ballast] = [full, ballast].map(files);
-    Ok((replayed, Some(correction)))
 }
 
 /// The method whose answer is used.

@@ -1,8 +1,9 @@
 //! The steady turns of a traced model, as the diagram of a spiral test shows them.
 
-use predict::identified_ship::ValidityRange;
+use document::IdentifiedShip;
+use document::identified_ship::ValidityRange;
+use predict::ShipMixture;
 use predict::steady::SteadyCurve;
-use predict::{IdentifiedShip, ShipMixture};
 use ship::angle::from_deg;
 use trial::Manoeuvre;
 

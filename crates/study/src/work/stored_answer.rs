@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use ::trace::document::SCHEMA as TRACE_SCHEMA;
-use predict::IdentifiedShip;
+use document::IdentifiedShip;
+use document::trace::SCHEMA as TRACE_SCHEMA;
 use scenario::failure::Failure;
 use scenario::{TRACE, name};
 use serde_json::Value;
@@ -45,9 +45,14 @@ pub fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
     let (command, key, records) = match value["schema"].as_str() {
         Some(FIT_SCHEMA) => ("fit", "ships", "trials"),
         Some(TRACE_SCHEMA) => (TRACE, "ship", "records"),
-        _ => {
+        other => {
             let known = format!("expected \"{FIT_SCHEMA}\" or \"{TRACE_SCHEMA}\"");
-            return Err(refuse(format!("schema = {}, {known}; {EXPECTED}, made again with it", value["schema"])));
+            let command = other.and_then(|schema| schema.split('/').next());
+            let cure = match command.filter(|command| ["fit", TRACE].contains(command)) {
+                Some(command) => format!("make it again with `study {command}`"),
+                None => EXPECTED.to_owned(),
+            };
+            return Err(refuse(format!("schema = {}, {known}; {cure}", value["schema"])));
         }
     };
     let known = value.get(key).cloned().ok_or_else(|| {

@@ -1,9 +1,9 @@
 //! The scale of a prediction, and what is brought to it. What is said of a ship of one length does not hold for one of
 //! another, so scales that differ are refused or told.
 
+use document::identified_ship::is_same_length;
+use document::{Code, IdentifiedShip, IdentifiedShipError, Warnings};
 use identify::hull::is_other_froude_number;
-use predict::identified_ship::is_same_length;
-use predict::{IdentifiedShip, PredictError};
 use report::number::fixed;
 use scenario::failure::Failure;
 use ship::Particulars;
@@ -11,7 +11,7 @@ use ship::vessel::prior::HullParticulars;
 use trial::{Conditions, Trial};
 
 use crate::options::ScaleOptions;
-use crate::records::file_of;
+use crate::records::{file_of, source_of};
 
 /// What a sidecar says of the conditions, and its name.
 pub type Declared<'a> = Option<(&'a str, &'a Conditions)>;
@@ -77,7 +77,7 @@ pub fn is_alike(one: Particulars, other: Particulars) -> bool {
 }
 
 /// A ship at a scale; one whose scale is not known takes it as its own.
-pub fn at_scale(known: &IdentifiedShip, scale: Option<TargetScale>) -> Result<IdentifiedShip, PredictError> {
+pub fn at_scale(known: &IdentifiedShip, scale: Option<TargetScale>) -> Result<IdentifiedShip, IdentifiedShipError> {
     let Some(TargetScale { length, speed, is_asked }) = scale else { return Ok(known.clone()) };
     // The speed of a trial is read off its beginning and never quite that of another.
     let is_speed_of = |own: Particulars, speed| match is_asked {
@@ -94,15 +94,15 @@ pub fn at_scale(known: &IdentifiedShip, scale: Option<TargetScale>) -> Result<Id
 }
 
 /// A record at the scale that its sidecar declares, where another one is asked for: a model is replayed as a model.
-pub fn at_own_scale(record: Trial, warnings: &mut Vec<String>) -> Trial {
+pub fn at_own_scale(record: Trial, warnings: &mut Warnings) -> Trial {
     let is_other =
         |own: &Particulars| record.particulars().is_some_and(|given| !is_same_length(own.length, given.length));
     let Some(own) = record.conditions().particulars.filter(is_other) else { return record };
-    warnings.push(format!(
-        "{}: its sidecar says {} m at {} m/s; it is replayed at that scale, and manoeuvres are predicted at the other",
-        file_of(&record).0,
+    let text = format!(
+        "its sidecar says {} m at {} m/s; it is replayed at that scale, and manoeuvres are predicted at the other",
         fixed(own.length, 2),
         fixed(own.speed, 2)
-    ));
+    );
+    warnings.push(Code::Scale, source_of(&record), text);
     record.with_particulars(own)
 }

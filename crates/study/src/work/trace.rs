@@ -5,6 +5,7 @@ use ::trace::{Analysis, Settings, TraceError, Watcher};
 use campaign::Observer;
 use campaign::folder::ResultFolder;
 use campaign::known::{self, RecordFacts};
+use document::{Code, Warnings};
 use identify::suspicion::suspicion;
 use indicatif::ProgressBar;
 use scenario::failure::Failure;
@@ -14,11 +15,12 @@ use super::earlier::{self, EarlierModel};
 use super::planned;
 use crate::documents::curves::{self, TraceCurves};
 use crate::documents::missing_moment::MissingMomentEntry;
+use crate::documents::prior::EarlierTrials;
 use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
 use crate::documents::{self, missing_moment};
 use crate::options::{TraceRequest, Withheld};
 use crate::progress;
-use crate::records::{file_of, names, rudder_logged_late, warn_of_no_track};
+use crate::records::{file_of, names, no_track, rudder_logged_late};
 use crate::scales::{self, RescaledRecords};
 use crate::terminal::Terminal;
 
@@ -85,10 +87,10 @@ pub fn trace(
     settings: &Settings,
     priors: &[EarlierModel],
     quiet: bool,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<TraceResult, Failure> {
     let together = scales::together(records, others)?;
-    earlier::check(priors, &together.trials, warnings)?;
+    warnings.extend(earlier::check(priors, &together.trials)?);
     let settings = &Settings { earlier: earlier::hulls(priors), ..settings.clone() };
     let watch = TraceWatch {
         busy: progress::busy("searching for what the model lacks", quiet),
@@ -100,7 +102,7 @@ pub fn trace(
     let scales = together.sentence();
     let RescaledRecords { trials, others: held_out, .. } = together;
     let shown = RecordFacts::of(&trials).with_motion(Some(&analysis), &settings.earlier);
-    warn_of_no_track(&shown, warnings);
+    warnings.extend(no_track(&shown));
     warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
     let all = records.iter().chain(others);
     let names = names(trials.iter().chain(&held_out).map(Trial::name));
@@ -125,14 +127,17 @@ pub fn trace(
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
     tables.extend(curves_of_moments);
     let ship = known::of_analysis(&analysis, &shown);
-    warnings.extend(ship.rudder_logged_late().map(rudder_logged_late));
+    warnings.extend(ship.rudder_logged_late().map(|late| Code::LateRudder.warning(rudder_logged_late(late))));
+    let earlier_trials = earlier::entry(priors, &trials, &shown);
+    warnings.extend(earlier_trials.as_ref().and_then(EarlierTrials::warning));
     let document = TraceDocument {
-        earlier_trials: earlier::entry(priors, &trials, &shown, warnings),
+        earlier_trials,
         ship,
         records: entries,
         missing_moment: moments,
         scales,
-        trace: ::trace::Document { next_trial: next_trial(&analysis, &trials), ..analysis.document },
+        next_trial: next_trial(&analysis, &trials),
+        trace: analysis.document,
     };
     Ok(TraceResult { document, tables })
 }

@@ -1,6 +1,7 @@
 //! What `study fit` says of a good record: which methods, which warnings, with figures and without.
 
 use identify::registry::{self, USUAL};
+use serde_json::Value;
 
 use crate::desk::{Desk, of_repository, with_column, zig_zag_csv};
 
@@ -59,18 +60,21 @@ fn what_can_be_drawn_can_be_told_without_figures() {
 #[test]
 fn what_the_reader_noticed_is_in_the_document() {
     let desk = Desk::new();
-    for (log, said) in [
-        ("frozen.csv", "the heading is frozen from"),
-        ("checksums.nmea", "checksum"),
-        ("spike.csv", "1 row with a rudder angle no rudder has"),
-        ("gaps.csv", "gaps longer than ten sampling periods"),
+    for (log, said, code, severity) in [
+        ("frozen.csv", "the heading is frozen from", "missing-values", "mended"),
+        ("checksums.nmea", "checksum", "left-out", "mended"),
+        ("spike.csv", "1 row with a rudder angle no rudder has", "rejected-readings", "mended"),
+        ("gaps.csv", "gaps longer than ten sampling periods", "gap", "doubt"),
     ] {
         let path = of_repository("tests/logs").join(log).display().to_string();
         let own = ["fit", &path, "--method", "least-squares", "--figures", "none", "--quiet", "--out", "fit"];
         desk.run(&own).is_done();
         let warnings = desk.json("fit/fit.json")["warnings"].clone();
-        let told = warnings.as_array().into_iter().flatten().filter_map(|own| own.as_str());
-        assert!(told.clone().any(|own| own.contains(said)), "{log}: {warnings}");
+        let told = |own: &Value| own["text"].as_str().is_some_and(|text| text.contains(said));
+        let own =
+            warnings.as_array().into_iter().flatten().find(|own| told(own)).unwrap_or_else(|| panic!("{warnings}"));
+        assert_eq!((&own["code"], &own["severity"]), (&Value::from(code), &Value::from(severity)), "{log}");
+        assert_eq!(own["source"]["record"], path.as_str());
         assert!(desk.text("fit/report.md").contains(said), "{log}");
     }
 }
@@ -91,10 +95,15 @@ fn warnings_are_few_and_the_dearest_first() {
     let run = desk.run(&["fit", "run.csv", "--figures", "none"]);
     let lines: Vec<&str> = run.is_done().err.lines().filter(|line| line.starts_with("warning: ")).collect();
     let (report, fit) = (desk.text("run-fit/report.md"), desk.json("run-fit/fit.json"));
-    let noticed = fit["warnings"].as_array().map_or(0, Vec::len);
+    let all: Vec<&Value> = fit["warnings"].as_array().into_iter().flatten().collect();
+    let places: Vec<_> =
+        all.iter().map(|own| ["doubt", "choice", "mended"].iter().position(|it| own["severity"] == *it)).collect();
+    assert!(places.is_sorted() && places.iter().all(Option::is_some), "{all:?}");
+    let of_other = |own: &&&Value| own["source"]["method"].as_str().is_some_and(|id| fit["verdict"]["method"] != id);
+    let noticed = all.len() - all.iter().filter(of_other).count();
     assert!(noticed > 3 && lines.len() == 4 && lines[0].contains("the heading jumps"), "{lines:?}");
     let more = lines[3].strip_prefix("warning: ").and_then(|line| line.strip_suffix(" more in report.md"));
-    assert!(more.and_then(|more| more.parse::<usize>().ok()).is_some_and(|more| more + 3 >= noticed), "{lines:?}");
+    assert!(more.and_then(|more| more.parse::<usize>().ok()).is_some_and(|more| more + 3 == noticed), "{lines:?}");
     let part = |title: &str| report.split("\n## ").find(|part| part.starts_with(title)).unwrap_or_default();
     for said in ["the heading jumps", "-999", "lines before the header", "no rudder has", "understood by their names"] {
         assert!(part("Warnings").contains(said), "{said}\n{report}");

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use predict::stored_hull::{StoredHull, by_keys};
+use document::stored_hull::{StoredHull, by_keys};
 use serde_json::{Value, json};
 use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
 use ship::vessel::prior::{HullParticulars, priors};

@@ -37,7 +37,7 @@ fn figure<'a>(json: &'a Value, kind: &str, name: &str) -> &'a Value {
 
 /// What the contract says beyond the schema, to which every run of these tests is held.
 fn keeps_the_contract(json: &Value) {
-    assert_eq!(json["schema"], "predict/1");
+    assert_eq!(json["schema"], "predict/2");
     let weights: f64 =
         json["models"].as_array().expect("a list").iter().map(|one| one["weight"].as_f64().expect("1")).sum();
     assert!((weights - 1.0).abs() < 1e-12);
@@ -211,7 +211,9 @@ fn what_cannot_be_predicted_is_refused_with_the_cure() {
     desk.file("other.json", r#"{"schema": "rows/1"}"#);
     refused("other.json", &["rows/1", "fit.json or trace.json"]);
     desk.file("old.json", r#"{"schema": "fit/1", "methods": []}"#);
-    refused("old.json", &["old.json", "older program", "study fit"]);
+    refused("old.json", &["old.json: schema = \"fit/1\"", "make it again with `study fit`"]);
+    desk.file("bare.json", r#"{"schema": "fit/2", "methods": []}"#);
+    refused("bare.json", &["bare.json", "older program", "study fit"]);
     let text = desk.text("f/fit.json");
     desk.file("broken.json", text.replace("\"fitted\"", "\"fited\""));
     refused("broken.json", &["broken.json", "fitted"]);

@@ -171,7 +171,7 @@ fn a_good_record_gives_a_table_figures_and_json() {
         }
     }
     let fit = desk.json("run 1-fit/fit.json");
-    assert_eq!(fit["schema"], "fit/1");
+    assert_eq!(fit["schema"], "fit/2");
     let trial = &fit["trials"][0];
     assert_eq!(
         (&trial["file"], &trial["samples"], &trial["duration_s"]),

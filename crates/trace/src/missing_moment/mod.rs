@@ -38,6 +38,9 @@ pub enum Over {
 }
 
 impl Over {
+    /// Every channel.
+    pub const ALL: [Self; 6] = [Self::YawRate, Self::Rudder, Self::Heading, Self::Speed, Self::WindFrom, Self::Sway];
+
     /// The words used in files.
     pub fn as_str(self) -> &'static str {
         match self {

@@ -102,7 +102,7 @@ impl MomentRows {
     pub fn filter(&self, intensity: f64) -> MomentFilter {
         let steps = self.steps.iter().map(|(_, step)| step.scaled(intensity)).collect();
         let initial = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { self.prior } else { 0.0 }));
-        MomentFilter(Smoother::new(System::of_rows(steps, initial, (&self.of_row, &self.variance), None)))
+        MomentFilter(Smoother::new(System::of_rows(steps, initial, &self.of_row, &self.variance, None)))
     }
 }
 

@@ -1,9 +1,9 @@
 //! What is left beside the named effects: a random moment, and moments that are no effects of the list.
 
+use document::trace::{DisturbanceEntry, LocatedEntry};
 use ship::angle::to_deg;
 
 use super::TraceParts;
-use crate::document::{DisturbanceEntry, LocatedEntry};
 use crate::model::TermName;
 use crate::remainder::squares;
 use crate::shape::{Candidate, NamedShape};

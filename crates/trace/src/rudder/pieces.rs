@@ -45,7 +45,7 @@ impl RudderPiece {
     }
 
     /// The line through some rows by least squares; level where the rudder rests.
-    fn of(time: &[f64], angle: &[f64], (from, to): (usize, usize), is_stroke: bool) -> Self {
+    fn of(time: &[f64], angle: &[f64], from: usize, to: usize, is_stroke: bool) -> Self {
         let rows = (to - from) as f64;
         let mean = |values: &[f64]| values[from..to].iter().sum::<f64>() / rows;
         let (at, level) = (mean(time), mean(angle));
@@ -164,7 +164,7 @@ pub fn pieces(time: &[f64], angle: &[f64], sd: f64) -> Vec<RudderPiece> {
     let price = (time.len() as f64).ln();
     for round in 0.. {
         let mut all: Vec<RudderPiece> =
-            parts.iter().map(|&(from, to, is_stroke)| RudderPiece::of(time, angle, (from, to), is_stroke)).collect();
+            parts.iter().map(|&(from, to, is_stroke)| RudderPiece::of(time, angle, from, to, is_stroke)).collect();
         by_gear(&mut all, sd, price);
         let ends: Vec<usize> = all.windows(2).map(|pair| meeting(time, &pair[0], &pair[1])).collect();
         let is_settled = ends.iter().zip(&parts).all(|(end, part)| *end == part.1);

@@ -4,13 +4,13 @@
 //! the rows before. A shape of these states is known before the row that it explains; one of smoothed states would hold
 //! the random moment itself and always explain it.
 
+use estimation::kalman::MOST;
 use ship::Replayable;
 use ship::dynamics::Dynamics;
 use ship::first_order::{State, Transition};
 use ship::replay::replay_states;
 
 use crate::model::{Structure, step};
-use crate::noise::{NoiseColour, RecordNoise};
 use crate::record::PreparedRecord;
 
 /// Solver steps for each shortest time constant.
@@ -42,14 +42,15 @@ pub struct ForeseenMotion<'a> {
 }
 
 impl<'a> ForeseenMotion<'a> {
-    /// The motion of a record under a structure and a colour of the noise, from what the structure leaves of the
-    /// headings (rad).
+    /// The motion of a record under a structure; `predicted` are the states of a random moment at the observed rows, as
+    /// far as those before tell: heading (rad) and yaw rate (rad/s) come first.
     pub fn new(
-        (record, number): (&'a PreparedRecord, usize),
+        record: &'a PreparedRecord,
+        number: usize,
         structure: &Structure,
-        (theta, initial): (&[f64], [f64; 2]),
-        (noise, colour): (&RecordNoise, &NoiseColour),
-        residual: &[f64],
+        theta: &[f64],
+        initial: [f64; 2],
+        predicted: Option<&[[f64; MOST]]>,
     ) -> Self {
         let response = structure.response(Some(number), theta);
         let recorded = record.recorded(&response);
@@ -61,8 +62,7 @@ impl<'a> ForeseenMotion<'a> {
             heading.push(state[0]);
             rate.push(state[1]);
         });
-        if colour.wander.is_some_and(|(kind, _)| !kind.is_of_heading()) {
-            let predicted = noise.whitener(colour).predicted(residual);
+        if let Some(predicted) = predicted {
             for row in 0..record.time.len() {
                 heading[row] += between(record, row, |k| predicted[k][0]);
                 rate[row] += between(record, row, |k| predicted[k][1]);

@@ -45,10 +45,11 @@ impl<'a> StructurePoint<'a> {
     pub fn motions(&self, colour: &NoiseColour) -> Vec<ForeseenMotion<'a>> {
         let structure = &self.fit.structure;
         let residual = self.problem.residual(structure, &self.theta, &self.initial);
+        let is_of_moment = colour.wander.is_some_and(|(kind, _)| !kind.is_of_heading());
         let of = |number: usize| {
-            let (record, noise) = (&self.problem.records[number], &self.noise[number]);
-            let at = (self.theta.as_slice(), self.initial[number]);
-            ForeseenMotion::new((record, number), structure, at, (noise, colour), &residual[number])
+            let (record, initial) = (&self.problem.records[number], self.initial[number]);
+            let predicted = is_of_moment.then(|| self.noise[number].whitener(colour).predicted(&residual[number]));
+            ForeseenMotion::new(record, number, structure, &self.theta, initial, predicted.as_deref())
         };
         (0..self.problem.records.len()).map(of).collect()
     }

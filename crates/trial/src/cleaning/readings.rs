@@ -4,11 +4,13 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use document::{Code, Warning};
+use estimation::statistics::upper_median;
+
 use super::reject;
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
 use crate::words::counted;
-use estimation::statistics::upper_median;
 
 /// Least height of a spike or a jump, rad: 2°, more than any digits and waves make of two readings.
 const LEAST: f64 = 0.035;
@@ -69,7 +71,7 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
 /// Takes single readings of one and the same value as missing where both neighbours are far from it and near each
 /// other: polls that were not answered, for which a logger writes zero, and a calibration behind it another number. A
 /// channel that passes through the value has neighbours on either side of it.
-pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<String> {
+pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let time = &columns.time;
     let mut told = Vec::new();
     for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate] {
@@ -100,17 +102,17 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
         let times = reject(channel, time, values, &lost, rejected);
         lost.iter().for_each(|&row| values[row] = f64::NAN);
         // What is the same beside them may be lost, too, and nobody can tell.
-        told.push(format!(
+        told.push(Code::RejectedReadings.warning(format!(
             "{} of exactly {} between others far from it taken as missing, as polls that were not answered, {times}",
             counted(lost.len(), channel.spoken()),
             if written == 0 { "zero".to_owned() } else { format!("{:.2}°", (written as f64 / DIGITS).to_degrees()) },
-        ));
+        )));
     }
     told
 }
 
 /// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.
-pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<String> {
+pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let time = &columns.time;
     let mut told = Vec::new();
     for channel in [Channel::Heading, Channel::Rudder] {
@@ -129,11 +131,11 @@ pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedRead
             let rows: Vec<usize> = spikes.iter().map(|&(row, _)| row).collect();
             let times = reject(channel, time, values, &rows, rejected);
             rows.into_iter().for_each(|row| values[row] = f64::NAN);
-            told.push(format!(
+            told.push(Code::RejectedReadings.warning(format!(
                 "{} far from both neighbours (by up to {:.1}°) taken as missing, {times}",
                 counted(spikes.len(), channel.spoken()),
                 largest.to_degrees(),
-            ));
+            )));
         }
         if channel == Channel::Heading {
             told.extend(jumps(time, values, least, rejected));
@@ -143,7 +145,7 @@ pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedRead
 }
 
 /// Tells of steps between two headings that no ship makes: far more than the steps before and after.
-fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedReading>) -> Option<String> {
+fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let mut found = Vec::new();
     let mut last: [Option<usize>; 3] = [None; 3];
     for row in readings(heading) {
@@ -164,14 +166,14 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedR
     let largest = found.iter().map(|(_, step)| *step).fold(0.0, f64::max);
     let rows: Vec<usize> = found.iter().map(|&(row, _)| row).collect();
     let times = reject(Channel::Heading, time, heading, &rows, rejected);
-    Some(format!(
+    Some(Code::HeadingJump.warning(format!(
         "the heading jumps (by up to {:.1}°) as no ship turns, {times}; it is left as it is, for nobody can say which side is right",
         largest.to_degrees(),
-    ))
+    )))
 }
 
 /// Takes a yaw rate as missing where it stays at the end of its scale while the heading turns faster.
-pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<String> {
+pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let (heading, rate) = (columns.channels.get(&Channel::Heading)?, columns.channels.get(&Channel::YawRate)?);
     let end = rate.iter().filter(|rate| rate.is_finite()).fold(0.0, |end: f64, rate| end.max(rate.abs()));
@@ -196,11 +198,11 @@ pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedRea
     let rate = columns.channels.get_mut(&Channel::YawRate)?;
     reject(Channel::YawRate, &columns.time, rate, &at_end, rejected);
     at_end.iter().for_each(|&row| rate[row] = f64::NAN);
-    Some(format!(
+    Some(Code::RejectedReadings.warning(format!(
         "the yaw rate ends at {:.2}°/s while the heading turns faster: {} rows at the end of its scale taken as missing",
         end.to_degrees(),
         at_end.len()
-    ))
+    )))
 }
 
 #[cfg(test)]

@@ -204,7 +204,7 @@ fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Optio
         let share = side(holds, 0) * (ended - began) / swing;
         let (least, most) = if holds.len() == FEWEST { ONLY_SWING } else { FIRST_SWING };
         let at_start = holds[0].first == 0;
-        let manoeuvring = holds.len() == FEWEST && !is_straight_before(record, holds, (execute, began), swing);
+        let manoeuvring = holds.len() == FEWEST && !is_straight_before(record, holds, execute, began, swing);
         first = usize::from(manoeuvring || share > most || share < least && !at_start);
     }
     let mut last = holds.len() - 1;
@@ -232,8 +232,8 @@ fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Optio
 }
 
 /// Whether the ship went straight with the rudder about amidships before the first of three holds, which began at
-/// the time and heading `began`; also where the log does not tell.
-fn is_straight_before(record: &Prepared, holds: &[Hold], (from, began): (f64, f64), swing: f64) -> bool {
+/// the time `from` (s) and the heading `began` (rad); also where the log does not tell.
+fn is_straight_before(record: &Prepared, holds: &[Hold], from: f64, began: f64, swing: f64) -> bool {
     // The second hold has twice the way of heading to go, and stops a turn first.
     if holds[1].duration() <= holds[0].duration() {
         return false;

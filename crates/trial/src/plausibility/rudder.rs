@@ -1,5 +1,6 @@
 //! Does the rudder move as a steering gear does, to where it was ordered?
 
+use document::{Code, Warning};
 use estimation::statistics::median;
 use ship::angle::to_deg;
 
@@ -24,27 +25,33 @@ const FEEDBACK_ERROR: f64 = 0.1;
 /// Ordered angles are no larger, deg: rudders stop at 35°, some at 45°.
 const LARGEST_HELD_DEG: f64 = 46.0;
 
-/// Warns of a rudder that is none, or one on a wrong scale.
-pub(super) fn rudder_movements(trial: &Trial, warnings: &mut Vec<String>) {
+/// Warnings of a rudder that is none, or one on a wrong scale.
+pub(super) fn rudder_movements(trial: &Trial) -> impl Iterator<Item = Warning> {
     let strokes = strokes(trial.time(), trial.rudder());
-    match trial.channel(Channel::RudderOrder) {
-        Some(order) => warnings.extend(feedback(trial, order)),
-        None => warnings.extend(steps(&strokes)),
-    }
-    warnings.extend(clock_of_rudder(&strokes));
+    let against_order = match trial.channel(Channel::RudderOrder) {
+        Some(order) => feedback(trial, order),
+        None => steps(&strokes),
+    };
+    [against_order, clock_of_rudder(&strokes), held(trial)].into_iter().flatten()
+}
+
+/// A rudder that is held where no rudder is, or at a usual order in per cent of its stop.
+fn held(trial: &Trial) -> Option<Warning> {
     let held_deg = trial.rudder().windows(3).filter(|rows| rows[0] == rows[1] && rows[1] == rows[2]);
     let held_deg = to_deg(held_deg.fold(0.0, |largest: f64, rows| largest.max(rows[0].abs())));
-    if held_deg > LARGEST_HELD_DEG {
-        warnings.push(format!(
+    let text = if held_deg > LARGEST_HELD_DEG {
+        format!(
             "the rudder is held at {held_deg:.0}°, rudders stop at 35 to 45°: it may be in per cent; then K is wrong by the factor \
              between the two, give the angle in degrees"
-        ));
-    } else if let Some(order_deg) = in_per_cent(held_deg) {
-        warnings.push(format!(
+        )
+    } else {
+        let order_deg = in_per_cent(held_deg)?;
+        format!(
             "the rudder is held at {held_deg:.2}°, which is {order_deg}° in per cent of 35°: if it is in per cent, K is 0.35 of what it \
              should be; give the angle in degrees"
-        ));
-    }
+        )
+    };
+    Some(Code::RudderScale.warning(text))
 }
 
 /// The order, deg, that an angle is in per cent of the usual stop at 35°: orders are multiples of 5°.
@@ -75,37 +82,37 @@ fn strokes(time: &[f64], rudder: &[f64]) -> Vec<RudderStroke> {
 }
 
 /// Steps in place of movements: an order under the name of the angle.
-fn steps(strokes: &[RudderStroke]) -> Option<String> {
+fn steps(strokes: &[RudderStroke]) -> Option<Warning> {
     let is_step = |stroke: &&RudderStroke| stroke.rows == 1 && stroke.way_deg > FASTEST_RUDDER_DEG_S * stroke.took_s;
     let steps: Vec<&RudderStroke> = strokes.iter().filter(is_step).collect();
     let slowest_deg_s = steps.iter().map(|step| step.way_deg / step.took_s).fold(f64::INFINITY, f64::min);
     (steps.len() >= 2 && steps.len() as f64 >= STEPS_OF_AN_ORDER * strokes.len() as f64).then(|| {
-        format!(
+        Code::RudderOrder.warning(format!(
             "the rudder jumps from one row to the next in {} of {} movements, at {slowest_deg_s:.0}°/s or more, while steering gears \
              move at 2 to 7°/s: it looks like the order in place of the angle, and then T is too long by about half the time of \
              a movement; record the angle, or write `order-rate-deg-s = 2.5`, or what the gear does, under [rudder] in a \
              sidecar NAME.trial.toml",
             steps.len(),
             strokes.len()
-        )
+        ))
     })
 }
 
 /// Movements that take several rows and are those of no steering gear: the unit of the time is wrong.
-fn clock_of_rudder(strokes: &[RudderStroke]) -> Option<String> {
+fn clock_of_rudder(strokes: &[RudderStroke]) -> Option<Warning> {
     let seen = strokes.iter().filter(|stroke| stroke.rows >= 3);
     let mut rates: Vec<f64> = seen.map(|stroke| stroke.way_deg / stroke.took_s).collect();
     let rate = median(&mut rates).filter(|_| rates.len() >= 2)?;
     (!RUDDER_RATES_DEG_S.contains(&rate)).then(|| {
-        format!(
+        Code::TimeUnit.warning(format!(
             "the rudder moves at {rate:.2}°/s, steering gears move at 2 to 7°/s: check the unit of the time (t_s, t_ms, t_min; stamps \
              of minutes and seconds are read as hours and minutes)"
-        )
+        ))
     })
 }
 
 /// Rudder over order where both rest: 1 for a feedback that is right.
-fn feedback(trial: &Trial, order: &[f64]) -> Option<String> {
+fn feedback(trial: &Trial, order: &[f64]) -> Option<Warning> {
     let rudder = trial.rudder();
     let rests = |values: &[f64], row: usize| (row.saturating_sub(4)..=row).all(|k| values[k] == values[row]);
     let settled =
@@ -118,10 +125,10 @@ fn feedback(trial: &Trial, order: &[f64]) -> Option<String> {
     }
     let ratio = cross / square;
     (rows >= 10 && !(1.0 - FEEDBACK_ERROR..=1.0 + FEEDBACK_ERROR).contains(&ratio)).then(|| {
-        format!(
+        Code::RudderScale.warning(format!(
             "the recorded rudder comes to {ratio:.2} of its order: if the feedback is not calibrated (or in per cent), K is wrong by \
              that factor; check it against the rudder stops"
-        )
+        ))
     })
 }
 
@@ -149,9 +156,7 @@ mod tests {
         }
         let origin = Origin::Measured { file: String::new(), sha256: String::new() };
         let trial = Trial::new("run", origin, Columns { time, channels, unknown: Vec::new() }).expect("columns");
-        let mut warnings = Vec::new();
-        rudder_movements(&trial, &mut warnings);
-        warnings.join("; ")
+        rudder_movements(&trial).map(|warning| warning.text).collect::<Vec<_>>().join("; ")
     }
 
     #[test]

@@ -50,11 +50,12 @@ fn scaled(mut columns: Columns, channel: Channel, factor: f64) -> Columns {
     columns
 }
 
-fn verdict(columns: Columns) -> Result<Vec<String>, Implausible> {
+fn verdict(columns: Columns) -> Result<Vec<Warning>, Implausible> {
     let origin = Origin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
     let found = check(&Trial::new("record", origin, columns).expect("the columns make a record"));
     // The rudder of these records has no steering gear, and that is said of each.
-    found.map(|warnings| warnings.into_iter().filter(|warning| !warning.contains("looks like the order")).collect())
+    found
+        .map(|warnings| warnings.into_iter().filter(|warning| !warning.text.contains("looks like the order")).collect())
 }
 
 const PER_DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -110,7 +111,7 @@ fn a_record_without_movement_is_refused() {
     assert!(matches!(verdict(frozen), Err(Implausible::HeadingConstant { .. })));
     let pull_out = sail(0.1, 16.0, 100.0, |t, _, _| (0.0, if t < 20.0 { 0.01 } else { 0.0 }));
     let warnings = verdict(pull_out).expect("a ship may turn without its rudder");
-    assert!(warnings[0].contains("the rudder stays at"), "{warnings:?}");
+    assert!(warnings[0].text.contains("the rudder stays at"), "{warnings:?}");
 }
 
 #[test]
@@ -119,7 +120,7 @@ fn a_turning_circle_a_dither_and_course_keeping_in_wind_are_not_refused() {
     assert_eq!(verdict(circle), Ok(vec![]));
     let dither = sail(0.1, 16.0, 300.0, |t, _, _| (from_deg(10.0) * (1.5 * t).sin(), 0.0));
     let warnings = verdict(dither).expect("a dither moves the heading little");
-    assert!(warnings.iter().any(|warning| warning.contains("radians")), "{warnings:?}");
+    assert!(warnings.iter().any(|warning| warning.text.contains("radians")), "{warnings:?}");
     // The rudder answers the heading: gusts of many periods, a helmsman with counter-rudder.
     for gust in [0.5, 1.0, 2.0] {
         for (p, d) in [(1.0, 0.0), (1.0, 10.0), (3.0, 20.0), (0.5, 30.0)] {
@@ -150,5 +151,8 @@ fn gaps_are_remarked() {
         values.drain(500..560);
     }
     let warnings = verdict(columns).expect("a gap is no fault");
-    assert!(warnings[0].starts_with("1 gap ") && warnings[0].contains("6.1 s, begins at 49.9 s"), "{warnings:?}");
+    assert!(
+        warnings[0].text.starts_with("1 gap ") && warnings[0].text.contains("6.1 s, begins at 49.9 s"),
+        "{warnings:?}"
+    );
 }

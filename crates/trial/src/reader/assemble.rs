@@ -3,6 +3,8 @@
 //! between its readings, as the steering gear moves; so do the inputs of a model such as speed and wind. Nothing is
 //! made up over a gap.
 
+use document::{Code, Warning};
+
 use super::error::Problem;
 use super::source::Series;
 use crate::channel::Channel;
@@ -93,7 +95,7 @@ pub(super) fn series(columns: Columns, offset: f64) -> Vec<Series> {
 }
 
 /// What a record has that was not recorded: the rudder where only its order is known, the speed of surge and sway.
-pub(super) fn complete(columns: &mut Columns) -> Option<String> {
+pub(super) fn complete(columns: &mut Columns) -> Option<Warning> {
     let channels = &mut columns.channels;
     if !channels.contains_key(&Channel::Speed)
         && let (Some(surge), Some(sway)) = (channels.get(&Channel::Surge), channels.get(&Channel::Sway))
@@ -106,13 +108,13 @@ pub(super) fn complete(columns: &mut Columns) -> Option<String> {
     }
     let order = channels.get(&Channel::RudderOrder)?.clone();
     channels.insert(Channel::Rudder, order);
-    Some(String::from(
+    Some(Code::RudderOrder.warning(
         "there is no rudder angle; the order stands for it, so the lag of the steering gear is in the response",
     ))
 }
 
 /// Gives every row a rudder: between two readings that are no gap apart it runs straight, other rows are left out.
-pub(super) fn straight_rudder(columns: &mut Columns) -> Option<String> {
+pub(super) fn straight_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;
     let read: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].is_finite()).collect();
@@ -137,7 +139,8 @@ pub(super) fn straight_rudder(columns: &mut Columns) -> Option<String> {
         (left_out, "without rudder angle left out, where none was read before or after for long"),
     ];
     let told = told.into_iter().filter(|(count, _)| *count > 0);
-    Some(told.map(|(count, text)| format!("{} {text}", counted(count, "row"))).collect::<Vec<_>>().join("; "))
+    let told = told.map(|(count, text)| format!("{} {text}", counted(count, "row"))).collect::<Vec<_>>();
+    Some(Code::LeftOut.warning(told.join("; ")))
 }
 
 /// Refuses channels whose readings have no time in common, and names what is missing altogether.
@@ -193,7 +196,7 @@ mod tests {
         let speed = series_of(Channel::Speed, -1.0, 2.0, 8, |t| 3.0 * t);
         let mut columns = columns(vec![heading, rudder, speed]);
         assert_eq!(columns.time[..4], [0.0, 0.2, 0.5, 1.0]);
-        let told = straight_rudder(&mut columns).expect("rows were filled");
+        let told = straight_rudder(&mut columns).expect("rows were filled").text;
         assert!(told.contains("runs straight"), "{told}");
         // From the first reading of the rudder to its last.
         assert_eq!((columns.time[0], columns.time[columns.time.len() - 1]), (0.2, 9.2));
@@ -214,7 +217,7 @@ mod tests {
         rudder.time.drain(40..50);
         rudder.values.drain(40..50);
         let mut columns = columns(vec![heading, rudder]);
-        let told = straight_rudder(&mut columns).expect("rows were left out");
+        let told = straight_rudder(&mut columns).expect("rows were left out").text;
         assert!(told.starts_with("10 rows without rudder angle left out"), "{told}");
         assert_eq!(columns.time.len(), 90);
     }

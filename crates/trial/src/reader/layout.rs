@@ -3,6 +3,8 @@
 
 use std::path::Path;
 
+use document::{Code, Warning};
+
 use super::error::{Problem, ReadError};
 use super::head::Head;
 use crate::cells::cell;
@@ -89,8 +91,8 @@ pub(super) struct Layout {
     pub line: usize,
     /// Columns that were understood by what people call them, for a warning.
     pub understood: Vec<String>,
-    /// What was decided between columns, one sentence each.
-    pub warnings: Vec<String>,
+    /// What was decided between columns.
+    pub warnings: Vec<Warning>,
 }
 
 impl Layout {
@@ -224,11 +226,11 @@ impl Layout {
                     return Err(self.duplicate(channel.quantity(), place, other));
                 }
                 let [first, second] = [place, other].map(|place| shortened(&self.columns[place].name));
-                self.warnings.push(format!(
+                self.warnings.push(Code::Columns.warning(format!(
                     "the columns `{first}` and `{second}` could both be the {}; neither is used, unless a sidecar says \
                      which",
                     channel.spoken()
-                ));
+                )));
                 continue;
             }
             let factor = unit.unwrap_or(channel.written_unit()).to_si();

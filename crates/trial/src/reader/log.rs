@@ -3,6 +3,9 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use document::{Code, Warning};
+use ship::Particulars;
+
 use super::assemble::{check, columns, complete, once, series, straight_rudder};
 use super::error::{Problem, ReadError};
 use super::input::{self, Content};
@@ -20,15 +23,14 @@ use crate::plausibility;
 use crate::record::{Columns, Origin, RejectedReading, Trial, TrialError};
 use crate::sidecar::{Sidecar, SidecarError, SidecarProblem};
 use crate::sidecar_keys::RudderKeys;
-use ship::Particulars;
 
 /// A record that was read, and what the reader had to decide or found remarkable.
 #[derive(Debug, Clone)]
 pub struct ReadRecord {
     /// The record.
     pub trial: Trial,
-    /// One sentence each, without the name of the file.
-    pub warnings: Vec<String>,
+    /// Those of the record, whose file whoever reads it names.
+    pub warnings: Vec<Warning>,
 }
 
 impl Log {
@@ -89,7 +91,8 @@ impl Log {
                 return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
             }
             Content::Sentences(text) => {
-                let read = nmea::read(Lines::new(text.bytes, Encoding::Utf8)).map(|read| of_sentences(read, &sidecar));
+                let read = nmea::read(Lines::new(text.bytes, Encoding::Utf8))
+                    .map(|(series, log)| of_sentences(series, log, &sidecar));
                 let checked = read.and_then(|log| if whole { check(&log.columns).map(|()| log) } else { Ok(log) });
                 checked.map_err(|problem| ReadError::table(path, problem))?
             }
@@ -117,7 +120,7 @@ impl Log {
                 return Err(ReadError::table(other, problem));
             }
         };
-        let of_file = |warning: String| format!("{}: {warning}", other.display());
+        let of_file = |warning: Warning| warning.code.warning(format!("{}: {}", other.display(), warning.text));
         self.warnings.extend(joined.warnings.into_iter().map(of_file));
         let shifted = |reading: RejectedReading| RejectedReading { time: reading.time + offset, ..reading };
         self.rejected.extend(joined.rejected.into_iter().map(shifted));
@@ -125,7 +128,8 @@ impl Log {
         all.extend(series(joined.columns, offset));
         let (all, doubled) = once(all);
         self.warnings.extend(doubled.into_iter().map(|channel| {
-            of_file(format!("the {} is in an earlier file, too, and is taken from there", channel.spoken()))
+            let text = format!("the {} is in an earlier file, too, and is taken from there", channel.spoken());
+            of_file(Code::Instrument.warning(text))
         }));
         self.columns = columns(all);
         self.sha256 = joined_hash(&self.sha256, &joined.sha256);
@@ -147,10 +151,12 @@ impl Log {
             }
             let of_rudder = self.rejected.iter_mut().filter(|reading| reading.channel == Channel::Rudder);
             of_rudder.for_each(|reading| reading.time -= late);
-            self.warnings.push(format!("the rudder is taken {late} s earlier than it was read, as the sidecar says"));
+            let text = format!("the rudder is taken {late} s earlier than it was read, as the sidecar says");
+            self.warnings.push(Code::MovedRudder.warning(text));
         }
         if let Some(rate) = order_rate_deg_s.filter(|rate| rudder::follow_order(&mut self.columns, *rate)) {
-            self.warnings.push(format!("the rudder follows its order at {rate}°/s, as the sidecar says"));
+            let text = format!("the rudder follows its order at {rate}°/s, as the sidecar says");
+            self.warnings.push(Code::MovedRudder.warning(text));
         }
         self.warnings.extend(complete(&mut self.columns));
         self.warnings.extend(straight_rudder(&mut self.columns));
@@ -216,7 +222,8 @@ impl Log {
             })
         })?;
         if trial.heading_from_yaw_rate() {
-            warnings.push("there is no heading; it is the integral of the yaw rate, from zero".to_owned());
+            let text = "there is no heading; it is the integral of the yaw rate, from zero";
+            warnings.push(Code::HeadingFromYawRate.warning(text));
         }
         if let Some(particulars) = ship.or(sidecar.conditions.particulars) {
             trial = trial.with_particulars(particulars);
@@ -224,7 +231,7 @@ impl Log {
         let trial = trial.with_noise(sidecar.noise).with_rejected(rejected).with_conditions(sidecar.conditions);
         match plausibility::check(&trial) {
             Ok(found) => warnings.extend(found),
-            Err(implausible) if !checked => warnings.push(implausible.to_string()),
+            Err(implausible) if !checked => warnings.push(Code::Implausible.warning(implausible.to_string())),
             Err(implausible) => return Err(fault(implausible.into())),
         }
         Ok(ReadRecord { trial, warnings })
@@ -248,7 +255,7 @@ fn joined_hash(one: &str, other: &str) -> String {
 }
 
 /// Channels with instants of their own, each cleaned by itself, and of them the part that the sidecar asks for.
-fn of_sentences((series, mut log): (Vec<Series>, Log), sidecar: &Sidecar) -> Log {
+fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
     let cleaned = series.into_iter().map(|Series { channel, time, mut values }| {
         if channel == Channel::Heading {
             ship::angle::unwrap_heading(&mut values);

@@ -3,6 +3,8 @@
 
 use std::path::PathBuf;
 
+use document::Warning;
+
 use crate::channel::Channel;
 use crate::clock::Clock;
 use crate::record::{Columns, RejectedReading};
@@ -32,8 +34,8 @@ pub struct Log {
     pub(super) rows: usize,
     pub(super) sidecar: Sidecar,
     pub(super) part: Option<[f64; 2]>,
-    /// What the reader had to decide or found remarkable, one sentence each.
-    pub warnings: Vec<String>,
+    /// What the reader had to decide or found remarkable.
+    pub warnings: Vec<Warning>,
     /// Readings taken as missing or told as doubtful.
     pub(super) rejected: Vec<RejectedReading>,
 }

@@ -4,6 +4,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use document::{Code, Warning};
+
 use super::error::{Problem, ReadError};
 use super::head;
 use super::input::Text;
@@ -83,7 +85,8 @@ impl Rows<'_> {
             match content {
                 // A channel nobody needs and nobody recorded is as good as absent.
                 Content::Channel(..) if missing => {
-                    warnings.push(format!("the column `{}` has no value and is left out", shortened(&name)));
+                    let text = format!("the column `{}` has no value and is left out", shortened(&name));
+                    warnings.push(Code::LeftOut.warning(text));
                 }
                 Content::Channel(channel, _) => {
                     channels.insert(channel, values);
@@ -105,17 +108,19 @@ impl Rows<'_> {
         let mut log = Log { columns, clock, rows: self.counts.rows, ..Log::default() };
         let decided = units::settle(&mut log, open, open_time, line)?;
         if passed > 0 {
-            log.warnings.push(format!("{} before the header passed over", counted(passed, "line")));
+            let text = format!("{} before the header passed over", counted(passed, "line"));
+            log.warnings.push(Code::Notation.warning(text));
         }
         if !understood.is_empty() {
-            log.warnings.push(format!("columns understood by their names: {}", listed(&understood)));
+            let text = format!("columns understood by their names: {}", listed(&understood));
+            log.warnings.push(Code::Columns.warning(text));
         }
         log.warnings.extend(decided.into_iter().chain(warnings));
         Ok(log)
     }
 
     /// Gives rows that share a stamp their instants, and leaves out those that are thinned; what was decided.
-    fn spread_stamps(&mut self) -> Option<String> {
+    fn spread_stamps(&mut self) -> Option<Warning> {
         let usual = if self.whole_seconds { spread(&mut self.time) } else { None };
         let thin = |values: &mut Vec<f64>| {
             *values = std::mem::take(values).into_iter().step_by(self.every).collect();
@@ -123,9 +128,9 @@ impl Rows<'_> {
         thin(&mut self.time);
         self.layout.columns.iter_mut().for_each(|column| thin(&mut column.values));
         usual.map(|usual| {
-            format!(
+            Code::SharedStamps.warning(format!(
                 "rows share their stamps, {usual} as a rule; they are spread evenly over the time to the next stamp"
-            )
+            ))
         })
     }
 
@@ -155,33 +160,35 @@ impl Rows<'_> {
         }
     }
 
-    fn warnings(&mut self) -> Vec<String> {
+    fn warnings(&mut self) -> Vec<Warning> {
         let counts = &self.counts;
         let mut warnings = std::mem::take(&mut self.layout.warnings);
-        let mut count = |number: usize, text: &str| {
-            if number > 0 {
-                warnings.push(format!("{} {text}", counted(number, "row")));
-            }
+        let mut count = |number: usize, code: Code, text: &str| {
+            warnings.extend((number > 0).then(|| code.warning(format!("{} {text}", counted(number, "row")))));
         };
-        count(counts.no_time, "without time left out");
-        count(counts.nothing, "with neither rudder nor heading nor yaw rate left out");
-        count(counts.repeated, "left out as exact copies of the row before");
-        count(counts.short, "with fewer cells than the header; the last columns were taken as missing there");
+        count(counts.no_time, Code::LeftOut, "without time left out");
+        count(counts.nothing, Code::LeftOut, "with neither rudder nor heading nor yaw rate left out");
+        count(counts.repeated, Code::LeftOut, "left out as exact copies of the row before");
+        let short = "with fewer cells than the header; the last columns were taken as missing there";
+        count(counts.short, Code::MissingValues, short);
         let first = instant(counts.astray.first().copied().unwrap_or_default());
         let astray = format!("left out because the time does not fit the rows around, the first has {first} s");
-        count(counts.astray.len(), &astray);
+        count(counts.astray.len(), Code::LeftOut, &astray);
         if counts.decimal_commas > 0 {
-            warnings.push(format!("{} read with a decimal comma", counted(counts.decimal_commas, "number")));
+            let text = format!("{} read with a decimal comma", counted(counts.decimal_commas, "number"));
+            warnings.push(Code::Notation.warning(text));
         }
         let columns = || self.layout.columns.iter().map(|column| (shortened(&column.name), column));
         for (name, RawColumn { text, .. }) in columns().filter(|(_, column)| column.text > 0) {
-            warnings.push(format!("the column `{name}` holds text in {}, taken as missing", counted(*text, "row")));
+            let text = format!("the column `{name}` holds text in {}, taken as missing", counted(*text, "row"));
+            warnings.push(Code::MissingValues.warning(text));
         }
         for (name, RawColumn { sentinels: (count, value), .. }) in
             columns().filter(|(_, column)| column.sentinels.0 > 0)
         {
             let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
-            warnings.push(format!("the column `{name}` holds {value} {times}, taken as missing"));
+            let text = format!("the column `{name}` holds {value} {times}, taken as missing");
+            warnings.push(Code::MissingValues.warning(text));
         }
         warnings
     }

@@ -73,7 +73,7 @@ fn complaint(result: Result<ReadRecord, ReadError>, parts: &[&str]) -> Problem {
 #[test]
 fn every_separator_line_end_and_mark_gives_the_same_record() {
     let reference = parse(simple()).expect("the plainest table");
-    assert_eq!(reference.warnings, [""; 0]);
+    assert_eq!(reference.warnings, []);
     assert_eq!(reference.trial.len(), 240);
     assert_eq!(reference.trial.name(), "run");
     let variants = [
@@ -89,14 +89,14 @@ fn every_separator_line_end_and_mark_gives_the_same_record() {
     ];
     for text in variants {
         let reading = parse(&text).unwrap_or_else(|error| panic!("{error}\n{}", &text[..60]));
-        assert_eq!(reading.warnings, [""; 0], "{}", &text[..60]);
+        assert_eq!(reading.warnings, [], "{}", &text[..60]);
         assert_eq!(reading.trial.time(), reference.trial.time());
         assert_eq!(reading.trial.heading(), reference.trial.heading());
         assert_eq!(reading.trial.rudder(), reference.trial.rudder());
     }
     let commas = parse(table("t_s;heading_deg;rudder_deg", ";").replace('.', ",")).expect("decimal commas");
     assert_eq!(commas.trial.heading(), reference.trial.heading());
-    assert!(commas.warnings[0].contains("decimal comma"), "{:?}", commas.warnings);
+    assert!(commas.warnings[0].text.contains("decimal comma"), "{:?}", commas.warnings);
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn rows_with_missing_values_are_left_out_or_kept_and_counted() {
     assert_eq!(trial.unknown()[0].0, "load_t");
     assert_eq!(trial.unknown()[0].1[0], 12.5);
     assert_eq!(trial.channel(Channel::Roll), None);
-    let has = |part: &str| warnings.iter().any(|warning| warning.contains(part));
+    let has = |part: &str| warnings.iter().any(|warning| warning.text.contains(part));
     assert!(has("1 row without time"), "{warnings:?}");
     assert!(has("2 rows without rudder angle, which runs straight between its readings there"), "{warnings:?}");
     assert!(has("1 heading missing; the longest gap, 2.0 s, begins at 39.0 s"), "{warnings:?}");
@@ -154,7 +154,7 @@ fn the_order_and_the_yaw_rate_stand_in_with_a_warning() {
         parse(table("t_s,heading_deg,rudder_order_deg", ",")).expect("the order stands for the rudder");
     assert_eq!(trial.rudder()[0], from_deg(10.0));
     assert_eq!(trial.channel(Channel::RudderOrder), Some(trial.rudder()));
-    assert!(warnings[0].contains("the order stands for it"), "{warnings:?}");
+    assert!(warnings[0].text.contains("the order stands for it"), "{warnings:?}");
 
     let mut text = String::from("t_s yaw_rate_deg_s rudder_deg\n");
     let rows = rows();
@@ -164,13 +164,13 @@ fn the_order_and_the_yaw_rate_stand_in_with_a_warning() {
     }
     let ReadRecord { trial, warnings } = parse(&text).expect("the yaw rate stands for the heading");
     assert!(trial.heading_from_yaw_rate());
-    assert!(warnings[0].contains("integral of the yaw rate"), "{warnings:?}");
+    assert!(warnings[0].text.contains("integral of the yaw rate"), "{warnings:?}");
     let text = text.replacen("yaw_rate_deg_s rudder_deg", "yaw_rate_deg_s rudder_deg heading_deg", 1);
     let text = text.lines().enumerate().map(|(i, l)| if i == 0 { format!("{l}\n") } else { format!("{l} nan\n") });
     let ReadRecord { trial, warnings } =
         parse(text.collect::<String>()).expect("an empty heading column is as good as none");
     assert!(trial.heading_from_yaw_rate());
-    assert!(warnings.iter().any(|warning| warning.contains("`heading_deg` has no value")), "{warnings:?}");
+    assert!(warnings.iter().any(|warning| warning.text.contains("`heading_deg` has no value")), "{warnings:?}");
 }
 
 #[test]
@@ -220,9 +220,9 @@ fn wrong_cells_and_times_are_named_with_their_line() {
     assert!(matches!(problem(broken(12, "10,1,2,3"), &["line 12 has 4 cells, expected 3"]), Problem::Cells { .. }));
     problem(table("t_s heading_deg rudder_deg", " ").replacen("\n3 ", "\n", 1), &["line 5 has 2 cells, expected 3"]);
     let single = parse(broken(12, "3.5,1,10")).expect("a single row can be left out");
-    assert!(single.warnings[0].contains("1 row left out because the time does not fit"), "{:?}", single.warnings);
+    assert!(single.warnings[0].text.contains("1 row left out because the time does not fit"), "{:?}", single.warnings);
     let ahead = parse(broken(12, "3000,1,10")).expect("a single row can be left out");
-    assert!(ahead.warnings[0].contains("the first has 3000 s"), "{:?}", ahead.warnings);
+    assert!(ahead.warnings[0].text.contains("the first has 3000 s"), "{:?}", ahead.warnings);
     assert_eq!((single.trial.len(), ahead.trial.len()), (239, 239));
     let again = broken(12, "3.5,1,10").replacen("\n11,", "\n4.5,", 1);
     let found = problem(again, &["line 12", "3.5 s after 9 s", "time-step-s"]);
@@ -260,9 +260,9 @@ fn records_with_too_little_in_them_are_refused() {
     assert!(matches!(found, Problem::Implausible(plausibility::Implausible::RudderFlipped { .. })));
     // What the message says mends it.
     let mended = parse_with(&flipped, "[[column]]\nname = \"rudder_deg\"\nflip = true\n").expect("flipped back");
-    assert_eq!(mended.warnings, [""; 0]);
+    assert_eq!(mended.warnings, []);
     let believed = parse_with(&flipped, "[check]\nplausibility = false\n").expect("the check is off");
-    assert!(believed.warnings[0].contains("looks flipped"), "{:?}", believed.warnings);
+    assert!(believed.warnings[0].text.contains("looks flipped"), "{:?}", believed.warnings);
 }
 
 /// A table of a hundred million rows that exists only while it is read.
@@ -382,7 +382,7 @@ fn latitude_and_longitude_are_metres_from_the_first() {
 #[test]
 fn a_rudder_later_than_the_log_is_long_is_an_error_of_the_sidecar() {
     let read = |late: f64| parse_with(simple(), &format!("[rudder]\nlate-s = {late}"));
-    let told = read(2.5).expect("a late rudder").warnings.join(" ");
+    let told = &read(2.5).expect("a late rudder").warnings[0].text;
     assert!(told.contains("taken 2.5 s earlier"), "{told}");
     for late in [1e4, -1e4] {
         let message = read(late).expect_err("no time in common").to_string();

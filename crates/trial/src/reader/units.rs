@@ -3,13 +3,15 @@
 
 use std::collections::BTreeMap;
 
+use document::{Code, Warning};
+use estimation::statistics::upper_median;
+
 use super::error::Problem;
 use super::source::Log;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
 use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
 use crate::words::shortened;
-use estimation::statistics::upper_median;
 
 /// Largest angle of a rudder in radians: 45°. In degrees a rudder of a manoeuvre goes further.
 const RUDDER_RAD: f64 = 0.8;
@@ -51,7 +53,7 @@ pub(super) struct UnitlessColumn {
     pub largest: f64,
 }
 
-/// Finds the units of `open` columns, and of that of time where its name is in `open_time`; what was decided, in words.
+/// Finds the units of `open` columns, and of that of time where its name is in `open_time`; what was decided.
 ///
 /// Fails where heading, rudder, a yaw rate that stands for the heading, or time could have two units.
 pub(super) fn settle(
@@ -59,7 +61,7 @@ pub(super) fn settle(
     mut open: Vec<UnitlessColumn>,
     open_time: Option<String>,
     line: usize,
-) -> Result<Vec<String>, Problem> {
+) -> Result<Vec<Warning>, Problem> {
     let mut decided = Vec::new();
     let mut left_out = Vec::new();
     // The unit of a heading is seen beside the rudder, that of a yaw rate beside the heading.
@@ -102,25 +104,26 @@ pub(super) fn settle(
     }
     let mut told = Vec::new();
     if !decided.is_empty() {
-        told.push(format!("columns without a unit: {}, the only unit that fits their values", decided.join(", ")));
+        let text = format!("columns without a unit: {}, the only unit that fits their values", decided.join(", "));
+        told.push(Code::AssumedUnit.warning(text));
     }
     told.extend(left_out.into_iter().map(without_unit));
     if let Some(name) = open_time {
-        told.push(seconds(log, &name, line)?);
+        told.push(Code::AssumedUnit.warning(seconds(log, &name, line)?));
     }
     Ok(told)
 }
 
-/// What is said of a column that is left out because its values do not show its unit.
-fn without_unit(UnitlessColumn { channel, name, .. }: &UnitlessColumn) -> String {
+/// The warning of a column that is left out because its values do not show its unit.
+fn without_unit(UnitlessColumn { channel, name, .. }: &UnitlessColumn) -> Warning {
     let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
-    format!(
+    Code::LeftOut.warning(format!(
         "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = \"{}\"` for it in a sidecar",
         channel.spoken(),
         shortened(name),
         names.join(" or "),
         channel.column_name()
-    )
+    ))
 }
 
 /// Values were read as if in the unit files are written in.

@@ -1,6 +1,7 @@
 //! Puts executes and heading together: from a record to the characteristics of its zig-zag. How executes are found and
 //! how headings are read is not decided here.
 
+use document::Quantity;
 use ship::angle::{from_deg, to_deg};
 
 use super::executes::{Movement, RudderMovements};
@@ -10,7 +11,6 @@ use super::holds::{self, Hold};
 use super::local::Local;
 use crate::channel::Channel;
 use crate::plausibility::range;
-use crate::quantity::Quantity;
 use crate::record::Trial;
 use estimation::statistics::median;
 

@@ -3,7 +3,7 @@
 //! the first execute of a trial is not decided here: that takes the heading.
 
 use super::holds::{Hold, LAID};
-use crate::quantity::Quantity;
+use document::Quantity;
 use estimation::statistics::median;
 
 /// A movement of the rudder into a hold.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use thiserror::Error;
 
-use crate::quantity::Quantity;
+use document::Quantity;
 
 /// Why a record has no zig-zag characteristics.
 #[derive(Debug, Clone, PartialEq, Error)]

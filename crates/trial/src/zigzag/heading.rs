@@ -3,7 +3,7 @@
 
 use super::local::Cubic;
 use crate::plausibility::range;
-use crate::quantity::Quantity;
+use document::Quantity;
 use estimation::statistics::median;
 
 /// Half-width of the residual window that the noise is estimated with, in periods of the manoeuvre.

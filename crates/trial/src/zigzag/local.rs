@@ -3,7 +3,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::quantity::Quantity;
+use document::Quantity;
 
 /// A polynomial with `N` coefficients, fitted with equal weights to the samples within `half_width` of `centre`.
 ///

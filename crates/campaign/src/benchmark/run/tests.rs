@@ -82,6 +82,7 @@ impl Identifier for KnownIndices {
             robust: None,
             stop: StopReason::Direct,
             evaluations: 0,
+            noise: None,
             diagnostics: Vec::new(),
             warnings: Vec::new(),
         })

@@ -2,6 +2,7 @@
 //! kind goes first (true heading before magnetic, speed through the water before speed over ground), then the one with
 //! the most readings, then the one that appeared first. What was chosen among several is said.
 
+use document::{Code, Warning};
 use estimation::statistics::upper_median;
 use ship::angle::to_deg;
 
@@ -54,8 +55,8 @@ const RUDDERS_APART_DEG: f64 = 2.0;
 pub(super) struct Choice<'a> {
     instruments: &'a [NmeaInstrument],
     pub series: Vec<Series>,
-    /// One sentence each.
-    pub warnings: Vec<String>,
+    /// What was decided between instruments, and what is odd of them.
+    pub warnings: Vec<Warning>,
 }
 
 impl<'a> Choice<'a> {
@@ -112,17 +113,21 @@ impl<'a> Choice<'a> {
                 [one] => text.push_str(&format!("; {one} is not used")),
                 [first @ .., last] => text.push_str(&format!("; {} and {last} are not used", first.join(", "))),
             }
-            self.warnings.push(text);
+            self.warn(Code::Instrument, text);
         }
         self.tell_odd(what, chosen);
         Some(chosen)
+    }
+
+    fn warn(&mut self, code: Code, text: String) {
+        self.warnings.push(code.warning(text));
     }
 
     fn tell_odd(&mut self, what: &str, chosen: Offer) {
         let odd = chosen.instrument.odd[chosen.place];
         if odd > 0 {
             let text = counted(odd, "entry").replace("entrys", "entries");
-            self.warnings.push(format!("{text} of {} cannot be a {what}, taken as missing", chosen.name()));
+            self.warn(Code::MissingValues, format!("{text} of {} cannot be a {what}, taken as missing", chosen.name()));
         }
     }
 
@@ -162,7 +167,7 @@ impl<'a> Choice<'a> {
         }
         let Some(chosen) = self.pick("heading", offers, false) else { return };
         if chosen.class == 1 {
-            self.warnings.push(format!(
+            self.warn(Code::OtherReference, format!(
                 "the heading of {} is magnetic, because no variation is given; changes of heading are right, the direction \
                  of north is not",
                 chosen.name()
@@ -195,21 +200,25 @@ impl<'a> Choice<'a> {
         if 2 * number < chosen.readings {
             let spoken = chosen.beside(1 - chosen.place).readings;
             if chosen.place == 1 || spoken > 0 {
-                self.warnings.push(format!(
-                    "the rudder angle is that of the {side} rudder; the other one has {}",
-                    counted(spoken, "reading")
-                ));
+                self.warn(
+                    Code::Instrument,
+                    format!(
+                        "the rudder angle is that of the {side} rudder; the other one has {}",
+                        counted(spoken, "reading")
+                    ),
+                );
             }
             return self.push_column(Channel::Rudder, chosen);
         }
         let rms_deg = to_deg((pairs().map(|(one, other)| (one - other).powi(2)).sum::<f64>() / number as f64).sqrt());
         if rms_deg > RUDDERS_APART_DEG {
-            self.warnings.push(format!(
-                "the two rudders differ by {rms_deg:.1}° (rms); the rudder angle is that of the {side} rudder"
-            ));
+            self.warn(
+                Code::RuddersApart,
+                format!("the two rudders differ by {rms_deg:.1}° (rms); the rudder angle is that of the {side} rudder"),
+            );
             return self.push_column(Channel::Rudder, chosen);
         }
-        self.warnings.push(format!("the rudder angle is the mean of two rudders, {rms_deg:.1}° apart (rms)"));
+        self.warn(Code::Instrument, format!("the rudder angle is the mean of two rudders, {rms_deg:.1}° apart (rms)"));
         let mean = starboard.iter().zip(port).map(|(one, other)| 0.5 * (one + other));
         self.push(Channel::Rudder, chosen, mean);
     }
@@ -236,7 +245,7 @@ impl<'a> Choice<'a> {
         let offers = self.offers(&[(Slot::SurgeWater, 0), (Slot::SurgeGround, 1)], |_| true);
         let Some(surge) = self.pick("surge velocity", offers, false) else { return };
         if surge.class == 1 {
-            self.warnings.push(format!("surge and sway of {} are over ground", surge.name()));
+            self.warn(Code::OtherReference, format!("surge and sway of {} are over ground", surge.name()));
         }
         self.push_column(Channel::Surge, surge);
         let sway = surge.beside(surge.place + 1);
@@ -281,14 +290,17 @@ impl<'a> Choice<'a> {
             }
         }
         if offers.len() > 1 {
-            self.warnings.push(format!("the propeller rate is the mean of {} shafts", offers.len()));
+            self.warn(Code::Instrument, format!("the propeller rate is the mean of {} shafts", offers.len()));
         }
         let counter: Vec<&str> = offers.iter().filter(is_counter).map(Offer::name).collect();
         if !counter.is_empty() {
-            self.warnings.push(format!(
-                "{} turns counter-clockwise (below zero) in most readings; its rate is taken as positive",
-                counter.join(" and ")
-            ));
+            self.warn(
+                Code::TurnedSign,
+                format!(
+                    "{} turns counter-clockwise (below zero) in most readings; its rate is taken as positive",
+                    counter.join(" and ")
+                ),
+            );
         }
         self.push(Channel::PropellerRate, chosen, values);
     }
@@ -309,17 +321,20 @@ impl<'a> Choice<'a> {
         }
         let from_bow = chosen.name();
         let Some(heading) = self.series.iter().find(|series| series.channel == Channel::Heading) else {
-            self.warnings.push(format!(
-                "{from_bow} gives the true wind from the bow; without a heading its direction is left out"
-            ));
+            self.warn(
+                Code::LeftOut,
+                format!("{from_bow} gives the true wind from the bow; without a heading its direction is left out"),
+            );
             return;
         };
         let mut near = Nearest::new(&heading.time, &heading.values);
         let readings = chosen.instrument.at.iter().zip(chosen.values());
         let values: Vec<f64> = readings.map(|(&time, from)| turned(from + near.at(time))).collect();
         self.push(Channel::WindTrueFrom, chosen, values);
-        self.warnings
-            .push(format!("{from_bow} gives the direction of the true wind from the bow; the heading is added to it"));
+        self.warn(
+            Code::Instrument,
+            format!("{from_bow} gives the direction of the true wind from the bow; the heading is added to it"),
+        );
     }
 }
 

@@ -2,12 +2,14 @@
 //! sentences of one instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than
 //! the others is filled at the usual pace, and the rest of it stays empty.
 
+use document::{Code, Warning};
+use estimation::statistics::upper_median;
+
 use super::log::{NmeaInstrument, NmeaLog};
 use super::sentence::Slot;
 use crate::clock::{Clock, DAY, Stamp, Stamps};
 use crate::reader::error::Problem;
 use crate::words::counted;
-use estimation::statistics::upper_median;
 
 /// An epoch longer than the usual one by this factor is a gap.
 const GAP: f64 = 1.5;
@@ -23,8 +25,8 @@ struct Group {
     length: f64,
 }
 
-/// What the clock shows at time 0, and what was found remarkable of the instants, one sentence each.
-type Timing = (Option<Clock>, Vec<String>);
+/// What the clock shows at time 0, and what was found remarkable of the instants.
+type Timing = (Option<Clock>, Vec<Warning>);
 
 /// Gives every sentence its instant where the time is in stamps before the sentences.
 pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
@@ -43,7 +45,7 @@ pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
         spread += usize::from(spread_stamps(&mut instrument.at));
     }
     let neighbours = if log.counts.strayed == 1 { "its" } else { "their" };
-    let mut warnings: Vec<String> = [
+    let mut warnings: Vec<Warning> = [
         (log.counts.strayed, format!("with a stamp far from {neighbours} neighbours")),
         (disordered, "with an earlier stamp than the one before of the same instrument".to_owned()),
         (log.counts.unstamped, "without a time stamp".to_owned()),
@@ -51,11 +53,12 @@ pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
     .into_iter()
     .filter(|(number, _)| *number > 0)
     .map(|(number, fault)| format!("{} {fault} {} left out", counted(number, "sentence"), are(number)))
+    .map(|text| Code::LeftOut.warning(text))
     .collect();
     if spread > 0 {
         let text = "several sentences of one instrument have the same time stamp; they are spread evenly over the time to \
                     the next stamp";
-        warnings.push(text.to_owned());
+        warnings.push(Code::SharedStamps.warning(text));
     }
     (log.stamps.clock(), warnings)
 }
@@ -118,16 +121,18 @@ pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
         several |= spread(&mut instrument.at, &groups, usual);
         drop_rows(instrument);
     }
-    let mut warnings = vec![format!(
+    let mut warnings = vec![Code::Clock.warning(format!(
         "the time is that of {name} ({driven} times, every {usual:.1} s): a sentence has the time before it, and heading and \
          rudder may be apart by that much{}",
         if several { ", and sentences between two of them are spread evenly over the time between" } else { "" }
-    )];
+    ))];
     if before > 0 {
-        warnings.push(format!("{} before the first time {} left out", counted(before, "sentence"), are(before)));
+        let text = format!("{} before the first time {} left out", counted(before, "sentence"), are(before));
+        warnings.push(Code::LeftOut.warning(text));
     }
     if strayed > 0 {
-        warnings.push(format!("{} of {name} far from its neighbours left out", counted(strayed, "time")));
+        let text = format!("{} of {name} far from its neighbours left out", counted(strayed, "time"));
+        warnings.push(Code::LeftOut.warning(text));
     }
     Ok((Some(clock), warnings))
 }

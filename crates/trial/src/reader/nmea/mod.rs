@@ -15,6 +15,8 @@ mod tests;
 
 use std::io::Read;
 
+use document::{Code, Warning};
+
 use self::choice::Choice;
 use self::epochs::{are, from_sentences, from_stamps, rounded};
 use self::frame::{Line, frame};
@@ -124,8 +126,8 @@ fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     Some(Clock { day: clock.day.map(|day| day + days as i64), second: second - days * DAY, zone: clock.zone })
 }
 
-/// What was left out, one sentence each.
-fn of_counts(counts: &Counts, lines: usize) -> Vec<String> {
+/// What was left out.
+fn of_counts(counts: &Counts, lines: usize) -> Vec<Warning> {
     let hold = if counts.text == 1 { "holds" } else { "hold" };
     let faults = [
         (counts.wrong, format!("had a wrong checksum and {} left out", are(counts.wrong))),
@@ -133,13 +135,14 @@ fn of_counts(counts: &Counts, lines: usize) -> Vec<String> {
         (counts.text, format!("{hold} no sentence and {} left out", are(counts.text))),
     ];
     let found = faults.into_iter().filter(|(number, _)| *number > 0);
-    let mut warnings: Vec<String> =
-        found.map(|(number, fault)| format!("{number} of {} {fault}", counted(lines, "line"))).collect();
+    let told = found.map(|(number, fault)| format!("{number} of {} {fault}", counted(lines, "line")));
+    let mut warnings: Vec<Warning> = told.map(|text| Code::LeftOut.warning(text)).collect();
     if counts.unsummed > 0 {
         let number = counts.unsummed;
         let (have, them) = if number == 1 { ("has", "it") } else { ("have", "them") };
         let sentences = counted(number, "sentence");
-        warnings.push(format!("{sentences} {have} no checksum, so damage to {them} would not be seen"));
+        let text = format!("{sentences} {have} no checksum, so damage to {them} would not be seen");
+        warnings.push(Code::NoChecksum.warning(text));
     }
     warnings
 }

@@ -2,6 +2,7 @@
 //! one sentence at a time; which of them is used is decided in [`super::choice`].
 
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 use ship::angle::{DEGREE, KNOT};
 
@@ -74,22 +75,18 @@ const SENTENCES: [Sentence; 19] = {
         }),
         (b"HDG", &[HeadingMagnetic, Variation], read_hdg),
         (b"ROT", &[YawRate], |row, fields| {
-            row.take_valid(fields, 2, &[(0, 1)], (-3600.0, 3600.0), DEGREE / 60.0);
+            row.take_valid(fields, 2, &[(0, 1)], -3600.0..=3600.0, DEGREE / 60.0);
         }),
         (b"RSA", &[RudderStarboard, RudderPort], |row, fields| {
-            row.take_valid(fields, 2, &[(0, 1)], (-90.0, 90.0), DEGREE);
-            row.take_valid(fields, 4, &[(1, 3)], (-90.0, 90.0), DEGREE);
+            row.take_valid(fields, 2, &[(0, 1)], -90.0..=90.0, DEGREE);
+            row.take_valid(fields, 4, &[(1, 3)], -90.0..=90.0, DEGREE);
         }),
         (b"HTC", &[RudderOrder], read_order),
         (b"HTD", &[RudderOrder], read_order),
         (b"VHW", &[HeadingTrue, HeadingMagnetic, SpeedWater], |row, fields| {
             row.take_direction(0, fields.number(1));
             row.take_direction(1, fields.number(3));
-            row.take_either(
-                2,
-                (fields.number(5), SPEED, KNOT),
-                (fields.number(7), (-185.0, 185.0), KILOMETRE_PER_HOUR),
-            );
+            row.take_either(2, (fields.number(5), SPEED, KNOT), (fields.number(7), -185.0..=185.0, KILOMETRE_PER_HOUR));
         }),
         (b"VBW", &[SurgeWater, SwayWater, SurgeGround, SwayGround], |row, fields| {
             row.take_valid(fields, 3, &[(0, 1), (1, 2)], SPEED, KNOT);
@@ -97,8 +94,8 @@ const SENTENCES: [Sentence; 19] = {
         }),
         (b"VTG", &[SpeedGround], |row, fields| {
             if !fields.is(9, b'N') && fields.is(6, b'N') {
-                let kmh = (fields.number(7), (0.0, 185.0), KILOMETRE_PER_HOUR);
-                row.take_either(0, (fields.number(5), (0.0, SPEED.1), KNOT), kmh);
+                let kmh = (fields.number(7), 0.0..=185.0, KILOMETRE_PER_HOUR);
+                row.take_either(0, (fields.number(5), 0.0..=FASTEST, KNOT), kmh);
             }
         }),
         (b"RMC", &[Second, Day, Latitude, Longitude, SpeedGround], |row, fields| {
@@ -108,7 +105,7 @@ const SENTENCES: [Sentence; 19] = {
                 row.odd[1] = day.is_none() && !fields.at(9).is_empty();
                 row.values[1] = day.unwrap_or(f64::NAN);
                 row.take_position(2, fields, 3);
-                row.take(4, fields.number(7), (0.0, SPEED.1), KNOT);
+                row.take(4, fields.number(7), 0.0..=FASTEST, KNOT);
             }
         }),
         (b"GGA", &[Second, Latitude, Longitude], |row, fields| {
@@ -131,14 +128,14 @@ const SENTENCES: [Sentence; 19] = {
         (b"RPM", &[Revolutions], |row, fields| {
             let shaft = fields.at(2).first().copied().unwrap_or(b'0');
             row.part = [if fields.is(1, b'E') { b'E' } else { b'S' }, shaft];
-            row.take_valid(fields, 5, &[(0, 3)], (-10_000.0, 10_000.0), 1.0 / 60.0);
+            row.take_valid(fields, 5, &[(0, 3)], -10_000.0..=10_000.0, 1.0 / 60.0);
         }),
         (b"MWV", &[WindSpeed, WindFrom], read_mwv),
         (b"MWD", &[WindSpeed, WindFrom], |row, fields| {
             if fields.is(2, b'T') {
                 row.take_direction(1, fields.number(1));
             }
-            row.take_either(0, (fields.number(7), (0.0, 100.0), 1.0), (fields.number(5), (0.0, 200.0), KNOT));
+            row.take_either(0, (fields.number(7), 0.0..=100.0, 1.0), (fields.number(5), 0.0..=200.0, KNOT));
         }),
         // See `transducers`.
         (XDR, &[Transducer], |_, _| {}),
@@ -154,7 +151,7 @@ pub(super) fn sentence(formatter: &[u8]) -> Option<&'static Sentence> {
 }
 
 /// A number with its bounds, and its factor to SI units and radians.
-type Bounded = (Number, (f64, f64), f64);
+type Bounded = (Number, RangeInclusive<f64>, f64);
 
 /// What one sentence says.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -174,9 +171,9 @@ impl Row {
     }
 
     /// Takes a number within bounds, times a factor.
-    fn take(&mut self, place: usize, number: Number, (least, most): (f64, f64), factor: f64) {
+    fn take(&mut self, place: usize, number: Number, bounds: RangeInclusive<f64>, factor: f64) {
         match number {
-            Number::Of(value) if (least..=most).contains(&value) => self.values[place] = value * factor,
+            Number::Of(value) if bounds.contains(&value) => self.values[place] = value * factor,
             Number::Empty => {}
             Number::Of(_) | Number::Not => self.odd[place] = true,
         }
@@ -194,11 +191,11 @@ impl Row {
         fields: &Fields,
         status: usize,
         places: &[(usize, usize)],
-        bounds: (f64, f64),
+        bounds: RangeInclusive<f64>,
         factor: f64,
     ) {
         if fields.is(status, b'A') {
-            places.iter().for_each(|&(place, field)| self.take(place, fields.number(field), bounds, factor));
+            places.iter().for_each(|&(place, field)| self.take(place, fields.number(field), bounds.clone(), factor));
         }
     }
 
@@ -255,17 +252,18 @@ pub(super) fn turned(angle: f64) -> f64 {
     if within >= TAU { 0.0 } else { within }
 }
 
-const HEADING: (f64, f64) = (0.0, 360.0);
+const HEADING: RangeInclusive<f64> = 0.0..=360.0;
 /// Knots; nothing that steers is faster, and instruments write 999 for no reading.
-const SPEED: (f64, f64) = (-100.0, 100.0);
+const FASTEST: f64 = 100.0;
+const SPEED: RangeInclusive<f64> = -FASTEST..=FASTEST;
 /// m/s.
 const KILOMETRE_PER_HOUR: f64 = 1.0 / 3.6;
 
 /// HTC, HTD: the ordered rudder with its side.
 fn read_order(row: &mut Row, fields: &Fields) {
     match fields.at(3) {
-        b"R" => row.take(0, fields.number(2), (0.0, 90.0), DEGREE),
-        b"L" => row.take(0, fields.number(2), (0.0, 90.0), -DEGREE),
+        b"R" => row.take(0, fields.number(2), 0.0..=90.0, DEGREE),
+        b"L" => row.take(0, fields.number(2), 0.0..=90.0, -DEGREE),
         // Midships has no side.
         _ if fields.number(2) == Number::Of(0.0) => row.values[0] = 0.0,
         _ => row.odd[0] = fields.number(2) != Number::Empty,
@@ -308,7 +306,7 @@ fn read_mwv(row: &mut Row, fields: &Fields) {
     }
     row.take_direction(1, fields.number(1));
     if factor.is_finite() {
-        row.take(0, fields.number(3), (0.0, 360.0), factor);
+        row.take(0, fields.number(3), 0.0..=360.0, factor);
     }
 }
 
@@ -325,7 +323,7 @@ pub(super) fn transducers(body: &[u8], mut each: impl FnMut(Row)) {
         };
         if of == b"A" && unit == b"D" {
             let mut row = Row { part: [part, 0], ..Row::empty() };
-            row.take(0, super::frame::number(value), (-90.0, 90.0), DEGREE);
+            row.take(0, super::frame::number(value), -90.0..=90.0, DEGREE);
             each(row);
         }
     }

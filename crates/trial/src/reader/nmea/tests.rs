@@ -43,7 +43,7 @@ fn degrees(series: &Series) -> Vec<f64> {
 }
 
 fn told(source: &Sentences, text: &str) -> bool {
-    source.1.warnings.iter().any(|warning| warning.contains(text))
+    source.1.warnings.iter().any(|warning| warning.text.contains(text))
 }
 
 /// `14:03:05` and so on, one sentence a second.
@@ -195,9 +195,9 @@ fn one_channel_is_one_instrument_and_the_choice_is_said() {
     let source = source(&lines);
     assert!(degrees(series(&source, Channel::Heading)).iter().all(|&heading| heading == 51.0));
     let expected = "heading from $GPHDT (60 readings); $HEHDT (60), $HCHDM (60) and $HCHDG (30) are not used";
-    assert!(source.1.warnings.iter().any(|told| told == expected), "{:?}", source.1.warnings);
+    assert!(source.1.warnings.iter().any(|told| told.text == expected), "{:?}", source.1.warnings);
     let speed = "speed through the water from $VWVHW (60 readings); $GPVTG (60) is not used";
-    assert!(source.1.warnings.iter().any(|told| told == speed), "{:?}", source.1.warnings);
+    assert!(source.1.warnings.iter().any(|told| told.text == speed), "{:?}", source.1.warnings);
     // The same sentence of two ports.
     let ports: Vec<String> = (0..20)
         .flat_map(|k| {
@@ -274,13 +274,13 @@ fn two_rudders_are_one_where_they_go_together() {
     };
     let (mean, told) = rudder(&["IIRSA,10.0,A,11.0,A", "IIRSA,12.0,A,12.0,A"]);
     assert_eq!(mean, [10.5, 12.0]);
-    assert!(told[0].contains("mean of two rudders, 0.7° apart"), "{told:?}");
+    assert!(told[0].text.contains("mean of two rudders, 0.7° apart"), "{told:?}");
     let (one, told) = rudder(&["IIRSA,10.0,A,-11.0,A", "IIRSA,12.0,A,-12.0,A"]);
     assert_eq!(one, [10.0, 12.0]);
-    assert!(told[0].contains("differ by 22.5° (rms)") && told[0].contains("starboard"), "{told:?}");
+    assert!(told[0].text.contains("differ by 22.5° (rms)") && told[0].text.contains("starboard"), "{told:?}");
     let (port, told) = rudder(&["IIRSA,,V,-11.0,A", "IIRSA,,V,-12.0,A"]);
     assert_eq!(port, [-11.0, -12.0]);
-    assert!(told[0].contains("port rudder; the other one has 0 readings"), "{told:?}");
+    assert!(told[0].text.contains("port rudder; the other one has 0 readings"), "{told:?}");
     let (single, told) = rudder(&["IIRSA,1.0,A,,V", "IIRSA,2.0,A,,V"]);
     assert_eq!((single, told.len()), (vec![1.0, 2.0], 0));
 }

@@ -8,8 +8,8 @@ use ship::angle::{from_deg, to_deg};
 
 use super::*;
 use crate::Noise;
-use crate::quantity::Quantity;
 use crate::testing::{Gaussian, Plant, trial};
+use document::Quantity;
 
 fn of_plant(plant: Plant, duration: f64, step: f64) -> ZigZag {
     let (time, heading, rudder) = plant.record(duration, step);

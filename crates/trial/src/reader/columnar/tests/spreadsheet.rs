@@ -102,7 +102,7 @@ fn a_sheet_gives_the_record_of_its_csv() {
     let about = row(1, &["s:Ship".to_owned(), "s:Esso Osaka".to_owned()]);
     let table = format!("{about}{}", sheet(HEADER, 9, 240, |t| t.to_string()));
     let reading = assert_plain(&book(&[about.clone(), table], false));
-    assert!(reading.warnings.iter().any(|warning| warning.contains("passed over")), "{:?}", reading.warnings);
+    assert!(reading.warnings.iter().any(|warning| warning.text.contains("passed over")), "{:?}", reading.warnings);
     assert_told(parse(&book(&[about], false)), &["run"]);
 }
 

@@ -45,17 +45,17 @@ impl Quantity {
     }
 
     /// The difference of two quantities whose errors are independent.
-    pub(crate) fn minus(self, other: Self) -> Self {
+    pub fn minus(self, other: Self) -> Self {
         Self::new(self.value - other.value, root_sum_of_squares(self.sd, other.sd))
     }
 
     /// The same value with another, independent error added.
-    pub(crate) fn widened(self, sd: Option<f64>) -> Self {
+    pub fn widened(self, sd: Option<f64>) -> Self {
         Self::new(self.value, root_sum_of_squares(self.sd, sd))
     }
 
     /// Mean of quantities whose errors are independent; `None` where there are none.
-    pub(crate) fn mean(quantities: &[Self]) -> Option<Self> {
+    pub fn mean(quantities: &[Self]) -> Option<Self> {
         if quantities.is_empty() {
             return None;
         }

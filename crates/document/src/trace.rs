@@ -1,4 +1,4 @@
-//! What a trace says, as `trace.json` holds it: written from here, read back by reports, predictions and Python.
+//! What a trace says, as `trace.json` holds it.
 //!
 //! Angles are in degrees where a name says so; parameters of effects are in SI units and radians.
 
@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 use estimation::residuals::Whiteness;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
-use trial::Quantity;
+
+use crate::noise::Moment;
+use crate::quantity::Quantity;
 
 mod errors;
 
@@ -323,8 +325,8 @@ pub struct RecordNoiseEntry {
     /// What a heading error that lasts is: `compass` (first order) or `model` (smooth, of a model that is not quite the
     /// ship).
     pub heading_wander: Option<String>,
-    /// `none`, `white`, `ornstein-uhlenbeck` or `walk`.
-    pub moment: String,
+    /// Kind of the random moment.
+    pub moment: Moment,
     /// Standard deviation of gusts, of the mean of a white moment over one second, of what a walk adds in one second.
     pub moment_sd_rudder_deg: Option<f64>,
     /// Correlation time of gusts.
@@ -386,8 +388,6 @@ pub struct Document {
     pub residual: ResidualEntry,
     /// The noise of every fitted record.
     pub noise: Vec<RecordNoiseEntry>,
-    /// The trial that would tell most.
-    pub next_trial: String,
     /// The augmented model.
     pub model: ModelEntry,
 }

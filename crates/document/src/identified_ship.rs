@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter, SteeringLag};
 use ship::vessel::prime::is_of_wind;
 use ship::{Particulars, ResponseModel};
-pub use trial::noise_model::Moment;
 
-use crate::error::PredictError;
-pub use crate::stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
+use crate::error::IdentifiedShipError;
+use crate::noise::{HeadingNoise, RandomMoment};
+use crate::stored_hull::StoredHull;
 
 /// An effect as it is written down.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -41,22 +41,6 @@ pub struct WeightedStructure {
     pub degrees_of_freedom: Option<f64>,
 }
 
-/// Noise of the records the ship is known from.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct KnownNoise {
-    /// Standard deviation of a reading of the heading, rad.
-    pub heading_sd_rad: f64,
-    /// Kind of the yaw moment.
-    pub moment: Moment,
-    /// Size of the moment as rudder angle, rad: the standard deviation of gusts, of the mean of a white moment over one
-    /// second, of what a walk adds in one second.
-    #[serde(default)]
-    pub moment_sd_rudder_rad: f64,
-    /// Correlation time of gusts, s.
-    #[serde(default)]
-    pub moment_correlation_s: Option<f64>,
-}
-
 /// The steering gear as records show it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct KnownGear {
@@ -81,7 +65,7 @@ pub struct IdentifiedShip {
     /// The structures, the most probable first.
     pub members: Vec<WeightedStructure>,
     /// Noise of the records.
-    pub noise: KnownNoise,
+    pub noise: HeadingNoise,
     /// Steering gear; none where the records do not show it: the rudder then jumps.
     pub gear: Option<KnownGear>,
     /// Root mean square of the yaw rate at the end of straight approaches, rad/s; 0 where no record shows one.
@@ -100,23 +84,23 @@ pub struct IdentifiedShip {
 
 impl WeightedStructure {
     /// The model; fails for an effect that is not known and for numbers that do not fit it.
-    pub(crate) fn model(&self) -> Result<ResponseModel, PredictError> {
-        let effect = |written: &StoredEffect| -> Result<Arc<dyn Effect>, PredictError> {
+    pub fn model(&self) -> Result<ResponseModel, IdentifiedShipError> {
+        let effect = |written: &StoredEffect| -> Result<Arc<dyn Effect>, IdentifiedShipError> {
             effects::named(&written.id, &written.form, &written.constants)
-                .ok_or_else(|| PredictError::Effect { id: written.id.clone(), form: written.form.clone() })
+                .ok_or_else(|| IdentifiedShipError::Effect { id: written.id.clone(), form: written.form.clone() })
         };
         let model = ResponseModel::new(self.effects.iter().map(effect).collect::<Result<_, _>>()?);
         let (expected, found) = (model.parameter_count(), self.parameters.len());
         if expected != found {
-            return Err(PredictError::Count { what: "parameters", expected, found });
+            return Err(IdentifiedShipError::Count { what: "parameters", expected, found });
         }
         for (parameter, value) in model.parameters().zip(&self.parameters) {
             if !value.is_finite() {
-                return Err(PredictError::Value { key: parameter.key, value: *value });
+                return Err(IdentifiedShipError::Value { key: parameter.key, value: *value });
             }
         }
         let count = self.fitted.len();
-        let wrong = |what, expected, found| Err(PredictError::Count { what, expected, found });
+        let wrong = |what, expected, found| Err(IdentifiedShipError::Count { what, expected, found });
         if !self.covariance.is_empty() && self.covariance.len() != count {
             return wrong("rows of the covariance", count, self.covariance.len());
         }
@@ -130,7 +114,7 @@ impl WeightedStructure {
     }
 
     /// Places among the parameters of the dead times of its effects.
-    pub(crate) fn dead_times(&self, model: &ResponseModel) -> Vec<usize> {
+    pub fn dead_times(&self, model: &ResponseModel) -> Vec<usize> {
         let named = (SteeringLag::DeadTime.id(), SteeringLag::DeadTime.form());
         let dead_times = model.placed().filter(|(effect, _)| (effect.id(), effect.form()) == named);
         dead_times.map(|(_, own)| own.start).collect()
@@ -156,8 +140,8 @@ impl IdentifiedShip {
     ///
     /// Noise scales as the ship does: the weather of a model basin is that of a sea as many times larger. Fails where
     /// length or speed of the known ship are not known.
-    pub fn scaled_to(&self, length: f64, speed: Option<f64>) -> Result<Self, PredictError> {
-        let own = self.particulars().ok_or(PredictError::NoParticulars)?;
+    pub fn scaled_to(&self, length: f64, speed: Option<f64>) -> Result<Self, IdentifiedShipError> {
+        let own = self.particulars().ok_or(IdentifiedShipError::NoParticulars)?;
         let metre = length / own.length;
         let speed = speed.unwrap_or(own.speed * metre.sqrt());
         let second = metre * own.speed / speed;
@@ -166,7 +150,7 @@ impl IdentifiedShip {
         for member in &mut scaled.members {
             let model = member.model()?;
             if let Some(own) = model.effects().iter().find(|own| own.parameters().iter().any(Parameter::has_no_unit)) {
-                return Err(PredictError::NoUnit(own.id()));
+                return Err(IdentifiedShipError::NoUnit(own.id()));
             }
             let factors: Vec<f64> = model.parameters().map(|parameter| factor(parameter.dimension())).collect();
             for (value, factor) in member.parameters.iter_mut().zip(&factors) {
@@ -182,12 +166,7 @@ impl IdentifiedShip {
                 written.constants = scaled.collect();
             }
         }
-        scaled.noise.moment_sd_rudder_rad *= match self.noise.moment {
-            Moment::White => second.sqrt(),
-            Moment::Walk => second.sqrt().recip(),
-            Moment::None | Moment::OrnsteinUhlenbeck => 1.0,
-        };
-        scaled.noise.moment_correlation_s = self.noise.moment_correlation_s.map(|time| time * second);
+        scaled.noise.moment = self.noise.moment.scaled(second);
         if let Some(gear) = &mut scaled.gear {
             *gear = KnownGear { rate_rad_s: gear.rate_rad_s / second, sd_rad_s: gear.sd_rad_s / second };
         }
@@ -200,9 +179,9 @@ impl IdentifiedShip {
     }
 
     /// The same ship in a calm: without a random moment, and without what steady wind does.
-    pub fn in_calm(&self) -> Result<Self, PredictError> {
+    pub fn in_calm(&self) -> Result<Self, IdentifiedShipError> {
         let mut calm = self.clone();
-        calm.noise.moment = Moment::None;
+        calm.noise.moment = RandomMoment::None;
         for hull in &mut calm.hulls {
             (hull.moment.deviation_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
             if let Some(place) = hull.coefficients.iter().position(|own| is_of_wind(&own.key)) {
@@ -252,12 +231,29 @@ impl IdentifiedShip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing;
+
+    fn ship() -> IdentifiedShip {
+        let effect = StoredEffect { id: "nonlinear_damping".into(), form: "r³".into(), constants: Vec::new() };
+        let member = WeightedStructure {
+            weight: 1.0,
+            effects: vec![effect],
+            parameters: vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 60.0],
+            fitted: vec![0, 1, 2, 3],
+            covariance: vec![vec![0.0; 4]; 4],
+            degrees_of_freedom: None,
+        };
+        IdentifiedShip {
+            members: vec![member],
+            length_m: Some(75.0),
+            speed_m_s: Some(6.0),
+            ..IdentifiedShip::default()
+        }
+    }
 
     /// There and back is where one was, and K′ = K L/U does not change on the way.
     #[test]
     fn another_scale_keeps_what_has_no_dimension() {
-        let known = testing::known();
+        let known = ship();
         let ship = known.scaled_to(25.0 * known.length_m.expect("made up"), None).expect("particulars");
         let prime = |known: &IdentifiedShip| {
             let [a, b] = [known.members[0].parameters[0], known.members[0].parameters[1]];
@@ -275,7 +271,7 @@ mod tests {
     #[test]
     fn numbers_that_do_not_fit_are_refused() {
         let refused = |change: fn(&mut WeightedStructure)| {
-            let mut member = testing::known().members.remove(0);
+            let mut member = ship().members.remove(0);
             change(&mut member);
             member.model().expect_err("refused").to_string()
         };

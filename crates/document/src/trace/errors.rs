@@ -3,10 +3,6 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use ship::angle::to_deg;
-
-use crate::comparison::ReplayResult;
-use crate::replay_errors::HORIZONS;
 
 /// Errors on all records.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -55,21 +51,4 @@ pub struct ErrorsEntry {
     /// The same with a moment of the record as a rudder angle: straight between five evenly spaced instants.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub with_own_moment_deg: Option<f64>,
-}
-
-impl From<&ReplayResult> for ErrorsEntry {
-    fn from(on: &ReplayResult) -> Self {
-        let errors = &on.errors;
-        let horizon = HORIZONS.iter().zip(errors.horizon);
-        Self {
-            heading_rmse_deg: to_deg(errors.heading),
-            yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
-            overshoot_error_deg: errors.overshoot.map(to_deg),
-            horizon_rmse_deg: horizon.map(|(length, error)| (format!("{length:.0}"), error.map(to_deg))).collect(),
-            band_coverage_95: on.coverage().map(|own| own.share()),
-            band_width_95_deg: on.width().map(to_deg),
-            with_own_bias_deg: errors.with_moment.map(|with| to_deg(with.bias)),
-            with_own_moment_deg: errors.with_moment.map(|with| to_deg(with.slow)),
-        }
-    }
 }

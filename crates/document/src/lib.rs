@@ -1,0 +1,24 @@
+//! Documents: the results that cross between crates and into files.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | a number with its error | [`Quantity`] |
+//! | the noise of a record | [`noise`] |
+//! | an identified ship, as files hold it | [`identified_ship`], [`stored_hull`] |
+//! | what a trace says | [`trace`] |
+//! | what a reader should know beside the numbers | [`warning`] |
+
+pub mod error;
+pub mod identified_ship;
+pub mod noise;
+mod quantity;
+pub mod stored_hull;
+pub mod trace;
+pub mod warning;
+
+pub use error::IdentifiedShipError;
+pub use identified_ship::{IdentifiedShip, KnownGear, StoredEffect, ValidityRange, WeightedStructure};
+pub use noise::{HeadingNoise, Moment, RandomMoment};
+pub use quantity::Quantity;
+pub use stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
+pub use warning::{Code, Severity, Source, Warning, Warnings};

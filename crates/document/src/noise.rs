@@ -1,0 +1,165 @@
+//! Noise of the headings of a record.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Kind of a random yaw moment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Moment {
+    /// None.
+    #[default]
+    None,
+    /// White: the yaw rate wanders.
+    White,
+    /// Ornstein–Uhlenbeck: gusts with a correlation time.
+    OrnsteinUhlenbeck,
+    /// Random walk: the moment itself wanders.
+    Walk,
+}
+
+impl Moment {
+    /// All of them, from the fewest parameters to the most.
+    pub const ALL: [Self; 4] = [Self::None, Self::White, Self::Walk, Self::OrnsteinUhlenbeck];
+
+    /// The word used in tables and JSON.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::White => "white",
+            Self::OrnsteinUhlenbeck => "ornstein-uhlenbeck",
+            Self::Walk => "walk",
+        }
+    }
+}
+
+/// Random yaw moment, as the rudder angle that has the same moment.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum RandomMoment {
+    /// None.
+    #[default]
+    None,
+    /// White noise.
+    White {
+        /// Square root of its spectral density, rad √s: the standard deviation of its mean over one second.
+        rudder_rad_root_s: f64,
+    },
+    /// Random walk.
+    Walk {
+        /// Square root of the growth of its variance, rad/√s: the standard deviation of what one second adds.
+        rudder_rad_per_root_s: f64,
+    },
+    /// Gusts with a correlation time.
+    OrnsteinUhlenbeck {
+        /// Standard deviation, rad.
+        sd_rudder_rad: f64,
+        /// Time in which the autocorrelation falls to 1/e, s.
+        correlation_s: f64,
+    },
+}
+
+/// Noise of the headings of a record.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HeadingNoise {
+    /// Standard deviation of a reading of the heading, rad.
+    pub heading_sd_rad: f64,
+    /// Random yaw moment.
+    pub moment: RandomMoment,
+}
+
+impl RandomMoment {
+    /// Its kind.
+    pub fn kind(self) -> Moment {
+        match self {
+            Self::None => Moment::None,
+            Self::White { .. } => Moment::White,
+            Self::Walk { .. } => Moment::Walk,
+            Self::OrnsteinUhlenbeck { .. } => Moment::OrnsteinUhlenbeck,
+        }
+    }
+
+    /// Its size as a rudder angle over one second, rad: of gusts their standard deviation; 0 for none.
+    pub fn size(self) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::White { rudder_rad_root_s: size }
+            | Self::Walk { rudder_rad_per_root_s: size }
+            | Self::OrnsteinUhlenbeck { sd_rudder_rad: size, .. } => size,
+        }
+    }
+
+    /// The same kind with its size and its times multiplied.
+    fn times(self, factor: f64, second: f64) -> Self {
+        match self {
+            Self::None => Self::None,
+            Self::White { rudder_rad_root_s: size } => Self::White { rudder_rad_root_s: size * factor },
+            Self::Walk { rudder_rad_per_root_s: size } => Self::Walk { rudder_rad_per_root_s: size * factor },
+            Self::OrnsteinUhlenbeck { sd_rudder_rad: size, correlation_s } => {
+                Self::OrnsteinUhlenbeck { sd_rudder_rad: size * factor, correlation_s: correlation_s * second }
+            }
+        }
+    }
+
+    /// Whether there is none.
+    pub fn is_none(self) -> bool {
+        self == Self::None
+    }
+
+    /// The moment of a ship whose times are longer by a factor, at the same rudder angle.
+    #[must_use]
+    pub fn scaled(self, second: f64) -> Self {
+        let factor = match self {
+            Self::White { .. } => second.sqrt(),
+            Self::Walk { .. } => second.sqrt().recip(),
+            Self::None | Self::OrnsteinUhlenbeck { .. } => 1.0,
+        };
+        self.times(factor, second)
+    }
+}
+
+impl HeadingNoise {
+    /// Mean of the sizes over records whose moment is of one kind; `None` without any record.
+    pub fn mean(records: &[Self]) -> Option<Self> {
+        let first = records.first()?;
+        let mean = |of: fn(&Self) -> f64| records.iter().map(of).sum::<f64>() / records.len() as f64;
+        let size = mean(|noise| noise.moment.size());
+        let factor = if size > 0.0 { size / first.moment.size() } else { 1.0 };
+        Some(Self { heading_sd_rad: mean(|noise| noise.heading_sd_rad), moment: first.moment.times(factor, 1.0) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GUSTS: RandomMoment = RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: 0.01, correlation_s: 20.0 };
+
+    /// A time four times as long: a white moment is twice as large over one of its seconds, a walk half.
+    #[test]
+    fn a_moment_scales_with_the_times_of_its_ship() {
+        let white = RandomMoment::White { rudder_rad_root_s: 0.01 }.scaled(4.0);
+        assert_eq!(white, RandomMoment::White { rudder_rad_root_s: 0.02 });
+        let walk = RandomMoment::Walk { rudder_rad_per_root_s: 0.01 }.scaled(4.0);
+        assert_eq!(walk, RandomMoment::Walk { rudder_rad_per_root_s: 0.005 });
+        assert_eq!(GUSTS.scaled(4.0), RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: 0.01, correlation_s: 80.0 });
+    }
+
+    #[test]
+    fn the_mean_of_records_keeps_the_kind() {
+        let noise = |heading_sd_rad, moment| HeadingNoise { heading_sd_rad, moment };
+        let larger = RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: 0.03, correlation_s: 20.0 };
+        let mean = HeadingNoise::mean(&[noise(1.0, GUSTS), noise(3.0, larger)]).expect("two records");
+        assert_eq!(mean.heading_sd_rad, 2.0);
+        assert!((mean.moment.size() - 0.02).abs() < 1e-15 && mean.moment.kind() == Moment::OrnsteinUhlenbeck);
+        assert_eq!(HeadingNoise::mean(&[noise(1.0, RandomMoment::None)]).expect("one").moment, RandomMoment::None);
+        assert_eq!(HeadingNoise::mean(&[]), None);
+    }
+
+    #[test]
+    fn a_moment_is_written_with_its_kind_and_unit() {
+        let text = serde_json::to_string(&GUSTS).expect("plain data");
+        assert_eq!(text, r#"{"kind":"ornstein-uhlenbeck","sd_rudder_rad":0.01,"correlation_s":20.0}"#);
+        assert_eq!(serde_json::from_str::<RandomMoment>(&text).expect("the same"), GUSTS);
+    }
+}

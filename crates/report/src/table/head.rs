@@ -1,0 +1,82 @@
+//! The columns of a table, from left to right.
+
+use serde::{Deserialize, Serialize};
+
+use super::width::Alignment;
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct TableColumn {
+    /// What the column holds.
+    pub heading: String,
+    /// Its unit, without brackets.
+    pub unit: Option<String>,
+    /// How its cells are aligned.
+    pub alignment: Alignment,
+    /// Whether its cells are intervals of the column before it, `[low, high]`; other programs read two columns.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub interval: bool,
+}
+
+impl TableColumn {
+    /// Heading and unit, as in `K [1/s]`.
+    pub(super) fn head(&self) -> String {
+        // An interval stands beside the column whose unit it has.
+        if self.interval { self.heading.clone() } else { self.named(&self.heading) }
+    }
+
+    /// Another heading with the unit of this column.
+    pub(super) fn named(&self, heading: &str) -> String {
+        self.unit.as_ref().map_or_else(|| heading.to_owned(), |unit| format!("{heading} [{unit}]"))
+    }
+}
+
+/// Columns in the making. What is added last can be given a unit.
+#[derive(Debug, Clone, Default)]
+pub struct TableHead {
+    pub(super) columns: Vec<TableColumn>,
+    /// Columns before those that were added last.
+    before: usize,
+}
+
+impl TableHead {
+    fn with<H: Into<String>>(mut self, headings: impl IntoIterator<Item = H>, alignment: Alignment) -> Self {
+        self.before = self.columns.len();
+        let column = |heading: H| TableColumn { heading: heading.into(), alignment, ..TableColumn::default() };
+        self.columns.extend(headings.into_iter().map(column));
+        self
+    }
+
+    /// Further columns of words.
+    #[must_use]
+    pub fn texts<H: Into<String>>(self, headings: impl IntoIterator<Item = H>) -> Self {
+        self.with(headings, Alignment::Left)
+    }
+
+    /// Further columns of whole numbers.
+    #[must_use]
+    pub fn counts<H: Into<String>>(self, headings: impl IntoIterator<Item = H>) -> Self {
+        self.with(headings, Alignment::Right)
+    }
+
+    /// Further columns of numbers with decimals.
+    #[must_use]
+    pub fn numbers<H: Into<String>>(self, headings: impl IntoIterator<Item = H>) -> Self {
+        self.with(headings, Alignment::Decimal)
+    }
+
+    /// The 95 % intervals of the last column, in its unit.
+    #[must_use]
+    pub fn interval(mut self) -> Self {
+        let unit = self.columns.last().and_then(|column| column.unit.clone());
+        self.columns.push(TableColumn { heading: "95 %".to_owned(), unit, interval: true, ..TableColumn::default() });
+        self
+    }
+
+    /// The unit of the columns that were added last.
+    #[must_use]
+    pub fn unit(mut self, unit: &str) -> Self {
+        self.columns[self.before..].iter_mut().for_each(|column| column.unit = Some(unit.to_owned()));
+        self
+    }
+}
