@@ -39,7 +39,7 @@ const LARGEST_ROOM: f64 = 1.0 / 6.0;
 const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
-const REACHED: Size = Size { code: 62_800, tests: 31_620, long_functions: 0, shared_types: 8, packages: 298 };
+const REACHED: Size = Size { code: 63_180, tests: 31_700, long_functions: 0, shared_types: 8, packages: 299 };
 
 /// The packages that users ask for by name, each with the crate whose work it does and the files that show it.
 const ASKED_FOR: [(&str, &str, &[&str]); 6] = [

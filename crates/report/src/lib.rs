@@ -1,8 +1,8 @@
 //! Tables and journal-grade figures of stored results.
 //!
 //! This crate draws what it is handed and computes no science: every number in a table or a figure comes in as plain
-//! data, in the units a reader sees (degrees, seconds). Of the field it has the names of methods with their colours, the
-//! axes of heading, rudder and yaw rate, and the figure of a zig-zag; it depends on no crate of ships or trials.
+//! data, in the units a reader sees (degrees, seconds). Of the field it has the names of methods with their colours,
+//! the axes of heading, rudder and yaw rate, and the figure of a zig-zag; it depends on no crate of ships or trials.
 //!
 //! | to learn about | read |
 //! |---|---|

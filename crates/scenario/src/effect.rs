@@ -1,5 +1,5 @@
-//! Effects of a scenario: from numbers by the keys that [`ship::effects`] declares their parameters, each checked against
-//! the range its effect declares.
+//! Effects of a scenario: from numbers by the keys that [`ship::effects`] declares their parameters, each checked
+//! against the range its effect declares.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};

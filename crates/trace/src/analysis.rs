@@ -92,8 +92,8 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// Analyses records of one ship. `validation` records only judge: nothing else depends on them.
 ///
 /// Readings of the compass that belong to no ship are left out of all records, and listed; a rudder with errors of its
-/// instrument is replaced by the one behind its readings. Fails when a setting is out of its range, when an effect that was
-/// asked for cannot be in the model, and when the base cannot be fitted or replayed.
+/// instrument is replaced by the one behind its readings. Fails when a setting is out of its range, when an effect that
+/// was asked for cannot be in the model, and when the base cannot be fitted or replayed.
 ///
 /// ```
 /// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
@@ -167,10 +167,9 @@ pub fn watched(
         no_nearer,
         problem: &problem,
     };
-    let (document, noise) = (parts.document(), HeadingNoise::mean(&parts.heading_noise()).unwrap_or_default());
     Ok(Analysis {
-        document,
-        noise,
+        document: parts.document(),
+        noise: HeadingNoise::mean(&parts.heading_noise()).unwrap_or_default(),
         base: base.estimate,
         identification,
         validation: judged,

@@ -149,7 +149,7 @@ fn median(weights: &[f64], columns: &[&[f64]], row: usize, total: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Weights 0.5, 0.3 and 0.2: the mean is theirs, and the median reaches half of their sum, whatever the order of the
+    /// Weights 0.5, 0.3 and 0.2: the mean is theirs, and the median reaches half of their sum, in any order of the
     /// members.
     #[test]
     fn where_a_member_runs_away_a_row_is_the_weighted_median() {

@@ -154,7 +154,8 @@ impl NoiseColour {
         self.wander.map_or(0, |(kind, _)| kind.freedom()) + if self.waves.is_some() { 3 } else { 0 }
     }
 
-    /// The random moment of a record whose white noise has a variance (rad²), as rudder angle of a ship of |K/T| `gain`.
+    /// The random moment of a record whose white noise has a variance (rad²), as rudder angle of a ship whose |K/T| is
+    /// `gain`.
     pub fn moment(&self, variance: f64, longest: f64, gain: f64) -> RandomMoment {
         let Some((kind, level)) = self.wander else { return RandomMoment::None };
         let size = kind.size(level * variance, longest) / gain;

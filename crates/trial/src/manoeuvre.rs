@@ -1,6 +1,6 @@
-//! Manoeuvres: what the helm orders when, under which keys a file gives it, and what a list calls it. What it may be in a
-//! simulation and who steers it is in the simulator, how it is seen in a log in [`crate::find`], what is predicted of it
-//! in `predict`.
+//! Manoeuvres: what the helm orders when, under which keys a file gives it, and what a list calls it. What it may be in
+//! a simulation and who steers it is in the simulator, how it is seen in a log in [`crate::find`], what is predicted of
+//! it in `predict`.
 //!
 //! In a file angles are in degrees, here in rad; times are in s.
 //!

@@ -45,7 +45,7 @@ use trial::Trial;
 pub use conflict::ExpectationCheck;
 pub use error::HullFitError;
 pub use expected::{EarlierHull, ExpectedHull, Likeness, is_other_froude_number};
-pub use moment::RandomMoment;
+pub use moment::FormMoment;
 pub use objective::HullDeviations;
 use objective::{HullObjective, variances};
 pub use track::HullReference;
@@ -96,7 +96,7 @@ pub struct HullEstimate {
     /// Its records.
     pub records: Vec<HullResidual>,
     /// What the form leaves of them, as a random moment.
-    pub moment: RandomMoment,
+    pub moment: FormMoment,
 }
 
 /// Fits a hull about what is expected of its coefficients to records of one ship.
@@ -127,8 +127,8 @@ pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, Hu
         window: left.window.sqrt(),
         begins_with: left.begins_with / reference.time(),
     };
-    let moment = RandomMoment::of(&form.with(found.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &left);
-    let moment = RandomMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
+    let moment = FormMoment::of(&form.with(found.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &left);
+    let moment = FormMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
     let records = trials.iter().zip(left).map(residual).collect();
     let expected = expected.clone();
     Ok(HullEstimate { expected, reference, values: found.at, covariance, records, moment })

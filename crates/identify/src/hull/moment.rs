@@ -23,14 +23,14 @@ const SEED: u64 = 2_210_105;
 
 /// What is random in yaw: an Ornstein–Uhlenbeck process.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RandomMoment {
+pub struct FormMoment {
     /// Standard deviation as the rudder angle that has the same moment at approach speed, rad.
     pub deviation: f64,
     /// Time in which its autocorrelation falls to 1/e, s.
     pub correlation_time: f64,
 }
 
-impl RandomMoment {
+impl FormMoment {
     /// The moment, in units of L and U₀, under which the hull departs from itself in windows of 3.5 L/U₀ as far as the
     /// records do, which have `left` so much.
     pub(super) fn of(hull: &PrimeHull, tracks: &[HullTrack], left: &[Left]) -> Self {

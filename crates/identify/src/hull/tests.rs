@@ -15,7 +15,7 @@ use trial::{Channel, Columns, Origin, Trial, relative_wind};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
-use super::{ExpectedHull, HullEstimate, HullFitError, HullReference, RandomMoment, fit, fit_all, members};
+use super::{ExpectedHull, FormMoment, HullEstimate, HullFitError, HullReference, fit, fit_all, members};
 
 pub(super) const LENGTH: f64 = 7.0;
 pub(super) const SPEED: f64 = 1.2;
@@ -196,7 +196,7 @@ fn a_random_moment_is_found_again() {
         let fresh: f64 = random.sample(StandardNormal);
         moment.push(kept * moment[moment.len() - 1] + (1.0 - kept * kept).sqrt() * deviation * fresh);
     }
-    let RandomMoment { deviation: found, correlation_time } = quadratic(&records(|row| moment[row])).moment;
+    let FormMoment { deviation: found, correlation_time } = quadratic(&records(|row| moment[row])).moment;
     assert!((found / deviation - 1.0).abs() < 0.34, "{}°", to_deg(found));
     assert!((correlation_time * SPEED / LENGTH - 2.0).abs() < 1e-12, "{correlation_time}");
 }

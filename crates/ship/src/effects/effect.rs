@@ -52,8 +52,8 @@ impl Parameter {
         Self { odd: true, ..Self::even(words, sizes, ends) }
     }
 
-    /// The same with what a scenario file has for it: a number that cannot be left out, its key and the size of its unit
-    /// in SI.
+    /// The same with what a scenario file has for it: a number that cannot be left out, its key and the size of its
+    /// unit in SI.
     pub(super) const fn in_file(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
         Self { file: Some(FileNumber { key, unit, meaning, role: FileRole::Value, default: None }), ..self }
     }
