@@ -6,7 +6,7 @@
 //!
 //! F and B are drawn apart, each with the errors of its parameters and the random moment of one trial, T with the
 //! standard deviation of its reading. The moment in B stands for that in T. Where F is the hull of B at another
-//! loading, the errors of its trial are in both ([`crate::stored_hull`]). It reads no file and fits nothing.
+//! loading, the errors of its trial are in both ([`document::stored_hull`]). It reads no file and fits nothing.
 //!
 //! Source: MSC/Circ.1053 (2002), 3.4.1.2 and 3.4.1.3.
 
