@@ -124,7 +124,8 @@ impl HeadingNoise {
         let first = records.first()?;
         let mean = |of: fn(&Self) -> f64| records.iter().map(of).sum::<f64>() / records.len() as f64;
         let size = mean(|noise| noise.moment.size());
-        let factor = if size > 0.0 { size / first.moment.size() } else { 1.0 };
+        let of_first = first.moment.size();
+        let factor = if of_first > 0.0 { size / of_first } else { 1.0 };
         Some(Self { heading_sd_rad: mean(|noise| noise.heading_sd_rad), moment: first.moment.times(factor, 1.0) })
     }
 }

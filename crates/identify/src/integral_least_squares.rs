@@ -25,7 +25,7 @@ use crate::robust::{judge, newey_west_of_three};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 use equations::{IntegratedStretch, SHARED, Solution};
-use noise::HeadingWeights;
+use noise::ResidualNoise;
 
 /// Fewest headings in a stretch between gaps that can say more than its own initial state.
 const FEWEST_IN_PIECE: usize = 4;
@@ -95,7 +95,7 @@ impl Identifier for IntegralLeastSquares {
             return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
         }
         let response = FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: beta / b };
-        let noise = HeadingWeights::of(&pieces, &solution);
+        let noise = ResidualNoise::of(&pieces, &solution);
         // δ_r = (b δ_r)/b.
         let to_base = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -beta / (b * b), 1.0 / b) * solution.inverse;
         let base = |matrix: Matrix3<f64>| to_base * matrix * to_base.transpose();

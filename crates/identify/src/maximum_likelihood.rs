@@ -56,9 +56,17 @@ pub struct MaximumLikelihood {
 }
 
 impl MaximumLikelihood {
+    /// The kinds of noise that explain some records best, with the likelihood of each.
+    fn chosen(&self, trials: &[Trial]) -> Result<choice::Chosen, IdentifyError> {
+        if trials.is_empty() {
+            return Err(IdentifyError::NoTrial);
+        }
+        choice::PreparedRecords::new(&self.settings, trials)?.choose(&self.settings)
+    }
+
     /// Log of the largest likelihood of some records; `None` where the method has no answer.
     pub fn log_likelihood(&self, trials: &[Trial]) -> Option<f64> {
-        let chosen = choice::PreparedRecords::new(&self.settings, trials).ok()?.choose(&self.settings).ok()?;
+        let chosen = self.chosen(trials).ok()?;
         let log_likelihood = -0.5 * chosen.found[0].1.point.deviance;
         answer::estimate(trials, chosen).is_ok().then_some(log_likelihood)
     }
@@ -74,11 +82,6 @@ impl Identifier for MaximumLikelihood {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        if trials.is_empty() {
-            return Err(IdentifyError::NoTrial);
-        }
-        let prepared = choice::PreparedRecords::new(&self.settings, trials)?;
-        let chosen = prepared.choose(&self.settings)?;
-        answer::estimate(trials, chosen)
+        answer::estimate(trials, self.chosen(trials)?)
     }
 }

@@ -7,7 +7,7 @@ use super::equations::{IntegratedStretch, SHARED, Solution};
 
 /// Heading noise found in the residual and its way into the parameters.
 #[derive(Debug)]
-pub(super) struct HeadingWeights {
+pub(super) struct ResidualNoise {
     /// Variance of the heading noise, rad²; `None` without degrees of freedom.
     pub variance: Option<f64>,
     /// Equations less unknowns.
@@ -23,7 +23,7 @@ pub(super) struct HeadingWeights {
     pub scores: Vec<[Vec<f64>; SHARED]>,
 }
 
-impl HeadingWeights {
+impl ResidualNoise {
     /// From projected pieces and their solution.
     pub fn of(pieces: &[IntegratedStretch], solution: &Solution) -> Self {
         let count: usize = pieces.iter().map(|piece| piece.time.len()).sum();
