@@ -5,11 +5,13 @@
 //! | a number with its error | [`Quantity`] |
 //! | the noise of a record | [`noise`] |
 //! | an identified ship, as files hold it | [`identified_ship`], [`stored_hull`] |
+//! | the answer of a method | [`method`] |
 //! | what a trace says | [`trace`] |
 //! | what a reader should know beside the numbers | [`warning`] |
 
 pub mod error;
 pub mod identified_ship;
+pub mod method;
 pub mod noise;
 mod quantity;
 pub mod stored_hull;

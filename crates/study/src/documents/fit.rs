@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use campaign::answer::MethodEntry;
 use campaign::stored_figures::Replays;
+use document::method::MethodEntry;
 use document::{IdentifiedShip, Source, Warning};
 use report::PlotCurve;
 use report::figures::ZigzagTrial;

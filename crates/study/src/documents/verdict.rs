@@ -1,6 +1,6 @@
 //! Which answer of a fit is to be taken, and what its residual says.
 
-use campaign::answer::MethodEntry;
+use document::method::MethodEntry;
 use identify::lack_of_fit::LackOfFit;
 use identify::recommended::{Reason, Recommendation, ResidualKind};
 use serde::{Deserialize, Serialize};
@@ -81,7 +81,7 @@ fn are_apart(one: &MethodEntry, other: &MethodEntry) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use campaign::answer::{IndexEstimates, Status};
+    use document::method::{IndexEstimates, Status};
     use trial::Quantity;
 
     use super::*;

@@ -2,7 +2,7 @@
 //! all methods and with the one that is shown alone, over time and in the phase plane; K and T of all methods, and of
 //! every record alone.
 
-use campaign::answer::MethodEntry;
+use document::method::MethodEntry;
 use report::figures::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Reference95, Ruler, Stack};
 use report::palette::{BEFORE, Look, Marker, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve, symbol};

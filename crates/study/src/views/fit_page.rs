@@ -1,6 +1,6 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
-use campaign::answer::MethodEntry;
+use document::method::MethodEntry;
 use identify::recommended::{Reason, ResidualKind};
 use report::markdown::text;
 use report::number::{MISSING, fixed, optional, with_uncertainty};

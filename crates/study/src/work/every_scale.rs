@@ -10,7 +10,7 @@ use crate::documents::scales::{ComparedModel, ComparedTerm, ScalesEntry};
 use crate::outside::Named;
 use crate::records::file_of;
 use crate::scales::RescaledRecords;
-use campaign::answer::MethodEntry;
+use document::method::MethodEntry;
 
 /// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
 /// first.

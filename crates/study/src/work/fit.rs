@@ -2,6 +2,7 @@
 //! known of the ship.
 
 use campaign::stored_figures::Replays;
+use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
 use document::{Code, Source, Warning, Warnings};
 use identify::estimate::Uncertainty;
@@ -30,7 +31,7 @@ use crate::outside::{self, Named, NamedCommand};
 use crate::records::{file_of, names, no_track, source_of};
 use crate::scales::{self, RescaledRecords};
 use crate::{interrupt, progress};
-use campaign::answer::{MethodEntry, Validation, entry};
+use campaign::answer::entry;
 use campaign::curves::{curve, phase_curve, phase_of, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
 use campaign::statistics::grouped;
