@@ -5,17 +5,22 @@
 //! | a number with its error | [`Quantity`] |
 //! | the noise of a record | [`noise`] |
 //! | an identified ship, as files hold it | [`identified_ship`], [`stored_hull`] |
-//! | the answer of a method | [`method`] |
+//! | what a fit says | [`fit`], [`scales`], [`earlier_trials`] |
+//! | the answer of a method, and which to take | [`method`], [`verdict`] |
 //! | what a trace says | [`trace`] |
 //! | what a reader should know beside the numbers | [`warning`] |
 
+pub mod earlier_trials;
 pub mod error;
+pub mod fit;
 pub mod identified_ship;
 pub mod method;
 pub mod noise;
 mod quantity;
+pub mod scales;
 pub mod stored_hull;
 pub mod trace;
+pub mod verdict;
 pub mod warning;
 
 pub use error::IdentifiedShipError;

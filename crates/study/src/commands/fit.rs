@@ -5,12 +5,13 @@ use std::path::Path;
 
 use campaign::folder::ResultFolder;
 use campaign::outside::keep_log;
+use document::fit::{FitDocument, SCHEMA};
 use document::{Warning, Warnings};
 use report::Theme;
 use scenario::failure::Failure;
 
-use crate::documents::fit::{FIT, FIT_SCHEMA, FitCurves, FitDocument};
-use crate::documents::{self, CURVES, folder_for, read_document, read_json};
+use crate::documents::fit_curves::FitCurves;
+use crate::documents::{self, CURVES, FIT, folder_for, read_document, read_json};
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, read_all, read_others, repetitions};
 use crate::screen::{self, CommandOutput};
@@ -48,7 +49,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
 ///
 /// Fails when a file is missing or was not written by this program.
 pub fn show(into: &ResultFolder, from: &Path, theme: Option<&Theme>, common: &Common) -> Result<(), Failure> {
-    let (document, text): (FitDocument, String) = read_document(&from.join(FIT), FIT_SCHEMA)?;
+    let (document, text): (FitDocument, String) = read_document(&from.join(FIT), SCHEMA)?;
     let (curves, _): (FitCurves, String) = read_json(&from.join(CURVES), "fit")?;
     curve_tables::write_replays(&curves, into)?;
     write_page(into, fit_page::page(&document, &curves), theme)?;

@@ -10,9 +10,8 @@ use clap::Args;
 use scenario::failure::Failure;
 
 use super::{bench, fit, predict, trace};
-use crate::documents::fit::FIT;
 use crate::documents::trace::TRACE;
-use crate::documents::{BENCH, PREDICT, read_json};
+use crate::documents::{BENCH, FIT, PREDICT, read_json};
 use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;

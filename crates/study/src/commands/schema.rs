@@ -6,6 +6,7 @@ use campaign::design::Design;
 use campaign::manifest::Manifest;
 use campaign::showcase::Showcase;
 use clap::Args;
+use document::fit::FitDocument;
 use predict::PredictDocument;
 use report::Style;
 use scenario::failure::{Failure, OnPath};
@@ -21,7 +22,7 @@ use crate::documents::answers::{
 };
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
-use crate::documents::fit::{FitCurves, FitDocument};
+use crate::documents::fit_curves::FitCurves;
 use crate::documents::trace::TraceDocument;
 use crate::documents::truth::TruthDocument;
 use crate::options::{Common, Described};

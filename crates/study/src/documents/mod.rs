@@ -6,13 +6,11 @@ pub mod columns;
 pub mod curves;
 pub mod error;
 pub mod find;
-pub mod fit;
+pub mod fit_curves;
 pub mod missing_moment;
 pub mod prior;
-pub mod scales;
 pub mod trace;
 pub mod truth;
-pub mod verdict;
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -26,6 +24,9 @@ use serde::de::DeserializeOwned;
 
 use crate::screen;
 use answers::{CommandAnswer, Versioned};
+
+/// Name of the file with a fit.
+pub const FIT: &str = "fit.json";
 
 /// Name of the file with a prediction.
 pub const PREDICT: &str = "predict.json";
@@ -43,7 +44,7 @@ pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
 
 /// A folder for the results of one command. Fails when those of another one are there: their page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
-    let others = [fit::FIT, trace::TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|own| *own != document);
+    let others = [FIT, trace::TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|own| *own != document);
     match others.map(|own| place.join(own)).find(|path| path.is_file()) {
         Some(path) => Err(Failure::input(format!(
             "{} is the result of another command; give another folder with --out",

@@ -1,6 +1,7 @@
 //! `trace.json`: what the analysis says, and beside it the files of curves and what is known of the ship.
 
 use document::IdentifiedShip;
+use document::earlier_trials::EarlierTrials;
 use document::trace::BeforeAfter;
 use document::trace::Document;
 use scenario::name::slug;
@@ -8,7 +9,6 @@ use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
 use super::missing_moment::MissingMomentEntry;
-use super::prior::EarlierTrials;
 use crate::records::names;
 
 /// Name of the file.

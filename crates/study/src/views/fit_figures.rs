@@ -2,6 +2,7 @@
 //! all methods and with the one that is shown alone, over time and in the phase plane; K and T of all methods, and of
 //! every record alone.
 
+use document::fit::{FitDocument, SingleRecord, SingleRecords};
 use document::method::MethodEntry;
 use report::figures::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Reference95, Ruler, Stack};
 use report::palette::{BEFORE, Look, Marker, SOLID};
@@ -10,7 +11,7 @@ use ship::Particulars;
 use trial::Quantity;
 
 use super::record_figures::{ModelOverTime, over_time, phase_plane, rudder};
-use crate::documents::fit::{FitCurves, FitDocument, FitRecord, SingleRecord, SingleRecords};
+use crate::documents::fit_curves::{FitCurves, FitRecord};
 
 /// All figures, in the order of the page.
 pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {

@@ -1,16 +1,16 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
+use document::fit::{FitDocument, ZigZagEntry};
 use document::method::MethodEntry;
-use identify::recommended::{Reason, ResidualKind};
+use document::verdict::{Reason, ResidualKind, VerdictEntry};
 use report::markdown::text;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, Table};
 use trial::Quantity;
 
 use super::{fit_figures, method_table, scale_tables};
-use crate::documents::fit::{FitCurves, FitDocument, ZigZagEntry};
-use crate::documents::prior::EarlierTrials;
-use crate::documents::verdict::VerdictEntry;
+use crate::documents::fit_curves::FitCurves;
+use crate::documents::prior;
 use crate::scales::scale_name;
 use crate::work::every_scale::PREFERRED_METHODS;
 
@@ -163,7 +163,7 @@ pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
         ([only], Some(record)) => format!("{}: {rows} rows, {:.1} s", record.name, only.duration_s),
         (several, _) => format!("{} records together: {rows} rows", several.len()),
     };
-    let prior = document.earlier_trials.as_ref().map(EarlierTrials::sentence);
+    let prior = document.earlier_trials.as_ref().map(prior::sentence);
     let sentences = document.scaling.iter().cloned().chain(prior);
     sentences.fold(head, |head, sentence| format!("{head}\n{sentence}"))
 }
@@ -242,7 +242,7 @@ fn characteristics(entry: &ZigZagEntry) -> String {
             optional(criterion.measured, 2),
             criterion.unit,
             fixed(criterion.limit, 1),
-            criterion.verdict
+            criterion.verdict.as_str()
         );
     }
     text

@@ -14,6 +14,7 @@ use super::trace_figures as figures;
 use super::trace_hero;
 use super::trace_tables as tables;
 use crate::documents::curves::TraceCurves;
+use crate::documents::prior;
 use crate::documents::trace::TraceDocument;
 use crate::scales::scale_name;
 
@@ -38,7 +39,8 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     }
     located(document, "").for_each(|words| behind += &format!("\n{words}"));
     behind += &odd(document);
-    behind += &document.earlier_trials.as_ref().map_or_else(String::new, |prior| format!("\n{}", prior.sentence()));
+    behind +=
+        &document.earlier_trials.as_ref().map_or_else(String::new, |earlier| format!("\n{}", prior::sentence(earlier)));
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
@@ -215,7 +217,7 @@ fn model_and_noise(page: &mut Page, document: &TraceDocument) {
     if !document.ship.hulls.is_empty() {
         page.subpart("The hull behind the response");
         page.table(tables::hulls(document));
-        page.say(document.earlier_trials.as_ref().map_or_else(String::new, |prior| text(&prior.sentence())));
+        page.say(document.earlier_trials.as_ref().map_or_else(String::new, |earlier| text(&prior::sentence(earlier))));
         page.say(HULLS);
     }
 }

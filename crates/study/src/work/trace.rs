@@ -15,9 +15,8 @@ use super::earlier::{self, EarlierModel};
 use super::planned;
 use crate::documents::curves::{self, TraceCurves};
 use crate::documents::missing_moment::MissingMomentEntry;
-use crate::documents::prior::EarlierTrials;
 use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
-use crate::documents::{self, missing_moment};
+use crate::documents::{self, missing_moment, prior};
 use crate::options::{TraceRequest, Withheld};
 use crate::progress;
 use crate::records::{file_of, names, no_track, rudder_logged_late};
@@ -129,7 +128,7 @@ pub fn trace(
     let ship = known::of_analysis(&analysis, &shown);
     warnings.extend(ship.rudder_logged_late().map(|late| Code::LateRudder.warning(rudder_logged_late(late))));
     let earlier_trials = earlier::entry(priors, &trials, &shown);
-    warnings.extend(earlier_trials.as_ref().and_then(EarlierTrials::warning));
+    warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     let document = TraceDocument {
         earlier_trials,
         ship,

@@ -1,27 +1,20 @@
-//! `fit.json`: records and answers for other programs.
+//! What a fit says, as `fit.json` holds it: records and answers.
 
 use std::collections::BTreeMap;
 
-use campaign::stored_figures::Replays;
-use document::method::MethodEntry;
-use document::{IdentifiedShip, Source, Warning};
-use report::PlotCurve;
-use report::figures::ZigzagTrial;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
-use ship::angle::to_deg;
-use trial::{Quantity, Trial, ZigZag, ZigZagError, imo};
 
-use super::prior::EarlierTrials;
-use super::scales::ScalesEntry;
-use super::verdict::VerdictEntry;
-use crate::records::file_of;
+use crate::earlier_trials::EarlierTrials;
+use crate::identified_ship::IdentifiedShip;
+use crate::method::MethodEntry;
+use crate::quantity::Quantity;
+use crate::scales::ScalesEntry;
+use crate::verdict::VerdictEntry;
+use crate::warning::{Source, Warning};
 
-/// Name of the file.
-pub const FIT: &str = "fit.json";
-
-/// What `schema` says.
-pub const FIT_SCHEMA: &str = "fit/2";
+/// Name of the schema.
+pub const SCHEMA: &str = "fit/2";
 
 /// The method whose fit is drawn on its own where it has one.
 const SHOWN: &str = "output-error";
@@ -56,7 +49,33 @@ pub struct CriterionEntry {
     /// Unit of both.
     pub unit: String,
     /// `pass`, `fail` or `not measured`.
-    pub verdict: String,
+    #[schemars(with = "String")]
+    pub verdict: CriterionVerdict,
+}
+
+/// Whether a criterion is met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CriterionVerdict {
+    /// It is.
+    #[serde(rename = "pass")]
+    Pass,
+    /// It is not.
+    #[serde(rename = "fail")]
+    Fail,
+    /// The record does not show it.
+    #[serde(rename = "not measured")]
+    NotMeasured,
+}
+
+impl CriterionVerdict {
+    /// The words in files and on a page.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+            Self::NotMeasured => "not measured",
+        }
+    }
 }
 
 /// Zig-zag characteristics of a record.
@@ -168,73 +187,4 @@ pub struct SingleRecord {
     /// T.
     #[serde(rename = "T_s")]
     pub t_s: Quantity,
-}
-
-/// `curves.json`: what the figures of a fit show, so that they can be drawn again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct FitCurves {
-    /// The records, first the fitted ones.
-    pub records: Vec<FitRecord>,
-    /// Of every method with a bounded one the outline of the region that holds K (1/s) and T (s) with 95 %.
-    pub regions: BTreeMap<String, PlotCurve>,
-}
-
-/// A record with its replays, in degrees.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct FitRecord {
-    /// A name that no other record has.
-    pub name: String,
-    /// Its file.
-    pub file: String,
-    /// Whether another record has the name that it came with.
-    pub is_renamed: bool,
-    /// Whether it was kept for validation.
-    pub validation: bool,
-    /// The zig-zag with its characteristic points.
-    pub zigzag: Option<ZigzagTrial>,
-    /// Record and replays of all methods.
-    pub replays: Replays,
-    /// The rudder.
-    pub rudder: PlotCurve,
-    /// Headings and rudder angles that are left out or doubtful, where there are some.
-    pub rejected: Option<[PlotCurve; 2]>,
-    /// Yaw rate over heading of the record, where it shows one.
-    pub phase: Option<PlotCurve>,
-    /// Whether that yaw rate is the slope of the smoothed heading.
-    pub smoothed: bool,
-    /// Yaw rate over heading of the replay of the method that is drawn on its own.
-    pub phase_replay: Option<PlotCurve>,
-}
-
-/// The entry of a record.
-pub fn trial_entry(trial: &Trial, zigzag: &Result<ZigZag, ZigZagError>) -> TrialEntry {
-    let (file, sha256) = file_of(trial);
-    TrialEntry {
-        file: file.into(),
-        sha256: sha256.into(),
-        samples: trial.len(),
-        duration_s: trial.duration(),
-        zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, trial)),
-        no_zigzag: zigzag.as_ref().err().map(ToString::to_string),
-    }
-}
-
-/// The entry of a zig-zag; criteria where length and speed are declared.
-fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
-    let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
-    let criterion = |own: &imo::Criterion| CriterionEntry {
-        criterion: own.name.into(),
-        measured: own.measured.map(|measured| measured.value),
-        limit: own.limit,
-        unit: own.unit.symbol().into(),
-        verdict: own.verdict().into(),
-    };
-    ZigZagEntry {
-        initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),
-        overshoots_deg: zigzag.swings().map(|swing| Some(to_deg(swing?.angle.value))).collect(),
-        overshoots_sd_deg: zigzag.swings().map(|swing| swing?.angle.sd.map(to_deg)).collect(),
-        period_s: zigzag.period.map(|period| period.value),
-        imo: criteria.iter().map(criterion).collect(),
-        imo_caution: trial.particulars().and_then(imo::caution),
-    }
 }
