@@ -403,7 +403,8 @@ impl TraceParts<'_> {
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
                 heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation(self.problem.longest())),
-                heading_wander: heading.map(|_| if law.is_of_model() { "model" } else { "compass" }.into()),
+                heading_wander: heading
+                    .map(|_| if law.is_of_model() { HeadingWander::Model } else { HeadingWander::Compass }),
                 moment: kind,
                 moment_sd_rudder_deg: (!noise.moment.is_none()).then(|| to_deg(noise.moment.size())),
                 moment_correlation_s: correlation,

@@ -9,6 +9,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use document::trace::RecordNoiseEntry;
+use document::trace::TraceDocument;
 use kempf_tests::autopilot;
 use kempf_tests::measured::analysis::{
     MeasuredAnalysis, ReplayError, SetSummary, WHOLE, WINDOWS_20_S, WINDOWS_60_S, named,
@@ -19,7 +20,6 @@ use kempf_tests::measured::{charts, folder, into_results};
 use kempf_tests::stability;
 use report::number::{fixed, significant};
 use report::{Table, TableHead, Theme};
-use study::documents::trace::TraceDocument;
 use study::options::PageFigures;
 use trace::Document;
 
@@ -296,7 +296,7 @@ fn noise(noise: &RecordNoiseEntry) -> String {
     let mut parts = vec![format!("heading {} deg", significant(noise.heading_sd_deg, 2))];
     if let (Some(kind), Some(sd)) = (&noise.heading_wander, noise.heading_wander_sd_deg) {
         let time = noise.heading_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));
-        parts.push(format!("lasting error ({kind}) {} deg{time}", significant(sd, 2)));
+        parts.push(format!("lasting error ({}) {} deg{time}", kind.as_str(), significant(sd, 2)));
     }
     if let Some(sd) = noise.moment_sd_rudder_deg {
         let time = noise.moment_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));

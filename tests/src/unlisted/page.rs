@@ -63,7 +63,7 @@ pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
             text(&label),
             text(&|named| named.aliases.join("|")),
             text(&|named| time(named.time)),
-            shape(&|entry| entry.depends_on.clone()),
+            shape(&|entry| entry.depends_on.as_str().to_owned()),
             shape(&|entry| entry.form.clone()),
             shape(&|entry| fixed(entry.nats, 1)),
             shape(&|entry| time(entry.from_s)),

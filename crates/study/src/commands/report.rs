@@ -10,8 +10,7 @@ use clap::Args;
 use scenario::failure::Failure;
 
 use super::{bench, fit, predict, trace};
-use crate::documents::trace::TRACE;
-use crate::documents::{BENCH, FIT, PREDICT, read_json};
+use crate::documents::{BENCH, FIT, PREDICT, TRACE, read_json};
 use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;

@@ -4,14 +4,13 @@
 use std::path::Path;
 
 use campaign::folder::ResultFolder;
-use document::trace::SCHEMA;
+use document::trace::{SCHEMA, TraceDocument};
 use document::{Warning, Warnings};
 use report::Theme;
 use scenario::failure::Failure;
 
 use crate::documents::curves::TraceCurves;
-use crate::documents::trace::{TRACE, TraceDocument};
-use crate::documents::{folder_for, read_document};
+use crate::documents::{TRACE, folder_for, read_document};
 use crate::interrupt;
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_others, repetitions};

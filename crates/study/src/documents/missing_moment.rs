@@ -2,53 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use ::trace::Verdict;
 use ::trace::missing_moment::{MissingMoment, Over, Panel};
 use campaign::curves::degrees;
 use campaign::statistics::distinct;
-use serde::{Deserialize, Serialize};
+use document::trace::{MissingMomentEntry, PanelEntry, Verdict};
 use ship::angle::to_deg;
 
 use super::columns::CurveTable;
-
-/// The moment of one record in `trace.json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct MissingMomentEntry {
-    /// The record.
-    pub file: String,
-    /// Its name.
-    pub record: String,
-    /// The table of the smoothed moment.
-    pub moment: String,
-    /// The table of the curves over the channels.
-    pub curves: String,
-    /// Root mean square of the moment, as an angle of the rudder.
-    pub rms_rudder_deg: f64,
-    /// The explanation beside it in the tables: the named effects together, else the best candidate alone.
-    pub explanation: Option<String>,
-    /// Whether the verdict is located or unexplained and no effect lies inside the bands of all curves that show
-    /// something.
-    pub unlisted: bool,
-    /// Effects inside the bands of all curves that show something.
-    pub inside_all: Vec<String>,
-    /// Curves over the channels, the most likely first.
-    pub over: Vec<PanelEntry>,
-}
-
-/// One curve.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PanelEntry {
-    /// The channel.
-    pub channel: String,
-    /// Its column in the tables.
-    pub column: String,
-    /// Share of the variance of its walk that the curve takes away.
-    pub variance_share: Option<f64>,
-    /// Whether the band leaves zero.
-    pub shows: bool,
-    /// Effects inside the band everywhere.
-    pub inside: Vec<String>,
-}
 
 /// The moment of one record as it is read from its tables; a column that is not there is empty.
 pub struct MissingMomentCurves {

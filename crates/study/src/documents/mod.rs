@@ -9,7 +9,6 @@ pub mod find;
 pub mod fit_curves;
 pub mod missing_moment;
 pub mod prior;
-pub mod trace;
 pub mod truth;
 
 use std::io::ErrorKind;
@@ -28,6 +27,9 @@ use answers::{CommandAnswer, Versioned};
 /// Name of the file with a fit.
 pub const FIT: &str = "fit.json";
 
+/// Name of the file with a trace.
+pub const TRACE: &str = "trace.json";
+
 /// Name of the file with a prediction.
 pub const PREDICT: &str = "predict.json";
 
@@ -44,7 +46,7 @@ pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
 
 /// A folder for the results of one command. Fails when those of another one are there: their page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
-    let others = [FIT, trace::TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|own| *own != document);
+    let others = [FIT, TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|own| *own != document);
     match others.map(|own| place.join(own)).find(|path| path.is_file()) {
         Some(path) => Err(Failure::input(format!(
             "{} is the result of another command; give another folder with --out",

@@ -2,13 +2,14 @@
 
 use std::fmt::Write as _;
 
+use document::trace::{MissingMomentEntry, PanelEntry};
 use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
 use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
 use report::{PlotCurve, symbol};
 use trace::missing_moment::Over;
 
-use crate::documents::missing_moment::{ChannelCurve, MissingMomentCurves, MissingMomentEntry, PanelEntry};
+use crate::documents::missing_moment::{ChannelCurve, MissingMomentCurves};
 
 /// Panels of a figure at most.
 const PANELS: usize = 4;

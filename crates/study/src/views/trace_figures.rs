@@ -4,7 +4,7 @@
 
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use campaign::curves::{curve, degrees, phase_curve, phase_of};
-use document::trace::{BeforeAfter, ErrorsEntry, Outcome};
+use document::trace::{BeforeAfter, ErrorsEntry, MissingMomentEntry, Outcome, RecordEntry, TraceDocument};
 use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
 use identify::replay::Replay;
 use report::figures::{
@@ -20,9 +20,8 @@ use trial::{Trial, ZigZag, imo};
 use super::record_figures::{ModelOverTime, over_time, phase_plane};
 use super::trace_tables::{horizon, term};
 use super::{innovation_figure, missing_moment};
-use crate::documents::curves::{TraceCurves, TracedRecord};
-use crate::documents::missing_moment::{MissingMomentCurves, MissingMomentEntry};
-use crate::documents::trace::{RecordEntry, TraceDocument, slugs, suffix};
+use crate::documents::curves::{TraceCurves, TracedRecord, slugs, suffix};
+use crate::documents::missing_moment::MissingMomentCurves;
 
 /// Lines of a spectrum whose frequencies differ by no more than this factor are averaged into one.
 const LINE: f64 = 1.06;

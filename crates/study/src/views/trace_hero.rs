@@ -2,7 +2,7 @@
 //! before and after, and what these leave of the heading.
 
 use campaign::curves::curve;
-use document::trace::BeforeAfter;
+use document::trace::{BeforeAfter, TraceDocument};
 use report::figures::{Division, Layer, LayeredPanel, PanelRow, Panels, Ruler, Stack};
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure};
@@ -10,7 +10,6 @@ use report::{CurveOrigin, PageFigure};
 use super::record_figures::heading_and_residual;
 use super::trace_figures::{models_over_time, ratio};
 use crate::documents::curves::{TraceCurves, TracedRecord};
-use crate::documents::trace::TraceDocument;
 
 /// Names in a title at most.
 const NAMES: usize = 3;

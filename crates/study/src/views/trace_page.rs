@@ -1,7 +1,7 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
 use document::identified_ship::ValidityRange;
-use document::trace::{Outcome, ParameterEntry};
+use document::trace::{Outcome, ParameterEntry, TraceDocument};
 use predict::steady::SteadyCurve;
 use report::markdown::text;
 use report::number::{fixed, significant};
@@ -15,7 +15,6 @@ use super::trace_hero;
 use super::trace_tables as tables;
 use crate::documents::curves::TraceCurves;
 use crate::documents::prior;
-use crate::documents::trace::TraceDocument;
 use crate::scales::scale_name;
 
 /// Readings that are listed.
@@ -258,7 +257,7 @@ fn located(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String>
         format!(
             "Not part of the model: depends on {}{only}: {}, worth {}° of rudder (rms), {} nats better than any random \
              moment{or}{}. {typed}",
-            own.depends_on,
+            own.depends_on.as_str(),
             own.form,
             significant(own.rudder_deg, 2),
             fixed(own.nats, 0),

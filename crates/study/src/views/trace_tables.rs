@@ -3,14 +3,14 @@
 use ::trace::replay_errors::HORIZONS;
 use document::Moment;
 use document::stored_hull::StoredCoefficient;
-use document::trace::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
+use document::trace::{
+    ErrorsEntry, HeadingWander, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry, TraceDocument,
+};
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
 use report::{Table, TableHead};
 use ship::angle::to_deg;
 use ship::vessel::prime::meaning;
 use trial::Quantity;
-
-use crate::documents::trace::{RecordErrors, TraceDocument};
 
 /// A quantity in degrees where its unit holds radians, and that unit. Frequencies stay in radians.
 fn in_degrees(symbol: &str, quantity: Quantity, unit: &str) -> (Quantity, String) {
@@ -239,7 +239,7 @@ pub fn coloured(own: &RecordNoiseEntry) -> Vec<String> {
         Moment::None => None,
     };
     let heading = own.heading_wander_sd_deg.map(|sd| {
-        let whose = if own.heading_wander.as_deref() == Some("model") { "model" } else { "compass" };
+        let whose = own.heading_wander.map_or("compass", HeadingWander::as_str);
         let time = two(own.heading_correlation_s);
         format!("an error of the {whose} of {}° that lasts about {time} s", significant(sd, 2))
     });

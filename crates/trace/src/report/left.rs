@@ -33,7 +33,7 @@ impl TraceParts<'_> {
             let span = self.span(only);
             let acts = shape.span(span[1]).map(|times| times.map(|t| span[0] + t.clamp(0.0, span[1])));
             LocatedEntry {
-                depends_on: shape.dependence().as_str().into(),
+                depends_on: shape.dependence(),
                 form: shape.words(span),
                 only: self.only(only),
                 from_s: acts.map(|[from, _]| from),
