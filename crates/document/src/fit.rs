@@ -1,6 +1,7 @@
 //! What a fit says, as `fit.json` holds it: records and answers.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
@@ -67,14 +68,10 @@ pub enum CriterionVerdict {
     NotMeasured,
 }
 
-impl CriterionVerdict {
-    /// The words in files and on a page.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Fail => "fail",
-            Self::NotMeasured => "not measured",
-        }
+/// The words in files.
+impl fmt::Display for CriterionVerdict {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        self.serialize(out)
     }
 }
 

@@ -1,5 +1,7 @@
 //! What was found at each scale beside what was found at all of them together, without dimension: which terms scale.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
@@ -19,14 +21,10 @@ pub enum Scaling {
     CannotBeTold,
 }
 
-impl Scaling {
-    /// In words.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Scales => "scales",
-            Self::DoesNotScale => "does not scale",
-            Self::CannotBeTold => "cannot be told",
-        }
+/// The words in files.
+impl fmt::Display for Scaling {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        self.serialize(out)
     }
 }
 

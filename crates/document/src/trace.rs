@@ -3,6 +3,7 @@
 //! Angles are in degrees where a name says so; parameters of effects are in SI units and radians.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use estimation::residuals::Whiteness;
 use serde::{Deserialize, Serialize};
@@ -226,13 +227,10 @@ pub enum HeadingWander {
     Model,
 }
 
-impl HeadingWander {
-    /// The word used in files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Compass => "compass",
-            Self::Model => "model",
-        }
+/// The words in files.
+impl fmt::Display for HeadingWander {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        self.serialize(out)
     }
 }
 

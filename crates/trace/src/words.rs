@@ -150,7 +150,7 @@ impl Headline<'_> {
 
     /// What the shapes are, with their evidence.
     fn shapes(&self) -> String {
-        let shape = |own: &LocatedEntry| format!("{} ({})", own.depends_on.as_str(), own.form);
+        let shape = |own: &LocatedEntry| format!("{} ({})", own.depends_on, own.form);
         let nats = self.located.first().map_or(0.0, |clearest| clearest.nats);
         let words = listed(&self.located.iter().map(shape).collect::<Vec<_>>());
         let other = self.located.first().and_then(|clearest| clearest.alternatives.first());

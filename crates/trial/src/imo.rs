@@ -170,7 +170,7 @@ mod tests {
         assert_relative_eq!(measured[1].expect("10/10"), 8.07, epsilon = 0.02);
         assert_eq!(measured[2], None);
         assert_relative_eq!(measured[3].expect("10/10"), 1.97, epsilon = 0.01);
-        let verdicts: Vec<&str> = ten.iter().map(|criterion| criterion.verdict().as_str()).collect();
+        let verdicts: Vec<String> = ten.iter().map(|criterion| criterion.verdict().to_string()).collect();
         assert_eq!(verdicts, ["pass", "pass", "not measured", "pass"]);
         assert_eq!(Criterion { limit: 6.0, ..ten[0].clone() }.verdict(), CriterionVerdict::Fail);
 

@@ -296,7 +296,7 @@ fn noise(noise: &RecordNoiseEntry) -> String {
     let mut parts = vec![format!("heading {} deg", significant(noise.heading_sd_deg, 2))];
     if let (Some(kind), Some(sd)) = (&noise.heading_wander, noise.heading_wander_sd_deg) {
         let time = noise.heading_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));
-        parts.push(format!("lasting error ({}) {} deg{time}", kind.as_str(), significant(sd, 2)));
+        parts.push(format!("lasting error ({kind}) {} deg{time}", significant(sd, 2)));
     }
     if let Some(sd) = noise.moment_sd_rudder_deg {
         let time = noise.moment_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));

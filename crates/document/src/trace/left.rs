@@ -1,5 +1,7 @@
 //! What is left beside the effects that are named.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 /// What a moment depends on.
@@ -23,17 +25,10 @@ pub enum Dependence {
     History,
 }
 
-impl Dependence {
-    /// The words on a page and in files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Heading => "heading",
-            Self::Way => "way to one side",
-            Self::YawRate => "yaw rate",
-            Self::Rudder => "rudder",
-            Self::History => "history of the rudder",
-        }
+/// The words in files.
+impl fmt::Display for Dependence {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        self.serialize(out)
     }
 }
 

@@ -242,7 +242,7 @@ fn characteristics(entry: &ZigZagEntry) -> String {
             optional(criterion.measured, 2),
             criterion.unit,
             fixed(criterion.limit, 1),
-            criterion.verdict.as_str()
+            criterion.verdict
         );
     }
     text

@@ -44,7 +44,7 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
         let mut cells = vec![format!("{}{unit}", term.symbol), number(&term.joint)];
         cells.extend(term.own.iter().map(|own| own.as_ref().map_or_else(|| MISSING.to_owned(), number)));
         cells.push(term.difference_sd.map_or_else(|| MISSING.to_owned(), |far| fixed(far, 1)));
-        cells.push(term.verdict.as_str().to_owned());
+        cells.push(term.verdict.to_string());
         table.push(cells);
     }
     table

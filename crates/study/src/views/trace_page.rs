@@ -257,7 +257,7 @@ fn located(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String>
         format!(
             "Not part of the model: depends on {}{only}: {}, worth {}° of rudder (rms), {} nats better than any random \
              moment{or}{}. {typed}",
-            own.depends_on.as_str(),
+            own.depends_on,
             own.form,
             significant(own.rudder_deg, 2),
             fixed(own.nats, 0),

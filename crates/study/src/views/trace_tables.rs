@@ -239,7 +239,7 @@ pub fn coloured(own: &RecordNoiseEntry) -> Vec<String> {
         Moment::None => None,
     };
     let heading = own.heading_wander_sd_deg.map(|sd| {
-        let whose = own.heading_wander.map_or("compass", HeadingWander::as_str);
+        let whose = own.heading_wander.unwrap_or(HeadingWander::Compass);
         let time = two(own.heading_correlation_s);
         format!("an error of the {whose} of {}° that lasts about {time} s", significant(sd, 2))
     });
