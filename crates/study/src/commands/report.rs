@@ -4,13 +4,19 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use ::predict::PredictDocument;
+use ::predict::document::SCHEMA;
 use campaign::folder::ResultFolder;
 use campaign::store::{self, StoredStudy};
 use clap::Args;
+use document::fit::FitDocument;
+use document::trace::TraceDocument;
 use scenario::failure::Failure;
 
 use super::{bench, fit, predict, trace};
-use crate::documents::{BENCH, FIT, PREDICT, TRACE, read_json};
+use crate::documents::curves::TraceCurves;
+use crate::documents::fit_curves::FitCurves;
+use crate::documents::{BENCH, CURVES, FIT, PREDICT, TRACE, read_document, read_json};
 use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
@@ -38,9 +44,25 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     let theme = || style.style.theme();
     let has = |name: &str| stored.join(name).is_file();
     match () {
-        () if has(TRACE) => trace::show(&held()?, stored, Some(&theme()?), common, &[])?,
-        () if has(FIT) => fit::show(&held()?, stored, Some(&theme()?), common)?,
-        () if has(PREDICT) => predict::show(&held()?, stored, Some(&theme()?), common, &[])?,
+        () if has(TRACE) => {
+            let (folder, theme) = (held()?, theme()?);
+            let (document, text): (TraceDocument, String) =
+                read_document(&stored.join(TRACE), document::trace::SCHEMA)?;
+            let curves = TraceCurves::of(&document, stored)?;
+            trace::show(&folder, &document, &curves, &text, Some(&theme), common, &[])?
+        }
+        () if has(FIT) => {
+            let (folder, theme) = (held()?, theme()?);
+            let (document, text): (FitDocument, String) = read_document(&stored.join(FIT), document::fit::SCHEMA)?;
+            let curves: FitCurves = read_json(&stored.join(CURVES), "fit")?.0;
+            fit::show(&folder, &document, &curves, &text, Some(&theme), common)?
+        }
+        () if has(PREDICT) => {
+            let (folder, theme) = (held()?, theme()?);
+            let (document, text): (PredictDocument, String) = read_document(&stored.join(PREDICT), SCHEMA)?;
+            let predicted = document.with_curves(read_json(&stored.join(CURVES), "predict")?.0);
+            predict::show(&folder, &predicted, &text, Some(&theme), common, &[])?
+        }
         () if has(BENCH) => bench::show(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?,
         () => rebuild(stored, style, common)?,
     }

@@ -56,9 +56,11 @@ pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
     }
 }
 
-/// Keeps the document of a command in a folder. Fails when the file cannot be written.
-pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<(), Failure> {
-    folder.keep(name, text(document).on("describe", &folder.path().join(name))?).map(drop)
+/// Keeps the document of a command in a folder; the text of its file. Fails when the file cannot be written.
+pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<String, Failure> {
+    let text = text(document).on("describe", &folder.path().join(name))?;
+    folder.keep(name, &text)?;
+    Ok(text)
 }
 
 /// The same with the curves of its figures beside it.
@@ -67,9 +69,10 @@ pub fn keep_with_curves(
     name: &str,
     document: &impl Serialize,
     curves: &impl Serialize,
-) -> Result<(), Failure> {
-    keep(folder, name, document)?;
-    folder.write(CURVES, serde_json::to_string(curves).on("describe", &folder.path().join(CURVES))?)
+) -> Result<String, Failure> {
+    let text = keep(folder, name, document)?;
+    folder.write(CURVES, serde_json::to_string(curves).on("describe", &folder.path().join(CURVES))?)?;
+    Ok(text)
 }
 
 /// A document that a command wrote, and its text.

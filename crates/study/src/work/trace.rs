@@ -38,10 +38,11 @@ impl TraceResult {
         })
     }
 
-    /// Writes document and tables. Fails when a file cannot be written.
-    pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
-        documents::keep(folder, TRACE, &self.document)?;
-        self.tables.iter().try_for_each(|(name, table)| folder.write(name, table))
+    /// Writes document and tables; the text of the document. Fails when a file cannot be written.
+    pub fn write(&self, folder: &ResultFolder) -> Result<String, Failure> {
+        let text = documents::keep(folder, TRACE, &self.document)?;
+        self.tables.iter().try_for_each(|(name, table)| folder.write(name, table))?;
+        Ok(text)
     }
 }
 
