@@ -9,13 +9,10 @@ use ::predict::document::SCHEMA;
 use campaign::folder::ResultFolder;
 use campaign::store::{self, StoredStudy};
 use clap::Args;
-use document::fit::FitDocument;
-use document::trace::TraceDocument;
 use scenario::failure::Failure;
 
 use super::{bench, fit, predict, trace};
 use crate::documents::curves::TraceCurves;
-use crate::documents::fit_curves::FitCurves;
 use crate::documents::{BENCH, CURVES, FIT, PREDICT, TRACE, read_document, read_json};
 use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
@@ -46,15 +43,14 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     match () {
         () if has(TRACE) => {
             let (folder, theme) = (held()?, theme()?);
-            let (document, text): (TraceDocument, String) =
-                read_document(&stored.join(TRACE), document::trace::SCHEMA)?;
+            let (document, text) = read_document(&stored.join(TRACE), document::trace::SCHEMA)?;
             let curves = TraceCurves::of(&document, stored)?;
             trace::show(&folder, &document, &curves, &text, Some(&theme), common, &[])?
         }
         () if has(FIT) => {
             let (folder, theme) = (held()?, theme()?);
-            let (document, text): (FitDocument, String) = read_document(&stored.join(FIT), document::fit::SCHEMA)?;
-            let curves: FitCurves = read_json(&stored.join(CURVES), "fit")?.0;
+            let (document, text) = read_document(&stored.join(FIT), document::fit::SCHEMA)?;
+            let (curves, _) = read_json(&stored.join(CURVES), "fit")?;
             fit::show(&folder, &document, &curves, &text, Some(&theme), common)?
         }
         () if has(PREDICT) => {
