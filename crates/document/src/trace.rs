@@ -280,7 +280,7 @@ pub struct ModelEntry {
     pub parameters: Vec<ParameterEntry>,
 }
 
-/// What the analysis says.
+/// The analysis of a trace, without the files and the ship beside it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Document {
     /// `trace/4`.

@@ -1,5 +1,6 @@
-//! What commands leave for other programs: the types of their JSON files and of the tables beside them, from which
-//! pages and figures are made. The text of a file is also what `--format json` writes to standard output.
+//! What commands leave for other programs beside the documents of the crate `document`: the types of other JSON files
+//! and of tables, from which pages and figures are made. The text of a file is also what `--format json` writes to
+//! standard output.
 
 pub mod answers;
 pub mod columns;
