@@ -6,7 +6,7 @@
 //! | the noise of a record | [`noise`] |
 //! | an identified ship, as files hold it | [`identified_ship`], [`stored_hull`] |
 //! | what a fit says | [`fit`], [`scales`], [`earlier_trials`] |
-//! | the answer of a method, and which to take | [`method`], [`verdict`] |
+//! | the answer of a method | [`method`] |
 //! | what a trace says | [`trace`] |
 //! | what a reader should know beside the numbers | [`warning`] |
 
@@ -18,9 +18,9 @@ pub mod method;
 pub mod noise;
 mod quantity;
 pub mod scales;
+mod shown;
 pub mod stored_hull;
 pub mod trace;
-pub mod verdict;
 pub mod warning;
 
 pub use error::IdentifiedShipError;

@@ -1,7 +1,5 @@
 //! What was found at each scale beside what was found at all of them together, without dimension: which terms scale.
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
@@ -19,13 +17,6 @@ pub enum Scaling {
     /// The errors are too large, or not known.
     #[serde(rename = "cannot be told")]
     CannotBeTold,
-}
-
-/// The words in files.
-impl fmt::Display for Scaling {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        self.serialize(out)
-    }
 }
 
 /// One number without dimension at every scale.

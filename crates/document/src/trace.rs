@@ -3,7 +3,6 @@
 //! Angles are in degrees where a name says so; parameters of effects are in SI units and radians.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use estimation::residuals::Whiteness;
 use serde::{Deserialize, Serialize};
@@ -13,15 +12,14 @@ use crate::earlier_trials::EarlierTrials;
 use crate::identified_ship::IdentifiedShip;
 use crate::noise::Moment;
 
+mod entries;
 mod errors;
-mod left;
-mod parameters;
-mod records;
 
+pub use entries::{
+    Dependence, DisturbanceEntry, Indices, LocatedEntry, MissingMomentEntry, PanelEntry, ParameterEntry, PrimeEntry,
+    PrimeIndices, RecordEntry, RecordErrors, UnexplainedEntry,
+};
 pub use errors::{BeforeAfter, ErrorEntry, ErrorsEntry};
-pub use left::{Dependence, DisturbanceEntry, LocatedEntry, UnexplainedEntry};
-pub use parameters::{Indices, ParameterEntry, PrimeEntry, PrimeIndices};
-pub use records::{MissingMomentEntry, PanelEntry, RecordEntry, RecordErrors};
 
 /// Name of the schema.
 pub const SCHEMA: &str = "trace/4";
@@ -50,17 +48,6 @@ pub enum Verdict {
 impl Verdict {
     /// All verdicts.
     pub const ALL: [Self; 5] = [Self::Clean, Self::Disturbed, Self::Traced, Self::Located, Self::Unexplained];
-
-    /// The word used in files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Clean => "clean",
-            Self::Disturbed => "disturbed",
-            Self::Traced => "traced",
-            Self::Located => "located",
-            Self::Unexplained => "unexplained",
-        }
-    }
 }
 
 /// What became of a candidate, the best first.
@@ -225,13 +212,6 @@ pub enum HeadingWander {
     Compass,
     /// A smooth one of a model that is not quite the ship.
     Model,
-}
-
-/// The words in files.
-impl fmt::Display for HeadingWander {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        self.serialize(out)
-    }
 }
 
 /// The noise of one record.

@@ -13,7 +13,7 @@
 
 use std::path::Path;
 
-use document::verdict::{Reason, ResidualKind};
+use document::fit::{Reason, ResidualKind};
 use serde::{Deserialize, Serialize};
 use trial::Trial;
 

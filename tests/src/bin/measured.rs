@@ -279,7 +279,7 @@ fn closed_loop(scratch: &Path) -> Outcome<Table> {
                 [
                     record.name.to_owned(),
                     named(&document),
-                    document.verdict.as_str().to_owned(),
+                    document.verdict.to_string(),
                     significant(error.before.heading_rmse_deg, 3),
                     significant(error.after.heading_rmse_deg, 3),
                     document.noise.iter().map(noise).collect::<Vec<_>>().join("; "),
@@ -300,7 +300,7 @@ fn noise(noise: &RecordNoiseEntry) -> String {
     }
     if let Some(sd) = noise.moment_sd_rudder_deg {
         let time = noise.moment_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));
-        parts.push(format!("moment ({}) {} deg{time}", noise.moment.as_str(), significant(sd, 2)));
+        parts.push(format!("moment ({}) {} deg{time}", noise.moment, significant(sd, 2)));
     }
     if let (Some(sd), Some(frequency)) = (noise.waves_sd_deg, noise.waves_frequency_rad_s) {
         parts.push(format!("waves {} deg at {} rad/s", significant(sd, 2), significant(frequency, 2)));

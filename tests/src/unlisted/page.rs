@@ -59,7 +59,7 @@ pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
             outcome.replicate.to_string(),
             fixed(outcome.ratio, 1),
             outcome.judgement.as_str().to_owned(),
-            answer.map_or("", |answer| answer.verdict.as_str()).to_owned(),
+            answer.map_or_else(String::new, |answer| answer.verdict.to_string()),
             text(&label),
             text(&|named| named.aliases.join("|")),
             text(&|named| time(named.time)),

@@ -147,12 +147,8 @@ pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, commo
         false => format!("\n{}", bench_tables::naming_totals(results).to_text()),
     };
     let head = format!("{}: {}\n", results.definition.name, counted(results.cases.len() as u64, "question"));
-    let output = CommandOutput {
-        words: [&head, &naming],
-        table: &bench_tables::leaderboard(results),
-        notes: &notes,
-        document: &text,
-    };
+    let table = bench_tables::leaderboard(results);
+    let output = CommandOutput { words: [&head, &naming], table: &table, notes: &notes, document: &text };
     screen::tell(common, &output, &[] as &[&str])
 }
 
@@ -199,6 +195,5 @@ fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Res
     for method in &results.methods {
         pages.write(&format!("{method}.md"), bench_page::of_method(results, method).to_markdown())?;
     }
-    write_page(folder, bench_page::page(results), Some(theme))?;
-    Ok(text)
+    write_page(folder, bench_page::page(results), Some(theme)).map(|()| text)
 }

@@ -76,13 +76,9 @@ pub fn show(
         folder.write(FORM, predict_form::page(form, remarks).to_markdown())?;
         notes += &format!("\nform:    {}", folder.path().join(FORM).display());
     }
-    let words = [predict_page::words(predicted), predict_page::rest(predicted)];
-    let output = CommandOutput {
-        words: words.each_ref().map(String::as_str),
-        table: &predict_tables::figures(predicted),
-        notes: &notes,
-        document: text,
-    };
+    let [before, behind] = [predict_page::words(predicted), predict_page::rest(predicted)];
+    let table = predict_tables::figures(predicted);
+    let output = CommandOutput { words: [&before, &behind], table: &table, notes: &notes, document: text };
     screen::tell(common, &output, warnings)
 }
 

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use ::predict::PredictDocument;
-use ::predict::document::SCHEMA;
 use campaign::folder::ResultFolder;
 use campaign::store::{self, StoredStudy};
 use clap::Args;
@@ -44,8 +43,7 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
         () if has(TRACE) => {
             let (folder, theme) = (held()?, theme()?);
             let (document, text) = read_document(&stored.join(TRACE), document::trace::SCHEMA)?;
-            let curves = TraceCurves::of(&document, stored)?;
-            trace::show(&folder, &document, &curves, &text, Some(&theme), common, &[])?
+            trace::show(&folder, &document, &TraceCurves::of(&document, stored)?, &text, Some(&theme), common, &[])?
         }
         () if has(FIT) => {
             let (folder, theme) = (held()?, theme()?);
@@ -55,8 +53,8 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
         }
         () if has(PREDICT) => {
             let (folder, theme) = (held()?, theme()?);
-            let (document, text): (PredictDocument, String) = read_document(&stored.join(PREDICT), SCHEMA)?;
-            let predicted = document.with_curves(read_json(&stored.join(CURVES), "predict")?.0);
+            let (document, text) = read_document(&stored.join(PREDICT), ::predict::document::SCHEMA)?;
+            let predicted = PredictDocument::with_curves(document, read_json(&stored.join(CURVES), "predict")?.0);
             predict::show(&folder, &predicted, &text, Some(&theme), common, &[])?
         }
         () if has(BENCH) => bench::show(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?,

@@ -60,8 +60,7 @@ pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
 /// Keeps the document of a command in a folder; the text of its file. Fails when the file cannot be written.
 pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<String, Failure> {
     let text = text(document).on("describe", &folder.path().join(name))?;
-    folder.keep(name, &text)?;
-    Ok(text)
+    folder.keep(name, &text).map(|_| text)
 }
 
 /// The same with the curves of its figures beside it.

@@ -1,8 +1,7 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
-use document::fit::{FitDocument, ZigZagEntry};
+use document::fit::{FitDocument, Reason, ResidualKind, VerdictEntry, ZigZagEntry};
 use document::method::MethodEntry;
-use document::verdict::{Reason, ResidualKind, VerdictEntry};
 use report::markdown::text;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, Table};

@@ -25,7 +25,7 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
     let shares = shares.iter().flat_map(|name| ends.iter().map(move |end| format!("{name}{end}")));
     let head = head_of_cells(design).texts(several.then_some("method")).texts(["missing"]).counts(["trials"]);
     let head = head.numbers(shares).unit("%").counts([format!("clear (margin above {CLEAR:.0})")]);
-    let head = head.counts(Verdict::ALL.map(Verdict::as_str));
+    let head = head.counts(Verdict::ALL.map(|verdict| verdict.to_string()));
     let head = head.numbers(["heading before", "heading after", "validation before", "validation after"]).unit("deg");
     let head = head.numbers(["expected likelihood ratio"]).numbers(["band covers", "band covers validation"]).unit("%");
     let mut table = Table::new(head.texts(["named"]));

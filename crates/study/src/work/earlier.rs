@@ -172,22 +172,18 @@ fn said(
     checks: &[(&str, ExpectationCheck)],
     takes_part: impl Fn(&str) -> bool,
 ) -> EarlierTrials {
-    EarlierTrials {
-        models: models.iter().map(|model| model.entry(ship)).collect(),
-        hulls: checks.iter().map(|(form, check)| check_entry(form, check, takes_part(form))).collect(),
-        conflict: checks.first().is_none_or(|(_, check)| check.is_conflict()),
-    }
-}
-
-/// The check of the hull of a form.
-fn check_entry(form: &str, check: &ExpectationCheck, takes_part: bool) -> PriorCheckEntry {
-    PriorCheckEntry {
+    let hull = |&(form, ref check): &(&str, ExpectationCheck)| PriorCheckEntry {
         form: form.to_owned(),
         chi_square: check.chi_square,
         degrees_of_freedom: check.degrees_of_freedom,
         p_value: check.p_value,
         moved: check.moved.iter().map(|(key, shift)| ((*key).to_owned(), *shift)).collect(),
-        takes_part,
+        takes_part: takes_part(form),
+    };
+    EarlierTrials {
+        models: models.iter().map(|model| model.entry(ship)).collect(),
+        hulls: checks.iter().map(hull).collect(),
+        conflict: checks.first().is_none_or(|(_, check)| check.is_conflict()),
     }
 }
 

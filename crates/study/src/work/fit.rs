@@ -142,7 +142,7 @@ pub fn fit(
     };
     let document = FitDocument {
         schema: SCHEMA.into(),
-        verdict: verdict::of_answers(trials, &answers, &entries),
+        verdict: verdict::of_answers(trials, &answers),
         zigzag: records[0].zigzag.clone(),
         trials: records,
         ships: answers.iter().filter_map(ship_of).collect(),
@@ -179,7 +179,7 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
         measured: own.measured.map(|measured| measured.value),
         limit: own.limit,
         unit: own.unit.symbol().into(),
-        verdict: own.verdict().into(),
+        verdict: own.verdict(),
     };
     ZigZagEntry {
         initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),

@@ -41,8 +41,7 @@ impl TraceResult {
     /// Writes document and tables; the text of the document. Fails when a file cannot be written.
     pub fn write(&self, folder: &ResultFolder) -> Result<String, Failure> {
         let text = documents::keep(folder, TRACE, &self.document)?;
-        self.tables.iter().try_for_each(|(name, table)| folder.write(name, table))?;
-        Ok(text)
+        self.tables.iter().try_for_each(|(name, table)| folder.write(name, table)).map(|()| text)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Which answer of a fit is to be taken, and what its residual says.
 
+use document::fit::{Reason, VerdictEntry};
 use document::method::MethodEntry;
-use document::verdict::{Reason, VerdictEntry};
 use identify::Estimate;
 use identify::lack_of_fit::LackOfFit;
 use identify::recommended::Recommendation;
@@ -14,17 +14,11 @@ use trial::Trial;
 const FAR_WORSE: f64 = 10.0;
 
 /// Which answer is to be taken.
-pub fn of_answers(
-    trials: &[Trial],
-    answers: &[(MethodEntry, Option<Estimate>)],
-    entries: &[MethodEntry],
-) -> Option<VerdictEntry> {
-    let of = |id: &str| {
-        let own = answers.iter().find(|(entry, _)| entry.id() == id);
-        own.and_then(|(_, estimate)| estimate.as_ref())
-    };
+pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
+    let entries: Vec<MethodEntry> = answers.iter().map(|(entry, _)| entry.clone()).collect();
+    let of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
     let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
-    taken(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries, straight)
+    taken(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), &entries, straight)
 }
 
 /// The answer to take: the recommended one, or the nearest replay where that is not among the entries or no answer is
