@@ -13,6 +13,7 @@ mod logs;
 mod logs_properties;
 mod measured;
 mod ships;
+mod size;
 mod tracing;
 mod unlisted;
 mod validation;

@@ -129,6 +129,7 @@ fn weigh(
         for out in 0..top.structure.terms.len() {
             let less = search.without(&top, out);
             search.look(&search.unfold(&less), &less.initial, &search.terms_of(&less));
+            search.keep(vec![less]);
         }
         search.look(&search.unfold(&top), &top.initial, &search.terms_of(&top));
         search.swap(&top);
@@ -180,11 +181,14 @@ impl StructureSearch<'_> {
         self.keep(fits);
     }
 
-    /// Keeps fits in the place of others of the same structures.
+    /// Keeps fits; of a structure that was fitted from several starts that of the largest posterior density.
     fn keep(&mut self, fits: Vec<StructureFit>) {
+        let square = |fit: &StructureFit| fit.misfit + fit.penalty;
         for fit in fits {
-            let height = self.height(&fit);
-            self.known.insert(names(&fit.structure), WeighedStructure { fit, weight: 0.0, height });
+            let (name, height) = (names(&fit.structure), self.height(&fit));
+            if self.known.get(&name).is_none_or(|known| square(&fit) <= square(&known.fit)) {
+                self.known.insert(name, WeighedStructure { fit, weight: 0.0, height });
+            }
         }
     }
 
