@@ -8,6 +8,7 @@
 //! | what a fit says | [`fit`], [`scales`], [`earlier_trials`] |
 //! | the answer of a method | [`method`] |
 //! | what a trace says | [`trace`] |
+//! | what people call effects, records and figures of merit | [`names`] |
 //! | what a reader should know beside the numbers | [`warning`] |
 
 pub mod earlier_trials;
@@ -15,6 +16,7 @@ pub mod error;
 pub mod fit;
 pub mod identified_ship;
 pub mod method;
+pub mod names;
 pub mod noise;
 mod quantity;
 pub mod scales;

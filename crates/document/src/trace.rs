@@ -10,6 +10,7 @@ use ship::Particulars;
 
 use crate::earlier_trials::EarlierTrials;
 use crate::identified_ship::IdentifiedShip;
+use crate::names;
 use crate::noise::Moment;
 
 mod entries;
@@ -332,7 +333,7 @@ impl TraceDocument {
     /// Names of the fitted records, of many the first.
     pub fn title(&self) -> String {
         let fitted = self.records.iter().filter(|record| !record.held_out);
-        let names: Vec<&str> = fitted.map(|record| record.name.as_str()).collect();
+        let names: Vec<String> = fitted.map(|record| names::record(&record.name)).collect();
         match names.len().saturating_sub(TITLED) {
             0 | 1 => names.join(", "),
             more => format!("{} and {more} more", names[..TITLED].join(", ")),

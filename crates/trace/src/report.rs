@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use document::trace::*;
-use document::{HeadingNoise, Quantity, RandomMoment};
+use document::{HeadingNoise, Quantity, RandomMoment, names};
 use estimation::mixture::{MixtureSummary, NormalMixture, NormalPair, ratio};
 use estimation::residuals::{GappedSeries, whiteness};
 use ship::angle::to_deg;
@@ -225,7 +225,7 @@ impl TraceParts<'_> {
             let mut aliases: Vec<String> = one.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
             aliases.dedup();
             let alias_forms =
-                one.aliases.iter().chain(&one.forms).map(|(id, form, _)| format!("{id} ({form})")).collect();
+                one.aliases.iter().chain(&one.forms).map(|(id, form, _)| names::effect_form(id, form)).collect();
             let asked = self.settings.selection.asks_for(id);
             EffectEntry {
                 id: id.into(),

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use ::trace::missing_moment::{MissingMoment, Over, Panel};
 use campaign::curves::degrees;
 use campaign::statistics::distinct;
+use document::names;
 use document::trace::{MissingMomentEntry, PanelEntry, Verdict};
 use ship::angle::to_deg;
 
@@ -138,8 +139,9 @@ pub fn entry(
     let telling = || missing.panels.iter().filter(shows);
     let everywhere = |place: &usize| telling().all(|panel| panel.inside.contains(place));
     let inside: Vec<usize> = (0..missing.explanations.len()).filter(everywhere).collect();
-    let ids = effects(missing, &[0]).join(", ");
-    let explanation = if explains { ids.clone() } else { format!("best candidate: {ids}") };
+    let best: Vec<String> = effects(missing, &[0]).iter().map(|id| names::effect(id)).collect();
+    let best = best.join(", ");
+    let explanation = if explains { best.clone() } else { format!("best candidate: {best}") };
     let of_panel = |panel: &Panel| PanelEntry {
         channel: panel.over.as_str().to_owned(),
         column: column(panel.over).0.to_owned(),
@@ -154,7 +156,7 @@ pub fn entry(
         moment: format!("{stem}.csv"),
         curves: format!("{stem}-curves.csv"),
         rms_rudder_deg: to_deg(square.sqrt()),
-        explanation: (!ids.is_empty()).then_some(explanation),
+        explanation: (!best.is_empty()).then_some(explanation),
         unlisted: matches!(verdict, Verdict::Unexplained | Verdict::Located)
             && inside.is_empty()
             && telling().next().is_some(),

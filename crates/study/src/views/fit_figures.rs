@@ -4,6 +4,7 @@
 
 use document::fit::{FitDocument, SingleRecord, SingleRecords};
 use document::method::MethodEntry;
+use document::names;
 use report::figures::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Reference95, Ruler, Stack};
 use report::palette::{BEFORE, Look, Marker, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve, symbol};
@@ -17,7 +18,7 @@ use crate::documents::fit_curves::{FitCurves, FitRecord};
 pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
     let fitted: Vec<&FitRecord> = curves.records.iter().filter(|record| !record.validation).collect();
     let title = match fitted[..] {
-        [only] => only.name.clone(),
+        [only] => names::record(&only.name),
         _ => format!("{} records together", fitted.len()),
     };
     let caption = format!("{title}: K and T of every method with the intervals and regions it quotes.");
@@ -37,7 +38,8 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
 
 /// The figures of a record; `suffix` ends their names, `shown` is the method whose fit is drawn on its own.
 fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageFigure> {
-    let FitRecord { name, replays, rejected, phase_replay, .. } = record;
+    let FitRecord { replays, rejected, phase_replay, .. } = record;
+    let name = names::record(&record.name);
     let title = replays.title.clone().unwrap_or_default();
     let figure = |kind: &str, what: &str, plot: report::figures::Plot| {
         let stem = if suffix.is_empty() { kind.to_owned() } else { format!("{kind}-{suffix}") };

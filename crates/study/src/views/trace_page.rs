@@ -1,6 +1,7 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
 use document::identified_ship::ValidityRange;
+use document::names;
 use document::trace::{Outcome, ParameterEntry, TraceDocument};
 use predict::steady::SteadyCurve;
 use report::markdown::text;
@@ -111,7 +112,7 @@ fn outliers(document: &TraceDocument) -> Vec<String> {
 /// A sentence for every parameter at an end of its range.
 fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
     let of = |own: &ParameterEntry| {
-        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
+        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" of {}", names::record(name)));
         format!("{}{only} is at its bound: the search ends there", tables::value(own))
     };
     parameters.iter().filter(|own| own.at_bound).map(of).collect()
@@ -198,7 +199,8 @@ fn evidence(page: &mut Page, document: &TraceDocument, curves: &TraceCurves) {
         table(page, "Effects", tables::effects(document), "");
     }
     for effect in &trace.effects {
-        page.say(format!("**{} ({})**: `{}`. {}", effect.id, effect.form, effect.equation, effect.evidence));
+        let name = names::effect_form(&effect.id, &effect.form);
+        page.say(format!("**{name}**: `{}`. {}", effect.equation, effect.evidence));
     }
     table(page, "Structures", tables::structures(document), "");
     table(page, "Candidates", tables::candidates(document), CANDIDATES);
@@ -248,7 +250,7 @@ fn what_is_left(page: &mut Page, document: &TraceDocument) {
 /// A sentence or two for every moment that is no effect of the list, with `mark` around what can be typed.
 fn located(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String> {
     document.trace.located.iter().map(move |own| {
-        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" in {name}"));
+        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" in {}", names::record(name)));
         let or = if own.alternatives.is_empty() { "" } else { "; as near is " };
         let typed = match &own.formula {
             Some(line) => format!("To have it fitted and judged: {mark}--effect \"{line}\"{mark}."),
@@ -286,7 +288,7 @@ fn aliases(document: &TraceDocument) -> Table {
     }
     for one in document.trace.candidates.iter().filter(|one| one.outcome == Outcome::NotObservable) {
         let why = one.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
-        table.push([one.id.clone(), format!("nothing (not observable{why})")]);
+        table.push([names::effect(&one.id), format!("nothing (not observable{why})")]);
     }
     table
 }

@@ -5,7 +5,7 @@ use campaign::stored_figures::Replays;
 use document::fit::{CriterionEntry, FitDocument, SCHEMA, TrialEntry, ZigZagEntry};
 use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
-use document::{Code, Source, Warning, Warnings};
+use document::{Code, Source, Warning, Warnings, names};
 use identify::estimate::Uncertainty;
 use identify::replay::replay;
 use identify::suspicion::suspicion;
@@ -26,7 +26,7 @@ use crate::completed::ALL;
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 use crate::documents::prior;
 use crate::outside::{self, Named, NamedCommand};
-use crate::records::{file_of, names, no_track, source_of};
+use crate::records::{self, file_of, no_track, source_of};
 use crate::scales::{self, RescaledRecords};
 use crate::{interrupt, progress};
 use campaign::answer::entry;
@@ -48,8 +48,8 @@ impl FitResult {
     /// What the figures show of the records and of the answers.
     pub fn curves(&self) -> FitCurves {
         let RescaledRecords { trials, others, .. } = &self.together;
-        let names = names(trials.iter().chain(others).map(Trial::name));
-        let records = trials.iter().chain(others).zip(names).enumerate();
+        let stems = records::names(trials.iter().chain(others).map(Trial::name));
+        let records = trials.iter().chain(others).zip(stems).enumerate();
         let record = |(number, (trial, name))| self.record(trial, name, number >= trials.len());
         let regions = self.answers.iter().filter_map(|(entry, estimate)| {
             let estimate = estimate.as_ref()?;
@@ -63,7 +63,7 @@ impl FitResult {
 
     fn record(&self, trial: &Trial, name: String, validation: bool) -> FitRecord {
         let (phase, smoothed) = phase_of(trial);
-        let title = if validation { format!("{name} (validation)") } else { name.clone() };
+        let title = names::record(&name) + if validation { " (validation)" } else { "" };
         let zigzag = ZigZag::of(trial).ok().filter(|_| !validation);
         let rejected = |channel: Channel| {
             let marks = trial.rejected().iter().filter(|mark| mark.channel == channel);
@@ -77,7 +77,7 @@ impl FitResult {
             file: file_of(trial).0.to_owned(),
             is_renamed: name != trial.name(),
             validation,
-            zigzag: zigzag.map(|own| ZigzagTrial { title: Some(name.clone()), ..zigzag_figure(trial, &own) }),
+            zigzag: zigzag.map(|own| ZigzagTrial { title: Some(names::record(&name)), ..zigzag_figure(trial, &own) }),
             replays: Replays {
                 title: Some(title),
                 record: curve(trial.time(), trial.heading()),
