@@ -27,7 +27,6 @@ pub struct PriorModelEntry {
     #[serde(default)]
     pub records: BTreeMap<String, String>,
     /// Whether its ship is the `same-ship`, at an `other-scale`, or an `other-hull`: another loading, or a sister.
-    #[schemars(with = "String")]
     pub likeness: Likeness,
     /// What the standard deviations of what its trials told are widened by.
     pub factor: f64,
@@ -58,7 +57,7 @@ pub struct PriorCheckEntry {
 }
 
 /// How like the ship of earlier trials is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Likeness {
     /// The same ship, as far as her particulars say.

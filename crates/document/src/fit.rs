@@ -48,12 +48,11 @@ pub struct CriterionEntry {
     /// Unit of both.
     pub unit: String,
     /// `pass`, `fail` or `not measured`.
-    #[schemars(with = "String")]
     pub verdict: CriterionVerdict,
 }
 
 /// Whether a criterion is met.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CriterionVerdict {
     /// It is.

@@ -6,7 +6,7 @@ use ship::Particulars;
 use crate::quantity::Quantity;
 
 /// Whether a number that has no dimension is the same at every scale.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub enum Scaling {
     /// It is, and a difference of a quarter of it would have been seen.
     #[serde(rename = "scales")]
@@ -33,7 +33,6 @@ pub struct ComparedTerm {
     /// Largest difference of two scales in units of its standard deviation.
     pub difference_sd: Option<f64>,
     /// `scales`, `does not scale` or `cannot be told`.
-    #[schemars(with = "String")]
     pub verdict: Scaling,
 }
 

@@ -72,7 +72,7 @@ pub struct PrimeEntry {
 }
 
 /// What a moment depends on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Dependence {
     /// Time.
@@ -114,7 +114,6 @@ pub struct DisturbanceEntry {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct LocatedEntry {
     /// What it depends on: `time`, `heading`, `way to one side`, `yaw rate`, `rudder` or `history of the rudder`.
-    #[schemars(with = "String")]
     pub depends_on: Dependence,
     /// The moment in words.
     pub form: String,
