@@ -5,7 +5,7 @@
 use std::io::Write as _;
 use std::sync::Arc;
 
-use document::trace::{EffectEntry, Outcome};
+use document::trace::{Dependence, EffectEntry, Outcome};
 use kempf_tests::records::{mirrored, zig_zag};
 use ship::angle::from_deg;
 use ship::dynamics::{Dynamics, Input, Motion};
@@ -349,7 +349,7 @@ fn what_no_candidate_carries_is_seen() {
     let analysis = analysed(&[run(&steered(vessel, 10.0), 6)], &[]);
     let document = &analysis.document;
     assert_eq!(document.verdict, Verdict::Located, "{}", document.headline);
-    assert_eq!(document.located[0].depends_on, "way to one side", "{:?}", document.located);
+    assert_eq!(document.located[0].depends_on, Dependence::Way, "{:?}", document.located);
     assert!(document.unexplained.signature.is_some() && !document.unexplained.present && document.effects.is_empty());
     assert!(document.headline.starts_with("What is missing depends on way to one side (moment with "));
 }

@@ -1,5 +1,6 @@
 //! Trials and answers as data of figures, in degrees.
 
+use document::method::MethodEntry;
 use identify::Estimate;
 use identify::replay::replay;
 use report::figures::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
@@ -10,7 +11,6 @@ use trial::zigzag::PhasePlane;
 use trial::zigzag::{Execute, Overshoot};
 use trial::{Quantity, Trial, ZigZag};
 
-use crate::answer::MethodEntry;
 use crate::stored_figures::ReplayCurves;
 
 /// How a method of a scenario is drawn: as itself when it goes by its id, else as a variant of it.

@@ -1,6 +1,7 @@
 //! The first trial of a cell in detail: its characteristics, the Fourier fit, every method's answer and replay, as data
 //! for figures. Made once when a study runs, stored, and drawn from the store.
 
+use document::method::MethodEntry;
 use identify::{Estimate, IdentifierSettings};
 use report::figures::ZigzagTrial;
 use report::{CurveOrigin, PlotCurve};
@@ -9,7 +10,7 @@ use ship::FirstOrder;
 use simulate::Truth;
 use trial::{Quantity, Trial, ZigZag};
 
-use crate::answer::{MethodEntry, entry};
+use crate::answer::entry;
 use crate::curves::{curve, origin, replay_curves, zigzag_figure};
 use crate::engine;
 use crate::stored_figures::{

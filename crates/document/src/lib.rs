@@ -5,13 +5,22 @@
 //! | a number with its error | [`Quantity`] |
 //! | the noise of a record | [`noise`] |
 //! | an identified ship, as files hold it | [`identified_ship`], [`stored_hull`] |
+//! | what a fit says | [`fit`], [`scales`], [`earlier_trials`] |
+//! | the answer of a method | [`method`] |
 //! | what a trace says | [`trace`] |
+//! | what people call effects, records and figures of merit | [`names`] |
 //! | what a reader should know beside the numbers | [`warning`] |
 
+pub mod earlier_trials;
 pub mod error;
+pub mod fit;
 pub mod identified_ship;
+pub mod method;
+pub mod names;
 pub mod noise;
 mod quantity;
+pub mod scales;
+mod shown;
 pub mod stored_hull;
 pub mod trace;
 pub mod warning;

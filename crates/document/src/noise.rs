@@ -21,16 +21,6 @@ pub enum Moment {
 impl Moment {
     /// All of them, from the fewest parameters to the most.
     pub const ALL: [Self; 4] = [Self::None, Self::White, Self::Walk, Self::OrnsteinUhlenbeck];
-
-    /// The word used in tables and JSON.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::White => "white",
-            Self::OrnsteinUhlenbeck => "ornstein-uhlenbeck",
-            Self::Walk => "walk",
-        }
-    }
 }
 
 /// Random yaw moment, as the rudder angle that has the same moment.

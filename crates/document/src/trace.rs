@@ -8,15 +8,25 @@ use estimation::residuals::Whiteness;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
+use crate::earlier_trials::EarlierTrials;
+use crate::identified_ship::IdentifiedShip;
+use crate::names;
 use crate::noise::Moment;
-use crate::quantity::Quantity;
 
+mod entries;
 mod errors;
 
+pub use entries::{
+    Dependence, DisturbanceEntry, Indices, LocatedEntry, MissingMomentEntry, PanelEntry, ParameterEntry, PrimeEntry,
+    PrimeIndices, RecordEntry, RecordErrors, UnexplainedEntry,
+};
 pub use errors::{BeforeAfter, ErrorEntry, ErrorsEntry};
 
 /// Name of the schema.
 pub const SCHEMA: &str = "trace/4";
+
+/// Records whose names are a title; one more stands there, too.
+const TITLED: usize = 2;
 
 /// What the analysis says.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -39,17 +49,6 @@ pub enum Verdict {
 impl Verdict {
     /// All verdicts.
     pub const ALL: [Self; 5] = [Self::Clean, Self::Disturbed, Self::Traced, Self::Located, Self::Unexplained];
-
-    /// The word used in files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Clean => "clean",
-            Self::Disturbed => "disturbed",
-            Self::Traced => "traced",
-            Self::Located => "located",
-            Self::Unexplained => "unexplained",
-        }
-    }
 }
 
 /// What became of a candidate, the best first.
@@ -76,70 +75,6 @@ impl Outcome {
             Self::NotObservable => "not observable",
         }
     }
-}
-
-/// K, T and δ_r.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[expect(non_snake_case, reason = "K and T are the symbols of the field")]
-pub struct Indices {
-    /// K, 1/s.
-    pub K_per_s: Quantity,
-    /// T, s.
-    pub T_s: Quantity,
-    /// δ_r, deg.
-    pub delta_r_deg: Quantity,
-    /// K' and T', where length and speed of the ship are known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prime: Option<PrimeIndices>,
-}
-
-/// K' = K L/U and T' = T U/L.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[expect(non_snake_case, reason = "K and T are the symbols of the field")]
-pub struct PrimeIndices {
-    /// K'.
-    pub K: Quantity,
-    /// T'.
-    pub T: Quantity,
-}
-
-impl PrimeIndices {
-    /// Those of K and T of a ship of these particulars.
-    pub fn of([k, t]: [Quantity; 2], ship: Particulars) -> Self {
-        Self { K: k.scaled(ship.prime([-1, 0])), T: t.scaled(ship.prime([1, 0])) }
-    }
-}
-
-/// A parameter, averaged over the structures that have it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct ParameterEntry {
-    /// Name in files.
-    pub key: String,
-    /// Symbol, as in the equation.
-    pub symbol: String,
-    /// Value, standard deviation and 95 % interval.
-    #[serde(flatten)]
-    pub quantity: Quantity,
-    /// Unit.
-    pub unit: String,
-    /// The same without dimension, where length and speed of the ship are known and it has one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prime: Option<PrimeEntry>,
-    /// The one record it belongs to.
-    pub only: Option<String>,
-    /// Whether it ends at an end of its range; left out where it does not.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub at_bound: bool,
-}
-
-/// A number without dimension; angles in radians.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PrimeEntry {
-    /// Value, standard deviation and 95 % interval.
-    #[serde(flatten)]
-    pub quantity: Quantity,
-    /// Unit: 1, or one of angles.
-    pub unit: String,
 }
 
 /// An effect in a form, in all records or in one.
@@ -252,47 +187,6 @@ pub struct PriorEntry {
     pub rule: String,
 }
 
-/// What is left.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct UnexplainedEntry {
-    /// Whether it is neither chance nor of a shape that was looked for.
-    pub present: bool,
-    /// Where it is, where it is more than noise.
-    pub signature: Option<String>,
-}
-
-/// A random moment beside what is named and located.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct DisturbanceEntry {
-    /// Its size as a rudder angle: the root mean square over the longest record.
-    pub rudder_deg: f64,
-    /// Share of the square of the heading error that it carries.
-    pub heading_error_share: f64,
-}
-
-/// A moment that is no effect of the list.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct LocatedEntry {
-    /// What it depends on: `time`, `heading`, `way to one side`, `yaw rate`, `rudder` or `history of the rudder`.
-    pub depends_on: String,
-    /// The moment in words.
-    pub form: String,
-    /// The one record in which it acts.
-    pub only: Option<String>,
-    /// Since when, where it is a matter of instants.
-    pub from_s: Option<f64>,
-    /// Until when.
-    pub until_s: Option<f64>,
-    /// How much worse the records are explained without it, by any random moment as well.
-    pub nats: f64,
-    /// Rudder angle that its root mean square is worth.
-    pub rudder_deg: f64,
-    /// What the records cannot tell from it: other moments, and effects of the list.
-    pub alternatives: Vec<String>,
-    /// The moment as an effect that a trace can be asked for, where a formula says it.
-    pub formula: Option<String>,
-}
-
 /// Residual before and after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ResidualEntry {
@@ -311,6 +205,16 @@ pub struct WhitenessEntry {
     pub whiteness_p: f64,
 }
 
+/// What a heading error that lasts is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HeadingWander {
+    /// One of the compass, of first order.
+    Compass,
+    /// A smooth one of a model that is not quite the ship.
+    Model,
+}
+
 /// The noise of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct RecordNoiseEntry {
@@ -324,7 +228,8 @@ pub struct RecordNoiseEntry {
     pub heading_correlation_s: Option<f64>,
     /// What a heading error that lasts is: `compass` (first order) or `model` (smooth, of a model that is not quite the
     /// ship).
-    pub heading_wander: Option<String>,
+    #[schemars(with = "Option<String>")]
+    pub heading_wander: Option<HeadingWander>,
     /// Kind of the random moment.
     pub moment: Moment,
     /// Standard deviation of gusts, of the mean of a white moment over one second, of what a walk adds in one second.
@@ -356,7 +261,7 @@ pub struct ModelEntry {
     pub parameters: Vec<ParameterEntry>,
 }
 
-/// A trace.
+/// The analysis of a trace, without the files and the ship beside it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Document {
     /// `trace/4`.
@@ -390,6 +295,68 @@ pub struct Document {
     pub noise: Vec<RecordNoiseEntry>,
     /// The augmented model.
     pub model: ModelEntry,
+}
+
+/// `trace.json`: words, tables and figures are made from it and from the curves that it names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct TraceDocument {
+    /// What the analysis says.
+    #[serde(flatten)]
+    pub trace: Document,
+    /// The trial that would tell most.
+    pub next_trial: String,
+    /// The records, first the fitted ones, and the files of their curves.
+    pub records: Vec<RecordEntry>,
+    /// The yaw moment that the base lacks on every fitted record.
+    pub missing_moment: Vec<MissingMomentEntry>,
+    /// What is known of the ship, for `study predict`; SI units and radians.
+    pub ship: IdentifiedShip,
+    /// What earlier trials of `--prior` say of the hull, and whether the records contradict them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub earlier_trials: Option<EarlierTrials>,
+    /// How records of several scales were brought to one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scales: Option<String>,
+}
+
+impl TraceDocument {
+    /// Length and speed at which numbers with a dimension are told, where they are known.
+    pub fn particulars(&self) -> Option<Particulars> {
+        self.records.iter().find_map(RecordEntry::particulars)
+    }
+
+    /// Names of all records.
+    pub fn names(&self) -> Vec<String> {
+        self.records.iter().map(|record| record.name.clone()).collect()
+    }
+
+    /// Names of the fitted records, of many the first.
+    pub fn title(&self) -> String {
+        let fitted = self.records.iter().filter(|record| !record.held_out);
+        let names: Vec<String> = fitted.map(|record| names::record(&record.name)).collect();
+        match names.len().saturating_sub(TITLED) {
+            0 | 1 => names.join(", "),
+            more => format!("{} and {more} more", names[..TITLED].join(", ")),
+        }
+    }
+
+    /// Errors on all records, `(fitted, judged)`: a judged record was held out, or left out in turn.
+    pub fn errors(&self) -> (Vec<RecordErrors<'_>>, Vec<RecordErrors<'_>>) {
+        let error = &self.trace.error;
+        let (mut fitted, mut judged) = (Vec::new(), Vec::new());
+        let names = |held_out: bool| self.records.iter().filter(move |one| one.held_out == held_out);
+        for (record, errors) in names(false).zip(&error.identification) {
+            fitted.push(RecordErrors { name: &record.name, used: "fitted", errors });
+        }
+        for (record, errors) in names(true).zip(&error.validation) {
+            judged.push(RecordErrors { name: &record.name, used: "held out", errors });
+        }
+        for errors in &error.leave_one_out {
+            let record = names(false).find(|record| record.file == errors.file);
+            judged.push(RecordErrors { name: record.map_or(&errors.file, |own| &own.name), used: "left out", errors });
+        }
+        (fitted, judged)
+    }
 }
 
 impl From<Whiteness> for WhitenessEntry {

@@ -5,6 +5,8 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::names;
+
 /// How much a warning costs; the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -200,7 +202,8 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match &self.source {
-            Source::Record(name) | Source::File(name) | Source::Method(name) => write!(f, "{name}: {}", self.text),
+            Source::Record(name) => write!(f, "{}: {}", names::record(name), self.text),
+            Source::File(name) | Source::Method(name) => write!(f, "{name}: {}", self.text),
             Source::Study => f.write_str(&self.text),
         }
     }

@@ -195,7 +195,7 @@ fn warnings(trials: &[Trial], analysed: &[Analysed]) -> Vec<Warning> {
         };
         Some(Code::Method.warning(format!(
             "{} has no straight approach: {taken} was taken for the base course; give base-course-deg if it is known",
-            trial.name()
+            trial.title()
         )))
     };
     trials.iter().zip(analysed).filter_map(told).collect()

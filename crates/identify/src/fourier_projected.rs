@@ -279,7 +279,7 @@ impl Identifier for FourierProjected {
                 warnings.push(Code::ColouredResidual.warning(format!(
                     "{}: the residual of the heading fit ({:.3} deg) is mostly not white noise ({:.3} deg): truncation of \
                      the series or a disturbance; the intervals take all of it for noise",
-                    trial.name(),
+                    trial.title(),
                     to_deg(noise.residual.sqrt()),
                     to_deg(noise.white.sqrt()),
                 )));

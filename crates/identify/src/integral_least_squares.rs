@@ -162,7 +162,7 @@ fn warnings(trials: &[Trial], pieces: usize) -> Vec<Warning> {
     for trial in trials.iter().filter(|trial| trial.heading_from_yaw_rate()) {
         warnings.push(Code::HeadingFromYawRate.warning(format!(
             "the heading of {} is the integral of its yaw rate, whose noise is not white as the covariance takes it to be",
-            trial.name()
+            trial.title()
         )));
     }
     warnings

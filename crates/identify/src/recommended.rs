@@ -13,6 +13,7 @@
 
 use std::path::Path;
 
+use document::fit::{Reason, ResidualKind};
 use serde::{Deserialize, Serialize};
 use trial::Trial;
 
@@ -26,30 +27,6 @@ use crate::{maximum_likelihood, output_error};
 /// Share of the residual that the terms of a ship leave where a random moment is believed. The scenario `recommended`
 /// shows what the rule costs; METHODOLOGY says how the limit was set.
 const RANDOM: f64 = 0.33;
-
-/// Why an answer is to be taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Reason {
-    /// No first-order response replays the headings nearer.
-    NearestReplay,
-    /// A random yaw moment acts, and maximum likelihood counts it.
-    RandomMoment,
-    /// The recorded rudder is noisy, and maximum likelihood counts it.
-    RudderNoise,
-}
-
-/// What the residual of the answer looks like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ResidualKind {
-    /// White, and so the noise of the heading.
-    Noise,
-    /// Terms of a ship explain most of it: the model lacks an effect.
-    LacksEffect,
-    /// Terms of a ship do not explain it: random moments, waves or an error of the compass.
-    Random,
-}
 
 /// Which answer to take and what to think of it.
 #[derive(Debug, Clone, Copy, PartialEq)]

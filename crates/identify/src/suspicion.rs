@@ -77,7 +77,7 @@ fn other_scale(record: &Trial) -> Option<Warning> {
     let largest = speeds.fold(0.0, f64::max);
     let is_other = largest > 0.0 && !(1.0 / OTHER_SPEED..=OTHER_SPEED).contains(&(largest / speed));
     is_other.then(|| {
-        let name = record.name();
+        let name = record.title();
         Code::UnusualShip.warning(format!(
             "{name} sails at {largest:.3} m/s at most, and {speed:.3} m/s is given as its approach speed: {ONE_SCALE}"
         ))

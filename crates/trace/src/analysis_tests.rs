@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use document::trace::Dependence;
 use ship::effects::{Effect, Formula, listed};
 use trial::{Conditions, DeclaredWeather, Trial};
 
@@ -149,7 +150,10 @@ fn a_name_falls_where_a_shape_does_better() {
     let document = traced(&[record(&ship(vec![(tug, vec![-0.3])]), plan)]).document;
     assert_eq!((document.verdict, document.effects.len()), (Verdict::Located, 0), "{}", document.headline);
     let located = &document.located[0];
-    assert_eq!((&*located.depends_on, located.formula.as_deref()), ("heading", Some("located = c * max(psi, 0)")));
+    assert_eq!(
+        (located.depends_on, located.formula.as_deref()),
+        (Dependence::Heading, Some("located = c * max(psi, 0)"))
+    );
     assert!(located.nats > 10.0 && located.rudder_deg > 0.1, "{located:?}");
 }
 

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use document::names;
 use document::trace::Outcome;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -34,10 +35,6 @@ pub struct Prospect {
     pub information: f64,
 }
 
-fn label(id: &str, form: &str) -> String {
-    format!("{id} ({form})")
-}
-
 impl Analysis {
     /// What each of some planned trials would tell beside the records, best first.
     ///
@@ -53,15 +50,14 @@ impl Analysis {
     fn prospect(&self, name: &str, trial: &Trial) -> Option<Prospect> {
         let seen = self.seen_with(trial)?;
         let is_told = |label: &String| seen.iter().any(|(own, seen)| own == label && *seen > TOLD);
-        let rivals =
-            self.document.effects.iter().flat_map(|effect| {
-                effect.alias_forms.iter().map(|other| [label(&effect.id, &effect.form), other.clone()])
-            });
+        let rivals = self.document.effects.iter().flat_map(|effect| {
+            effect.alias_forms.iter().map(|other| [names::effect_form(&effect.id, &effect.form), other.clone()])
+        });
         let (separated, still_alike) = rivals.partition(|pair| pair.iter().all(is_told));
         let hidden = self.document.candidates.iter().flat_map(|candidate| {
             let forms = candidate.forms.iter();
             let hidden = forms.filter(|form| form.outcome == Outcome::NotObservable && form.only.is_none());
-            hidden.map(|form| label(&candidate.id, &form.form))
+            hidden.map(|form| names::effect_form(&candidate.id, &form.form))
         });
         let (revealed, still_hidden) = hidden.partition(is_told);
         let information = seen.iter().map(|(_, seen)| seen.ln_1p()).sum();
@@ -89,7 +85,7 @@ impl Analysis {
                 let place = places[place].filter(|_| !prior.is_shape)?;
                 Some((prior.sd.powi(2) + (prior.mean - neutral).powi(2)) / covariance[(place, place)])
             });
-            (label(term.effect.id(), term.effect.form()), own.fold(0.0, f64::max))
+            (names::effect_form(term.effect.id(), term.effect.form()), own.fold(0.0, f64::max))
         };
         Some(structure.terms.iter().zip(structure.ranges()).map(seen).collect())
     }

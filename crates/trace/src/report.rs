@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use document::trace::*;
-use document::{HeadingNoise, Quantity, RandomMoment};
+use document::{HeadingNoise, Quantity, RandomMoment, names};
 use estimation::mixture::{MixtureSummary, NormalMixture, NormalPair, ratio};
 use estimation::residuals::{GappedSeries, whiteness};
 use ship::angle::to_deg;
@@ -225,7 +225,7 @@ impl TraceParts<'_> {
             let mut aliases: Vec<String> = one.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
             aliases.dedup();
             let alias_forms =
-                one.aliases.iter().chain(&one.forms).map(|(id, form, _)| format!("{id} ({form})")).collect();
+                one.aliases.iter().chain(&one.forms).map(|(id, form, _)| names::effect_form(id, form)).collect();
             let asked = self.settings.selection.asks_for(id);
             EffectEntry {
                 id: id.into(),
@@ -403,7 +403,8 @@ impl TraceParts<'_> {
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
                 heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation(self.problem.longest())),
-                heading_wander: heading.map(|_| if law.is_of_model() { "model" } else { "compass" }.into()),
+                heading_wander: heading
+                    .map(|_| if law.is_of_model() { HeadingWander::Model } else { HeadingWander::Compass }),
                 moment: kind,
                 moment_sd_rudder_deg: (!noise.moment.is_none()).then(|| to_deg(noise.moment.size())),
                 moment_correlation_s: correlation,

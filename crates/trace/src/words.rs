@@ -1,5 +1,6 @@
 //! The sentences of a trace.
 
+use document::names;
 use document::trace::{BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict};
 use ship::angle::to_deg;
 use trial::{Origin, Trial};
@@ -80,8 +81,11 @@ impl Headline<'_> {
     /// and on other records, over whole replays and over windows.
     pub fn sentence(&self) -> String {
         let named = |one: &EffectEntry| match one.aliases.is_empty() {
-            true => format!("{} ({})", one.id, one.form),
-            false => format!("one of {}", listed(&[vec![one.id.clone()], one.aliases.clone()].concat())),
+            true => names::effect_form(&one.id, &one.form),
+            false => {
+                let group = std::iter::once(&one.id).chain(&one.aliases);
+                format!("one of {}", listed(&group.map(|id| names::effect(id)).collect::<Vec<_>>()))
+            }
         };
         let names = listed(&self.effects.iter().map(named).collect::<Vec<_>>());
         let [from, to, judged, in_windows] = self.errors();
@@ -168,7 +172,8 @@ fn one_step(effects: &[EffectEntry]) -> String {
 /// What speaks for an effect.
 pub fn evidence(named: &EffectNaming, gain: f64, asked: bool, trials: &[Trial]) -> String {
     let (id, form, only) = named.term;
-    let place = only.map_or(String::new(), |number| format!(" in {}", trials[number].name()));
+    let effect = names::effect_form(id, form);
+    let place = only.map_or(String::new(), |number| format!(" in {}", names::record(trials[number].name())));
     let odds = match gain / std::f64::consts::LN_10 {
         power if power >= 3.0 => format!("10^{power:.0} times more probable"),
         power if power < 0.0 => format!("{} times less probable", short(10f64.powf(-power))),
@@ -184,13 +189,13 @@ pub fn evidence(named: &EffectNaming, gain: f64, asked: bool, trials: &[Trial]) 
     let why = if asked { " It is in the model on request." } else { "" };
     if named.aliases.is_empty() {
         return format!(
-            "With {id} ({form}){place} the records are {odds}; its probability is {:.3}.{forms}{why}",
+            "With {effect}{place} the records are {odds}; its probability is {:.3}.{forms}{why}",
             named.probability
         );
     }
-    let others: Vec<String> = named.aliases.iter().map(|(id, form, _)| format!("{id} ({form})")).collect();
+    let others: Vec<String> = named.aliases.iter().map(|(id, form, _)| names::effect_form(id, form)).collect();
     format!(
-        "One of {id} ({form}) and {}{place} is there with a probability of {:.3}; the records do not tell which.{forms}{why}",
+        "One of {effect} and {}{place} is there with a probability of {:.3}; the records do not tell which.{forms}{why}",
         listed(&others),
         named.probability
     )
@@ -209,8 +214,9 @@ pub fn signature(own: &Signature, name: &str) -> String {
         format!("; {:.0} % of it has a period of {:.0} s", 100.0 * line.share, line.frequency.recip())
     });
     format!(
-        "{name}: residual {}° rms; {:.0} % of it between {from:.0} and {to:.0} s; largest ({}°) at headings from {:.0}° to {:.0}°; \
+        "{}: residual {}° rms; {:.0} % of it between {from:.0} and {to:.0} s; largest ({}°) at headings from {:.0}° to {:.0}°; \
          {}° with the rudder to port, {}° with it to starboard{line}",
+        names::record(name),
         short(to_deg(own.all)),
         100.0 * share,
         short(to_deg(largest)),
@@ -224,7 +230,7 @@ pub fn signature(own: &Signature, name: &str) -> String {
 /// A band that holds less than it is made for.
 pub fn band(name: &str, own: &BandCoverage) -> String {
     let [low, high] = own.interval.map(|end| 100.0 * end);
-    let (inside, of, share) = (own.inside, own.of, 100.0 * own.share());
+    let (inside, of, share, name) = (own.inside, own.of, 100.0 * own.share(), names::record(name));
     format!("; the 95 % band holds {inside} of {of} headings of {name}, {share:.0} % [{low:.0}, {high:.0}]")
 }
 
@@ -280,7 +286,7 @@ mod tests {
         let effects = [effect("nonlinear_damping", -94.0), effect("speed_loss", -20.0)];
         assert_eq!(
             sentence(&effects, &error),
-            "The first-order response lacks nonlinear_damping (r³) and speed_loss (r³): heading error 2.00° → 0.500° \
+            "The first-order response lacks nonlinear damping (r³) and speed loss (r³): heading error 2.00° → 0.500° \
              (× 0.25), held out × 0.50; in windows of 60 s × 0.40, held out × 0.60."
         );
     }
@@ -291,7 +297,7 @@ mod tests {
         let error = ErrorEntry { identification: vec![record([2.0, 2.0], [None; 2])], ..ErrorEntry::default() };
         assert_eq!(
             sentence(&[effect("nonlinear_damping", -94.2)], &error),
-            "The first-order response lacks nonlinear_damping (r³), seen from one heading to the next, where BIC falls \
+            "The first-order response lacks nonlinear damping (r³), seen from one heading to the next, where BIC falls \
              by 94; the whole replay changes little: heading error 2.00° → 2.00° (× 1.00)."
         );
     }

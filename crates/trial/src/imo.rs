@@ -6,6 +6,7 @@
 //! engine output. A record does not show whether that was so. L and V have to be of the same scale as the record.
 
 use document::Quantity;
+use document::fit::CriterionVerdict;
 use ship::Particulars;
 use ship::angle::to_deg;
 
@@ -88,12 +89,12 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    /// Whether it is met, in a word.
-    pub fn verdict(&self) -> &'static str {
+    /// Whether it is met.
+    pub fn verdict(&self) -> CriterionVerdict {
         match self.measured {
-            None => "not measured",
-            Some(own) if own.value <= self.limit => "pass",
-            Some(_) => "fail",
+            None => CriterionVerdict::NotMeasured,
+            Some(own) if own.value <= self.limit => CriterionVerdict::Pass,
+            Some(_) => CriterionVerdict::Fail,
         }
     }
 }
@@ -169,9 +170,9 @@ mod tests {
         assert_relative_eq!(measured[1].expect("10/10"), 8.07, epsilon = 0.02);
         assert_eq!(measured[2], None);
         assert_relative_eq!(measured[3].expect("10/10"), 1.97, epsilon = 0.01);
-        let verdicts: Vec<&str> = ten.iter().map(Criterion::verdict).collect();
+        let verdicts: Vec<String> = ten.iter().map(|criterion| criterion.verdict().to_string()).collect();
         assert_eq!(verdicts, ["pass", "pass", "not measured", "pass"]);
-        assert_eq!(Criterion { limit: 6.0, ..ten[0].clone() }.verdict(), "fail");
+        assert_eq!(Criterion { limit: 6.0, ..ten[0].clone() }.verdict(), CriterionVerdict::Fail);
 
         let twenty = values(&table(20.0, 20.0));
         assert_eq!((twenty[0], twenty[1], twenty[3]), (None, None, None));

@@ -54,7 +54,7 @@ pub use manoeuvre::Manoeuvre;
 pub use reader::{Log, ReadError, ReadRecord, read, read_with};
 pub use record::wind::relative_wind;
 pub use record::{Columns, Corner, Noise, Origin, RejectedReading, Trial, TrialError};
-pub use scale::{ScaleError, Scales, Scaling};
+pub use scale::{ScaleError, Scales};
 pub use sidecar::{Sidecar, SidecarError};
 pub use writer::write_csv;
 pub use zigzag::{Side, ZigZag, ZigZagError};

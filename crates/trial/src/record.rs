@@ -214,6 +214,11 @@ impl Trial {
         &self.name
     }
 
+    /// Name of the record for people.
+    pub fn title(&self) -> String {
+        document::names::record(&self.name)
+    }
+
     /// Where the record comes from.
     pub fn origin(&self) -> &Origin {
         &self.origin

@@ -2,6 +2,7 @@
 //! the first, and whether a number that was found at each scale is the same in prime units. It fits nothing.
 
 use document::Quantity;
+use document::scales::Scaling;
 use ship::Particulars;
 use thiserror::Error;
 
@@ -91,57 +92,35 @@ const TELLING: f64 = 0.25;
 /// A number is not known better than this share of it.
 const ROUNDING: f64 = 1e-12;
 
-/// Whether a number that has no dimension is the same at every scale.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scaling {
-    /// It is, and a difference of a quarter of it would have been seen.
-    Scales,
-    /// It is not.
-    DoesNotScale,
-    /// The errors are too large, or not known.
-    CannotBeTold,
-}
-
-impl Scaling {
-    /// In words.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Scales => "scales",
-            Self::DoesNotScale => "does not scale",
-            Self::CannotBeTold => "cannot be told",
-        }
-    }
-
-    /// Holds numbers without dimension, found independently at different scales, against each other: the largest
-    /// difference of two, x₂ − x₁ in units of √(s₁² + s₂²), and what it says. The difference is `None` where fewer
-    /// than two of the numbers have a standard deviation.
-    pub fn of(found: &[Quantity]) -> (Option<f64>, Self) {
-        let known: Vec<(f64, f64)> = found
-            .iter()
-            .filter_map(|one| Some((one.value, one.sd?)))
-            .filter(|(value, sd)| value.is_finite() && sd.is_finite())
-            .collect();
-        let mut largest: Option<f64> = None;
-        let mut is_telling = known.len() == found.len();
-        for (number, one) in known.iter().enumerate() {
-            for other in &known[number + 1..] {
-                let size = one.0.abs().max(other.0.abs());
-                // Records without noise know a number to its rounding and no better.
-                let sd = one.1.hypot(other.1).max(ROUNDING * size);
-                let difference = (other.0 - one.0) / sd;
-                is_telling &= FAR * sd <= TELLING * size;
-                if difference.is_finite() && largest.is_none_or(|largest| difference.abs() > largest.abs()) {
-                    largest = Some(difference);
-                }
+/// Holds numbers without dimension, found independently at different scales, against each other: the largest
+/// difference of two, x₂ − x₁ in units of √(s₁² + s₂²), and what it says. The difference is `None` where fewer
+/// than two of the numbers have a standard deviation.
+pub fn scaling(found: &[Quantity]) -> (Option<f64>, Scaling) {
+    let known: Vec<(f64, f64)> = found
+        .iter()
+        .filter_map(|one| Some((one.value, one.sd?)))
+        .filter(|(value, sd)| value.is_finite() && sd.is_finite())
+        .collect();
+    let mut largest: Option<f64> = None;
+    let mut is_telling = known.len() == found.len();
+    for (number, one) in known.iter().enumerate() {
+        for other in &known[number + 1..] {
+            let size = one.0.abs().max(other.0.abs());
+            // Records without noise know a number to its rounding and no better.
+            let sd = one.1.hypot(other.1).max(ROUNDING * size);
+            let difference = (other.0 - one.0) / sd;
+            is_telling &= FAR * sd <= TELLING * size;
+            if difference.is_finite() && largest.is_none_or(|largest| difference.abs() > largest.abs()) {
+                largest = Some(difference);
             }
         }
-        let word = match largest {
-            Some(difference) if difference.abs() > FAR => Self::DoesNotScale,
-            Some(_) if is_telling => Self::Scales,
-            _ => Self::CannotBeTold,
-        };
-        (largest, word)
     }
+    let word = match largest {
+        Some(difference) if difference.abs() > FAR => Scaling::DoesNotScale,
+        Some(_) if is_telling => Scaling::Scales,
+        _ => Scaling::CannotBeTold,
+    };
+    (largest, word)
 }
 
 #[cfg(test)]
@@ -184,15 +163,15 @@ mod tests {
     #[test]
     fn a_difference_is_judged_by_its_error() {
         let of = |value: f64, sd: f64| Quantity::new(value, Some(sd));
-        let (difference, word) = Scaling::of(&[of(1.0, 0.03), of(1.05, 0.04)]);
+        let (difference, word) = scaling(&[of(1.0, 0.03), of(1.05, 0.04)]);
         assert!(word == Scaling::Scales && difference.is_some_and(|d| (d - 1.0).abs() < 1e-9), "{difference:?}");
-        assert_eq!(Scaling::of(&[of(1.0, 0.03), of(1.2, 0.04)]).1, Scaling::DoesNotScale);
-        assert_eq!(Scaling::of(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::CannotBeTold);
-        assert_eq!(Scaling::of(&[of(1.0, 0.3), Quantity::bare(2.0)]), (None, Scaling::CannotBeTold));
+        assert_eq!(scaling(&[of(1.0, 0.03), of(1.2, 0.04)]).1, Scaling::DoesNotScale);
+        assert_eq!(scaling(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::CannotBeTold);
+        assert_eq!(scaling(&[of(1.0, 0.3), Quantity::bare(2.0)]), (None, Scaling::CannotBeTold));
         // One of three without an error: what the others say is said, but not that all agree.
         let three = [of(1.0, 0.01), Quantity::bare(1.0), of(1.01, 0.01)];
-        assert_eq!(Scaling::of(&three).1, Scaling::CannotBeTold);
-        let (difference, word) = Scaling::of(&[of(1.0, 0.01), of(1.01, 0.01), of(0.9, 0.01)]);
+        assert_eq!(scaling(&three).1, Scaling::CannotBeTold);
+        let (difference, word) = scaling(&[of(1.0, 0.01), of(1.01, 0.01), of(0.9, 0.01)]);
         assert!(difference.is_some_and(|d| (d + 0.11 / 0.01 / 2f64.sqrt()).abs() < 1e-9), "{difference:?}");
         assert_eq!(word, Scaling::DoesNotScale);
     }

@@ -9,6 +9,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use document::trace::RecordNoiseEntry;
+use document::trace::TraceDocument;
 use kempf_tests::autopilot;
 use kempf_tests::measured::analysis::{
     MeasuredAnalysis, ReplayError, SetSummary, WHOLE, WINDOWS_20_S, WINDOWS_60_S, named,
@@ -19,7 +20,6 @@ use kempf_tests::measured::{charts, folder, into_results};
 use kempf_tests::stability;
 use report::number::{fixed, significant};
 use report::{Table, TableHead, Theme};
-use study::documents::trace::TraceDocument;
 use study::options::PageFigures;
 use trace::Document;
 
@@ -279,7 +279,7 @@ fn closed_loop(scratch: &Path) -> Outcome<Table> {
                 [
                     record.name.to_owned(),
                     named(&document),
-                    document.verdict.as_str().to_owned(),
+                    document.verdict.to_string(),
                     significant(error.before.heading_rmse_deg, 3),
                     significant(error.after.heading_rmse_deg, 3),
                     document.noise.iter().map(noise).collect::<Vec<_>>().join("; "),
@@ -300,7 +300,7 @@ fn noise(noise: &RecordNoiseEntry) -> String {
     }
     if let Some(sd) = noise.moment_sd_rudder_deg {
         let time = noise.moment_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));
-        parts.push(format!("moment ({}) {} deg{time}", noise.moment.as_str(), significant(sd, 2)));
+        parts.push(format!("moment ({}) {} deg{time}", noise.moment, significant(sd, 2)));
     }
     if let (Some(sd), Some(frequency)) = (noise.waves_sd_deg, noise.waves_frequency_rad_s) {
         parts.push(format!("waves {} deg at {} rad/s", significant(sd, 2), significant(frequency, 2)));

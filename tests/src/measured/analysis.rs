@@ -1,9 +1,9 @@
 //! What a trace of measured records says of them: errors before and after, and what was named.
 
+use document::trace::TraceDocument;
 use document::trace::{BeforeAfter, EffectEntry, ErrorsEntry};
 use estimation::statistics::median;
 use report::number::fixed;
-use study::documents::trace::TraceDocument;
 use trace::Document;
 
 use super::sets::MeasuredSet;

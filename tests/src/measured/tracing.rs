@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use study::documents::trace::TraceDocument;
+use document::trace::TraceDocument;
 use study::options::{Common, FigureOptions, Format, PageFigureOptions, PageFigures, TraceRequest, Withheld};
 use trace::Rule;
 

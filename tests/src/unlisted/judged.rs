@@ -1,8 +1,7 @@
 //! What a trace said, and whether it is right.
 
-use document::trace::{EffectEntry, LocatedEntry};
+use document::trace::{Dependence, EffectEntry, LocatedEntry};
 use ship::angle::from_deg;
-use trace::shape::Dependence;
 use trace::{Analysis, Verdict};
 
 use super::records::ROWS;
@@ -198,7 +197,7 @@ fn is_right(entry: &LocatedEntry, depends_on: Dependence, times: &Times) -> bool
             entry.form.contains("period") && periods.iter().all(is_near)
         }
     };
-    entry.depends_on == depends_on.as_str() && is_at
+    entry.depends_on == depends_on && is_at
 }
 
 impl Named {
@@ -234,7 +233,7 @@ mod tests {
 
     fn located(depends_on: Dependence, form: &str, span: Option<[f64; 2]>) -> LocatedEntry {
         LocatedEntry {
-            depends_on: depends_on.as_str().into(),
+            depends_on,
             form: form.into(),
             only: None,
             from_s: span.map(|[from, _]| from),

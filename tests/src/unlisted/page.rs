@@ -59,11 +59,11 @@ pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
             outcome.replicate.to_string(),
             fixed(outcome.ratio, 1),
             outcome.judgement.as_str().to_owned(),
-            answer.map_or("", |answer| answer.verdict.as_str()).to_owned(),
+            answer.map_or_else(String::new, |answer| answer.verdict.to_string()),
             text(&label),
             text(&|named| named.aliases.join("|")),
             text(&|named| time(named.time)),
-            shape(&|entry| entry.depends_on.clone()),
+            shape(&|entry| entry.depends_on.to_string()),
             shape(&|entry| entry.form.clone()),
             shape(&|entry| fixed(entry.nats, 1)),
             shape(&|entry| time(entry.from_s)),
@@ -281,7 +281,7 @@ fn equations(truths: &[Truth]) -> Table {
                     Times::Periods([from, to]) if from == to => format!(", with a period of {from} s"),
                     Times::Periods([from, to]) => format!(", with periods from {from} to {to} s"),
                 };
-                format!("depends on {}{when}; or unexplained", depends_on.as_str())
+                format!("depends on {depends_on}{when}; or unexplained")
             }
             Kind::Nothing { disturbed: false } => "clean".to_owned(),
             Kind::Nothing { disturbed: true } => "clean or disturbed".to_owned(),
@@ -295,7 +295,7 @@ fn equations(truths: &[Truth]) -> Table {
 fn names(cell: &[Outcome]) -> String {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for answer in cell.iter().filter_map(|outcome| outcome.answer.as_ref()) {
-        let mut dependences: Vec<&str> = answer.located.iter().map(|entry| entry.depends_on.as_str()).collect();
+        let mut dependences: Vec<String> = answer.located.iter().map(|entry| entry.depends_on.to_string()).collect();
         dependences.sort_unstable();
         dependences.dedup();
         let dependences = dependences.iter().map(|dependence| format!("depends on {dependence}"));

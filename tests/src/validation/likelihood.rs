@@ -81,7 +81,7 @@ pub fn section() -> Section {
         (gusts, -45.967541814, 7),
         (of(Moment::Walk, 8.726646260e-5, f64::INFINITY), -365.883210199, 6),
     ] {
-        let kind = noise.moment.as_str();
+        let kind = noise.moment;
         checks.push(Check::new(
             format!("likelihood/{kind}"),
             format!("log-likelihood, moment {kind}"),

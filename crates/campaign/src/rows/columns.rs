@@ -205,11 +205,11 @@ fn set_probabilities(row: &mut StudyRow, text: &str) -> Result<(), String> {
 }
 
 fn verdict(row: &StudyRow) -> Option<Cow<'_, str>> {
-    Some(row.traced.as_ref()?.verdict.as_str().into())
+    Some(row.traced.as_ref()?.verdict.to_string().into())
 }
 
 fn set_verdict(row: &mut StudyRow, word: &str) -> Result<(), String> {
-    let known = Verdict::ALL.into_iter().find(|verdict| verdict.as_str() == word);
+    let known = Verdict::ALL.into_iter().find(|verdict| verdict.to_string() == word);
     answer(row).verdict = known.ok_or_else(|| format!("no trace ends with {word:?}"))?;
     Ok(())
 }

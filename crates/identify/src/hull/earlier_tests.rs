@@ -1,5 +1,6 @@
 //! What earlier trials tell of the next: made-up numbers, and KVLCC2 as she is simulated.
 
+use document::earlier_trials::Likeness;
 use nalgebra::DVector;
 use ship::ships::kvlcc2::MODEL_L7;
 use ship::vessel::mmg::Mmg;
@@ -10,7 +11,7 @@ use trial::{Channel, Columns, Trial};
 use super::objective::HullObjective;
 use super::tests::{LENGTH, SPEED, TRUTH, hull, record};
 use super::track::HullTrack;
-use super::{EarlierHull, ExpectedHull, HullEstimate, Likeness, after_earlier, fit};
+use super::{EarlierHull, ExpectedHull, HullEstimate, after_earlier, fit};
 
 const SHIP: HullParticulars = HullParticulars {
     length: LENGTH,
@@ -92,7 +93,7 @@ fn another_scale_tells_less_and_nothing_of_friction() {
     near(found, [100.0 / 4.0 / (1.0 + 99.0 / 4.0), (1.0_f64 + 99.0 / 4.0).powf(-0.5)]);
     near(after(&SHIP, "mmg", &[one], "R0"), [0.0, 1.0]);
     assert_eq!(Likeness::of(&large, &SHIP), Likeness::OtherScale);
-    assert_eq!(Likeness::of(&SHIP, &SHIP), Likeness::Same);
+    assert_eq!(Likeness::of(&SHIP, &SHIP), Likeness::SameShip);
 }
 
 /// The departure from what the particulars say is carried to another draught, and what the formulas say of the draught

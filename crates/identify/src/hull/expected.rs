@@ -13,6 +13,7 @@
 //! nothing, the prior is that of the particulars. Coefficients have no dimension, so scale changes none of them at
 //! the same Froude number.
 
+use document::earlier_trials::Likeness;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
 use ship::vessel::prior::HullParticulars;
@@ -49,48 +50,6 @@ pub struct EarlierHull {
     pub values: DVector<f64>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
-}
-
-/// How like the ship of earlier trials is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Likeness {
-    /// The same ship, as far as her particulars say.
-    Same,
-    /// The same at another length: a model of her, or a sister of another size.
-    OtherScale,
-    /// A hull of other proportions: another loading, or a sister.
-    OtherHull,
-}
-
-impl Likeness {
-    /// Of the ship of earlier trials to another.
-    pub fn of(earlier: &HullParticulars, ship: &HullParticulars) -> Self {
-        match (ship.differing(earlier).is_empty(), ship.has_length_of(earlier)) {
-            (false, _) => Self::OtherHull,
-            (true, true) => Self::Same,
-            (true, false) => Self::OtherScale,
-        }
-    }
-
-    /// What standard deviations are widened by. These are judgements, and no figure was tuned with them. 1.5: a hull of
-    /// twenty numbers is not the ship, so two trials of one ship differ by more than their errors. 2: rudder and
-    /// propeller of a model work in another wake. 3: the formulas carry a difference of loading to a third at best.
-    pub fn factor(self) -> f64 {
-        match self {
-            Self::Same => 1.5,
-            Self::OtherScale => 2.0,
-            Self::OtherHull => 3.0,
-        }
-    }
-
-    /// The word in files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Same => "same-ship",
-            Self::OtherScale => "other-scale",
-            Self::OtherHull => "other-hull",
-        }
-    }
 }
 
 /// Whether two ships sail at so different Froude numbers, by more than a tenth, that coefficients of one say less of
@@ -170,7 +129,7 @@ impl EarlierHull {
     fn told(&self, expected: &ExpectedHull, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let likeness = Likeness::of(&self.particulars, ship);
         let before = self.form.coefficients();
-        let of_ship = |key: &str| !is_of_trial(key) && (likeness == Likeness::Same || !is_of_friction(key));
+        let of_ship = |key: &str| !is_of_trial(key) && (likeness == Likeness::SameShip || !is_of_friction(key));
         let kept: Vec<usize> = (0..before.len()).filter(|&place| of_ship(before[place].key)).collect();
         let count = kept.len();
         // In standard deviations of what was expected before, so that every direction is measured alike: L with L Lᵀ

@@ -44,7 +44,7 @@ use trial::Trial;
 
 pub use conflict::ExpectationCheck;
 pub use error::HullFitError;
-pub use expected::{EarlierHull, ExpectedHull, Likeness, is_other_froude_number};
+pub use expected::{EarlierHull, ExpectedHull, is_other_froude_number};
 pub use moment::FormMoment;
 pub use objective::HullDeviations;
 use objective::{HullObjective, variances};

@@ -180,7 +180,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
 fn of_outliers(trials: &[Trial], chosen: &Chosen) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for ((trial, record), found) in trials.iter().zip(&chosen.records).zip(&chosen.outliers) {
-        let (name, time) = (trial.name(), &record.track.time);
+        let (name, time) = (trial.title(), &record.track.time);
         let times = |rows: &[usize]| {
             let shown: Vec<String> = rows.iter().take(LISTED).map(|&row| ShortNumber(time[row]).to_string()).collect();
             format!("{}{}", shown.join(", "), if rows.len() > LISTED { ", …" } else { "" })
@@ -275,7 +275,7 @@ fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<Warning> {
         let sd = to_deg(noise.heading_sd);
         parts.push(format!("a compass error of {sd:.3} deg with a correlation time of {time:.1} s"));
     }
-    let told = || format!("{}: beside the white noise of the compass there is {}", trial.name(), parts.join(" and "));
+    let told = || format!("{}: beside the white noise of the compass there is {}", trial.title(), parts.join(" and "));
     (!parts.is_empty()).then(|| Code::Noise.warning(told()))
 }
 

@@ -1,6 +1,7 @@
 //! Remarks of the form of MSC/Circ.1053: conditions that are not met or not known, sides that were not tried, and
 //! records that are no manoeuvre of the form.
 
+use document::names;
 use indexmap::IndexMap;
 use ship::Particulars;
 use trial::{Conditions, Loading, imo};
@@ -94,7 +95,7 @@ fn of_record(tested: &TestedManoeuvre) -> Vec<String> {
         if let Some(correction) = record.correction {
             remarks.extend(correction.warnings.iter().map(|own| format!("correction to full load: {}", own.text)));
             for (name, figure) in correction.figures.iter().filter(|(name, _)| tested.figure(name).is_some()) {
-                let name = name.replace('_', " ");
+                let name = names::plain(name);
                 remarks.extend(figure.warnings.iter().map(|own| format!("correction of {name}: {}", own.text)));
             }
         }

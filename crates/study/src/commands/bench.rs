@@ -139,7 +139,7 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
 ///
 /// Fails when they cannot be written.
 pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, common: &Common) -> Result<(), Failure> {
-    publish(results, folder, theme)?;
+    let text = publish(results, folder, theme)?;
     let notes: String = results.skipped.iter().map(|one| format!("skipped: {}\n", skipped(one))).collect();
     let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
     let naming = match results.naming.is_empty() {
@@ -147,12 +147,8 @@ pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, commo
         false => format!("\n{}", bench_tables::naming_totals(results).to_text()),
     };
     let head = format!("{}: {}\n", results.definition.name, counted(results.cases.len() as u64, "question"));
-    let output = CommandOutput {
-        words: [&head, &naming],
-        table: &bench_tables::leaderboard(results),
-        notes: &notes,
-        document: &results.json().on("describe", &folder.path().join(BENCH))?,
-    };
+    let table = bench_tables::leaderboard(results);
+    let output = CommandOutput { words: [&head, &naming], table: &table, notes: &notes, document: &text };
     screen::tell(common, &output, &[] as &[&str])
 }
 
@@ -188,10 +184,10 @@ pub fn skipped(one: &campaign::benchmark::results::Skipped) -> String {
     format!("{}, {}: {}", one.set, one.record, one.reason)
 }
 
-/// Writes everything; what an earlier run left and this one does not make goes away.
-fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Result<(), Failure> {
-    let path = folder.path().join(BENCH);
-    folder.keep(BENCH, results.json().on("describe", &path)?)?;
+/// Writes everything; what an earlier run left and this one does not make goes away. The text of the document.
+fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Result<String, Failure> {
+    let text = results.json().on("describe", &folder.path().join(BENCH))?;
+    folder.keep(BENCH, &text)?;
     folder.write(ROWS, bench_tables::rows(results).to_csv())?;
     folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
     let pages = folder.inside(METHODS)?;
@@ -199,5 +195,5 @@ fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Res
     for method in &results.methods {
         pages.write(&format!("{method}.md"), bench_page::of_method(results, method).to_markdown())?;
     }
-    write_page(folder, bench_page::page(results), Some(theme))
+    write_page(folder, bench_page::page(results), Some(theme)).map(|()| text)
 }

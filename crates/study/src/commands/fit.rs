@@ -1,16 +1,15 @@
 //! `study fit`: identify measured records with every method, replay the answers on them and on others. The document and
-//! the curves are written first, and everything else is made from them.
-
-use std::path::Path;
+//! the curves are written first, and everything else is made of what they hold.
 
 use campaign::folder::ResultFolder;
 use campaign::outside::keep_log;
+use document::fit::FitDocument;
 use document::{Warning, Warnings};
 use report::Theme;
 use scenario::failure::Failure;
 
-use crate::documents::fit::{FIT, FIT_SCHEMA, FitCurves, FitDocument};
-use crate::documents::{self, CURVES, folder_for, read_document, read_json};
+use crate::documents::fit_curves::FitCurves;
+use crate::documents::{self, FIT, folder_for};
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, read_all, read_others, repetitions};
 use crate::screen::{self, CommandOutput};
@@ -40,23 +39,29 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     }
     let fit = fit([&trials, &others], &methods, &priors, common.quiet, warnings)?;
     let folder = early.map_or_else(hold, Ok)?;
-    documents::keep_with_curves(&folder, FIT, &fit.document, &fit.curves())?;
-    show(&folder, folder.path(), theme.as_ref(), common)
+    let curves = fit.curves();
+    let text = documents::keep_with_curves(&folder, FIT, &fit.document, &curves)?;
+    show(&folder, &fit.document, &curves, &text, theme.as_ref(), common)
 }
 
-/// Draws a fit from the `fit.json` and the curves of a folder, into `into`, and tells what it says.
+/// Draws a fit into a folder and tells what it says; `text` is that of `fit.json`.
 ///
-/// Fails when a file is missing or was not written by this program.
-pub fn show(into: &ResultFolder, from: &Path, theme: Option<&Theme>, common: &Common) -> Result<(), Failure> {
-    let (document, text): (FitDocument, String) = read_document(&from.join(FIT), FIT_SCHEMA)?;
-    let (curves, _): (FitCurves, String) = read_json(&from.join(CURVES), "fit")?;
-    curve_tables::write_replays(&curves, into)?;
-    write_page(into, fit_page::page(&document, &curves), theme)?;
-    let rest = format!("{}\nresults: {}", fit_page::rest(&document, &curves), into.path().join(FIT).display());
-    let verdict = fit_page::verdict(&document).map_or_else(String::new, |words| format!("{words}\n\n"));
-    let head = format!("{verdict}{}\n", fit_page::headline(&document, &curves));
-    let table = fit_page::answers(&document, &curves);
-    let output = CommandOutput { words: [&head, ""], table: &table, notes: &rest, document: &text };
+/// Fails when a file cannot be written.
+pub fn show(
+    folder: &ResultFolder,
+    document: &FitDocument,
+    curves: &FitCurves,
+    text: &str,
+    theme: Option<&Theme>,
+    common: &Common,
+) -> Result<(), Failure> {
+    curve_tables::write_replays(curves, folder)?;
+    write_page(folder, fit_page::page(document, curves), theme)?;
+    let rest = format!("{}\nresults: {}", fit_page::rest(document, curves), folder.path().join(FIT).display());
+    let verdict = fit_page::verdict(document).map_or_else(String::new, |words| format!("{words}\n\n"));
+    let head = format!("{verdict}{}\n", fit_page::headline(document, curves));
+    let table = fit_page::answers(document, curves);
+    let output = CommandOutput { words: [&head, ""], table: &table, notes: &rest, document: text };
     screen::tell(common, &output, &shortened(document.of_answer()))
 }
 

@@ -152,7 +152,7 @@ fn columns() -> Table {
         let accepted = channel.accepted_names().replace(" or ", ", ");
         let of_channel = |said| matches!(said, ColumnMeaning::Channel(found, _) if found == channel);
         let over_ground = |said| channel == Channel::Speed && matches!(said, ColumnMeaning::OverGround(_));
-        let holds = channel.quantity().replace('_', " ");
+        let holds = ::document::names::plain(channel.quantity());
         table.push([&holds, &accepted, &usual(&|said| of_channel(said) || over_ground(said))]);
     }
     table.push([

@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 
 use document::{Warning, Warnings};
 use predict::PredictDocument;
-use predict::document::SCHEMA;
 use predict::turn::{self, Current};
 use report::Theme;
 use trial::file::called;
 use trial::{Sidecar, Trial};
 
-use crate::documents::{self, CURVES, PREDICT, folder_for, read_document, read_json};
+use crate::documents::{self, PREDICT, folder_for};
 use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
 use crate::screen::{self, CommandOutput};
@@ -53,38 +52,33 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let input = PredictInput { models: &models, earlier: &earlier, ballast: &ballast, records, current, declared };
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&place)?;
-    documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
-    show(&folder, folder.path(), theme.as_ref(), common, &warnings.ranked())
+    let text = documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
+    show(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
 }
 
-/// Draws a prediction from the `predict.json` and the curves of a folder, into `into`, and tells what it says.
+/// Draws a prediction into a folder and tells what it says; `text` is that of `predict.json`.
 ///
-/// Fails when a file is missing or was not written by this program.
+/// Fails when a file cannot be written.
 pub fn show(
-    into: &ResultFolder,
-    from: &Path,
+    folder: &ResultFolder,
+    predicted: &PredictDocument,
+    text: &str,
     theme: Option<&Theme>,
     common: &Common,
     warnings: &[Warning],
 ) -> Result<(), Failure> {
-    let (document, text): (PredictDocument, String) = read_document(&from.join(PREDICT), SCHEMA)?;
-    let predicted = &document.with_curves(read_json(&from.join(CURVES), "predict")?.0);
     for (stem, table) in predict_curves::curves(predicted) {
-        into.write(&format!("{stem}.csv"), table)?;
+        folder.write(&format!("{stem}.csv"), table)?;
     }
-    write_page(into, predict_page::page(predicted), theme)?;
-    let mut notes = format!("\nresults: {}", into.path().join(PREDICT).display());
+    write_page(folder, predict_page::page(predicted), theme)?;
+    let mut notes = format!("\nresults: {}", folder.path().join(PREDICT).display());
     if let (Some(form), Some(remarks)) = (&predicted.form, &predicted.form_remarks) {
-        into.write(FORM, predict_form::page(form, remarks).to_markdown())?;
-        notes += &format!("\nform:    {}", into.path().join(FORM).display());
+        folder.write(FORM, predict_form::page(form, remarks).to_markdown())?;
+        notes += &format!("\nform:    {}", folder.path().join(FORM).display());
     }
-    let words = [predict_page::words(predicted), predict_page::rest(predicted)];
-    let output = CommandOutput {
-        words: words.each_ref().map(String::as_str),
-        table: &predict_tables::figures(predicted),
-        notes: &notes,
-        document: &text,
-    };
+    let [before, behind] = [predict_page::words(predicted), predict_page::rest(predicted)];
+    let table = predict_tables::figures(predicted);
+    let output = CommandOutput { words: [&before, &behind], table: &table, notes: &notes, document: text };
     screen::tell(common, &output, warnings)
 }
 

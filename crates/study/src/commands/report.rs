@@ -4,15 +4,15 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use ::predict::PredictDocument;
 use campaign::folder::ResultFolder;
 use campaign::store::{self, StoredStudy};
 use clap::Args;
 use scenario::failure::Failure;
 
 use super::{bench, fit, predict, trace};
-use crate::documents::fit::FIT;
-use crate::documents::trace::TRACE;
-use crate::documents::{BENCH, PREDICT, read_json};
+use crate::documents::curves::TraceCurves;
+use crate::documents::{BENCH, CURVES, FIT, PREDICT, TRACE, read_document, read_json};
 use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
@@ -40,9 +40,23 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     let theme = || style.style.theme();
     let has = |name: &str| stored.join(name).is_file();
     match () {
-        () if has(TRACE) => trace::show(&held()?, stored, Some(&theme()?), common, &[])?,
-        () if has(FIT) => fit::show(&held()?, stored, Some(&theme()?), common)?,
-        () if has(PREDICT) => predict::show(&held()?, stored, Some(&theme()?), common, &[])?,
+        () if has(TRACE) => {
+            let (folder, theme) = (held()?, theme()?);
+            let (document, text) = read_document(&stored.join(TRACE), document::trace::SCHEMA)?;
+            trace::show(&folder, &document, &TraceCurves::of(&document, stored)?, &text, Some(&theme), common, &[])?
+        }
+        () if has(FIT) => {
+            let (folder, theme) = (held()?, theme()?);
+            let (document, text) = read_document(&stored.join(FIT), document::fit::SCHEMA)?;
+            let (curves, _) = read_json(&stored.join(CURVES), "fit")?;
+            fit::show(&folder, &document, &curves, &text, Some(&theme), common)?
+        }
+        () if has(PREDICT) => {
+            let (folder, theme) = (held()?, theme()?);
+            let (document, text) = read_document(&stored.join(PREDICT), ::predict::document::SCHEMA)?;
+            let predicted = PredictDocument::with_curves(document, read_json(&stored.join(CURVES), "predict")?.0);
+            predict::show(&folder, &predicted, &text, Some(&theme), common, &[])?
+        }
         () if has(BENCH) => bench::show(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?,
         () => rebuild(stored, style, common)?,
     }

@@ -6,6 +6,8 @@ use campaign::design::Design;
 use campaign::manifest::Manifest;
 use campaign::showcase::Showcase;
 use clap::Args;
+use document::fit::FitDocument;
+use document::trace::TraceDocument;
 use predict::PredictDocument;
 use report::Style;
 use scenario::failure::{Failure, OnPath};
@@ -21,8 +23,7 @@ use crate::documents::answers::{
 };
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
-use crate::documents::fit::{FitCurves, FitDocument};
-use crate::documents::trace::TraceDocument;
+use crate::documents::fit_curves::FitCurves;
 use crate::documents::truth::TruthDocument;
 use crate::options::{Common, Described};
 use crate::screen;

@@ -1,17 +1,14 @@
 //! `study trace`: close the loop on measured records. The analysis is that of the crate [`mod@trace`]; its document and
 //! curves are written first, and everything else is made from them.
 
-use std::path::Path;
-
 use campaign::folder::ResultFolder;
-use document::trace::SCHEMA;
+use document::trace::TraceDocument;
 use document::{Warning, Warnings};
 use report::Theme;
 use scenario::failure::Failure;
 
 use crate::documents::curves::TraceCurves;
-use crate::documents::trace::{TRACE, TraceDocument};
-use crate::documents::{folder_for, read_document};
+use crate::documents::{TRACE, folder_for};
 use crate::interrupt;
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_others, repetitions};
@@ -36,27 +33,27 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let place = folder_for(TRACE, &common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
     let traced = trace([&trials, &others], &settings, &priors, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&place)?;
-    traced.write(&folder)?;
-    show(&folder, folder.path(), theme.as_ref(), common, &warnings.ranked())?;
+    let text = traced.write(&folder)?;
+    show(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
     if interrupt::is_asked() { Err(Failure::work(STOPPED)) } else { Ok(()) }
 }
 
-/// Draws a trace from the `trace.json` and the curves of a folder, into `into`, and tells what it says.
+/// Draws a trace into a folder and tells what it says; `text` is that of `trace.json`.
 ///
-/// Fails when a file is missing or was not written by this program.
+/// Fails when a file cannot be written.
 pub fn show(
-    into: &ResultFolder,
-    from: &Path,
+    folder: &ResultFolder,
+    document: &TraceDocument,
+    curves: &TraceCurves,
+    text: &str,
     theme: Option<&Theme>,
     common: &Common,
     warnings: &[Warning],
 ) -> Result<(), Failure> {
-    let (document, text): (TraceDocument, String) = read_document(&from.join(TRACE), SCHEMA)?;
-    let curves = TraceCurves::of(&document, from)?;
-    write_page(into, trace_page::page(&document, &curves, steady::of_ship(&document.ship).as_ref()), theme)?;
-    let notes = format!("\nresults: {}", into.path().join(TRACE).display());
-    let [before, behind] = trace_page::words(&document);
-    let table = trace_page::all_errors(&document);
-    let output = CommandOutput { words: [&before, &behind], table: &table, notes: &notes, document: &text };
+    write_page(folder, trace_page::page(document, curves, steady::of_ship(&document.ship).as_ref()), theme)?;
+    let notes = format!("\nresults: {}", folder.path().join(TRACE).display());
+    let [before, behind] = trace_page::words(document);
+    let table = trace_page::all_errors(document);
+    let output = CommandOutput { words: [&before, &behind], table: &table, notes: &notes, document: text };
     screen::tell(common, &output, warnings)
 }

@@ -7,13 +7,15 @@ use std::path::Path;
 use ::trace::Innovations;
 use ::trace::comparison::RecordComparison;
 use campaign::curves::degrees;
+use document::trace::{RecordEntry, TraceDocument};
 use identify::replay::Replay;
 use scenario::failure::Failure;
+use scenario::name::slug;
 use ship::angle::from_deg;
 use trial::{Channel, Columns as Channels, Origin, Trial};
 
 use super::columns::CurveTable;
-use super::trace::{RecordEntry, TraceDocument};
+use crate::records::names;
 
 /// A record with what the models make of it.
 pub struct TracedRecord {
@@ -34,6 +36,16 @@ pub struct TraceCurves {
     pub records: Vec<TracedRecord>,
     /// Tables of the missing moments: over time, and over the channels.
     pub moments: Vec<[BTreeMap<String, Vec<f64>>; 2]>,
+}
+
+/// Names as parts of names of files: two names may make one slug.
+pub fn slugs(own: &[String]) -> Vec<String> {
+    names(own.iter().map(|name| slug(name)))
+}
+
+/// What the files of a record end with: nothing for the first.
+pub fn suffix(names: &[String], number: usize) -> String {
+    if number == 0 { String::new() } else { format!("-{}", slugs(names)[number]) }
 }
 
 /// What the models before and after are called in columns.

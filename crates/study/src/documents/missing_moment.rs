@@ -2,53 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use ::trace::Verdict;
 use ::trace::missing_moment::{MissingMoment, Over, Panel};
 use campaign::curves::degrees;
 use campaign::statistics::distinct;
-use serde::{Deserialize, Serialize};
+use document::names;
+use document::trace::{MissingMomentEntry, PanelEntry, Verdict};
 use ship::angle::to_deg;
 
 use super::columns::CurveTable;
-
-/// The moment of one record in `trace.json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct MissingMomentEntry {
-    /// The record.
-    pub file: String,
-    /// Its name.
-    pub record: String,
-    /// The table of the smoothed moment.
-    pub moment: String,
-    /// The table of the curves over the channels.
-    pub curves: String,
-    /// Root mean square of the moment, as an angle of the rudder.
-    pub rms_rudder_deg: f64,
-    /// The explanation beside it in the tables: the named effects together, else the best candidate alone.
-    pub explanation: Option<String>,
-    /// Whether the verdict is located or unexplained and no effect lies inside the bands of all curves that show
-    /// something.
-    pub unlisted: bool,
-    /// Effects inside the bands of all curves that show something.
-    pub inside_all: Vec<String>,
-    /// Curves over the channels, the most likely first.
-    pub over: Vec<PanelEntry>,
-}
-
-/// One curve.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PanelEntry {
-    /// The channel.
-    pub channel: String,
-    /// Its column in the tables.
-    pub column: String,
-    /// Share of the variance of its walk that the curve takes away.
-    pub variance_share: Option<f64>,
-    /// Whether the band leaves zero.
-    pub shows: bool,
-    /// Effects inside the band everywhere.
-    pub inside: Vec<String>,
-}
 
 /// The moment of one record as it is read from its tables; a column that is not there is empty.
 pub struct MissingMomentCurves {
@@ -178,8 +139,9 @@ pub fn entry(
     let telling = || missing.panels.iter().filter(shows);
     let everywhere = |place: &usize| telling().all(|panel| panel.inside.contains(place));
     let inside: Vec<usize> = (0..missing.explanations.len()).filter(everywhere).collect();
-    let ids = effects(missing, &[0]).join(", ");
-    let explanation = if explains { ids.clone() } else { format!("best candidate: {ids}") };
+    let best: Vec<String> = effects(missing, &[0]).iter().map(|id| names::effect(id)).collect();
+    let best = best.join(", ");
+    let explanation = if explains { best.clone() } else { format!("best candidate: {best}") };
     let of_panel = |panel: &Panel| PanelEntry {
         channel: panel.over.as_str().to_owned(),
         column: column(panel.over).0.to_owned(),
@@ -194,7 +156,7 @@ pub fn entry(
         moment: format!("{stem}.csv"),
         curves: format!("{stem}-curves.csv"),
         rms_rudder_deg: to_deg(square.sqrt()),
-        explanation: (!ids.is_empty()).then_some(explanation),
+        explanation: (!best.is_empty()).then_some(explanation),
         unlisted: matches!(verdict, Verdict::Unexplained | Verdict::Located)
             && inside.is_empty()
             && telling().next().is_some(),

@@ -1,18 +1,16 @@
-//! What commands leave for other programs: the types of their JSON files and of the tables beside them, from which
-//! pages and figures are made. The text of a file is also what `--format json` writes to standard output.
+//! What commands leave for other programs beside the documents of the crate `document`: the types of other JSON files
+//! and of tables, from which pages and figures are made. The text of a file is also what `--format json` writes to
+//! standard output.
 
 pub mod answers;
 pub mod columns;
 pub mod curves;
 pub mod error;
 pub mod find;
-pub mod fit;
+pub mod fit_curves;
 pub mod missing_moment;
 pub mod prior;
-pub mod scales;
-pub mod trace;
 pub mod truth;
-pub mod verdict;
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -26,6 +24,12 @@ use serde::de::DeserializeOwned;
 
 use crate::screen;
 use answers::{CommandAnswer, Versioned};
+
+/// Name of the file with a fit.
+pub const FIT: &str = "fit.json";
+
+/// Name of the file with a trace.
+pub const TRACE: &str = "trace.json";
 
 /// Name of the file with a prediction.
 pub const PREDICT: &str = "predict.json";
@@ -43,7 +47,7 @@ pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
 
 /// A folder for the results of one command. Fails when those of another one are there: their page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
-    let others = [fit::FIT, trace::TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|own| *own != document);
+    let others = [FIT, TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|own| *own != document);
     match others.map(|own| place.join(own)).find(|path| path.is_file()) {
         Some(path) => Err(Failure::input(format!(
             "{} is the result of another command; give another folder with --out",
@@ -53,9 +57,10 @@ pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
     }
 }
 
-/// Keeps the document of a command in a folder. Fails when the file cannot be written.
-pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<(), Failure> {
-    folder.keep(name, text(document).on("describe", &folder.path().join(name))?).map(drop)
+/// Keeps the document of a command in a folder; the text of its file. Fails when the file cannot be written.
+pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<String, Failure> {
+    let text = text(document).on("describe", &folder.path().join(name))?;
+    folder.keep(name, &text).map(|_| text)
 }
 
 /// The same with the curves of its figures beside it.
@@ -64,9 +69,10 @@ pub fn keep_with_curves(
     name: &str,
     document: &impl Serialize,
     curves: &impl Serialize,
-) -> Result<(), Failure> {
-    keep(folder, name, document)?;
-    folder.write(CURVES, serde_json::to_string(curves).on("describe", &folder.path().join(CURVES))?)
+) -> Result<String, Failure> {
+    let text = keep(folder, name, document)?;
+    folder.write(CURVES, serde_json::to_string(curves).on("describe", &folder.path().join(CURVES))?)?;
+    Ok(text)
 }
 
 /// A document that a command wrote, and its text.

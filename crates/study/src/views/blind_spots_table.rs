@@ -13,8 +13,8 @@ pub const READING: &str = "The size of an effect at which the trace names it (it
                            What lies beyond the sizes tried is given as more or less than the last of them; *at the \
                            largest*: named at the largest size.";
 
-/// A line for every effect with sizes, at every place of the other axes.
-pub fn table(spots: &[BlindSpot], design: &Design) -> Table {
+/// A line for every effect with sizes, called by its `name`, at every place of the other axes.
+pub fn table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String) -> Table {
     let of_sizes = axis_of_sizes(design);
     let other_axes = design.axes.iter().enumerate().filter(|(axis, _)| Some(*axis) != of_sizes);
     let several = has_several(design);
@@ -31,7 +31,7 @@ pub fn table(spots: &[BlindSpot], design: &Design) -> Table {
         };
         let at_largest = spot.tried.iter().filter(|own| own.size == largest);
         let [named, of] = at_largest.fold([0, 0], |[named, of], own| [named + own.seen, of + own.trials]);
-        let mut cells = vec![spot.effect.clone()];
+        let mut cells = vec![name(&spot.effect)];
         cells.extend(spot.place.iter().cloned());
         cells.extend(several.then(|| design.methods[spot.method].label.clone()));
         let trials: u64 = spot.tried.iter().map(|own| own.trials).sum();

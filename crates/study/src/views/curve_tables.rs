@@ -10,7 +10,7 @@ use scenario::name::slug;
 
 use super::study_figures::{FigurePlace, StudyFigure};
 use crate::documents::columns::CurveTable;
-use crate::documents::fit::FitCurves;
+use crate::documents::fit_curves::FitCurves;
 
 /// A column: its name with its unit, and its values over what the first column holds.
 type NamedCurve<'a> = (String, &'a PlotCurve);

@@ -2,7 +2,9 @@
 //! all methods and with the one that is shown alone, over time and in the phase plane; K and T of all methods, and of
 //! every record alone.
 
-use campaign::answer::MethodEntry;
+use document::fit::{FitDocument, SingleRecord, SingleRecords};
+use document::method::MethodEntry;
+use document::names;
 use report::figures::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Reference95, Ruler, Stack};
 use report::palette::{BEFORE, Look, Marker, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve, symbol};
@@ -10,13 +12,13 @@ use ship::Particulars;
 use trial::Quantity;
 
 use super::record_figures::{ModelOverTime, over_time, phase_plane, rudder};
-use crate::documents::fit::{FitCurves, FitDocument, FitRecord, SingleRecord, SingleRecords};
+use crate::documents::fit_curves::{FitCurves, FitRecord};
 
 /// All figures, in the order of the page.
 pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
     let fitted: Vec<&FitRecord> = curves.records.iter().filter(|record| !record.validation).collect();
     let title = match fitted[..] {
-        [only] => only.name.clone(),
+        [only] => names::record(&only.name),
         _ => format!("{} records together", fitted.len()),
     };
     let caption = format!("{title}: K and T of every method with the intervals and regions it quotes.");
@@ -36,7 +38,8 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
 
 /// The figures of a record; `suffix` ends their names, `shown` is the method whose fit is drawn on its own.
 fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageFigure> {
-    let FitRecord { name, replays, rejected, phase_replay, .. } = record;
+    let FitRecord { replays, rejected, phase_replay, .. } = record;
+    let name = names::record(&record.name);
     let title = replays.title.clone().unwrap_or_default();
     let figure = |kind: &str, what: &str, plot: report::figures::Plot| {
         let stem = if suffix.is_empty() { kind.to_owned() } else { format!("{kind}-{suffix}") };

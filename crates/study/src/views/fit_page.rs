@@ -1,16 +1,16 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
-use campaign::answer::MethodEntry;
-use identify::recommended::{Reason, ResidualKind};
+use document::fit::{FitDocument, Reason, ResidualKind, VerdictEntry, ZigZagEntry};
+use document::method::MethodEntry;
+use document::names;
 use report::markdown::text;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, Table};
 use trial::Quantity;
 
 use super::{fit_figures, method_table, scale_tables};
-use crate::documents::fit::{FitCurves, FitDocument, ZigZagEntry};
-use crate::documents::prior::EarlierTrials;
-use crate::documents::verdict::VerdictEntry;
+use crate::documents::fit_curves::FitCurves;
+use crate::documents::prior;
 use crate::scales::scale_name;
 use crate::work::every_scale::PREFERRED_METHODS;
 
@@ -86,7 +86,7 @@ pub fn rest(document: &FitDocument, curves: &FitCurves) -> String {
 /// The answers of all methods.
 pub fn answers(document: &FitDocument, curves: &FitCurves) -> Table {
     let validated = curves.records.iter().filter(|record| record.validation);
-    method_table::table(&document.methods, &validated.map(|record| record.name.clone()).collect::<Vec<_>>())
+    method_table::table(&document.methods, &validated.map(|record| names::record(&record.name)).collect::<Vec<_>>())
 }
 
 /// Which answer to take, and whether to believe it.
@@ -160,10 +160,10 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
 pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
     let rows: usize = document.trials.iter().map(|trial| trial.samples).sum();
     let head = match (&document.trials[..], curves.records.first()) {
-        ([only], Some(record)) => format!("{}: {rows} rows, {:.1} s", record.name, only.duration_s),
+        ([only], Some(record)) => format!("{}: {rows} rows, {:.1} s", names::record(&record.name), only.duration_s),
         (several, _) => format!("{} records together: {rows} rows", several.len()),
     };
-    let prior = document.earlier_trials.as_ref().map(EarlierTrials::sentence);
+    let prior = document.earlier_trials.as_ref().map(prior::sentence);
     let sentences = document.scaling.iter().cloned().chain(prior);
     sentences.fold(head, |head, sentence| format!("{head}\n{sentence}"))
 }
@@ -171,13 +171,14 @@ pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
 /// Which record is meant where several have the same name, why methods failed, and the characteristics of the records.
 fn notes(document: &FitDocument, curves: &FitCurves) -> String {
     let renamed = curves.records.iter().filter(|record| record.is_renamed);
-    let renamed = renamed.map(|record| format!("{} is {}\n", record.name, record.file)).collect::<String>();
+    let renamed =
+        renamed.map(|record| format!("{} is {}\n", names::record(&record.name), record.file)).collect::<String>();
     let failed = |entry: &MethodEntry| Some(format!("{} failed: {}\n", entry.method, entry.reason.as_ref()?));
     let failed = document.methods.iter().filter_map(failed).collect::<String>();
     let mut notes: String =
         [renamed, failed].into_iter().filter(|lines| !lines.is_empty()).map(|lines| format!("\n{lines}")).collect();
     for (entry, record) in document.trials.iter().zip(&curves.records) {
-        let of = if document.trials.len() > 1 { format!("{}: ", record.name) } else { String::new() };
+        let of = if document.trials.len() > 1 { format!("{}: ", names::record(&record.name)) } else { String::new() };
         match (&entry.zigzag, &entry.no_zigzag) {
             (Some(zigzag), _) => notes += &format!("\n{of}{}", characteristics(zigzag)),
             (None, Some(why)) => notes += &format!("\n{of}no zig-zag characteristics: {why}\n"),

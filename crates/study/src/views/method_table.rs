@@ -5,7 +5,7 @@ use identify::StopReason;
 use report::number::{self, MISSING};
 use report::{Table, TableHead};
 
-use campaign::answer::{MethodEntry, Status};
+use document::method::{MethodEntry, Status};
 use trial::Quantity;
 
 /// One row per method; `validated` names the records of the validation columns.
@@ -68,6 +68,7 @@ fn remark(entry: &MethodEntry) -> String {
 
 #[cfg(test)]
 mod tests {
+    use campaign::answer;
     use identify::{Estimate, IdentifyError, Uncertainty};
     use ship::FirstOrder;
 
@@ -85,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_failed_method_is_a_row_with_its_reason() {
-        let failed = MethodEntry::failed("srivc", &IdentifyError::NoTrial);
+        let failed = answer::failed("srivc", &IdentifyError::NoTrial);
         let text = table(&[failed], &[]).to_text();
         assert!(text.contains("srivc") && text.contains("failed: no trial"), "{text}");
     }
@@ -102,7 +103,7 @@ mod tests {
             diagnostics: Vec::new(),
             warnings: Vec::new(),
         };
-        let said = |stop, inverse_time| remark(&MethodEntry::of("one", &estimate(stop, inverse_time), None));
+        let said = |stop, inverse_time| remark(&answer::answered("one", &estimate(stop, inverse_time), None));
         assert_eq!(said(StopReason::Converged, 0.1), "");
         assert_eq!(said(StopReason::RangeLimit, 0.1), "at a bound");
         assert_eq!(said(StopReason::RangeLimit, -0.1), "course-unstable, at a bound");

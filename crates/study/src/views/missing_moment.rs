@@ -2,13 +2,15 @@
 
 use std::fmt::Write as _;
 
+use document::names;
+use document::trace::{MissingMomentEntry, PanelEntry};
 use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
 use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
 use report::{PlotCurve, symbol};
 use trace::missing_moment::Over;
 
-use crate::documents::missing_moment::{ChannelCurve, MissingMomentCurves, MissingMomentEntry, PanelEntry};
+use crate::documents::missing_moment::{ChannelCurve, MissingMomentCurves};
 
 /// Panels of a figure at most.
 const PANELS: usize = 4;
@@ -80,19 +82,25 @@ pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panel
         false => format!(" Not drawn, because zero lies inside the band: {}.", others.join(", ")),
     };
     let note = Some(format!("Moments beyond {} times the usual size are cut.{others}", REACHES[1]));
-    let title = Some(format!("{}: yaw moment that the base lacks", entry.record));
+    let title = Some(format!("{}: yaw moment that the base lacks", names::record(&entry.record)));
     Panels { title, stacks, note, ..Panels::default() }
 }
 
 /// What is said of the moment of one record.
 pub fn sentence(entry: &MissingMomentEntry) -> String {
-    let (name, size) = (&entry.record, significant(entry.rms_rudder_deg, 2));
+    let (name, size) = (names::record(&entry.record), significant(entry.rms_rudder_deg, 2));
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");
     let telling = || entry.over.iter().filter(|panel| panel.shows && panel.variance_share.is_some());
     let Some(best) = telling().next() else {
         return format!("{begin}; it depends on no recorded channel.");
     };
-    let list = |ids: &[String]| if ids.is_empty() { "no effect on the list".to_owned() } else { ids.join(", ") };
+    let list = |ids: &[String]| {
+        if ids.is_empty() {
+            "no effect on the list".to_owned()
+        } else {
+            ids.iter().map(|id| names::effect(id)).collect::<Vec<_>>().join(", ")
+        }
+    };
     let (over, share) = (&best.channel, percent(best.variance_share));
     let mut text = format!("{begin}; its curve over the {over} {share}, and inside the band: {}", list(&best.inside));
     let count = telling().count();

@@ -2,6 +2,7 @@
 //! limits of IMO.
 
 use campaign::curves::{degrees, phase_curve};
+use document::names;
 use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
 use predict::prediction::Bands;
@@ -17,7 +18,6 @@ use trial::Manoeuvre;
 use trial::imo::Unit;
 
 use super::predict_curves::stems;
-use super::predict_tables::words;
 use super::record_figures::{phase_plane, rudder, steady_turns};
 
 /// Headings drawn along a track.
@@ -31,7 +31,8 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
         figures.extend(of_manoeuvre(document, prediction, stem));
     }
     for (replayed, stem) in document.replays.iter().zip(&stems[document.manoeuvres.len()..]) {
-        let caption = format!("{}: the record and its rudder replayed, nothing fitted to it.", replayed.name);
+        let caption =
+            format!("{}: the record and its rudder replayed, nothing fitted to it.", names::record(&replayed.name));
         figures.push(PageFigure::new(stem.as_str(), caption, replay(replayed)));
     }
     for (unit, stem) in [(Unit::Degrees, "imo-overshoots"), (Unit::ShipLengths, "imo-lengths")] {
@@ -101,7 +102,7 @@ fn bands(title: String, of: &Bands, recorded: Option<PlotCurve>, rudder_deg: Plo
 fn replay(replayed: &RecordReplay) -> Panels {
     let recorded = PlotCurve::new(replayed.heading.time.as_slice(), degrees(&replayed.measured));
     let rudder = PlotCurve::new(replayed.rudder[0].as_slice(), degrees(&replayed.rudder[1]));
-    bands(format!("{}, predicted", replayed.name), &replayed.heading, Some(recorded), rudder)
+    bands(format!("{}, predicted", names::record(&replayed.name)), &replayed.heading, Some(recorded), rudder)
 }
 
 fn track(prediction: &Prediction) -> Panels {
@@ -169,7 +170,7 @@ fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
             // Under the bar, so that it does not hide a median nearby.
             let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));
             items.push(RowItem { place: RowPlace::Aside(0.34), ..item });
-            rows.push((format!("{} {}", replayed.name, words(name).0), items));
+            rows.push((format!("{} {}", names::record(&replayed.name), names::figure(name).0), items));
         }
     }
     rows

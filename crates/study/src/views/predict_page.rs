@@ -1,5 +1,6 @@
 //! The page of a prediction: words, tables and figures.
 
+use document::names;
 use predict::document::OtherLoading;
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
@@ -59,7 +60,7 @@ pub fn words(document: &PredictDocument) -> String {
 pub fn rest(document: &PredictDocument) -> String {
     let mut rest = String::new();
     for replayed in &document.replays {
-        rest += &format!("\n{}: {}\n", replayed.name, coverage(replayed));
+        rest += &format!("\n{}: {}\n", names::record(&replayed.name), coverage(replayed));
     }
     if !document.corrected.is_empty() {
         let table = predict_tables::corrected(document).to_text();
@@ -135,7 +136,7 @@ pub fn page(document: &PredictDocument) -> Page {
             "Nothing is fitted to these records. The band is that of the recorded rudder; figures of a zig-zag are those of a \
              helm that reverses the rudder at the headings of the record.",
         );
-        page.list(document.replays.iter().map(|own| format!("{}: {}", text(&own.name), coverage(own))));
+        page.list(document.replays.iter().map(|own| format!("{}: {}", text(&names::record(&own.name)), coverage(own))));
     }
     if !document.corrected.is_empty() {
         let loading = text(&OtherLoading::name(document.load.as_ref()));

@@ -1,26 +1,11 @@
 //! Tables of predictions.
 
+use document::names;
 use predict::correction::Corrected;
 use predict::interval::PredictionInterval;
 use predict::{PredictDocument, Prediction};
 use report::number::{MISSING, fixed, significant, with_uncertainty};
 use report::{Table, TableHead};
-
-/// Name and unit of a figure whose unit is the end of its name.
-pub fn words(name: &str) -> (String, &'static str) {
-    let units = [
-        ("_deg_s", "deg/s"),
-        ("_deg", "deg"),
-        ("_lengths", "L"),
-        ("_m_s", "m/s"),
-        ("_share", "1"),
-        ("_m", "m"),
-        ("_s", "s"),
-    ];
-    let found = units.into_iter().find_map(|(end, unit)| Some((name.strip_suffix(end)?, unit)));
-    let (stem, unit) = found.unwrap_or((name, ""));
-    (stem.replace('_', " "), unit)
-}
 
 /// An interval in brackets.
 pub fn bracket(ends: [f64; 2], decimals: usize) -> String {
@@ -39,7 +24,7 @@ pub fn figures(document: &PredictDocument) -> Table {
     let head = TableHead::default().texts(["manoeuvre", "figure", "unit"]).numbers(["median"]);
     let mut table = Table::new(head.texts(["50 %", "90 %", "mostly from", "remark"]));
     let mut push = |manoeuvre: &str, name: &str, interval: &PredictionInterval, source: String, remark: String| {
-        let ((name, unit), [median, half, most]) = (words(name), cells(interval));
+        let ((name, unit), [median, half, most]) = (names::figure(name), cells(interval));
         table.push([manoeuvre.to_owned(), name, unit.to_owned(), median, half, most, source, remark]);
     };
     for Prediction { kind, figures, .. } in &document.manoeuvres {
@@ -99,7 +84,7 @@ pub fn corrected(document: &PredictDocument) -> Table {
                 None => fixed(*measured, result.decimals()),
             };
             let doubts: Vec<&str> = warnings.iter().map(|doubt| doubt.text.as_str()).collect();
-            let ((name, unit), remark) = (words(name), doubts.join("; "));
+            let ((name, unit), remark) = (names::figure(name), doubts.join("; "));
             let record = correction.name.clone();
             table.push([record, name, unit.to_owned(), measured, factor, of_factor, median, half, most, remark]);
         }
@@ -112,11 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_figure_is_told_in_words() {
-        assert_eq!(words("first_overshoot_deg"), (String::from("first overshoot"), "deg"));
-        assert_eq!(words("steady_rate_deg_s"), (String::from("steady rate"), "deg/s"));
-        assert_eq!(words("advance_lengths"), (String::from("advance"), "L"));
-        assert_eq!(words("time_to_90_s"), (String::from("time to 90"), "s"));
+    fn an_interval_has_the_decimals_of_its_width() {
         let interval = PredictionInterval { median: 6.35, ci50: [6.3, 6.4], ci90: [6.2, 6.5] };
         assert_eq!(bracket(interval.ci90, interval.decimals()), "[6.20, 6.50]");
     }

@@ -78,7 +78,7 @@ pub fn put(
         )?;
         let spots = blind_spots(&summary.tracing, design);
         if !spots.is_empty() {
-            folder.write("blind-spots.csv", blind_spots_table::table(&spots, design).to_csv())?;
+            folder.write("blind-spots.csv", blind_spots_table::table(&spots, design, str::to_owned).to_csv())?;
         }
     }
     if !summary.predictions.is_empty() {

@@ -1,18 +1,18 @@
 //! What was found at each scale beside what was found at all of them together, in words and tables.
 
+use document::scales::{ComparedModel, ScalesEntry, Scaling};
 use report::number::{MISSING, fixed, uncertain};
 use report::{Table, TableHead};
 use ship::Particulars;
-use trial::{Quantity, Scaling};
+use trial::Quantity;
 
 use super::method_table::estimate;
-use crate::documents::scales::{ComparedModel, ScalesEntry};
 use crate::scales::scale_name;
 
 /// The terms of a model that do not scale, in a sentence.
 pub fn sentence(model: &ComparedModel) -> String {
     let of = |verdict: Scaling| -> Vec<&str> {
-        let terms = model.terms.iter().filter(|term| term.verdict == verdict.as_str());
+        let terms = model.terms.iter().filter(|term| term.verdict == verdict);
         terms.map(|term| term.symbol.as_str()).collect()
     };
     let [same, differing, open] = [Scaling::Scales, Scaling::DoesNotScale, Scaling::CannotBeTold].map(of);
@@ -44,7 +44,7 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
         let mut cells = vec![format!("{}{unit}", term.symbol), number(&term.joint)];
         cells.extend(term.own.iter().map(|own| own.as_ref().map_or_else(|| MISSING.to_owned(), number)));
         cells.push(term.difference_sd.map_or_else(|| MISSING.to_owned(), |far| fixed(far, 1)));
-        cells.push(term.verdict.clone());
+        cells.push(term.verdict.to_string());
         table.push(cells);
     }
     table
@@ -70,16 +70,16 @@ pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::documents::scales::ComparedTerm;
+    use crate::work::every_scale::term;
 
     #[test]
     fn every_term_has_its_word_and_the_sentence_begins_with_what_does_not_scale() {
         let of = |value: f64, sd: f64| Some(Quantity::new(value, Some(sd)));
         let joint = Quantity::new(1.0, Some(0.01));
         let terms = vec![
-            ComparedTerm::new("K′", "1", joint, vec![of(1.0, 0.01), of(1.02, 0.01)]),
-            ComparedTerm::new("n₃/T′", "1/rad²", joint, vec![of(1.0, 0.01), of(1.5, 0.01)]),
-            ComparedTerm::new("δ_r", "deg", joint, vec![of(1.0, 0.5), None]),
+            term(["K′", "1"], joint, vec![of(1.0, 0.01), of(1.02, 0.01)]),
+            term(["n₃/T′", "1/rad²"], joint, vec![of(1.0, 0.01), of(1.5, 0.01)]),
+            term(["δ_r", "deg"], joint, vec![of(1.0, 0.5), None]),
         ];
         let model = ComparedModel { model: "traced".into(), terms };
         assert_eq!(sentence(&model), "n₃/T′ does not scale; K′ scales; δ_r cannot be told");

@@ -4,6 +4,7 @@ use campaign::manifest::Manifest;
 use campaign::showcase::Showcase;
 use campaign::store::StoredStudy;
 use campaign::summary::{Summary, blind_spots};
+use document::names;
 use report::markdown::text;
 use report::{Page, Table, number};
 
@@ -98,7 +99,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
         let spots = blind_spots(&summary.tracing, design);
         if !spots.is_empty() {
             page.say(blind_spots_table::READING);
-            page.table(blind_spots_table::table(&spots, design));
+            page.table(blind_spots_table::table(&spots, design, names::effect));
         }
         page.figures(at(&|place| place == FigurePlace::Traces));
         page.table(tracing_table::table(&summary.tracing, summary, design, false));

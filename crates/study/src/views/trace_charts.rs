@@ -1,5 +1,6 @@
 //! Data of the figures about traces: rules against each other, the confusion matrix, power over the size of an effect.
 
+use document::names;
 use std::collections::BTreeSet;
 
 use report::figures::{
@@ -46,7 +47,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     let name = |line: &&TraceSummary| match &line.missing[..] {
         [] => NOTHING.to_owned(),
         _ if line.is_hull() => design.cells[line.cell].labels.first().cloned().unwrap_or_default(),
-        missing => missing.join(" + ").replace('_', " "),
+        missing => missing.iter().map(|id| names::effect(id)).collect::<Vec<_>>().join(" + "),
     };
     let rows = grouped(lines.iter().copied(), name);
     // Columns stand in the order of the rows, so that what is right runs down a diagonal.
@@ -75,7 +76,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     CellMap {
         title: None,
         titles: [String::from("named by the trace"), String::from("missing")],
-        columns: columns.iter().map(|id| id.replace('_', " ")).collect(),
+        columns: columns.iter().map(|id| names::effect(id)).collect(),
         // No line ends within the count.
         rows: rows.iter().map(|(name, lines)| format!("{name} (n\u{a0}=\u{a0}{})", trials(lines))).collect(),
         shades: Shades::Shares,
@@ -243,7 +244,7 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
     let are_few = shown.len() <= FEW;
     let expected = |line: &TraceSummary| line.expected.unwrap_or(SMALLEST);
     let name = |line: &&TraceSummary| match (are_few, is_of_time(&line.missing[0])) {
-        (true, _) => line.missing[0].replace('_', " "),
+        (true, _) => names::effect(&line.missing[0]),
         (_, false) => String::from("an effect of the ship or its gear"),
         (_, true) => String::from("a moment that depends on time"),
     };

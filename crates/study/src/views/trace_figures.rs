@@ -4,7 +4,8 @@
 
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use campaign::curves::{curve, degrees, phase_curve, phase_of};
-use document::trace::{BeforeAfter, ErrorsEntry, Outcome};
+use document::names;
+use document::trace::{BeforeAfter, ErrorsEntry, MissingMomentEntry, Outcome, RecordEntry, TraceDocument};
 use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
 use identify::replay::Replay;
 use report::figures::{
@@ -20,27 +21,26 @@ use trial::{Trial, ZigZag, imo};
 use super::record_figures::{ModelOverTime, over_time, phase_plane};
 use super::trace_tables::{horizon, term};
 use super::{innovation_figure, missing_moment};
-use crate::documents::curves::{TraceCurves, TracedRecord};
-use crate::documents::missing_moment::{MissingMomentCurves, MissingMomentEntry};
-use crate::documents::trace::{RecordEntry, TraceDocument, slugs, suffix};
+use crate::documents::curves::{TraceCurves, TracedRecord, slugs, suffix};
+use crate::documents::missing_moment::MissingMomentCurves;
 
 /// Lines of a spectrum whose frequencies differ by no more than this factor are averaged into one.
 const LINE: f64 = 1.06;
 
 /// Every record with the models before and after: the fitted ones, and those that were held out.
 pub fn records(document: &TraceDocument, curves: &TraceCurves) -> [Vec<PageFigure>; 2] {
-    let names = document.names();
+    let stems = document.names();
     let (fitted, judged) = document.errors();
     let errors = fitted.iter().chain(judged.iter().filter(|one| one.used == "held out")).map(|one| one.errors);
     let mut figures = [Vec::new(), Vec::new()];
     for (number, ((entry, record), errors)) in document.records.iter().zip(&curves.records).zip(errors).enumerate() {
-        let name = &entry.name;
+        let name = names::record(&entry.name);
         let ratio = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
         let held = if entry.held_out { ", held out" } else { "" };
         let data =
             record_fit(record, errors, format!("{name}{held}: error of the heading × {ratio} over the whole replay"));
         let caption = format!("{name}{held}: heading, residual and rudder, with the 95 % band of the model after.");
-        let figure = PageFigure::new(format!("record{}", suffix(&names, number)), caption, data);
+        let figure = PageFigure::new(format!("record{}", suffix(&stems, number)), caption, data);
         figures[usize::from(entry.held_out)].push(figure);
     }
     figures
@@ -48,11 +48,11 @@ pub fn records(document: &TraceDocument, curves: &TraceCurves) -> [Vec<PageFigur
 
 /// The innovations of every fitted record.
 pub fn innovations(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
-    let names = document.names();
+    let stems = document.names();
     let figure = |(number, record): (usize, &TracedRecord)| {
         innovation_figure::figure(
-            format!("innovations{}", suffix(&names, number)),
-            &names[number],
+            format!("innovations{}", suffix(&stems, number)),
+            &names::record(&stems[number]),
             record.innovations.as_ref()?,
         )
     };
@@ -61,10 +61,10 @@ pub fn innovations(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFi
 
 /// The moment that the base lacks on every fitted record.
 pub fn moments(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
-    let names = document.names();
+    let stems = document.names();
     let figure = |(entry, tables): (&MissingMomentEntry, _)| {
-        let number = names.iter().position(|name| *name == entry.record).unwrap_or(0);
-        let stem = format!("missing-moment-{}", slugs(&names)[number]);
+        let number = stems.iter().position(|name| *name == entry.record).unwrap_or(0);
+        let stem = format!("missing-moment-{}", slugs(&stems)[number]);
         let curves = MissingMomentCurves::read(entry, tables);
         PageFigure::new(stem, missing_moment::sentence(entry), missing_moment::figure(entry, &curves))
     };
@@ -73,12 +73,12 @@ pub fn moments(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
 
 /// The replays in the phase plane, and the residuals of fitted records: held-out ones are judged, not studied.
 pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
-    let names = document.names();
+    let stems = document.names();
     let mut figures = Vec::new();
     for (number, (RecordEntry { name, held_out, .. }, record)) in
         document.records.iter().zip(&curves.records).enumerate()
     {
-        let suffix = suffix(&names, number);
+        let (suffix, name) = (suffix(&stems, number), names::record(name));
         let caption = format!("{name}: yaw rate against heading, with the replays of the model before and after.");
         let way = |(origin, own): (CurveOrigin, &Replay)| {
             (origin.label().to_owned(), origin, phase_curve(&own.heading, &own.yaw_rate))
@@ -90,7 +90,7 @@ pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
             let caption = format!(
                 "{name}: the residual of the whole replay against heading, yaw rate and rudder, and its spectrum."
             );
-            figures.push(PageFigure::new(format!("residual{suffix}"), caption, residual(record, name)));
+            figures.push(PageFigure::new(format!("residual{suffix}"), caption, residual(record, &name)));
         }
     }
     figures
@@ -159,7 +159,7 @@ pub fn held_out(document: &TraceDocument) -> Option<PageFigure> {
         format!("Heading error × {:.2} on {count} {records} not fitted", ratio(judged.iter().map(|one| one.errors)));
     let data = NamedRows {
         title: Some(title),
-        names: judged.iter().map(|one| format!("{}, {}", one.name, one.used)).collect(),
+        names: judged.iter().map(|one| format!("{}, {}", names::record(&one.name), one.used)).collect(),
         columns,
         ..NamedRows::default()
     };
@@ -199,7 +199,8 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
     let mut others: Vec<_> = others
         .map(|one| {
             let best = one.forms.iter().max_by(|own, other| own.probability.total_cmp(&other.probability));
-            let name = best.map_or_else(|| one.id.clone(), |best| term(&one.id, &best.form, best.only.as_ref()));
+            let name =
+                best.map_or_else(|| names::effect(&one.id), |best| term(&one.id, &best.form, best.only.as_ref()));
             (name, (one.probability, fixed(one.probability, 3)), one.delta_bic.map(|change| -change), one.outcome)
         })
         .collect();
@@ -258,7 +259,7 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
                 mark(CurveOrigin::Before, -0.16, &replays[0]),
                 mark(CurveOrigin::After, 0.16, &replays[1]),
             ];
-            names.push(format!("{}, {word}", entry.name));
+            names.push(format!("{}, {word}", names::record(&entry.name)));
             rows.push(items.into_iter().flatten().collect());
         }
     }

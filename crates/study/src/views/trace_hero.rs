@@ -2,7 +2,8 @@
 //! before and after, and what these leave of the heading.
 
 use campaign::curves::curve;
-use document::trace::BeforeAfter;
+use document::names;
+use document::trace::{BeforeAfter, TraceDocument};
 use report::figures::{Division, Layer, LayeredPanel, PanelRow, Panels, Ruler, Stack};
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure};
@@ -10,15 +11,13 @@ use report::{CurveOrigin, PageFigure};
 use super::record_figures::heading_and_residual;
 use super::trace_figures::{models_over_time, ratio};
 use crate::documents::curves::{TraceCurves, TracedRecord};
-use crate::documents::trace::TraceDocument;
 
 /// Names in a title at most.
 const NAMES: usize = 3;
 
 /// The finding: what is missing, and both ratios.
 fn title(document: &TraceDocument) -> String {
-    let name = |id: &str| id.trim_end_matches("_measured").replace('_', " ");
-    let mut ids: Vec<String> = document.trace.effects.iter().map(|one| name(&one.id)).collect();
+    let mut ids: Vec<String> = document.trace.effects.iter().map(|one| names::effect(&one.id)).collect();
     ids.dedup();
     let more = ids.len().saturating_sub(NAMES);
     if more > 0 {
@@ -48,7 +47,7 @@ fn nearest(held: &[BeforeAfter]) -> Option<usize> {
 
 /// Heading and residual of a record, under what it is.
 fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], what: &str) -> Stack {
-    let name = record.trial.name();
+    let name = names::record(record.trial.name());
     let trial = &record.trial;
     let [mut upper, lower] = heading_and_residual(curve(trial.time(), trial.heading()), models_over_time(record, None));
     for name in upper.iter_mut().filter_map(|layer| layer.name.as_mut()) {

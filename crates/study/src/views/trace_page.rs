@@ -1,7 +1,8 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
 use document::identified_ship::ValidityRange;
-use document::trace::{Outcome, ParameterEntry};
+use document::names;
+use document::trace::{Outcome, ParameterEntry, TraceDocument};
 use predict::steady::SteadyCurve;
 use report::markdown::text;
 use report::number::{fixed, significant};
@@ -14,7 +15,7 @@ use super::trace_figures as figures;
 use super::trace_hero;
 use super::trace_tables as tables;
 use crate::documents::curves::TraceCurves;
-use crate::documents::trace::TraceDocument;
+use crate::documents::prior;
 use crate::scales::scale_name;
 
 /// Readings that are listed.
@@ -38,7 +39,8 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     }
     located(document, "").for_each(|words| behind += &format!("\n{words}"));
     behind += &odd(document);
-    behind += &document.earlier_trials.as_ref().map_or_else(String::new, |prior| format!("\n{}", prior.sentence()));
+    behind +=
+        &document.earlier_trials.as_ref().map_or_else(String::new, |earlier| format!("\n{}", prior::sentence(earlier)));
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
@@ -110,7 +112,7 @@ fn outliers(document: &TraceDocument) -> Vec<String> {
 /// A sentence for every parameter at an end of its range.
 fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
     let of = |own: &ParameterEntry| {
-        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
+        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" of {}", names::record(name)));
         format!("{}{only} is at its bound: the search ends there", tables::value(own))
     };
     parameters.iter().filter(|own| own.at_bound).map(of).collect()
@@ -197,7 +199,8 @@ fn evidence(page: &mut Page, document: &TraceDocument, curves: &TraceCurves) {
         table(page, "Effects", tables::effects(document), "");
     }
     for effect in &trace.effects {
-        page.say(format!("**{} ({})**: `{}`. {}", effect.id, effect.form, effect.equation, effect.evidence));
+        let name = names::effect_form(&effect.id, &effect.form);
+        page.say(format!("**{name}**: `{}`. {}", effect.equation, effect.evidence));
     }
     table(page, "Structures", tables::structures(document), "");
     table(page, "Candidates", tables::candidates(document), CANDIDATES);
@@ -215,7 +218,7 @@ fn model_and_noise(page: &mut Page, document: &TraceDocument) {
     if !document.ship.hulls.is_empty() {
         page.subpart("The hull behind the response");
         page.table(tables::hulls(document));
-        page.say(document.earlier_trials.as_ref().map_or_else(String::new, |prior| text(&prior.sentence())));
+        page.say(document.earlier_trials.as_ref().map_or_else(String::new, |earlier| text(&prior::sentence(earlier))));
         page.say(HULLS);
     }
 }
@@ -247,7 +250,7 @@ fn what_is_left(page: &mut Page, document: &TraceDocument) {
 /// A sentence or two for every moment that is no effect of the list, with `mark` around what can be typed.
 fn located(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String> {
     document.trace.located.iter().map(move |own| {
-        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" in {name}"));
+        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" in {}", names::record(name)));
         let or = if own.alternatives.is_empty() { "" } else { "; as near is " };
         let typed = match &own.formula {
             Some(line) => format!("To have it fitted and judged: {mark}--effect \"{line}\"{mark}."),
@@ -285,7 +288,7 @@ fn aliases(document: &TraceDocument) -> Table {
     }
     for one in document.trace.candidates.iter().filter(|one| one.outcome == Outcome::NotObservable) {
         let why = one.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
-        table.push([one.id.clone(), format!("nothing (not observable{why})")]);
+        table.push([names::effect(&one.id), format!("nothing (not observable{why})")]);
     }
     table
 }

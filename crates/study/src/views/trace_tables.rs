@@ -1,16 +1,16 @@
 //! Tables of a trace, from its document alone.
 
 use ::trace::replay_errors::HORIZONS;
-use document::Moment;
 use document::stored_hull::StoredCoefficient;
-use document::trace::{ErrorsEntry, ParameterEntry, RecordNoiseEntry, TermEntry};
+use document::trace::{
+    ErrorsEntry, HeadingWander, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry, TraceDocument,
+};
+use document::{Moment, names};
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
 use report::{Table, TableHead};
 use ship::angle::to_deg;
 use ship::vessel::prime::meaning;
 use trial::Quantity;
-
-use crate::documents::trace::{RecordErrors, TraceDocument};
 
 /// A quantity in degrees where its unit holds radians, and that unit. Frequencies stay in radians.
 fn in_degrees(symbol: &str, quantity: Quantity, unit: &str) -> (Quantity, String) {
@@ -40,8 +40,8 @@ fn primed(symbol: &str) -> String {
 
 /// An effect with its form and the one record in which it acts.
 pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
-    let only = only.map_or_else(String::new, |only| format!(", {only}"));
-    format!("{id} ({form}{only})")
+    let only = only.map_or_else(String::new, |only| format!(", in {}", names::record(only)));
+    names::effect_form(id, form) + &only
 }
 
 /// Named effects with their parameters.
@@ -77,8 +77,9 @@ pub fn errors(records: &[RecordErrors]) -> Table {
         let ratio = errors.after.heading_rmse_deg / errors.before.heading_rmse_deg;
         let models = [("before", &errors.before, None), ("after", &errors.after, Some(ratio))];
         for (model, own, ratio) in models {
-            let head = if model == "before" { [*name, *used] } else { ["", ""] };
-            let mut cells = [head[0], head[1], model].map(String::from).to_vec();
+            let head = if model == "before" { [names::record(name), (*used).to_owned()] } else { Default::default() };
+            let mut cells = head.to_vec();
+            cells.push(model.to_owned());
             cells.push(three(Some(own.heading_rmse_deg)));
             let moments = [own.with_own_bias_deg, own.with_own_moment_deg].map(three);
             cells.extend(with_moments.then_some(moments).into_iter().flatten());
@@ -173,12 +174,12 @@ pub fn candidates(document: &TraceDocument) -> Table {
             let why = one.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
             let outcome = format!("{}{why}", one.outcome.as_str());
             let rest = [fixed(one.probability, 3), optional(one.delta_bic, 1), two(one.p_value), MISSING.into()];
-            table.push([one.id.clone(), MISSING.into(), outcome].into_iter().chain(rest));
+            table.push([names::effect(&one.id), MISSING.into(), outcome].into_iter().chain(rest));
         }
         for (number, own) in one.forms.iter().enumerate() {
-            let only = own.only.as_ref().map_or_else(String::new, |only| format!(", {only}"));
+            let only = own.only.as_ref().map_or_else(String::new, |only| format!(", in {}", names::record(only)));
             table.push([
-                if number == 0 { one.id.clone() } else { String::new() },
+                if number == 0 { names::effect(&one.id) } else { String::new() },
                 format!("{}{only}", own.form),
                 own.outcome.as_str().to_owned(),
                 fixed(own.probability, 3),
@@ -216,7 +217,7 @@ pub fn noise(document: &TraceDocument) -> Table {
         let beside = coloured(own);
         let times: Vec<String> = own.outliers_s.iter().map(|time| fixed(*time, 1)).collect();
         table.push([
-            name.clone(),
+            names::record(name),
             significant(own.heading_sd_deg, 2),
             if beside.is_empty() { MISSING.into() } else { beside.join(", ") },
             if times.is_empty() { MISSING.into() } else { times.join(", ") },
@@ -239,7 +240,7 @@ pub fn coloured(own: &RecordNoiseEntry) -> Vec<String> {
         Moment::None => None,
     };
     let heading = own.heading_wander_sd_deg.map(|sd| {
-        let whose = if own.heading_wander.as_deref() == Some("model") { "model" } else { "compass" };
+        let whose = own.heading_wander.unwrap_or(HeadingWander::Compass);
         let time = two(own.heading_correlation_s);
         format!("an error of the {whose} of {}° that lasts about {time} s", significant(sd, 2))
     });

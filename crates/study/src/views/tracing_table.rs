@@ -1,5 +1,6 @@
 //! Tables of what traces said.
 
+use document::names;
 use std::collections::BTreeSet;
 
 use report::number::{self, MISSING};
@@ -20,19 +21,24 @@ use trace::Verdict;
 /// trial, and of those of the validation manoeuvre, whose band is that of the parameters alone since it has no noise.
 pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_digits: bool) -> Table {
     let several = has_several(design);
+    let name = |id: &String| if all_digits { id.clone() } else { names::effect(id) };
     let ends: &[&str] = if all_digits { &["", " low", " high"] } else { &[""] };
     let shares = ["all named", "exact", "false names", "named where clear"];
     let shares = shares.iter().flat_map(|name| ends.iter().map(move |end| format!("{name}{end}")));
     let head = head_of_cells(design).texts(several.then_some("method")).texts(["missing"]).counts(["trials"]);
     let head = head.numbers(shares).unit("%").counts([format!("clear (margin above {CLEAR:.0})")]);
-    let head = head.counts(Verdict::ALL.map(Verdict::as_str));
+    let head = head.counts(Verdict::ALL.map(|verdict| verdict.to_string()));
     let head = head.numbers(["heading before", "heading after", "validation before", "validation after"]).unit("deg");
     let head = head.numbers(["expected likelihood ratio"]).numbers(["band covers", "band covers validation"]).unit("%");
     let mut table = Table::new(head.texts(["named"]));
     for line in lines {
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
         cells.extend(several.then(|| design.methods[line.method].label.clone()));
-        cells.push(if line.missing.is_empty() { MISSING.into() } else { line.missing.join(" + ") });
+        cells.push(if line.missing.is_empty() {
+            MISSING.into()
+        } else {
+            line.missing.iter().map(name).collect::<Vec<_>>().join(" + ")
+        });
         cells.push(line.trials.to_string());
         for figure in [line.complete_share(), line.exact_share(), line.wrong_share(), line.clear_share()] {
             cells.extend(percent(figure, all_digits));
@@ -50,7 +56,9 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
         let mut named: Vec<(&String, &u64)> = line.named.iter().collect();
         named.sort_by(|one, other| other.1.cmp(one.1).then(one.0.cmp(other.0)));
         let most = if all_digits { usize::MAX } else { 4 };
-        cells.push(named.iter().take(most).map(|(id, count)| format!("{id} {count}")).collect::<Vec<_>>().join(", "));
+        cells.push(
+            named.iter().take(most).map(|(id, count)| format!("{} {count}", name(id))).collect::<Vec<_>>().join(", "),
+        );
         table.push(cells);
     }
     table

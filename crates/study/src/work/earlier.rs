@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use campaign::earlier::hulls_of;
 use campaign::known::RecordFacts;
+use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
 use document::stored_hull::rows_of;
 use document::{Code, IdentifiedShip, Warning};
-use identify::hull::{self, EarlierHull, ExpectationCheck, Likeness, is_other_froude_number};
+use identify::hull::{self, EarlierHull, ExpectationCheck, is_other_froude_number};
 use predict::drawable_hull;
 use report::number::fixed;
 use scenario::failure::Failure;
@@ -15,7 +16,7 @@ use ship::vessel::prior::HullParticulars;
 use trial::{Trial, file};
 
 use super::stored_answer::{StoredAnswer, ships_of, text_of};
-use crate::documents::prior::{EarlierTrials, PriorCheckEntry, PriorModelEntry};
+use crate::documents::prior;
 use crate::records::file_of;
 
 /// A model of earlier trials: its hulls.
@@ -59,7 +60,7 @@ impl EarlierModel {
         PriorModelEntry {
             file: self.file.clone(),
             records: self.records.clone(),
-            likeness: likeness.as_str().to_owned(),
+            likeness,
             factor: likeness.factor(),
             differing: ship.differing(&own).into_iter().map(str::to_owned).collect(),
             length_m: own.length,
@@ -160,7 +161,7 @@ pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAft
     checks.sort_by(|one, other| other.1.p_value.total_cmp(&one.1.p_value));
     let earlier = said(models, &own[0].particulars, &checks, |_| true);
     let mut warnings = other_speeds(models, &own[0].particulars);
-    warnings.extend(earlier.warning());
+    warnings.extend(prior::warning(&earlier));
     Ok(ShipAfterTrials { ship, earlier, warnings })
 }
 
@@ -171,9 +172,17 @@ fn said(
     checks: &[(&str, ExpectationCheck)],
     takes_part: impl Fn(&str) -> bool,
 ) -> EarlierTrials {
+    let hull = |&(form, ref check): &(&str, ExpectationCheck)| PriorCheckEntry {
+        form: form.to_owned(),
+        chi_square: check.chi_square,
+        degrees_of_freedom: check.degrees_of_freedom,
+        p_value: check.p_value,
+        moved: check.moved.iter().map(|(key, shift)| ((*key).to_owned(), *shift)).collect(),
+        takes_part: takes_part(form),
+    };
     EarlierTrials {
         models: models.iter().map(|model| model.entry(ship)).collect(),
-        hulls: checks.iter().map(|(form, check)| PriorCheckEntry::of(form, check, takes_part(form))).collect(),
+        hulls: checks.iter().map(hull).collect(),
         conflict: checks.first().is_none_or(|(_, check)| check.is_conflict()),
     }
 }

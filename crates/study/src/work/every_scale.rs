@@ -1,16 +1,17 @@
 //! What every method says of the records of every scale alone.
 
+use document::method::MethodEntry;
+use document::scales::{ComparedModel, ComparedTerm, ScalesEntry};
 use identify::{Estimate, Identifier, Uncertainty};
 use rayon::prelude::*;
 use ship::Particulars;
 use ship::angle::to_deg;
+use trial::scale::scaling;
 use trial::{Quantity, Trial};
 
-use crate::documents::scales::{ComparedModel, ComparedTerm, ScalesEntry};
 use crate::outside::Named;
 use crate::records::file_of;
 use crate::scales::RescaledRecords;
-use campaign::answer::MethodEntry;
 
 /// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
 /// first.
@@ -48,12 +49,19 @@ fn terms(joint: &Estimate, own: &[Option<Estimate>], ship: Particulars) -> Vec<C
         ("K′/T′", "1", [-2, 0], |estimate| parameter(estimate, 1)),
         ("δ_r", "deg", [0, 0], |estimate| estimate.rudder_bias().scaled(to_deg(1.0))),
     ];
-    let term = |&(symbol, unit, dimension, of): &(&str, &str, [i32; 2], Of)| {
+    let compared = |&(symbol, unit, dimension, of): &(&str, &str, [i32; 2], Of)| {
         let prime = |estimate: &Estimate| of(estimate).scaled(ship.prime(dimension));
         let own = own.iter().map(|own| own.as_ref().map(prime)).collect();
-        ComparedTerm::new(symbol, unit, prime(joint), own)
+        term([symbol, unit], prime(joint), own)
     };
-    all.iter().map(term).collect()
+    all.iter().map(compared).collect()
+}
+
+/// The term of this symbol and unit, with what was found at every scale compared.
+pub fn term([symbol, unit]: [&str; 2], joint: Quantity, own: Vec<Option<Quantity>>) -> ComparedTerm {
+    let values: Vec<Quantity> = own.iter().map(|own| own.unwrap_or(Quantity::bare(f64::NAN))).collect();
+    let (difference_sd, verdict) = scaling(&values);
+    ComparedTerm { symbol: symbol.to_owned(), unit: unit.to_owned(), joint, own, difference_sd, verdict }
 }
 
 /// 1/T or K/T with their errors.

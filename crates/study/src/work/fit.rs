@@ -2,11 +2,12 @@
 //! known of the ship.
 
 use campaign::stored_figures::Replays;
+use document::fit::{CriterionEntry, FitDocument, SCHEMA, TrialEntry, ZigZagEntry};
+use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
-use document::{Code, Source, Warning, Warnings};
+use document::{Code, Source, Warning, Warnings, names};
 use identify::estimate::Uncertainty;
-use identify::recommended::Recommendation;
-use identify::replay::{pooled, replay};
+use identify::replay::replay;
 use identify::suspicion::suspicion;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
@@ -14,23 +15,21 @@ use rayon::prelude::*;
 use report::figures::ZigzagTrial;
 use report::{CurveOrigin, PlotCurve};
 use scenario::failure::Failure;
-use ship::FirstOrder;
 use ship::angle::to_deg;
-use trial::{Channel, Trial, ZigZag};
+use trial::{Channel, Trial, ZigZag, ZigZagError, imo};
 
 use super::earlier::{self, EarlierModel};
 use super::every_scale::{self, PREFERRED_METHODS};
 use super::loading::{AGAINST_FORM, speak_against_form};
-use super::single_records;
+use super::{single_records, verdict};
 use crate::completed::ALL;
-use crate::documents::fit::{FIT_SCHEMA, FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
-use crate::documents::prior::EarlierTrials;
-use crate::documents::verdict::VerdictEntry;
+use crate::documents::fit_curves::{FitCurves, FitRecord};
+use crate::documents::prior;
 use crate::outside::{self, Named, NamedCommand};
-use crate::records::{file_of, names, no_track, source_of};
+use crate::records::{self, file_of, no_track, source_of};
 use crate::scales::{self, RescaledRecords};
 use crate::{interrupt, progress};
-use campaign::answer::{MethodEntry, Validation, entry};
+use campaign::answer::entry;
 use campaign::curves::{curve, phase_curve, phase_of, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
 use campaign::statistics::grouped;
@@ -49,8 +48,8 @@ impl FitResult {
     /// What the figures show of the records and of the answers.
     pub fn curves(&self) -> FitCurves {
         let RescaledRecords { trials, others, .. } = &self.together;
-        let names = names(trials.iter().chain(others).map(Trial::name));
-        let records = trials.iter().chain(others).zip(names).enumerate();
+        let stems = records::names(trials.iter().chain(others).map(Trial::name));
+        let records = trials.iter().chain(others).zip(stems).enumerate();
         let record = |(number, (trial, name))| self.record(trial, name, number >= trials.len());
         let regions = self.answers.iter().filter_map(|(entry, estimate)| {
             let estimate = estimate.as_ref()?;
@@ -64,7 +63,7 @@ impl FitResult {
 
     fn record(&self, trial: &Trial, name: String, validation: bool) -> FitRecord {
         let (phase, smoothed) = phase_of(trial);
-        let title = if validation { format!("{name} (validation)") } else { name.clone() };
+        let title = names::record(&name) + if validation { " (validation)" } else { "" };
         let zigzag = ZigZag::of(trial).ok().filter(|_| !validation);
         let rejected = |channel: Channel| {
             let marks = trial.rejected().iter().filter(|mark| mark.channel == channel);
@@ -78,7 +77,7 @@ impl FitResult {
             file: file_of(trial).0.to_owned(),
             is_renamed: name != trial.name(),
             validation,
-            zigzag: zigzag.map(|own| ZigzagTrial { title: Some(name.clone()), ..zigzag_figure(trial, &own) }),
+            zigzag: zigzag.map(|own| ZigzagTrial { title: Some(names::record(&name)), ..zigzag_figure(trial, &own) }),
             replays: Replays {
                 title: Some(title),
                 record: curve(trial.time(), trial.heading()),
@@ -136,14 +135,14 @@ pub fn fit(
     warnings.extend(no_track(&shown));
     warnings.extend(no_loading(trials, &shown));
     let earlier_trials = earlier::entry(priors, trials, &shown);
-    warnings.extend(earlier_trials.as_ref().and_then(EarlierTrials::warning));
+    warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     warnings.extend(answers.iter().flat_map(of_answer));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
     };
     let document = FitDocument {
-        schema: FIT_SCHEMA.into(),
-        verdict: verdict(trials, &answers, &entries),
+        schema: SCHEMA.into(),
+        verdict: verdict::of_answers(trials, &answers),
         zigzag: records[0].zigzag.clone(),
         trials: records,
         ships: answers.iter().filter_map(ship_of).collect(),
@@ -157,6 +156,39 @@ pub fn fit(
         methods: entries,
     };
     Ok(FitResult { together, answers, document })
+}
+
+/// The entry of a record.
+fn trial_entry(trial: &Trial, zigzag: &Result<ZigZag, ZigZagError>) -> TrialEntry {
+    let (file, sha256) = file_of(trial);
+    TrialEntry {
+        file: file.into(),
+        sha256: sha256.into(),
+        samples: trial.len(),
+        duration_s: trial.duration(),
+        zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, trial)),
+        no_zigzag: zigzag.as_ref().err().map(ToString::to_string),
+    }
+}
+
+/// The entry of a zig-zag; criteria where length and speed are declared.
+fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
+    let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
+    let criterion = |own: &imo::Criterion| CriterionEntry {
+        criterion: own.name.into(),
+        measured: own.measured.map(|measured| measured.value),
+        limit: own.limit,
+        unit: own.unit.symbol().into(),
+        verdict: own.verdict(),
+    };
+    ZigZagEntry {
+        initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),
+        overshoots_deg: zigzag.swings().map(|swing| Some(to_deg(swing?.angle.value))).collect(),
+        overshoots_sd_deg: zigzag.swings().map(|swing| swing?.angle.sd.map(to_deg)).collect(),
+        period_s: zigzag.period.map(|period| period.value),
+        imo: criteria.iter().map(criterion).collect(),
+        imo_caution: trial.particulars().and_then(imo::caution),
+    }
 }
 
 /// What a method says of its answer.
@@ -177,20 +209,6 @@ fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
     let text = "the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier if the \
                 log does";
     zigzag.begins_at_reversal.then(|| Warning::new(Code::LateBegin, source_of(trial), text))
-}
-
-/// Which answer is to be taken.
-fn verdict(
-    trials: &[Trial],
-    answers: &[(MethodEntry, Option<Estimate>)],
-    entries: &[MethodEntry],
-) -> Option<VerdictEntry> {
-    let of = |id: &str| {
-        let own = answers.iter().find(|(entry, _)| entry.id() == id);
-        own.and_then(|(_, estimate)| estimate.as_ref())
-    };
-    let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
-    VerdictEntry::of(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries, straight)
 }
 
 /// The named methods of the project with their default settings, the best first, the usual ones for no name, and

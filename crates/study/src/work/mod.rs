@@ -14,3 +14,4 @@ pub mod steady;
 mod stored_answer;
 mod target_scale;
 pub mod trace;
+mod verdict;

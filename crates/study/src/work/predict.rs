@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use document::earlier_trials::Likeness;
 use document::{Code, IdentifiedShip, Source, Warning, Warnings};
-use identify::hull::Likeness;
 use identify::suspicion::unusual_froude_number;
 use predict::correction::{self, Correction};
 use predict::document::{ModelWeight, OtherLoading, SCHEMA};
@@ -22,6 +22,7 @@ use super::earlier::{EarlierModel, LaterShip, with_earlier};
 use super::loading::{DescribedLoading, only_hull};
 use super::stored_answer::{StoredAnswer, ships_of, text_of};
 use super::target_scale::{self, Declared, TargetScale, at_scale, is_alike, of_two_scales};
+use crate::documents::prior;
 use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
 use crate::records::{file_of, rudder_logged_late, source_of};
@@ -104,7 +105,7 @@ impl StoredModel {
         warnings.extend(after.warnings);
         let mut records = self.records.clone();
         records.extend(earlier.iter().flat_map(|own| own.records.clone()));
-        let said = format!("{}: {}", self.file, after.earlier.sentence());
+        let said = format!("{}: {}", self.file, prior::sentence(&after.earlier));
         Ok((Self { known: after.ship, records, ..self.clone() }, said))
     }
 

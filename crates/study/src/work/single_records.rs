@@ -1,11 +1,10 @@
 //! Every record of several identified alone: whether K and T of a first-order response depend on the amplitude.
 
+use document::fit::{SingleRecord, SingleRecords};
 use identify::{Estimate, Identifier};
 use rayon::prelude::*;
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag};
-
-use crate::documents::fit::{SingleRecord, SingleRecords};
 
 /// Mean size of the rudder of a zig-zag, and of its heading at the peaks, rad.
 fn amplitudes(trial: &Trial) -> Option<[f64; 2]> {

@@ -4,13 +4,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use document::IdentifiedShip;
+use document::fit::SCHEMA as FIT_SCHEMA;
 use document::trace::SCHEMA as TRACE_SCHEMA;
 use scenario::failure::Failure;
 use scenario::{TRACE, name};
 use serde_json::Value;
 use trial::file;
-
-use crate::documents::fit::FIT_SCHEMA;
 
 /// What is known of a ship; the covariances of the longest mixtures have a hundredth of this.
 const MODEL: file::Kind = file::Kind { name: "a model", largest: 1 << 26 };

@@ -5,6 +5,7 @@ use ::trace::{Analysis, Settings, TraceError, Watcher};
 use campaign::Observer;
 use campaign::folder::ResultFolder;
 use campaign::known::{self, RecordFacts};
+use document::trace::{MissingMomentEntry, RecordEntry, TraceDocument};
 use document::{Code, Warnings};
 use identify::suspicion::suspicion;
 use indicatif::ProgressBar;
@@ -13,11 +14,8 @@ use trial::{Channel, Trial};
 
 use super::earlier::{self, EarlierModel};
 use super::planned;
-use crate::documents::curves::{self, TraceCurves};
-use crate::documents::missing_moment::MissingMomentEntry;
-use crate::documents::prior::EarlierTrials;
-use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
-use crate::documents::{self, missing_moment};
+use crate::documents::curves::{self, TraceCurves, slugs, suffix};
+use crate::documents::{self, TRACE, missing_moment, prior};
 use crate::options::{TraceRequest, Withheld};
 use crate::progress;
 use crate::records::{file_of, names, no_track, rudder_logged_late};
@@ -40,10 +38,10 @@ impl TraceResult {
         })
     }
 
-    /// Writes document and tables. Fails when a file cannot be written.
-    pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
-        documents::keep(folder, TRACE, &self.document)?;
-        self.tables.iter().try_for_each(|(name, table)| folder.write(name, table))
+    /// Writes document and tables; the text of the document. Fails when a file cannot be written.
+    pub fn write(&self, folder: &ResultFolder) -> Result<String, Failure> {
+        let text = documents::keep(folder, TRACE, &self.document)?;
+        self.tables.iter().try_for_each(|(name, table)| folder.write(name, table)).map(|()| text)
     }
 }
 
@@ -129,7 +127,7 @@ pub fn trace(
     let ship = known::of_analysis(&analysis, &shown);
     warnings.extend(ship.rudder_logged_late().map(|late| Code::LateRudder.warning(rudder_logged_late(late))));
     let earlier_trials = earlier::entry(priors, &trials, &shown);
-    warnings.extend(earlier_trials.as_ref().and_then(EarlierTrials::warning));
+    warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     let document = TraceDocument {
         earlier_trials,
         ship,

@@ -1,7 +1,8 @@
 //! Pages for a browser: beside every report.md, in one file that needs no other, with all of its figures.
 
-use crate::desk::{Desk, zig_zag_csv};
+use crate::desk::{Desk, zig_zag_csv, zig_zag_csv_of};
 use crate::scenarios::GOOD;
+use crate::traces::second_order;
 
 /// The page of a folder, which has every figure of the Markdown beside it.
 fn page(desk: &Desk, folder: &str) -> String {
@@ -53,4 +54,55 @@ fn limits_of_an_axis_that_no_figure_has_are_refused() {
     desk.file("style.toml", "[limits]\n\"residual\" = [-1.0, 1.0]\n");
     desk.draw(&["fit", "run.csv", "--style", "style.toml"])
         .is_refused(2, &["[limits] \"residual\"", "no figure of this page has an axis", "\"residual [°]\""]);
+}
+
+/// Words of a text that are identifiers: letters joined by `_`, which no reader should meet.
+fn identifiers(text: &str) -> Vec<&str> {
+    let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+    // One letter before the stroke is a symbol with its index.
+    words
+        .filter(|word| word.split_once('_').is_some_and(|(head, tail)| head.chars().count() > 1 && !tail.is_empty()))
+        .collect()
+}
+
+/// What stands between the marks of a text.
+fn outside<'a>(text: &'a str, [open, close]: [&str; 2]) -> impl Iterator<Item = &'a str> {
+    text.split(open).enumerate().map(move |(number, part)| match number {
+        0 => part,
+        _ => part.split_once(close).map_or("", |(_, rest)| rest),
+    })
+}
+
+#[test]
+fn no_page_and_no_figure_holds_an_identifier() {
+    let desk = Desk::new();
+    desk.file("zigzag_20_10_s.csv", zig_zag_csv_of(&second_order()));
+    desk.file("zigzag_10_10_p.csv", zig_zag_csv());
+    let traced = "[[effect]]\nsecond_order = { T2-s = 2.5, T3-s = 6.2 }\n\n[[identifier]]\ntrace = {}\n\n[[identifier]]\nmethod.output-error";
+    desk.file("small.toml", GOOD.replace("[[identifier]]\nmethod.output-error", traced));
+    let records = ["zigzag_20_10_s.csv", "--validate", "zigzag_10_10_p.csv", "--quiet", "--out"];
+    desk.draw(&[["fit"].as_slice(), &records, &["f"]].concat()).is_done();
+    desk.draw(&[["trace"].as_slice(), &records, &["t"]].concat()).is_done();
+    desk.draw(&["predict", "t/trace.json", "--out", "p", "--quiet"]).is_done();
+    desk.run(&["small.toml", "--out", "s", "--quiet"]).is_done();
+    for folder in ["f", "t", "p", "s"] {
+        let markdown = desk.text(&format!("{folder}/report.md")).replace('\\', "");
+        let prose: String = outside(&markdown, ["](", ")"]).collect();
+        // Every second part stands in code.
+        let prose: Vec<&str> = prose.split('`').step_by(2).collect();
+        assert_eq!(identifiers(&prose.concat()), Vec::<&str>::new(), "{folder}/report.md");
+        for file in std::fs::read_dir(desk.path(folder)).expect("a folder").flatten().map(|file| file.path()) {
+            if file.extension().is_some_and(|extension| extension == "svg") {
+                let figure = std::fs::read_to_string(&file).expect("text");
+                assert_eq!(
+                    identifiers(&outside(&figure, ["<", ">"]).collect::<Vec<_>>().join(" ")),
+                    Vec::<&str>::new(),
+                    "{}",
+                    file.display()
+                );
+            }
+        }
+    }
+    let fit = desk.text("f/report.md");
+    assert!(fit.contains("20/10, first to starboard") && fit.contains("10/10, first to port"), "{fit}");
 }

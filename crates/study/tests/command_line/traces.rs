@@ -10,7 +10,7 @@ use ship::{ResponseModel, Ship, ships};
 use crate::desk::{Desk, with_column, zig_zag_csv, zig_zag_csv_of};
 
 /// The paper's ship with sway coupling that nobody declares.
-fn second_order() -> Ship {
+pub fn second_order() -> Ship {
     with_effect(Arc::new(SecondOrder), &[2.5, 6.2])
 }
 
@@ -66,7 +66,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     desk.file("other.csv", zig_zag_csv_of(&second_order()));
     let run = desk.draw(&["trace", "run.csv", "--validate", "other.csv"]);
     run.is_done();
-    for part in ["The first-order response lacks second_order", "held out ×", "noise: ", "next trial: "] {
+    for part in ["The first-order response lacks second order", "held out ×", "noise: ", "next trial: "] {
         assert!(run.out.contains(part), "{part}: {}", run.out);
     }
     assert!(run.err.contains("validates nothing"), "the same record twice is worth a warning: {}", run.err);
@@ -125,7 +125,7 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     let (title, headline) = (paragraphs.next().unwrap_or_default(), paragraphs.next().unwrap_or_default());
     assert!(title.starts_with("# Trace of run"), "{title}");
     for part in
-        ["**The first-order response lacks second_order", " (× 0.", "held out × 0.", "; in windows of 60 s × 0."]
+        ["**The first-order response lacks second order", " (× 0.", "held out × 0.", "; in windows of 60 s × 0."]
     {
         assert!(headline.contains(part), "{part}: {headline}");
     }

@@ -1,5 +1,6 @@
 //! What is left beside the named effects: a random moment, and moments that are no effects of the list.
 
+use document::names;
 use document::trace::{DisturbanceEntry, LocatedEntry};
 use ship::angle::to_deg;
 
@@ -26,14 +27,14 @@ impl TraceParts<'_> {
     pub(super) fn located(&self) -> Vec<LocatedEntry> {
         let Some(shapes) = self.location.shapes.as_ref().filter(|own| own.is_located()) else { return Vec::new() };
         let mut alternatives = shapes.alternatives(|only| self.span(only));
-        let label = |(id, form, _): TermName| format!("{id} ({form})");
+        let label = |(id, form, _): TermName| names::effect_form(id, form);
         alternatives.extend(self.location.displaced.iter().map(|effect| label(effect.term)));
         let entry = |named: &NamedShape| {
             let Candidate { shape, only, .. } = *named.candidate;
             let span = self.span(only);
             let acts = shape.span(span[1]).map(|times| times.map(|t| span[0] + t.clamp(0.0, span[1])));
             LocatedEntry {
-                depends_on: shape.dependence().as_str().into(),
+                depends_on: shape.dependence(),
                 form: shape.words(span),
                 only: self.only(only),
                 from_s: acts.map(|[from, _]| from),

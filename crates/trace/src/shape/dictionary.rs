@@ -3,38 +3,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use document::trace::Dependence;
+
 use super::motion::ForeseenMotion;
-
-/// What a moment depends on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Dependence {
-    /// Time.
-    Time,
-    /// The heading.
-    Heading,
-    /// The way to one side of the first course.
-    Way,
-    /// The yaw rate.
-    YawRate,
-    /// The rudder.
-    Rudder,
-    /// What rudder and yaw rate were before.
-    History,
-}
-
-impl Dependence {
-    /// The words on a page and in files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Heading => "heading",
-            Self::Way => "way to one side",
-            Self::YawRate => "yaw rate",
-            Self::Rudder => "rudder",
-            Self::History => "history of the rudder",
-        }
-    }
-}
 
 /// A signal of the ship.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,8 @@
 //! Every moment that is tried.
 
-use super::dictionary::{Dependence, Power, Shape, ShipSignal};
+use document::trace::Dependence;
+
+use super::dictionary::{Power, Shape, ShipSignal};
 
 /// Lags, as multiples of the unit of time of a ship.
 const DELAYS: [f64; 3] = [1.0, 2.0, 4.0];

@@ -26,7 +26,7 @@ use motion::ForeseenMotion;
 use point::StructurePoint;
 use search::ShapeSearch;
 
-pub use dictionary::{Dependence, Shape};
+pub use dictionary::Shape;
 pub use search::{Candidate, Explanation};
 
 /// Gain in nats from which shapes are believed.

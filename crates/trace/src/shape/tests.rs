@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
+use document::trace::Dependence;
 use estimation::column::dot;
 use nalgebra::{DMatrix, DVector};
 use ship::angle::{from_deg, to_deg};

@@ -4,8 +4,8 @@
 mod listed;
 mod unlisted;
 
+use document::trace::Dependence;
 use ship::angle::from_deg;
-use trace::shape::Dependence;
 
 /// 1/T, 1/s: T = 16.3 s.
 const A: f64 = 1.0 / 16.3;

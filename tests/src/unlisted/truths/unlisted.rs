@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use document::trace::Dependence;
 use ship::angle::to_deg;
-use trace::shape::Dependence;
 
 use super::{A, FIRST_ORDER, Kind, Motion, Times, Truth, moved, steered, turning};
 

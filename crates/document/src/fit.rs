@@ -1,27 +1,19 @@
-//! `fit.json`: records and answers for other programs.
+//! What a fit says, as `fit.json` holds it: records and answers.
 
 use std::collections::BTreeMap;
 
-use campaign::answer::MethodEntry;
-use campaign::stored_figures::Replays;
-use document::{IdentifiedShip, Source, Warning};
-use report::PlotCurve;
-use report::figures::ZigzagTrial;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
-use ship::angle::to_deg;
-use trial::{Quantity, Trial, ZigZag, ZigZagError, imo};
 
-use super::prior::EarlierTrials;
-use super::scales::ScalesEntry;
-use super::verdict::VerdictEntry;
-use crate::records::file_of;
+use crate::earlier_trials::EarlierTrials;
+use crate::identified_ship::IdentifiedShip;
+use crate::method::MethodEntry;
+use crate::quantity::Quantity;
+use crate::scales::ScalesEntry;
+use crate::warning::{Source, Warning};
 
-/// Name of the file.
-pub const FIT: &str = "fit.json";
-
-/// What `schema` says.
-pub const FIT_SCHEMA: &str = "fit/2";
+/// Name of the schema.
+pub const SCHEMA: &str = "fit/2";
 
 /// The method whose fit is drawn on its own where it has one.
 const SHOWN: &str = "output-error";
@@ -56,7 +48,20 @@ pub struct CriterionEntry {
     /// Unit of both.
     pub unit: String,
     /// `pass`, `fail` or `not measured`.
-    pub verdict: String,
+    pub verdict: CriterionVerdict,
+}
+
+/// Whether a criterion is met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum CriterionVerdict {
+    /// It is.
+    Pass,
+    /// It is not.
+    Fail,
+    /// The record does not show it.
+    #[serde(rename = "not measured")]
+    NotMeasured,
 }
 
 /// Zig-zag characteristics of a record.
@@ -170,71 +175,55 @@ pub struct SingleRecord {
     pub t_s: Quantity,
 }
 
-/// `curves.json`: what the figures of a fit show, so that they can be drawn again.
+/// Why an answer is to be taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reason {
+    /// No first-order response replays the headings nearer.
+    NearestReplay,
+    /// A random yaw moment acts, and maximum likelihood counts it.
+    RandomMoment,
+    /// The recorded rudder is noisy, and maximum likelihood counts it.
+    RudderNoise,
+}
+
+/// What the residual of the answer looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ResidualKind {
+    /// White, and so the noise of the heading.
+    Noise,
+    /// Terms of a ship explain most of it: the model lacks an effect.
+    LacksEffect,
+    /// Terms of a ship do not explain it: random moments, waves or an error of the compass.
+    Random,
+}
+
+/// The answer to take.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct FitCurves {
-    /// The records, first the fitted ones.
-    pub records: Vec<FitRecord>,
-    /// Of every method with a bounded one the outline of the region that holds K (1/s) and T (s) with 95 %.
-    pub regions: BTreeMap<String, PlotCurve>,
-}
-
-/// A record with its replays, in degrees.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct FitRecord {
-    /// A name that no other record has.
-    pub name: String,
-    /// Its file.
-    pub file: String,
-    /// Whether another record has the name that it came with.
-    pub is_renamed: bool,
-    /// Whether it was kept for validation.
-    pub validation: bool,
-    /// The zig-zag with its characteristic points.
-    pub zigzag: Option<ZigzagTrial>,
-    /// Record and replays of all methods.
-    pub replays: Replays,
-    /// The rudder.
-    pub rudder: PlotCurve,
-    /// Headings and rudder angles that are left out or doubtful, where there are some.
-    pub rejected: Option<[PlotCurve; 2]>,
-    /// Yaw rate over heading of the record, where it shows one.
-    pub phase: Option<PlotCurve>,
-    /// Whether that yaw rate is the slope of the smoothed heading.
-    pub smoothed: bool,
-    /// Yaw rate over heading of the replay of the method that is drawn on its own.
-    pub phase_replay: Option<PlotCurve>,
-}
-
-/// The entry of a record.
-pub fn trial_entry(trial: &Trial, zigzag: &Result<ZigZag, ZigZagError>) -> TrialEntry {
-    let (file, sha256) = file_of(trial);
-    TrialEntry {
-        file: file.into(),
-        sha256: sha256.into(),
-        samples: trial.len(),
-        duration_s: trial.duration(),
-        zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, trial)),
-        no_zigzag: zigzag.as_ref().err().map(ToString::to_string),
-    }
-}
-
-/// The entry of a zig-zag; criteria where length and speed are declared.
-fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
-    let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
-    let criterion = |own: &imo::Criterion| CriterionEntry {
-        criterion: own.name.into(),
-        measured: own.measured.map(|measured| measured.value),
-        limit: own.limit,
-        unit: own.unit.symbol().into(),
-        verdict: own.verdict().into(),
-    };
-    ZigZagEntry {
-        initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),
-        overshoots_deg: zigzag.swings().map(|swing| Some(to_deg(swing?.angle.value))).collect(),
-        overshoots_sd_deg: zigzag.swings().map(|swing| swing?.angle.sd.map(to_deg)).collect(),
-        period_s: zigzag.period.map(|period| period.value),
-        imo: criteria.iter().map(criterion).collect(),
-        imo_caution: trial.particulars().and_then(imo::caution),
-    }
+pub struct VerdictEntry {
+    /// The method whose answer is to be taken.
+    pub method: String,
+    /// Why.
+    pub reason: Reason,
+    /// What the residual of output error looks like, where that has an answer.
+    pub residual: Option<ResidualKind>,
+    /// Root mean square of that residual, deg.
+    pub residual_deg: Option<f64>,
+    /// The same with nine more terms of a hull fitted to it, deg.
+    pub with_ship_terms_deg: Option<f64>,
+    /// Standard deviation of the noise of the heading, deg.
+    pub noise_deg: Option<f64>,
+    /// Time by which the rudder acts later than it was recorded, s, where that alone explains most of the residual;
+    /// negative for a rudder that was recorded late.
+    pub rudder_delay_s: Option<f64>,
+    /// Methods whose replays are more than ten times worse than the best.
+    pub set_apart: Vec<String>,
+    /// Where no replay is nearer to the headings than straight lines are: the root mean square about these, deg. No
+    /// method has an answer then, and `method` is the nearest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub straight_lines_deg: Option<f64>,
+    /// Output error or maximum likelihood, where its 95 % interval of K or T lies wholly outside that of the answer to
+    /// take, or its replay is set apart.
+    pub contradicted_by: Option<String>,
 }

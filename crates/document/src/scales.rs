@@ -2,7 +2,22 @@
 
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
-use trial::{Quantity, Scaling};
+
+use crate::quantity::Quantity;
+
+/// Whether a number that has no dimension is the same at every scale.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub enum Scaling {
+    /// It is, and a difference of a quarter of it would have been seen.
+    #[serde(rename = "scales")]
+    Scales,
+    /// It is not.
+    #[serde(rename = "does not scale")]
+    DoesNotScale,
+    /// The errors are too large, or not known.
+    #[serde(rename = "cannot be told")]
+    CannotBeTold,
+}
 
 /// One number without dimension at every scale.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -18,7 +33,7 @@ pub struct ComparedTerm {
     /// Largest difference of two scales in units of its standard deviation.
     pub difference_sd: Option<f64>,
     /// `scales`, `does not scale` or `cannot be told`.
-    pub verdict: String,
+    pub verdict: Scaling,
 }
 
 /// The terms of one model.
@@ -52,19 +67,9 @@ pub struct ScalesEntry {
     pub comparisons: Vec<ComparedModel>,
 }
 
-impl ComparedTerm {
-    /// Compares what was found at every scale.
-    pub fn new(symbol: impl Into<String>, unit: &str, joint: Quantity, own: Vec<Option<Quantity>>) -> Self {
-        let found: Vec<Quantity> = own.iter().map(|own| own.unwrap_or(Quantity::bare(f64::NAN))).collect();
-        let (difference_sd, verdict) = Scaling::of(&found);
-        let verdict = verdict.as_str().to_owned();
-        Self { symbol: symbol.into(), unit: unit.to_owned(), joint, own, difference_sd, verdict }
-    }
-}
-
 impl ScalesEntry {
     /// The scales of these groups of records of these names.
-    pub(crate) fn new(
+    pub fn new(
         groups: &[(Particulars, Vec<usize>)],
         files: &[&str],
         first: Particulars,

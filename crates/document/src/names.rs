@@ -1,0 +1,103 @@
+//! Names for people: what screens, pages and figures call effects, records and figures of merit, whose identifiers
+//! stand in files.
+
+/// Names that are not their identifiers with blanks.
+const EFFECTS: [(&str, &str); 5] = [
+    ("port_starboard_asymmetry", "port-starboard asymmetry"),
+    ("rudder_deadband", "rudder dead band"),
+    ("sway_coupling_measured", "measured sway"),
+    ("transient_disturbance", "transient moment"),
+    ("wave_yaw", "yaw in waves"),
+];
+
+/// Ends of identifiers that are units; of two that fit the longer is first.
+const UNITS: [(&str, &str); 7] = [
+    ("_deg_s", "deg/s"),
+    ("_deg", "deg"),
+    ("_lengths", "L"),
+    ("_m_s", "m/s"),
+    ("_share", "1"),
+    ("_m", "m"),
+    ("_s", "s"),
+];
+
+/// Name of an effect; that of a formula is as its user wrote it, with blanks.
+pub fn effect(id: &str) -> String {
+    let listed = EFFECTS.iter().find(|(key, _)| *key == id);
+    listed.map_or_else(|| plain(id), |(_, name)| (*name).to_owned())
+}
+
+/// Name of an effect in one of its forms: `nonlinear damping (r³)`; a form that is the name of the effect is not
+/// repeated.
+pub fn effect_form(id: &str, form: &str) -> String {
+    let name = effect(id);
+    if name.contains(form) { name } else { format!("{name} ({form})") }
+}
+
+/// Name of a record from the stem of its file: `zigzag_20_10_s` is a `20/10, first to starboard`. The name of a file
+/// stays what it is.
+pub fn record(stem: &str) -> String {
+    if stem.contains('.') { stem.to_owned() } else { zigzag(stem).unwrap_or_else(|| plain(stem)) }
+}
+
+/// Name and unit of a figure of merit whose identifier ends in its unit; no unit where it ends in none.
+pub fn figure(id: &str) -> (String, &'static str) {
+    let ending = UNITS.into_iter().find_map(|(end, unit)| Some((id.strip_suffix(end)?, unit)));
+    let (stem, unit) = ending.unwrap_or((id, ""));
+    (plain(stem), unit)
+}
+
+/// An identifier with blanks.
+pub fn plain(id: &str) -> String {
+    id.replace('_', " ")
+}
+
+/// Name of a zig-zag whose stem is `zigzag_RUDDER_HEADING`, with `_p` or `_s` for its first side; `None` of another.
+fn zigzag(stem: &str) -> Option<String> {
+    let mut parts = stem.strip_prefix("zigzag_")?.split('_');
+    let mut angle = || parts.next()?.parse::<u8>().ok();
+    let (rudder, heading) = (angle()?, angle()?);
+    let side = match (parts.next(), parts.next()) {
+        (None, None) => "",
+        (Some("p"), None) => ", first to port",
+        (Some("s"), None) => ", first to starboard",
+        _ => return None,
+    };
+    Some(format!("{rudder}/{heading}{side}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_have_names_without_repetition() {
+        assert_eq!(effect_form("nonlinear_damping", "r³"), "nonlinear damping (r³)");
+        assert_eq!(effect_form("sway_coupling_measured", "measured sway"), "measured sway");
+        assert_eq!(effect_form("rudder_deadband", "dead band"), "rudder dead band");
+        assert_eq!(effect("my_bank"), "my bank");
+        for listed in ship::effects::all() {
+            assert!(!effect_form(listed.id(), listed.form()).contains('_'), "{}", listed.id());
+        }
+        assert!(EFFECTS.iter().all(|(id, _)| ship::effects::all().iter().any(|listed| listed.id() == *id)));
+    }
+
+    #[test]
+    fn zig_zags_are_called_by_their_angles() {
+        assert_eq!(record("zigzag_20_10_s"), "20/10, first to starboard");
+        assert_eq!(record("zigzag_10_10_p"), "10/10, first to port");
+        assert_eq!(record("zigzag_35_05"), "35/5");
+        assert_eq!(record("zigzag_13_14_21"), "zigzag 13 14 21");
+        assert_eq!(record("zigzag_20"), "zigzag 20");
+        assert_eq!(record("turning_35"), "turning 35");
+        assert_eq!(record("zigzag_20_10_s.csv"), "zigzag_20_10_s.csv");
+    }
+
+    #[test]
+    fn figures_end_in_their_unit() {
+        assert_eq!(figure("first_overshoot_deg"), ("first overshoot".to_owned(), "deg"));
+        assert_eq!(figure("largest_yaw_rate_deg_s"), ("largest yaw rate".to_owned(), "deg/s"));
+        assert_eq!(figure("approach_m_s"), ("approach".to_owned(), "m/s"));
+        assert_eq!(figure("stable"), ("stable".to_owned(), ""));
+    }
+}

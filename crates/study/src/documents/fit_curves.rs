@@ -1,0 +1,44 @@
+//! The curves of a fit beside `fit.json`.
+
+use std::collections::BTreeMap;
+
+use campaign::stored_figures::Replays;
+use report::PlotCurve;
+use report::figures::ZigzagTrial;
+use serde::{Deserialize, Serialize};
+
+/// `curves.json`: what the figures of a fit show, so that they can be drawn again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct FitCurves {
+    /// The records, first the fitted ones.
+    pub records: Vec<FitRecord>,
+    /// Of every method with a bounded one the outline of the region that holds K (1/s) and T (s) with 95 %.
+    pub regions: BTreeMap<String, PlotCurve>,
+}
+
+/// A record with its replays, in degrees.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct FitRecord {
+    /// A name that no other record has.
+    pub name: String,
+    /// Its file.
+    pub file: String,
+    /// Whether another record has the name that it came with.
+    pub is_renamed: bool,
+    /// Whether it was kept for validation.
+    pub validation: bool,
+    /// The zig-zag with its characteristic points.
+    pub zigzag: Option<ZigzagTrial>,
+    /// Record and replays of all methods.
+    pub replays: Replays,
+    /// The rudder.
+    pub rudder: PlotCurve,
+    /// Headings and rudder angles that are left out or doubtful, where there are some.
+    pub rejected: Option<[PlotCurve; 2]>,
+    /// Yaw rate over heading of the record, where it shows one.
+    pub phase: Option<PlotCurve>,
+    /// Whether that yaw rate is the slope of the smoothed heading.
+    pub smoothed: bool,
+    /// Yaw rate over heading of the replay of the method that is drawn on its own.
+    pub phase_replay: Option<PlotCurve>,
+}

@@ -1,0 +1,93 @@
+//! Which answer of a fit is to be taken, and what its residual says.
+
+use document::fit::{Reason, VerdictEntry};
+use document::method::MethodEntry;
+use identify::Estimate;
+use identify::lack_of_fit::LackOfFit;
+use identify::recommended::Recommendation;
+use identify::replay::pooled;
+use ship::FirstOrder;
+use ship::angle::to_deg;
+use trial::Trial;
+
+/// A replay this many times worse than the best is set apart.
+const FAR_WORSE: f64 = 10.0;
+
+/// Which answer is to be taken.
+pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
+    let entries: Vec<MethodEntry> = answers.iter().map(|(entry, _)| entry.clone()).collect();
+    let of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
+    let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
+    taken(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), &entries, straight)
+}
+
+/// The answer to take: the recommended one, or the nearest replay where that is not among the entries or no answer is
+/// one. `straight` is what a ship without an effect of her rudder leaves of the headings, the straight line nearest to
+/// each record, deg.
+fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Option<f64>) -> Option<VerdictEntry> {
+    let answered = || entries.iter().filter(|entry| entry.parameters.is_some());
+    let rms = |entry: &&MethodEntry| entry.heading_rmse_deg.unwrap_or(f64::INFINITY);
+    let is_own = |entry: &&MethodEntry| entry.id() == recommendation.method();
+    let nearest = answered().min_by(|one, other| rms(one).total_cmp(&rms(other)))?;
+    let straight_lines_deg = straight.filter(|straight| rms(&nearest) >= *straight);
+    let taken = answered().find(is_own).filter(|_| straight_lines_deg.is_none());
+    let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);
+    let taken = taken.unwrap_or(nearest);
+    let is_far = |entry: &&MethodEntry| rms(entry) > FAR_WORSE * rms(&nearest) && entry.method != taken.method;
+    let degrees = |of: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(of(lack)));
+    let usual = ["output-error", "maximum-likelihood"];
+    let contradicts = |entry: &&MethodEntry| usual.contains(&entry.id()) && (are_apart(taken, entry) || is_far(entry));
+    Some(VerdictEntry {
+        method: taken.method.clone(),
+        reason,
+        residual: recommendation.residual(),
+        residual_deg: degrees(|lack| lack.residual),
+        with_ship_terms_deg: degrees(|lack| lack.with_ship_terms),
+        noise_deg: degrees(|lack| lack.noise),
+        rudder_delay_s: recommendation.lack.and_then(|lack| lack.rudder_delay()),
+        set_apart: answered().filter(is_far).map(|entry| entry.method.clone()).collect(),
+        straight_lines_deg,
+        contradicted_by: answered().find(contradicts).map(|entry| entry.method.clone()),
+    })
+}
+
+/// Whether the intervals of K or of T have nothing in common.
+fn are_apart(one: &MethodEntry, other: &MethodEntry) -> bool {
+    let (Some(one), Some(other)) = (one.parameters, other.parameters) else { return false };
+    [(one.k_per_s, other.k_per_s), (one.t_s, other.t_s)]
+        .into_iter()
+        .any(|(one, other)| one.ci95.zip(other.ci95).is_some_and(|([low, high], [from, to])| high < from || to < low))
+}
+
+#[cfg(test)]
+mod tests {
+    use document::method::{IndexEstimates, Status};
+    use trial::Quantity;
+
+    use super::*;
+
+    /// A method without an interval contradicts by its replay.
+    #[test]
+    fn a_replay_far_off_contradicts_the_answer() {
+        let entry = |method: &str, t: f64, rms: f64| MethodEntry {
+            method: method.into(),
+            status: Status::Ok,
+            parameters: Some(IndexEstimates {
+                k_per_s: Quantity::bare(0.1),
+                t_s: Quantity::bare(t),
+                delta_r_deg: Quantity::bare(0.0),
+            }),
+            heading_rmse_deg: Some(rms),
+            ..MethodEntry::default()
+        };
+        let taken = Recommendation { reason: Reason::NearestReplay, lack: None };
+        let told = |rms: f64, straight: f64| {
+            let far = [entry("output-error", 9.0, 1.9), entry("least-squares", 28.0, rms)];
+            let all = [&far[..], &[entry("maximum-likelihood", 41.0, rms)]].concat();
+            let verdict = super::taken(&taken, &all, Some(straight)).expect("an answer");
+            (verdict.contradicted_by, verdict.set_apart.len(), verdict.straight_lines_deg)
+        };
+        assert_eq!(told(38.0, 2.0), (Some("maximum-likelihood".into()), 2, None));
+        assert_eq!(told(18.0, 1.9), (None, 0, Some(1.9)));
+    }
+}
