@@ -368,7 +368,7 @@ mod tests {
             Some(layers.into_iter().map(|layer| (layer.name.unwrap_or_default(), layer.curve.y)).collect())
         };
         let named = |name: &str, y: &[f64]| (name.to_owned(), y.to_vec());
-        let few = vec![named("wave yaw", &[100.0]), named("steering lag", &[25.0, 50.0])];
+        let few = vec![named("yaw in waves", &[100.0]), named("steering lag", &[25.0, 50.0])];
         assert_eq!(marks(vec![line(0, 4), line(1, 1), line(2, 2)]), Some(few));
         let many = marks((0..8).map(|cell| line(cell, u64::from(cell > 3))).collect()).expect("some are missed");
         assert_eq!(many.iter().map(|(_, y)| y.len()).sum::<usize>(), many.len());
