@@ -11,12 +11,12 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 68_000,
-    tests: 30_000,
+    code: 68_100,
+    tests: 30_200,
     long_functions: 0,
     shared_types: 15,
     packages: 299,
-    tuple_parameters: 6,
+    tuple_parameters: 0,
     text_lists: 0,
     leaks: 3,
     looked_up: 1,

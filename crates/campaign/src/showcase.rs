@@ -69,6 +69,10 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
         true => Some(what.to_owned()),
         false => Some(format!("{}: {what}", cell.title())),
     };
+    let shown = |(entry, estimate): (MethodEntry, Option<Estimate>)| {
+        let warnings = estimate.into_iter().flat_map(|estimate| estimate.warnings).map(|warning| warning.text);
+        ShownAnswer { entry, warnings: warnings.collect() }
+    };
     let names = scenario.method_names();
     let fits = FourierCurve::of(cell, &names, trial);
     Some(Showcase {
@@ -92,11 +96,6 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
         intervals: intervals(title("K and T"), &answers, &names, truth_of_ship.as_ref(), &scenario.published),
         methods: answers.into_iter().map(shown).collect(),
     })
-}
-
-fn shown((entry, estimate): (MethodEntry, Option<Estimate>)) -> ShownAnswer {
-    let warnings = estimate.into_iter().flat_map(|estimate| estimate.warnings).map(|warning| warning.text);
-    ShownAnswer { entry, warnings: warnings.collect() }
 }
 
 fn intervals(

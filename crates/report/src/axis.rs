@@ -280,16 +280,20 @@ impl Axis {
     }
 }
 
+/// First and last pixel of an axis.
+type PixelRange = (i32, i32);
+
 impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
 
     /// Place of a value; one without a place is far beyond the lower end.
-    fn map(&self, value: &f64, (start, end): (i32, i32)) -> i32 {
+    fn map(&self, value: &f64, limit: PixelRange) -> i32 {
+        let (start, end) = limit;
         let AxisScale::Log { zero } = self.scale else {
             let ends = [-FAR, 1.0 + FAR].map(|share| self.lo + share * (self.hi - self.lo));
             let value = value.clamp(ends[0].min(ends[1]), ends[0].max(ends[1]));
-            return RangedCoordf64::from(self.lo..self.hi).map(&value, (start, end));
+            return RangedCoordf64::from(self.lo..self.hi).map(&value, limit);
         };
         let part = |share: f64| start + (share * f64::from(end - start)).round() as i32;
         if zero && *value == 0.0 {

@@ -195,7 +195,8 @@ impl SvgDocument {
         };
     }
 
-    fn colour(&self, BackendColor { rgb: (red, green, blue), .. }: BackendColor) -> String {
+    fn colour(&self, colour: BackendColor) -> String {
+        let (red, green, blue) = colour.rgb;
         let RGBColor(red, green, blue) = self.changes.of(RGBColor(red, green, blue));
         format!("#{red:02X}{green:02X}{blue:02X}")
     }

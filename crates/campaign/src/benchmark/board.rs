@@ -71,7 +71,7 @@ impl WilsonShare {
 /// The boards of all tasks that have a score.
 pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Board> {
     let scored = by_field(cases, |task| task.score().is_some());
-    scored.into_iter().map(|(place, own)| board(place, &own, methods, reference)).collect()
+    scored.into_iter().map(|((task, field), own)| board(task, field, &own, methods, reference)).collect()
 }
 
 /// The cases of some tasks, field by field.
@@ -114,7 +114,7 @@ impl Scores {
     }
 }
 
-fn board((task, field): (BenchTask, &str), cases: &[&BenchCase], methods: &[String], reference: &str) -> Board {
+fn board(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String], reference: &str) -> Board {
     let scores = Scores::of(cases, methods);
     let other = scores.methods.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
     let row = |(place, (method, own)): (usize, &(String, Vec<f64>))| {

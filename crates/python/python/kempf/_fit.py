@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
-from . import _kempf, _table
+from . import _kempf, _plot, _table
 from ._kempf import KempfError
 from ._options import strings, warn, whole
 from ._own import Estimator, natives_of
@@ -189,8 +189,6 @@ class FitResult(Result):
         ``"record"``: rudder, measured and replayed heading and what is left between them, by output error unless
         ``methods`` names others. ``"estimates"``: K, T and δ_r of every method with their 95 % intervals.
         """
-        from . import _plot
-
         if kind == "estimates":
             return _plot.estimates([one for one in self.methods if one.ok])
         if kind != "record":

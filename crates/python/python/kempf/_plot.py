@@ -2,15 +2,43 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
+from typing import Any, Mapping, Optional, Protocol, Sequence
 
 from ._kempf import KempfError
 from ._quantity import Quantity
-from ._record import Record
 
-if TYPE_CHECKING:
-    from ._fit import Method
-    from ._predict import Figure
+
+class Series(Protocol):
+    """Heading and rudder over time: a record."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def t_s(self) -> Any: ...
+    @property
+    def heading_deg(self) -> Any: ...
+    @property
+    def rudder_deg(self) -> Any: ...
+
+
+class Labelled(Protocol):
+    """The answer of a method: its estimates are read by their names."""
+
+    @property
+    def method(self) -> str: ...
+
+
+class Interval(Protocol):
+    """A median with its 50 and 90 % intervals, and what was measured."""
+
+    @property
+    def median(self) -> float: ...
+    @property
+    def ci50(self) -> Sequence[float]: ...
+    @property
+    def ci90(self) -> Sequence[float]: ...
+    @property
+    def measured(self) -> Optional[float]: ...
 
 #: Measured, rudder, and the replays in their order; told apart by people who see no red or no green.
 MEASURED, RUDDER = "#222222", "#8a8a8a"
@@ -36,13 +64,13 @@ def _tidy(axes: Any) -> None:
         one.set_axisbelow(True)
 
 
-def _rudder(axes: Any, record: Record) -> None:
+def _rudder(axes: Any, record: Series) -> None:
     axes.axhline(0.0, color="#bbbbbb", linewidth=0.6)
     axes.plot(record.t_s, record.rudder_deg, color=RUDDER, linewidth=1.2)
     axes.set_ylabel("rudder δ [deg]")
 
 
-def record(shown: Record) -> Any:
+def record(shown: Series) -> Any:
     """Heading and rudder of a record."""
     figure, axes = _figure(2, figsize=(8, 4.5), sharex=True)
     heading, rudder = axes[:, 0]
@@ -55,7 +83,7 @@ def record(shown: Record) -> Any:
     return figure
 
 
-def replays(shown: Record, curves: Mapping[str, Mapping[str, Any]]) -> Any:
+def replays(shown: Series, curves: Mapping[str, Mapping[str, Any]]) -> Any:
     """Rudder, measured heading with its replays, and what is left between them."""
     figure, axes = _figure(3, figsize=(8, 7), sharex=True, height_ratios=(1, 2.2, 1.4))
     rudder, heading, residual = axes[:, 0]
@@ -80,7 +108,7 @@ def _ends(quantity: Quantity) -> Optional[tuple[float, float]]:
     return quantity.ci95[0], quantity.ci95[1]
 
 
-def estimates(methods: Sequence[Method]) -> Any:
+def estimates(methods: Sequence[Labelled]) -> Any:
     """K, T and δ_r of every method with their 95 % intervals."""
     figure, axes = _figure(1, 3, figsize=(10, 1.2 + 0.34 * len(methods)), sharey=True)
     panels = (("K_per_s", "K [1/s]"), ("T_s", "T [s]"), ("delta_r_deg", "δ_r [deg]"))
@@ -110,9 +138,9 @@ def estimates(methods: Sequence[Method]) -> Any:
     return figure
 
 
-def intervals(rows: Sequence[tuple[str, str, str, Figure]]) -> Any:
+def intervals(rows: Sequence[tuple[str, str, str, Interval]]) -> Any:
     """Medians with their 50 and 90 % intervals: one panel for all figures of a manoeuvre in one unit."""
-    panels: dict[tuple[str, str], list[tuple[str, Figure]]] = {}
+    panels: dict[tuple[str, str], list[tuple[str, Interval]]] = {}
     for what, name, unit, figure in rows:
         panels.setdefault((what, unit), []).append((name, figure))
     if not panels:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
-from . import _kempf, _table
+from . import _kempf, _plot, _table
 from ._options import strings, warn, words
 from ._quantity import number
 from ._record import natives
@@ -154,8 +154,6 @@ class PredictResult(Result):
 
     def plot(self) -> Any:
         """Medians with their 50 and 90 % intervals, and what was measured, as a figure of Matplotlib."""
-        from . import _plot
-
         return _plot.intervals([(what, *spoken(name), figure) for what, name, figure in self._rows()])
 
 

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Union, overload
 
-from . import _kempf, _table
+from . import _kempf, _plot, _table
 from ._kempf import KempfError
 from ._options import warn, words
 
@@ -265,8 +265,6 @@ class Record:
 
     def plot(self) -> Any:
         """Heading and rudder over time, as a figure of Matplotlib."""
-        from . import _plot
-
         return _plot.record(self)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
-from . import _kempf, _table
+from . import _kempf, _plot, _table
 from ._kempf import KempfError
 from ._options import strings, warn, words
 from ._quantity import Quantity, number
@@ -163,8 +163,6 @@ class TraceResult(Result):
 
     def plot(self, *, record: int = 0) -> Any:
         """Rudder, measured heading, its replays before and after, and what is left, as a figure of Matplotlib."""
-        from . import _plot
-
         replays = self.replay(record)
         native = self._native.record(record)
         assert native is not None, "a record that was replayed is there"

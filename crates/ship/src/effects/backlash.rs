@@ -25,7 +25,7 @@ impl Effect for Backlash {
             id: "rudder_deadband",
             form: "backlash",
             equation: "T r' + r = K (δ_e + δ_r), |δ_e − δ| ≤ g (play)",
-            parameters: &const { [Self::HALF_WIDTH.in_file("backlash-deg", DEGREE, "Width of a backlash.")] },
+            parameters: &const { [Self::HALF_WIDTH.in_file("backlash-deg", DEGREE, "Half of the width of a backlash.")] },
         }
     }
 

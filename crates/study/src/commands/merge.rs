@@ -28,5 +28,5 @@ pub fn run(MergeRequest { folders, style }: &MergeRequest, common: &Common) -> R
         return Err(Failure::input("no folder for the joined study is given; add --out DIR"));
     };
     let out = ResultFolder::hold(out)?;
-    publish(&join(folders, &out)?, &out, (&theme, style.figures), common)
+    publish(&join(folders, &out)?, &out, &theme, style.figures, common)
 }

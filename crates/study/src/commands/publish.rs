@@ -228,7 +228,7 @@ impl<'a> Publication<'a> {
         let restart = self.request.restart || begun.is_some_and(|begun| !has_rows_of(&begun));
         let terminal = Terminal::new("trials", self.common.quiet);
         let stored = collect(&scenario, Shard::WHOLE, &folder, restart, &terminal)?;
-        put(&stored, &folder, (&Theme::screen(), FigureChoice::Named))?;
+        put(&stored, &folder, &Theme::screen(), FigureChoice::Named)?;
         let text = fs::read_to_string(&page).on("read", &page)?;
         folder.remove_all(|name| {
             let stem = name.strip_suffix(".png").or_else(|| name.strip_suffix(".svg"));

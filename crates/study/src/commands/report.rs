@@ -70,12 +70,12 @@ fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &Common) -> Result<(
     match common.out.as_deref().filter(|out| !is_same(out)) {
         Some(out) => {
             let stored = StoredStudy::read(rows)?;
-            publish(&stored, &ResultFolder::hold(out)?, (&theme, style.figures), common)
+            publish(&stored, &ResultFolder::hold(out)?, &theme, style.figures, common)
         }
         None => {
             store::is_finished(rows)?;
             let folder = ResultFolder::hold(rows)?;
-            publish(&StoredStudy::held(&folder)?, &folder, (&theme, style.figures), common)
+            publish(&StoredStudy::held(&folder)?, &folder, &theme, style.figures, common)
         }
     }
 }

@@ -25,7 +25,7 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
     let folder = ResultFolder::hold(&folder_for(MANIFEST, &place)?)?;
     let stored = collect(&scenario, shard, &folder, request.restart, &Terminal::new("trials", common.quiet))?;
     if shard == Shard::WHOLE {
-        return publish(&stored, &folder, (&theme, request.style.figures), common);
+        return publish(&stored, &folder, &theme, request.style.figures, common);
     }
     let place = folder.path().display().to_string();
     let line = format!(

@@ -53,7 +53,7 @@ pub fn run(request: &ScoreRequest, common: &Common) -> Result<(), Failure> {
     let scenario = scenario.with_answers(&label, answers)?;
     let folder = ResultFolder::hold(common.out.as_deref().unwrap_or(&place))?;
     let stored = collect(&scenario, Shard::WHOLE, &folder, request.restart, &terminal)?;
-    publish(&stored, &folder, (&theme, request.style.figures), common)
+    publish(&stored, &folder, &theme, request.style.figures, common)
 }
 
 /// The scenario of the answers, with the seed of their trials.

@@ -22,10 +22,11 @@ use crate::screen;
 pub fn publish(
     stored: &StoredStudy,
     folder: &ResultFolder,
-    style: (&Theme, FigureChoice),
+    theme: &Theme,
+    figures: FigureChoice,
     common: &Common,
 ) -> Result<(), Failure> {
-    let summary = put(stored, folder, style)?;
+    let summary = put(stored, folder, theme, figures)?;
     let design = &stored.design;
     match common.format {
         _ if common.is_silent() => Ok(()),
@@ -54,7 +55,8 @@ pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) 
 pub fn put(
     stored: &StoredStudy,
     folder: &ResultFolder,
-    (theme, figures): (&Theme, FigureChoice),
+    theme: &Theme,
+    figures: FigureChoice,
 ) -> Result<Summary, Failure> {
     let design = &stored.design;
     let mut tally = Tally::new(design);
