@@ -104,8 +104,8 @@ pub struct EffectEntry {
     pub asked: bool,
     /// Effects that the records cannot tell from it: one of the group is there.
     pub aliases: Vec<String>,
-    /// Forms that the records cannot tell from it.
-    pub alias_forms: Vec<String>,
+    /// Forms that the records cannot tell from it, of its group and of itself.
+    pub alias_forms: Vec<TermEntry>,
     /// Its parameters by their symbols.
     pub parameters: BTreeMap<String, ParameterEntry>,
     /// Probability that it, or one of its group, is there.

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use document::names;
-use document::trace::Outcome;
+use document::trace::{EffectEntry, Outcome, TermEntry};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use trial::Trial;
@@ -50,9 +50,11 @@ impl Analysis {
     fn prospect(&self, name: &str, trial: &Trial) -> Option<Prospect> {
         let seen = self.seen_with(trial)?;
         let is_told = |label: &String| seen.iter().any(|(own, seen)| own == label && *seen > TOLD);
-        let rivals = self.document.effects.iter().flat_map(|effect| {
-            effect.alias_forms.iter().map(|other| [names::effect_form(&effect.id, &effect.form), other.clone()])
-        });
+        let pair = |effect: &EffectEntry, other: &TermEntry| {
+            [(&effect.id, &effect.form), (&other.id, &other.form)].map(|(id, form)| names::effect_form(id, form))
+        };
+        let effects = self.document.effects.iter();
+        let rivals = effects.flat_map(|effect| effect.alias_forms.iter().map(|other| pair(effect, other)));
         let (separated, still_alike) = rivals.partition(|pair| pair.iter().all(is_told));
         let hidden = self.document.candidates.iter().flat_map(|candidate| {
             let forms = candidate.forms.iter();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use document::trace::*;
-use document::{HeadingNoise, Quantity, RandomMoment, names};
+use document::{HeadingNoise, Quantity, RandomMoment};
 use estimation::mixture::{MixtureSummary, NormalMixture, NormalPair, ratio};
 use estimation::residuals::{GappedSeries, whiteness};
 use ship::angle::to_deg;
@@ -224,8 +224,7 @@ impl TraceParts<'_> {
             let support = self.structures.support_of(id, only);
             let mut aliases: Vec<String> = one.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
             aliases.dedup();
-            let alias_forms =
-                one.aliases.iter().chain(&one.forms).map(|(id, form, _)| names::effect_form(id, form)).collect();
+            let alias_forms = one.aliases.iter().chain(&one.forms).map(|name| self.term(*name)).collect();
             let asked = self.settings.selection.asks_for(id);
             EffectEntry {
                 id: id.into(),
@@ -340,11 +339,14 @@ impl TraceParts<'_> {
         }
     }
 
+    fn term(&self, (id, form, only): TermName) -> TermEntry {
+        TermEntry { id: id.into(), form: form.into(), only: self.only(only) }
+    }
+
     fn listed(&self) -> Vec<StructureEntry> {
         let members = self.structures.members().len();
-        let term = |(id, form, only): TermName| TermEntry { id: id.into(), form: form.into(), only: self.only(only) };
         let of = |(number, one): (usize, &crate::structures::WeighedStructure)| StructureEntry {
-            effects: one.fit.structure.terms.iter().map(|own| term(own.name())).collect(),
+            effects: one.fit.structure.terms.iter().map(|own| self.term(own.name())).collect(),
             weight: one.weight,
             parameters: self.parameters(&one.fit),
             member: number < members,

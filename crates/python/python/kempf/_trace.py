@@ -48,8 +48,8 @@ class Effect:
     parameters: Mapping[str, Parameter]
     #: Effects that these records cannot tell from it: one of the group is there.
     aliases: tuple[str, ...]
-    #: Forms that these records cannot tell from it, each as ``"id (form)"``.
-    alias_forms: tuple[str, ...]
+    #: Identifier and form of every term that these records cannot tell from it.
+    alias_forms: tuple[tuple[str, str], ...]
     #: Probability that it, or one of its group, is there.
     probability: float
     #: −2 log of the ratio of the evidence with it to that without; negative where it is better.
@@ -216,17 +216,20 @@ def _result(native: _kempf.Trace) -> TraceResult:
     document = json.loads(native.text)
     model = document["model"]
 
+    def terms(entries: Iterable[Mapping[str, Any]]) -> tuple[tuple[str, str], ...]:
+        return tuple((one["id"], one["form"]) for one in entries)
+
     def effect(entry: Mapping[str, Any]) -> Effect:
         names = ("id", "form", "equation", "only", "probability", "delta_bic", "p_value", "evidence")
         return Effect(
             parameters={symbol: Parameter.of(value) for symbol, value in entry["parameters"].items()},
             aliases=tuple(entry["aliases"]),
-            alias_forms=tuple(entry["alias_forms"]),
+            alias_forms=terms(entry["alias_forms"]),
             **{name: entry[name] for name in names},
         )
 
     def structure(entry: Mapping[str, Any]) -> Structure:
-        return Structure(tuple((one["id"], one["form"]) for one in entry["effects"]), entry["weight"])
+        return Structure(terms(entry["effects"]), entry["weight"])
 
     def errors(use: str) -> list[Errors]:
         rmse = "heading_rmse_deg"

@@ -284,7 +284,10 @@ fn model(document: &TraceDocument) -> String {
 fn aliases(document: &TraceDocument) -> Table {
     let mut table = Table::new(TableHead::default().texts(["effect", "these records cannot tell it from"]));
     for effect in document.trace.effects.iter().filter(|effect| !effect.alias_forms.is_empty()) {
-        table.push([tables::term(&effect.id, &effect.form, effect.only.as_ref()), effect.alias_forms.join(", ")]);
+        table.push([
+            tables::term(&effect.id, &effect.form, effect.only.as_ref()),
+            tables::terms(&effect.alias_forms, ", "),
+        ]);
     }
     for one in document.trace.candidates.iter().filter(|one| one.outcome == Outcome::NotObservable) {
         let why = one.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));

@@ -44,6 +44,11 @@ pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
     names::effect_form(id, form) + &only
 }
 
+/// Several of them, joined.
+pub fn terms(all: &[TermEntry], between: &str) -> String {
+    all.iter().map(|own| term(&own.id, &own.form, own.only.as_ref())).collect::<Vec<_>>().join(between)
+}
+
 /// Named effects with their parameters.
 pub fn effects(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["effect"]).numbers(["probability", "ΔBIC"]);
@@ -56,7 +61,7 @@ pub fn effects(document: &TraceDocument) -> Table {
             fixed(effect.probability, 3),
             fixed(effect.delta_bic, 1),
             parameters.join(", "),
-            if effect.alias_forms.is_empty() { MISSING.into() } else { effect.alias_forms.join(", ") },
+            if effect.alias_forms.is_empty() { MISSING.into() } else { terms(&effect.alias_forms, ", ") },
         ]);
     }
     table
@@ -200,9 +205,7 @@ pub fn structures(document: &TraceDocument) -> Table {
     let mut table =
         Table::new(TableHead::default().texts(["structure"]).numbers(["probability"]).texts(["in the average"]));
     for one in document.trace.structures.iter().filter(|one| one.member || one.weight > NEGLIGIBLE) {
-        let of = |own: &TermEntry| term(&own.id, &own.form, own.only.as_ref());
-        let terms: Vec<String> = one.effects.iter().map(of).collect();
-        let name = if terms.is_empty() { "the base alone".into() } else { terms.join(" + ") };
+        let name = if one.effects.is_empty() { "the base alone".into() } else { terms(&one.effects, " + ") };
         table.push([name, fixed(one.weight, 3), if one.member { "yes" } else { "no" }.into()]);
     }
     table
