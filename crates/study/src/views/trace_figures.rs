@@ -159,7 +159,7 @@ pub fn held_out(document: &TraceDocument) -> Option<PageFigure> {
         format!("Heading error × {:.2} on {count} {records} not fitted", ratio(judged.iter().map(|one| one.errors)));
     let data = NamedRows {
         title: Some(title),
-        names: judged.iter().map(|one| format!("{}, {}", names::record(&one.name), one.used)).collect(),
+        names: judged.iter().map(|one| format!("{}, {}", names::record(one.name), one.used)).collect(),
         columns,
         ..NamedRows::default()
     };
