@@ -57,18 +57,29 @@ pub fn root() -> PathBuf {
 
 /// Rust files below a folder, sorted.
 fn sources(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
+    files(folder, &["rs"])
+}
+
+/// Files with one of some endings below a folder, sorted; hidden folders and what is built hold none.
+pub fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
+    let mut all = Vec::new();
     let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     for entry in entries.flatten() {
-        let path = entry.path();
+        let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
         match path.is_dir() {
-            true => found.extend(sources(&path)),
-            false if path.extension().is_some_and(|extension| extension == "rs") => found.push(path),
+            true if name.starts_with('.') || name == "target" => {}
+            true => all.extend(files(&path, endings)),
+            false if endings.contains(&ending(&path)) => all.push(path),
             false => {}
         }
     }
-    found.sort();
-    found
+    all.sort();
+    all
+}
+
+/// How the name of a file ends, without the dot.
+pub fn ending(path: &Path) -> &str {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default()
 }
 
 pub fn read(path: &Path) -> String {

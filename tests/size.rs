@@ -1,10 +1,8 @@
 //! The size of the house: it does not grow, and what was cleared away does not come back.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::path::{Path, PathBuf};
 
-use crate::architecture::{read, root};
+use crate::architecture::{ending, files, read, root};
 
 /// Longest function, lines.
 const LONGEST_FUNCTION: usize = 60;
@@ -22,7 +20,10 @@ const REACHED: Size = Size {
     looked_up: 1,
 };
 
-/// Folders that hold sources in Rust, Python or JavaScript.
+/// Endings of sources in Rust, Python and JavaScript.
+const LANGUAGES: [&str; 3] = ["rs", "py", "js"];
+
+/// Folders that hold sources.
 const FOLDERS: [&str; 5] = ["benches", "crates", "docs", "examples", "tests"];
 
 /// Programs of the tests package that make pages: code, wherever they lie.
@@ -57,23 +58,6 @@ struct OpenFunction {
     depth: isize,
     /// What stands before its body.
     head: String,
-}
-
-/// Sources below a folder, sorted; hidden folders and what is built hold none.
-fn sources(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-    let mut files = Vec::new();
-    for entry in entries.flatten() {
-        let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
-        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-        if path.is_dir() {
-            files.extend((!name.starts_with('.') && name != "target").then(|| sources(&path)).into_iter().flatten());
-        } else if ["rs", "py", "js"].contains(&extension) {
-            files.push(path);
-        }
-    }
-    files.sort();
-    files
 }
 
 /// Whether a file below the root holds tests alone.
@@ -146,10 +130,14 @@ impl Size {
     fn of_the_house() -> Self {
         let mut size = Self::default();
         let mut names: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-        for path in FOLDERS.iter().flat_map(|folder| sources(&root().join(folder))) {
+        for path in FOLDERS.iter().flat_map(|folder| files(&root().join(folder), &LANGUAGES)) {
             let file = path.strip_prefix(root()).expect("it lies below the root").to_string_lossy().into_owned();
-            let language = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-            size.add(&read(&path), language, is_of_tests(&file), names.entry(package(&file).to_owned()).or_default());
+            size.add(
+                &read(&path),
+                ending(&path),
+                is_of_tests(&file),
+                names.entry(package(&file).to_owned()).or_default(),
+            );
         }
         let mut packages: BTreeMap<&String, usize> = BTreeMap::new();
         names.values().flatten().for_each(|name| *packages.entry(name).or_default() += 1);

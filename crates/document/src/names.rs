@@ -27,6 +27,11 @@ pub fn effect(id: &str) -> String {
     listed.map_or_else(|| plain(id), |(_, name)| (*name).to_owned())
 }
 
+/// Names of several effects, joined.
+pub fn effects<S: AsRef<str>>(ids: &[S], between: &str) -> String {
+    ids.iter().map(|id| effect(id.as_ref())).collect::<Vec<_>>().join(between)
+}
+
 /// Name of an effect in one of its forms: `nonlinear damping (r³)`; a form that is the name of the effect is not
 /// repeated.
 pub fn effect_form(id: &str, form: &str) -> String {
@@ -76,6 +81,7 @@ mod tests {
         assert_eq!(effect_form("sway_coupling_measured", "measured sway"), "measured sway");
         assert_eq!(effect_form("rudder_deadband", "dead band"), "rudder dead band");
         assert_eq!(effect("my_bank"), "my bank");
+        assert_eq!(effects(&["speed_loss", "wave_yaw"], " + "), "speed loss + yaw in waves");
         for listed in ship::effects::all() {
             assert!(!effect_form(listed.id(), listed.form()).contains('_'), "{}", listed.id());
         }

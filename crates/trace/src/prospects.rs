@@ -18,7 +18,7 @@ use crate::weights::NoiseLaw;
 /// Expected square of a size over its error from which an effect can be told from all others.
 const TOLD: f64 = 20.0;
 
-/// What another trial would tell. An effect is written with its form: "wind_moment (steady wind)".
+/// What another trial would tell. An effect is written with its form: "wind moment (steady wind)".
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prospect {
     /// The manoeuvre.

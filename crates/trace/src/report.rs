@@ -25,7 +25,6 @@ use crate::record::PreparedRecord;
 use crate::remainder::Remainder;
 use crate::rudder::RudderError;
 use crate::settings::Settings;
-use crate::signature::Signature;
 use crate::structures::Structures;
 use crate::words;
 
@@ -107,7 +106,7 @@ impl TraceParts<'_> {
             },
             unexplained: UnexplainedEntry {
                 present: self.remainder.is_unexplained,
-                signature: signature.map(|own| words::signature(own, self.name_of(own)) + &self.bands()),
+                signature: signature.map(|own| words::signature(own, &self.trials[own.record].title()) + &self.bands()),
             },
             disturbance,
             located,
@@ -129,15 +128,11 @@ impl TraceParts<'_> {
         }
     }
 
-    fn name_of(&self, signature: &Signature) -> &str {
-        self.trials[signature.record].name()
-    }
-
     /// The fitted records whose bands do not hold what they are made for.
     fn bands(&self) -> String {
         let records = self.trials.iter().zip(self.identification);
         let covered = records.filter_map(|(trial, one)| Some((trial, one.after.coverage()?)));
-        covered.filter(|(_, own)| !own.is_held()).map(|(trial, own)| words::band(trial.name(), &own)).collect()
+        covered.filter(|(_, own)| !own.is_held()).map(|(trial, own)| words::band(&trial.title(), &own)).collect()
     }
 
     fn ship(&self) -> Option<Particulars> {

@@ -185,8 +185,9 @@ impl StructureSearch<'_> {
     fn keep(&mut self, fits: Vec<StructureFit>) {
         let square = |fit: &StructureFit| fit.misfit + fit.penalty;
         for fit in fits {
-            let (name, height) = (names(&fit.structure), self.height(&fit));
+            let name = names(&fit.structure);
             if self.known.get(&name).is_none_or(|known| square(&fit) <= square(&known.fit)) {
+                let height = self.height(&fit);
                 self.known.insert(name, WeighedStructure { fit, weight: 0.0, height });
             }
         }

@@ -173,7 +173,7 @@ fn one_step(effects: &[EffectEntry]) -> String {
 pub fn evidence(named: &EffectNaming, gain: f64, asked: bool, trials: &[Trial]) -> String {
     let (id, form, only) = named.term;
     let effect = names::effect_form(id, form);
-    let place = only.map_or(String::new(), |number| format!(" in {}", names::record(trials[number].name())));
+    let place = only.map_or(String::new(), |number| format!(" in {}", trials[number].title()));
     let odds = match gain / std::f64::consts::LN_10 {
         power if power >= 3.0 => format!("10^{power:.0} times more probable"),
         power if power < 0.0 => format!("{} times less probable", short(10f64.powf(-power))),
@@ -214,9 +214,8 @@ pub fn signature(own: &Signature, name: &str) -> String {
         format!("; {:.0} % of it has a period of {:.0} s", 100.0 * line.share, line.frequency.recip())
     });
     format!(
-        "{}: residual {}° rms; {:.0} % of it between {from:.0} and {to:.0} s; largest ({}°) at headings from {:.0}° to {:.0}°; \
+        "{name}: residual {}° rms; {:.0} % of it between {from:.0} and {to:.0} s; largest ({}°) at headings from {:.0}° to {:.0}°; \
          {}° with the rudder to port, {}° with it to starboard{line}",
-        names::record(name),
         short(to_deg(own.all)),
         100.0 * share,
         short(to_deg(largest)),
@@ -230,7 +229,7 @@ pub fn signature(own: &Signature, name: &str) -> String {
 /// A band that holds less than it is made for.
 pub fn band(name: &str, own: &BandCoverage) -> String {
     let [low, high] = own.interval.map(|end| 100.0 * end);
-    let (inside, of, share, name) = (own.inside, own.of, 100.0 * own.share(), names::record(name));
+    let (inside, of, share) = (own.inside, own.of, 100.0 * own.share());
     format!("; the 95 % band holds {inside} of {of} headings of {name}, {share:.0} % [{low:.0}, {high:.0}]")
 }
 

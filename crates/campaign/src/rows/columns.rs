@@ -4,6 +4,8 @@ use std::borrow::Cow;
 
 use ::trace::Verdict;
 use identify::StopReason;
+use serde::Deserialize;
+use serde::de::value::{Error as UnknownWord, StrDeserializer};
 
 use super::row::{NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
 
@@ -209,8 +211,8 @@ fn verdict(row: &StudyRow) -> Option<Cow<'_, str>> {
 }
 
 fn set_verdict(row: &mut StudyRow, word: &str) -> Result<(), String> {
-    let known = Verdict::ALL.into_iter().find(|verdict| verdict.to_string() == word);
-    answer(row).verdict = known.ok_or_else(|| format!("no trace ends with {word:?}"))?;
+    let verdict = Verdict::deserialize(StrDeserializer::<UnknownWord>::new(word));
+    answer(row).verdict = verdict.map_err(|_| format!("no trace ends with {word:?}"))?;
     Ok(())
 }
 

@@ -40,6 +40,7 @@ class Interval(Protocol):
     @property
     def measured(self) -> Optional[float]: ...
 
+
 #: Measured, rudder, and the replays in their order; told apart by people who see no red or no green.
 MEASURED, RUDDER = "#222222", "#8a8a8a"
 REPLAYS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255", "#44aa99")

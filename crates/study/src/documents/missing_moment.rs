@@ -139,8 +139,7 @@ pub fn entry(
     let telling = || missing.panels.iter().filter(shows);
     let everywhere = |place: &usize| telling().all(|panel| panel.inside.contains(place));
     let inside: Vec<usize> = (0..missing.explanations.len()).filter(everywhere).collect();
-    let best: Vec<String> = effects(missing, &[0]).iter().map(|id| names::effect(id)).collect();
-    let best = best.join(", ");
+    let best = names::effects(&effects(missing, &[0]), ", ");
     let explanation = if explains { best.clone() } else { format!("best candidate: {best}") };
     let of_panel = |panel: &Panel| PanelEntry {
         channel: panel.over.as_str().to_owned(),

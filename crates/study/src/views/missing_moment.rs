@@ -94,13 +94,8 @@ pub fn sentence(entry: &MissingMomentEntry) -> String {
     let Some(best) = telling().next() else {
         return format!("{begin}; it depends on no recorded channel.");
     };
-    let list = |ids: &[String]| {
-        if ids.is_empty() {
-            "no effect on the list".to_owned()
-        } else {
-            ids.iter().map(|id| names::effect(id)).collect::<Vec<_>>().join(", ")
-        }
-    };
+    let list =
+        |ids: &[String]| if ids.is_empty() { "no effect on the list".to_owned() } else { names::effects(ids, ", ") };
     let (over, share) = (&best.channel, percent(best.variance_share));
     let mut text = format!("{begin}; its curve over the {over} {share}, and inside the band: {}", list(&best.inside));
     let count = telling().count();

@@ -47,7 +47,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     let name = |line: &&TraceSummary| match &line.missing[..] {
         [] => NOTHING.to_owned(),
         _ if line.is_hull() => design.cells[line.cell].labels.first().cloned().unwrap_or_default(),
-        missing => missing.iter().map(|id| names::effect(id)).collect::<Vec<_>>().join(" + "),
+        missing => names::effects(missing, " + "),
     };
     let rows = grouped(lines.iter().copied(), name);
     // Columns stand in the order of the rows, so that what is right runs down a diagonal.

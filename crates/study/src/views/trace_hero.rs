@@ -47,7 +47,7 @@ fn nearest(held: &[BeforeAfter]) -> Option<usize> {
 
 /// Heading and residual of a record, under what it is.
 fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], what: &str) -> Stack {
-    let name = names::record(record.trial.name());
+    let name = record.trial.title();
     let trial = &record.trial;
     let [mut upper, lower] = heading_and_residual(curve(trial.time(), trial.heading()), models_over_time(record, None));
     for name in upper.iter_mut().filter_map(|layer| layer.name.as_mut()) {

@@ -142,7 +142,7 @@ pub fn fit(
     };
     let document = FitDocument {
         schema: SCHEMA.into(),
-        verdict: verdict::of_answers(trials, &answers),
+        verdict: verdict::of_answers(trials, &answers, &entries),
         zigzag: records[0].zigzag.clone(),
         trials: records,
         ships: answers.iter().filter_map(ship_of).collect(),

@@ -13,12 +13,15 @@ use trial::Trial;
 /// A replay this many times worse than the best is set apart.
 const FAR_WORSE: f64 = 10.0;
 
-/// Which answer is to be taken.
-pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
-    let entries: Vec<MethodEntry> = answers.iter().map(|(entry, _)| entry.clone()).collect();
+/// Which answer is to be taken; `entries` are those of the answers.
+pub fn of_answers(
+    trials: &[Trial],
+    answers: &[(MethodEntry, Option<Estimate>)],
+    entries: &[MethodEntry],
+) -> Option<VerdictEntry> {
     let of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
     let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
-    taken(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), &entries, straight)
+    taken(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries, straight)
 }
 
 /// The answer to take: the recommended one, or the nearest replay where that is not among the entries or no answer is
