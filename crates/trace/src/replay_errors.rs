@@ -254,3 +254,20 @@ fn settle(
     }
     now.square.is_finite().then_some((now.square, now.initial))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{TrialPlan, record, ship};
+
+    #[test]
+    fn the_ship_of_a_record_is_on_it_in_every_window() {
+        let own = ship(Vec::new());
+        let trial = record(&own, TrialPlan { noise_deg: 0.0, ..TrialPlan::default() });
+        for length in HORIZONS {
+            let headings = restarted(&own, &PreparedRecord::whole(&trial), [0.0, 0.0], length).expect("a replay");
+            let largest = headings.iter().zip(trial.heading()).map(|(own, psi)| (own - psi).abs()).fold(0.0, f64::max);
+            assert!(headings.len() == trial.len() && largest < 1e-5, "{length} s: {largest}");
+        }
+    }
+}

@@ -162,3 +162,21 @@ fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
     };
     (0..time.len()).map(at).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{TrialPlan, of_columns, record, ship};
+
+    #[test]
+    fn a_row_without_a_heading_has_the_value_between_its_neighbours() {
+        let clean = record(&ship(Vec::new()), TrialPlan::default());
+        let is_lost = |row: usize| (20..25).contains(&row);
+        let read = |(row, psi): (usize, &f64)| if is_lost(row) { f64::NAN } else { *psi };
+        let heading = clean.heading().iter().enumerate().map(read).collect();
+        let record = PreparedRecord::whole(&of_columns(clean.time().to_vec(), heading, clean.rudder().to_vec()));
+        let at = |row: usize| between(&record, row, |observed| record.observed[observed] as f64);
+        assert_eq!([0, 19, 25].map(at), [0.0, 19.0, 25.0]);
+        (20..25).for_each(|row| assert!((at(row) - row as f64).abs() < 1e-9, "{row}: {}", at(row)));
+    }
+}

@@ -214,3 +214,27 @@ fn shapes_can_be_moved_and_typed() {
     assert_eq!(Shape::Pulse(91.0, 24.0).words([0.0, 300.0]), "moment from 91 to 115 s");
     assert_eq!(Shape::Pulse(91.0, 2.0).moved(1, -1.0, [300.0, 1.0]), None);
 }
+
+#[test]
+fn tried_beside_the_best_law_are_weaker_ones_walks_and_an_error_of_the_compass() {
+    let laws = laws::all(0.01, 600.0, 1.0, None);
+    let kind = |law: &RandomLaw| law.colour.wander.map(|(kind, _)| kind);
+    let sea = |law: &RandomLaw| law.colour.waves.map(|sea| sea.frequency);
+    let tried = |best: &dyn Fn(&RandomLaw) -> bool| {
+        let places = laws::tried(&laws, laws.iter().position(best).expect("a law"));
+        places.into_iter().map(|place| laws[place]).collect::<Vec<_>>()
+    };
+    let sizes = |among: &[RandomLaw], is: &dyn Fn(&RandomLaw) -> bool| -> Vec<f64> {
+        among.iter().filter(|law| is(law)).map(|law| (100.0 * law.size.log10()).round() / 100.0).collect()
+    };
+    let gusts = Some(CorrelatedNoise::OrnsteinUhlenbeck(0));
+    let beside_gusts = tried(&|law| kind(law) == gusts && (law.size - 10.0).abs() < 1e-9);
+    assert_eq!(sizes(&beside_gusts, &|law| kind(law) == gusts), [-0.5, 0.0, 0.5, 1.0]);
+    let walk = Some(CorrelatedNoise::Walk);
+    assert_eq!(sizes(&beside_gusts, &|law| kind(law) == walk), [-2.0, -1.0, 0.0, 1.0, 2.0]);
+    assert_eq!(sizes(&beside_gusts, &|law| kind(law) == Some(CorrelatedNoise::Compass(1))), [0.0]);
+    assert_eq!(beside_gusts.len(), 1 + 4 + 5 + 1);
+    let waves = Some(TAU / 7.0);
+    let beside_waves = tried(&|law| sea(law) == waves && law.size == 3.0);
+    assert!(beside_waves.iter().all(|law| sea(law).is_none() || sea(law) == waves), "{beside_waves:?}");
+}
