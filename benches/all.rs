@@ -11,7 +11,7 @@ const FEW_SAMPLES: usize = 10;
 fn main() {
     let mut criterion = Criterion::default().configure_from_args();
     let is_measured = std::env::args().any(|own| own == "--bench");
-    for group in works::all().into_iter().chain([works::outside(env!("CARGO_BIN_EXE_echo"))]) {
+    for group in works::all() {
         let works = group.rows.into_iter().map(|row| row.work);
         for work in works.filter(|work| is_measured || !work.is_slow) {
             let mut benches = criterion.benchmark_group(group.name);

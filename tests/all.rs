@@ -4,7 +4,6 @@ mod architecture;
 mod benchmark;
 mod claims;
 mod effects;
-mod external;
 mod golden;
 mod identifiers;
 mod invariance;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use campaign::design::Design;
 use campaign::folder::ResultFolder;
-use campaign::rows::{RowLayout, RowWriter, StudyRow};
+use campaign::rows::{BlockLabel, RowLayout, StudyRow, encode};
 use campaign::task::Task;
 use campaign::{collect, engine};
 use identify::registry;
@@ -162,25 +162,16 @@ values = [10.0, 20.0]
         .unwrap_or_else(|failure| panic!("{}", failure.message))
 }
 
-fn bytes(folder: &Path, name: &str, (design, rows): (Design, Vec<StudyRow>)) -> Vec<u8> {
-    let layout = RowLayout::of(&design);
-    let held = ResultFolder::hold(folder);
-    held.and_then(|held| {
-        let mut writer = RowWriter::create(&held, name, &layout)?;
-        writer.push(rows)?;
-        writer.finish()?.0.put()
-    })
-    .unwrap_or_else(|failure| panic!("{}", failure.message));
-    std::fs::read(folder.join(name)).expect("the file was written")
-}
-
 #[test]
 fn rows_have_the_same_bytes_on_any_number_of_threads() {
-    let (scenario, folder) = (scenario(5), tempfile::tempdir().expect("a temporary folder"));
+    let scenario = scenario(5);
+    let label = |cell| BlockLabel { design: String::new(), program: String::new(), cell, block: 0 };
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
-        let study = pool.install(|| collect::in_memory(&scenario));
-        bytes(folder.path(), &format!("{threads}.parquet"), study)
+        let (design, rows) = pool.install(|| collect::in_memory(&scenario));
+        let layout = RowLayout::of(&design);
+        let block = |rows: &[StudyRow]| encode(rows, &label(rows[0].cell as usize), &layout).expect("plain values");
+        rows.chunk_by(|one, other| one.cell == other.cell).map(block).collect::<Vec<_>>().concat()
     };
     let one = on(1);
     assert!(one.len() > 1000, "{} bytes", one.len());

@@ -96,8 +96,6 @@ fn one_core() -> &'static ThreadPool {
 pub enum Reach {
     /// At most this share of the time of what stands beside.
     Ratio(f64),
-    /// Less than this, s per unit.
-    Time(f64),
     /// All cores together do at least this share of cores times what one does, which stands beside.
     Scaling(f64),
 }

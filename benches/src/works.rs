@@ -2,7 +2,6 @@
 
 mod effects;
 mod identification;
-mod outside;
 mod prediction;
 mod simulation;
 mod studies;
@@ -10,7 +9,6 @@ mod tracing;
 
 pub use effects::effects;
 pub use identification::identification;
-pub use outside::outside;
 pub use prediction::prediction;
 pub use simulation::simulation;
 pub use studies::studies;
@@ -18,7 +16,7 @@ pub use tracing::tracing;
 
 use crate::work::WorkGroup;
 
-/// Every group of the report, in its order; [`outside`] needs a program beside the one that measures.
+/// Every group of the report, in its order.
 pub fn all() -> Vec<WorkGroup> {
     vec![simulation(), effects(), identification(), tracing(), prediction(), studies()]
 }

@@ -1,18 +1,18 @@
 % Least squares of T r' + r = K (delta + delta_r) integrated twice, which leaves no derivative:
 % psi = -1/T int(psi) + K/T iint(delta) + K delta_r/T t^2/2 + c1 t + c0. White noise n of the heading leaves
 % n + int(n)/T: a second fit makes it white again with the T of the first, so that its standard deviations hold.
-% Octave 7 or later: octave-cli --quiet --norc least_squares.m
+% Octave 7 or later: octave-cli --quiet --norc least_squares.m TRIALS > TRIALS/least_squares.csv
 1;
 
 function s = integral_of(t, y)
   s = [zeros(1, columns(y)); cumsum(diff(t) .* (y(2:end, :) + y(1:end-1, :)) / 2)];
 end
 
-function answer = estimate(record)
-  rows = [record.t_s(:), record.heading_rad(:), record.rudder_rad(:)];  % null has become NaN
+function answer = estimate(t, heading, rudder)
+  rows = [t, heading, rudder];
   rows = rows(all(isfinite(rows), 2), :);
   if size(rows, 1) < 10 || max(rows(:, 3)) - min(rows(:, 3)) < 1e-4
-    error("too few rows, or the rudder does not move");
+    error("too few rows or the rudder does not move");
   end
   t = rows(:, 1);
   psi = rows(:, 2);
@@ -31,20 +31,25 @@ function answer = estimate(record)
   if !all(isfinite([b / a, 1 / a, c / b, sd']))
     error("the record does not determine K and T");
   end
-  answer = struct("K_per_s", -b / a, "T_s", -1 / a, "delta_r_rad", c / b);
-  answer.sd = struct("K_per_s", sd(1), "T_s", sd(2), "delta_r_rad", sd(3));
+  answer = [-b / a, -1 / a, rad2deg(c / b), sd(1), sd(2), rad2deg(sd(3))];
 end
 
-% fgetl would wait for the first character of the next line before it gives this one, and that line never comes.
-while !isempty(line = fscanf(stdin, "%[^\n]", "C"))
-  fread(stdin, 1);
-  record = jsondecode(line);
+% The answers to the records of a folder that `study simulate` wrote, on standard output.
+folder = argv(){end};
+printf("record,K_per_s,T_s,delta_r_deg,K_sd_per_s,T_sd_s,delta_r_sd_deg,failed\n");
+trials = fopen(fullfile(folder, "trials.csv"));
+fgetl(trials);
+while ischar(line = fgetl(trials))
+  name = strtok(line, ",");
+  file = fopen(fullfile(folder, name));
+  head = strsplit(fgetl(file), ",");
+  fclose(file);
+  rows = dlmread(fullfile(folder, name), ",", 1, 0, "emptyvalue", NaN);
+  column = @(key) rows(:, strcmp(head, key));
   try
-    answer = estimate(record);
+    answer = estimate(column("t_s"), deg2rad(column("heading_deg")), deg2rad(column("rudder_deg")));
+    printf("%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,\n", name, answer);
   catch problem
-    answer = struct("failed", problem.message);
+    printf("%s,,,,,,,%s\n", name, problem.message);
   end
-  answer.trial = record.trial;
-  printf("%s\n", jsonencode(answer));
-  fflush(stdout);
 end

@@ -45,4 +45,5 @@ def estimate(record):
     return {"K_per_s": -c_d / c_r, "T_s": -1 / c_r, "delta_r_rad": c_1 / c_d}
 
 
-answer_all(estimate)
+if __name__ == "__main__":
+    answer_all("PySINDy", estimate)

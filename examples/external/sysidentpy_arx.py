@@ -52,4 +52,5 @@ def estimate(record):
     return {"K_per_s": (b0 + b1) / (1 - a), "T_s": -dt / np.log(a), "delta_r_rad": c / (b0 + b1)}
 
 
-answer_all(estimate)
+if __name__ == "__main__":
+    answer_all("SysIdentPy, ARX", estimate)

@@ -54,10 +54,7 @@ def smooth(data, model, noise):
 
 def estimate(record):
     t, psi, delta, r = even_steps(record)
-    given = record.get("noise") or {}
-    noise = [given.get("heading_rad") or 1e-3]
-    if r is not None:
-        noise.append(given.get("yaw_rate_rad_s") or 1e-3)
+    noise = [record["heading_sd_rad"] or 1e-3] + ([] if r is None else [1e-3])
     held = np.append((delta[1:] + delta[:-1]) / 2, delta[-1])
     data = pd.DataFrame({"psi": psi, "r": 0.0 if r is None else r, "delta": held}, index=t)
     mean = lambda y: (y[:-2] + 2 * y[1:-1] + y[2:]) / 4
@@ -78,4 +75,5 @@ def estimate(record):
     return dict(zip(names, model), sd=dict(zip(names, sd)))
 
 
-answer_all(estimate)
+if __name__ == "__main__":
+    answer_all("EKF and OLS, after VMM", estimate)

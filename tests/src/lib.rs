@@ -7,7 +7,6 @@
 //! | simulated records, and what can be done to a record | [`records`] |
 //! | logs in every format and with every trouble, of one known ship | [`logs`] |
 //! | damaged files for every reader | [`fuzz`] |
-//! | what the outside estimator of the tests computes | [`outside`] |
 //! | measured records, which are not part of the project | [`measured`], [`autopilot`], [`wrapped`] |
 //! | manoeuvres of measured ships, predicted | [`predicted`] |
 //! | effects of one hull, record by record | [`stability`] |
@@ -17,7 +16,6 @@ pub mod autopilot;
 pub mod fuzz;
 pub mod logs;
 pub mod measured;
-pub mod outside;
 pub mod predicted;
 pub mod records;
 pub mod stability;

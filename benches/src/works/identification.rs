@@ -34,7 +34,7 @@ fn reach(method: &str) -> Option<Reach> {
         "fourier-projected" => 4.0,
         "fourier-published" | MANY_TRIPLES => 8.0,
         // Four kinds of noise, the gyro among the readings.
-        "maximum-likelihood" => return Some(Reach::Time(5e-3)),
+        "maximum-likelihood" => 8.0,
         _ => return None,
     };
     Some(Reach::Ratio(share))

@@ -7,7 +7,7 @@ use ship::effects::{Effect, listed};
 use simulate::Manoeuvre;
 
 use crate::records::{K, T};
-use crate::work::{Reach, Work, WorkGroup};
+use crate::work::{Work, WorkGroup};
 
 /// Ships of a prediction.
 const DRAWS: usize = 1000;
@@ -58,7 +58,7 @@ pub fn prediction() -> WorkGroup {
         let mixture = ShipMixture::new(vec![(known, 1.0)]).expect("a ship");
         let kind = kind.clone();
         let work = Work::new(name, move || mixture.predict(&kind, DRAWS, false).is_ok()).slow();
-        group.alone(work, Some(Reach::Time(0.05)));
+        group.alone(work, None);
     };
     let size = from_deg(0.5);
     let gusts = RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: size, correlation_s: 10.0 };

@@ -19,9 +19,6 @@ const TRIALS: u64 = 256;
 /// Share of the cores that a study has to use.
 const SHARE: f64 = 0.92;
 
-/// Time that checking every scenario may take, s.
-const CHECK_S: f64 = 0.02;
-
 /// Figures that are drawn side by side.
 const FIGURES: usize = 8;
 
@@ -62,13 +59,10 @@ pub fn studies() -> WorkGroup {
     group.beside(all, &one, Some(Reach::Scaling(SHARE)));
     let files = scenarios();
     let resolve = move || files.iter().filter(|file| Scenario::read(file, None).is_ok()).count();
-    group.alone(Work::new("resolve every scenario", resolve), Some(Reach::Time(CHECK_S)));
+    group.alone(Work::new("resolve every scenario", resolve), None);
     let figure = Arc::new(drawing());
     let drawn = Arc::clone(&figure);
-    let one = group.alone(
-        Work::new("one PNG at 2x", move || drawn.png().expect("a small figure")).slow(),
-        Some(Reach::Time(0.12)),
-    );
+    let one = group.alone(Work::new("one PNG at 2x", move || drawn.png().expect("a small figure")).slow(), None);
     let many = move || (0..FIGURES).into_par_iter().map(|_| figure.png().expect("a small figure").len()).sum::<usize>();
     let many = Work::new("eight PNGs at 2x, all cores, each", many).of_units(FIGURES).slow().on_all_cores();
     group.beside(many, &one, None);

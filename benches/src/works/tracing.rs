@@ -20,6 +20,9 @@ const HSVA: [&str; 8] = [
     "zigzag_05_01",
 ];
 
+/// What all eight, each left out in turn, may take of the time of one.
+const MOST_OF_EIGHT: f64 = 13.0;
+
 /// How many of them are fitted together while the others are held out.
 const TOGETHER: usize = 3;
 
@@ -60,19 +63,19 @@ pub fn tracing() -> WorkGroup {
     let clean = record(&first_order_zig_zag(400));
     let shapes = trace(std::slice::from_ref(&clean), &[], &Settings::default()).expect("a base");
     let stage = Work::new("moments of a shape alone, 400 rows", move || shapes.shapes().is_some()).slow();
-    group.alone(whole("one record, nothing missing, 400 rows", vec![clean], Vec::new()), Some(Reach::Time(0.1)));
-    group.alone(stage, Some(Reach::Time(0.1)));
+    let clean = group.alone(whole("one record, nothing missing, 400 rows", vec![clean], Vec::new()), None);
+    group.beside(stage, &clean, None);
     if let Some(marin) = measured("kvlcc2_marin", &["zigzag_10"]) {
-        group.alone(whole("one record, MARIN, 961 rows", marin, Vec::new()), Some(Reach::Time(0.5)));
+        group.alone(whole("one record, MARIN, 961 rows", marin, Vec::new()), None);
     }
     if let Some(all) = measured("kvlcc2_hsva", &HSVA) {
         let (fitted, others) = all.split_at(TOGETHER);
         let one = vec![fitted[0].clone()];
-        group.alone(whole("one record, HSVA, 1901 rows", one, Vec::new()), Some(Reach::Time(1.0)));
+        let one = group.alone(whole("one record, HSVA, 1901 rows", one, Vec::new()), None);
         let three = whole("three records, HSVA, five held out", fitted.to_vec(), others.to_vec());
-        group.alone(three, Some(Reach::Time(3.0)));
+        group.beside(three, &one, None);
         let eight = whole("eight records, HSVA, each left out in turn", all, Vec::new());
-        group.alone(eight, Some(Reach::Time(10.0)));
+        group.beside(eight, &one, Some(Reach::Ratio(MOST_OF_EIGHT)));
     }
     group
 }

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
-use identify::external::{Answer, Errors};
+use identify::{Answer, Errors};
+use indexmap::IndexMap;
 use scenario::answers::{Answers, TrialNumber};
 use scenario::failure::Failure;
 use scenario::name::{shown, slug};
@@ -68,7 +69,7 @@ const TABLE: Kind = Kind { name: "a table of answers", largest: 1 << 30 };
 
 /// Columns of a table of answers that are read, and those of the list of trials, which it may have kept.
 const COLUMNS: &str =
-    "record cell replicate K_per_s T_s delta_r_deg K_sd_per_s T_sd_s delta_r_sd_deg failed label also";
+    "method record cell replicate K_per_s T_s delta_r_deg K_sd_per_s T_sd_s delta_r_sd_deg failed label also";
 
 /// Columns that a message names.
 const MOST_COLUMNS: usize = 20;
@@ -78,10 +79,15 @@ const MOST_FAULTS: usize = 10;
 
 /// Reads a table of answers to the trials of a scenario: `record`, or `cell` and `replicate`; `K_per_s` and `T_s`; and
 /// what else is known, `delta_r_deg`, `K_sd_per_s`, `T_sd_s`, `delta_r_sd_deg`, and `failed`, the reason why there is
-/// no answer. Tells trials without an answer and columns that are not read.
+/// no answer. Where `method` says whose a line is, there are answers of several methods, in the order of their first
+/// lines. Tells trials without an answer and columns that are not read.
 ///
 /// Fails when a column is missing, and with all lines that are not of one trial of the scenario, or hold no numbers.
-pub fn read(path: &Path, scenario: &Scenario, observer: &dyn Observer) -> Result<Answers, Failure> {
+pub fn read(
+    path: &Path,
+    scenario: &Scenario,
+    observer: &dyn Observer,
+) -> Result<IndexMap<Option<String>, Answers>, Failure> {
     let refuse = |problem: String| Failure::about(path, problem);
     let text = file::read_text(path, TABLE).map_err(|error| refuse(error.to_string()))?;
     let text = text.trim_start_matches('\u{feff}');
@@ -94,16 +100,21 @@ pub fn read(path: &Path, scenario: &Scenario, observer: &dyn Observer) -> Result
         observer.warn(&format!("{}: columns that are not used: {}", path.display(), columns.ignored.join(", ")));
     }
     let records = Records::of(scenario);
-    let mut lines: HashMap<TrialNumber, u64> = HashMap::new();
-    let mut answers = HashMap::new();
+    let mut lines: HashMap<(Option<String>, TrialNumber), u64> = HashMap::new();
+    let mut answers: IndexMap<Option<String>, HashMap<TrialNumber, _>> = IndexMap::new();
     let mut faults = Vec::new();
     for row in table.records() {
         let row = row.map_err(|error| refuse(error.to_string()))?;
         let line = row.position().map_or(0, |position| position.line());
         let read = columns.place(&row, &records).and_then(|place| Ok((place, columns.answer(&row)?)));
-        match read.map(|(place, answer)| (lines.insert(place, line), answers.insert(place, answer))) {
-            Ok((None, _)) => {}
-            Ok((Some(first), _)) => faults.push(format!("line {line}: the trial of line {first} is answered again")),
+        let method = columns.text(&row, "method").map(str::to_owned);
+        let mut keep = |(place, answer): (TrialNumber, _)| {
+            answers.entry(method.clone()).or_default().insert(place, answer);
+            lines.insert((method.clone(), place), line)
+        };
+        match read.map(&mut keep) {
+            Ok(None) => {}
+            Ok(Some(first)) => faults.push(format!("line {line}: the trial of line {first} is answered again")),
             Err(fault) => faults.push(format!("line {line}: {fault}")),
         }
     }
@@ -118,12 +129,20 @@ pub fn read(path: &Path, scenario: &Scenario, observer: &dyn Observer) -> Result
             faults.join("\n  ")
         )));
     }
-    let trials = scenario.cells.len() as u64 * scenario.replicates;
-    let left = trials - answers.len() as u64;
-    if left > 0 && scenario.stop.is_none() {
-        observer.warn(&format!("{}: {left} of {trials} trials have no answer, which counts as failed", path.display()));
+    if answers.is_empty() {
+        answers.insert(None, HashMap::new());
     }
-    Ok(Answers::new(answers, hex(&Sha256::digest(text.as_bytes()))))
+    let trials = scenario.cells.len() as u64 * scenario.replicates;
+    for (method, own) in &answers {
+        let left = trials - own.len() as u64;
+        if left > 0 && scenario.stop.is_none() {
+            let whose = method.as_ref().map_or_else(String::new, |method| format!("{method}: "));
+            let problem = format!("{whose}{left} of {trials} trials have no answer, which counts as failed");
+            observer.warn(&format!("{}: {problem}", path.display()));
+        }
+    }
+    let sha256 = hex(&Sha256::digest(text.as_bytes()));
+    Ok(answers.into_iter().map(|(method, own)| (method, Answers::new(own, sha256.clone()))).collect())
 }
 
 /// Which trial a record is of.
@@ -258,6 +277,7 @@ mod tests {
         std::fs::write(&path, text).expect("written");
         let told = KeptWarnings::default();
         let read = read(&path, scenario, &told).map_err(|failure| failure.message);
+        let read = read.map(|mut answers| answers.shift_remove(&None).expect("answers of nobody in particular"));
         (read, told.0.into_inner().expect("nobody panics"))
     }
 

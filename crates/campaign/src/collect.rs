@@ -1,7 +1,7 @@
-//! Running the trials of a study into its folder: what is there already is checked and kept, the rest is run in
-//! parallel and stored as it comes, and in the end everything is where [`crate::store`] expects it.
+//! Runs the trials of a study or a shard of it: what is stored is kept, the rest is computed in parallel and stored as
+//! it comes, and when all rows are there everything is where [`crate::store`] expects it.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::mpsc::{RecvTimeoutError, channel, sync_channel};
 use std::thread::Scope;
@@ -9,129 +9,197 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 use scenario::Scenario;
+use scenario::failure::Failure;
 
+use crate::block::Block;
+use crate::blocks::{self, BlockStore};
 use crate::design::Design;
-use crate::disk;
 use crate::engine::{self, TrialOutcome, TrialRunner};
 use crate::files;
 use crate::folder::ResultFolder;
-use crate::manifest::Manifest;
+use crate::manifest::{Machine, Manifest};
 use crate::observer::Observer;
-use crate::outside::RunningEstimators;
-use crate::plan::TrialPlan;
-use crate::rows::{RowLayout, StudyRow};
+use crate::plan::{TrialPlan, blocks_of, trials_of};
+use crate::rows::StudyRow;
 use crate::showcase;
-use crate::sources;
 use crate::store::{self, StoredStudy};
 use crate::task::{Shard, Task};
-use crate::unfinished::{self, Unfinished};
-use scenario::failure::{Failure, OnPath};
+use crate::timings::Timings;
+use crate::writer::BlockWriter;
 
 /// Time a batch of trials should take: long beside the wait for its last trial, short beside a second.
 const BATCH_TIME: Duration = Duration::from_millis(250);
 
 /// Most trials of a batch: they are in memory.
-const MOST_BATCH: usize = 2048;
+const MAX_BATCH: usize = 2048;
 
-/// Stored trials that are run again before a study goes on, to see that this program computes the same.
-const SPOT_CHECKS: usize = 32;
-
-/// Runs a shard of a scenario into a folder, or what is missing of it; returns what is stored.
+/// Runs a scenario into a folder, or what is missing of it; returns what is stored.
 ///
-/// Fails when the folder holds another study, when its rows are not what this program computes, and when it is
+/// Fails when the folder holds another study, when rows of another program are to be joined by new ones, and when it is
 /// interrupted; what was stored stays.
 pub fn collect(
+    scenario: &Scenario,
+    folder: &ResultFolder,
+    restart: bool,
+    observer: &dyn Observer,
+) -> Result<StoredStudy, Failure> {
+    let run = run(scenario, Shard::WHOLE, folder, restart, observer)?;
+    if run.computed == 0 && run.manifest.is_finished() {
+        let told = Manifest::new(scenario).of_program_and_machine(&run.manifest);
+        if let Ok(stored) = StoredStudy::of(folder.path(), run.manifest.clone()) {
+            let design = stored.design.told_by(scenario);
+            return stored.told_again(told, design, folder);
+        }
+    }
+    finish(scenario, run, folder)
+}
+
+/// Runs a shard of a scenario into a folder, which may hold other shards of it; returns the manifest.
+///
+/// Fails as [`collect`] does.
+pub fn collect_shard(
     scenario: &Scenario,
     shard: Shard,
     folder: &ResultFolder,
     restart: bool,
     observer: &dyn Observer,
-) -> Result<StoredStudy, Failure> {
-    let manifest = Manifest::new(scenario, shard);
-    if restart {
-        discard(folder, observer)?;
+) -> Result<Manifest, Failure> {
+    Ok(run(scenario, shard, folder, restart, observer)?.manifest)
+}
+
+/// Finishes a study whose blocks are all in a folder, wherever they were computed; one that is finished is read.
+///
+/// Fails where blocks are missing, and says which is the first of them.
+pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<StoredStudy, Failure> {
+    let manifest = store::expected_in(folder.path())?;
+    if manifest.is_finished() {
+        return StoredStudy::read(folder.path());
     }
-    let keep = || sources::keep(scenario, folder);
-    if let Some(stored) = store::manifest_of_rows(folder.path())? {
-        is_same(&stored, &manifest, folder.path(), ANOTHER_FOLDER)?;
-        keep()?;
-        let outside = RunningEstimators::begin(scenario, folder, observer)?;
-        let stored = look_again(scenario, manifest, folder, observer);
-        outside.tell(observer);
-        return stored;
+    let scenario = Scenario::read(&folder.path().join(files::MANIFEST), None)?;
+    is_same(&manifest, &Manifest::new(&scenario), folder.path())?;
+    let design = Design::of(&scenario);
+    let store = BlockStore::new(folder.path(), &manifest, &design);
+    let stored = store.survey(observer)?;
+    let read = |block: Block| reread(&store, block);
+    let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
+    if let Some(&Task { cell, replicate }) = plan.next(1)?.first() {
+        let path = store.path(Block::of(Task { cell, replicate }));
+        let problem = format!(
+            "trial {replicate} of cell {cell} is not stored; run the study, or the shard that holds it, again, or copy the \
+             file here"
+        );
+        return Err(Failure::about(&path, problem));
     }
+    let trials = plan.trials;
+    finish(&scenario, StudyRun { manifest, trials, computed: 0 }, folder)
+}
+
+/// What a run leaves.
+struct StudyRun {
+    manifest: Manifest,
+    /// Trials of every cell.
+    trials: Vec<u64>,
+    /// Trials that were computed now.
+    computed: u64,
+}
+
+/// Computes and stores what is missing of a shard.
+fn run(
+    scenario: &Scenario,
+    shard: Shard,
+    folder: &ResultFolder,
+    restart: bool,
+    observer: &dyn Observer,
+) -> Result<StudyRun, Failure> {
+    let manifest = begin(scenario, folder, restart)?;
     let design = Design::of(scenario);
-    let layout = RowLayout::of(&design);
-    let rows = folder.path().join(files::ROWS);
-    if let Some(stored) = unfinished::manifest_in(folder.path())? {
-        is_same(&stored, &manifest, folder.path(), ANOTHER_FOLDER)?;
-    } else if disk::is_there(&rows).on("look for", &rows)? {
+    let store = BlockStore::new(folder.path(), &manifest, &design);
+    let stored = store.survey(observer)?;
+    let part = blocks_of(scenario, shard);
+    let most = trials_of(scenario, &part);
+    let is_own = |block: &Block| part.contains(&block.place(scenario));
+    let before: u64 = stored.iter().filter(|(block, _)| is_own(block)).map(|(_, trials)| trials).sum();
+    let read = |block: Block| reread(&store, block);
+    let mut plan = TrialPlan::new(scenario, shard, &stored, &read);
+    let first = plan.next(1)?;
+    if first.is_empty() {
+        return Ok(StudyRun { manifest, trials: plan.trials, computed: 0 });
+    }
+    is_own_program(&manifest, &Manifest::new(scenario), folder.path())?;
+    if before > 0 {
+        observer.note(&format!("going on after {before} of {most} trials in {}", folder.path().display()));
+    }
+    let start = Instant::now();
+    let mut plan = TrialPlan::new(scenario, shard, &stored, &read);
+    let progress = Progress { most, before, folder: folder.path() };
+    let computed = run_all(scenario, &mut plan, &store, &progress, observer);
+    let wall_time_s = manifest.machine.wall_time_s + start.elapsed().as_secs_f64();
+    let manifest = Manifest { machine: Machine { wall_time_s, ..manifest.machine }, ..manifest };
+    manifest.write(folder)?;
+    Ok(StudyRun { manifest, trials: plan.trials, computed: computed? })
+}
+
+/// Rows of a block that were whole a moment ago.
+fn reread(store: &BlockStore, block: Block) -> Result<Vec<StudyRow>, Failure> {
+    store.read(block)?.map_err(|problem| Failure::work(format!("{problem}; it changed meanwhile, run the study again")))
+}
+
+/// The manifest of a folder in which a study is about to run; written where there is none of its rows.
+fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Manifest, Failure> {
+    let own = Manifest::new(scenario);
+    if !restart && let Some(stored) = store::manifest_of_rows(folder.path())? {
+        is_same(&stored, &own, folder.path())?;
+        return Ok(stored);
+    }
+    if restart {
+        // The manifest first: rows without one are nobody's.
+        folder.remove_all(|name| [files::MANIFEST, files::ROWS_OF_OLD].contains(&name))?;
+        blocks::discard(folder)?;
+    } else if blocks::is_in(folder.path())? {
         return Err(Failure::input(format!(
-            "{} holds rows of an unknown study, without {}; give another folder with --out, or --restart to discard them",
+            "{} holds rows of an unknown study, without {}; put it back, give another folder with --out, or --restart to \
+             discard them",
             folder.path().display(),
             files::MANIFEST
         )));
     }
-    keep()?;
-    let outside = RunningEstimators::begin(scenario, folder, observer)?;
-    let mut plan = TrialPlan::new(scenario, shard);
-    let mut unfinished = Unfinished::open(folder, manifest, &design, &layout, observer)?;
-    let mut spots = SpotCheck::new(scenario, folder.path());
-    unfinished.resume(&mut plan, |row| spots.see(row))?;
-    spots.finish()?;
-    let resumed = plan.most() - plan.left();
-    if resumed > 0 {
-        observer.note(&format!("going on after {resumed} of {} trials in {}", plan.most(), folder.path().display()));
-    }
-    run_all(scenario, &outside, &mut plan, &mut unfinished, folder.path(), observer)?;
-    finish(scenario, &plan, unfinished, folder)
+    own.write(folder)?;
+    Ok(own)
 }
-
-/// A finished study that is run again: its rows are looked at, and its words may have changed.
-fn look_again(
-    scenario: &Scenario,
-    manifest: Manifest,
-    folder: &ResultFolder,
-    observer: &dyn Observer,
-) -> Result<StoredStudy, Failure> {
-    let study = StoredStudy::held(folder)?;
-    let mut spots = SpotCheck::new(scenario, folder.path());
-    study.rows(|row| spots.see(row))?;
-    spots.finish()?;
-    let stored = &study.manifest;
-    // What a kill in the last moment left.
-    unfinished::discard(folder, observer)?;
-    let told = Manifest {
-        machine: stored.machine.clone(),
-        git_revision: stored.git_revision.clone(),
-        git_dirty: stored.git_dirty,
-        ..manifest
-    };
-    let design = study.design.told_by(scenario);
-    study.told_again(told, design, folder)
-}
-
-/// Everything of a study in a folder, thrown away on request.
-fn discard(folder: &ResultFolder, observer: &dyn Observer) -> Result<(), Failure> {
-    unfinished::discard(folder, observer)?;
-    let rows = folder.path().join(files::ROWS);
-    disk::remove_if_there(&rows).on("remove", &rows)
-}
-
-/// What helps where a study is to be run in a folder with rows of another one.
-const ANOTHER_FOLDER: &str = "give another folder with --out, or --restart to discard what is there";
 
 /// Refuses a folder whose rows belong to another study, and says what differs and what helps.
-pub fn is_same(stored: &Manifest, own: &Manifest, folder: &Path, cure: &str) -> Result<(), Failure> {
+fn is_same(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), Failure> {
     let differences = stored.differences(own);
     if differences.is_empty() {
         return Ok(());
     }
     Err(Failure::input(format!(
-        "{} holds rows of another study (there: what is stored, here: what is asked for):\n  {}\n{cure}",
+        "{} holds rows of another study (there: what is stored, here: what is asked for):\n  {}\n\
+         give another folder with --out, or --restart to discard what is there",
         folder.display(),
         differences.join("\n  ")
     )))
+}
+
+/// Refuses to join rows of another program with new ones.
+fn is_own_program(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), Failure> {
+    let [there, here] = [stored, own].map(Manifest::program_label);
+    if there == here {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "the rows in {} were computed by another version of this program ({there}; this is {here}), and some are missing; \
+         give another folder with --out, or --restart to run the study anew",
+        folder.display()
+    )))
+}
+
+/// How far a run is.
+struct Progress<'a> {
+    most: u64,
+    /// Trials that were stored before.
+    before: u64,
+    folder: &'a Path,
 }
 
 /// How a run of trials ended.
@@ -143,51 +211,45 @@ enum RunEnd {
     Interrupted,
     /// It was asked to stop, and a trial under way does not end.
     Stuck,
-    /// No trial can be run here and now, and why.
-    Trouble(String),
 }
 
-/// Runs what is left of a plan; rows go to a writer of their own while the next trials run.
+/// Runs what is left of a plan; rows go to a writer of their own while the next trials run. Returns how many were run.
 fn run_all(
     scenario: &Scenario,
-    outside: &RunningEstimators,
     plan: &mut TrialPlan,
-    unfinished: &mut Unfinished,
-    folder: &Path,
+    store: &BlockStore,
+    progress: &Progress,
     observer: &dyn Observer,
-) -> Result<(), Failure> {
-    observer.begin(plan.most(), plan.most() - plan.left());
+) -> Result<u64, Failure> {
+    observer.begin(progress.most, progress.before);
     std::thread::scope(|scope| {
         // One batch may wait while one is written and one runs: memory stays what it is.
         let (send, receive) = sync_channel::<Vec<TrialOutcome>>(1);
-        let writer = scope.spawn(move || unfinished.store(receive));
-        let take = |outcomes| send.send(outcomes).is_ok();
-        let run = |tasks| {
-            let outcomes = watched(scope, scenario, tasks, observer);
-            outside.tell(observer);
-            outcomes
+        let mut writer = BlockWriter::new(store, scenario.replicates);
+        let writer = scope.spawn(move || writer.store(receive));
+        let mut computed = 0;
+        let take = |outcomes: Vec<TrialOutcome>| {
+            computed += outcomes.len() as u64;
+            send.send(outcomes).is_ok()
         };
-        let end = run_batches(plan, run, take);
+        let end = run_batches(plan, |tasks| watched(scope, scenario, tasks, observer), take);
         drop(send);
         let written = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         observer.end();
-        let stopped = |why: &str| {
+        let stopped = || {
             Failure::work(format!(
-                "{why}stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there, without --restart",
-                plan.most() - plan.left(),
-                plan.most(),
-                folder.join(unfinished::NAME).display()
+                "stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there, without \
+                 --restart",
+                progress.before + computed,
+                progress.most,
+                progress.folder.join(files::ROWS).display()
             ))
         };
-        match end {
-            RunEnd::Done => written,
-            RunEnd::Interrupted => written.and_then(|()| Err(stopped(""))),
-            RunEnd::Trouble(why) => {
-                let advice = "check that it may be executed, and the limits on open files and processes (`ulimit -a`)";
-                written.and_then(|()| Err(stopped(&format!("{why}; {advice}; "))))
-            }
+        match end? {
+            RunEnd::Done => written.map(|()| computed),
+            RunEnd::Interrupted => written.and_then(|()| Err(stopped())),
             RunEnd::Stuck => {
-                let failure = written.err().unwrap_or_else(|| stopped(""));
+                let failure = written.err().unwrap_or_else(stopped);
                 observer.give_up(&failure);
                 Err(failure)
             }
@@ -206,25 +268,22 @@ fn run_batches(
     plan: &mut TrialPlan,
     mut run: impl FnMut(Vec<Task>) -> (Vec<TrialOutcome>, RunEnd),
     mut take: impl FnMut(Vec<TrialOutcome>) -> bool,
-) -> RunEnd {
-    let least = (4 * rayon::current_num_threads()).min(MOST_BATCH);
+) -> Result<RunEnd, Failure> {
+    let least = (4 * rayon::current_num_threads()).min(MAX_BATCH);
     let mut size = least;
     loop {
-        let tasks = plan.next(size as u64);
+        let tasks = plan.next(size as u64)?;
         if tasks.is_empty() {
-            return RunEnd::Done;
+            return Ok(RunEnd::Done);
         }
         let start = Instant::now();
-        let (outcomes, end) = run(tasks.clone());
+        let (outcomes, end) = run(tasks);
         outcomes.iter().flat_map(|outcome| &outcome.rows).for_each(|row| plan.saw(row));
-        if let Some(&next) = tasks.get(outcomes.len()) {
-            plan.go_back_to(next);
-        }
         if !take(outcomes) || end != RunEnd::Done {
-            return end;
+            return Ok(end);
         }
         let wanted = size as f64 * BATCH_TIME.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-6);
-        size = (wanted as usize).clamp(least, MOST_BATCH);
+        size = (wanted as usize).clamp(least, MAX_BATCH);
     }
 }
 
@@ -247,13 +306,10 @@ fn watched<'scope>(
         let runner = runner(scenario, &tasks);
         let run = || {
             tasks.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
-                if observer.is_asked_to_stop() || runner.trouble().is_some() {
-                    return;
+                if !observer.is_asked_to_stop() {
+                    // Nobody receives any more when the wait for a trial was given up.
+                    let _ = send.send((index, runner.run(task)));
                 }
-                let outcome = runner.run(task);
-                let outcome = runner.trouble().map_or(Ok((index, outcome)), |trouble| Err(trouble.to_owned()));
-                // Nobody receives any more when the wait for a trial was given up.
-                let _ = send.send(outcome);
             });
         };
         match observer.threads() {
@@ -262,14 +318,12 @@ fn watched<'scope>(
         }
     });
     let mut asked: Option<Instant> = None;
-    let mut trouble = None;
     let is_stuck = loop {
         match receive.recv_timeout(LOOK) {
-            Ok(Ok((index, outcome))) => {
+            Ok((index, outcome)) => {
                 outcomes[index] = Some(outcome);
                 observer.advance();
             }
-            Ok(Err(why)) => trouble = Some(RunEnd::Trouble(why)),
             Err(RecvTimeoutError::Disconnected) => break false,
             Err(RecvTimeoutError::Timeout) if observer.is_asked_to_stop() => {
                 if asked.get_or_insert_with(Instant::now).elapsed() >= PATIENCE {
@@ -285,7 +339,7 @@ fn watched<'scope>(
         (false, false) => RunEnd::Interrupted,
         (false, true) => RunEnd::Done,
     };
-    (outcomes.into_iter().map_while(|outcome| outcome).collect(), trouble.unwrap_or(end))
+    (outcomes.into_iter().map_while(|outcome| outcome).collect(), end)
 }
 
 /// All rows of a small study, in their order, without a folder; and its design.
@@ -299,75 +353,35 @@ pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
         rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
         true
     };
-    run_batches(&mut TrialPlan::new(scenario, Shard::WHOLE), run, take);
+    let none = HashMap::new();
+    let mut plan = TrialPlan::new(scenario, Shard::WHOLE, &none, &|_| Ok(Vec::new()));
+    run_batches(&mut plan, run, take).expect("nothing is read");
+    (designed(scenario, &plan.trials), rows)
+}
+
+/// The design of a study of which so many trials a cell are there, with the bounds of its cells.
+fn designed(scenario: &Scenario, trials: &[u64]) -> Design {
     let mut design = Design::of(scenario);
-    rows.iter().for_each(|row: &StudyRow| design.cells[row.cell as usize].trials.end = row.replicate + 1);
-    add_bounds(scenario, &mut design, |_| true);
-    (design, rows)
+    design.cells.iter_mut().zip(trials).for_each(|(cell, trials)| cell.trials = 0..*trials);
+    add_bounds(scenario, &mut design);
+    design
 }
 
-/// Adds the Cramér–Rao bounds of some cells.
-fn add_bounds(scenario: &Scenario, design: &mut Design, is_wanted: impl Fn(usize) -> bool + Sync) {
-    let wanted = design.cells.par_iter_mut().enumerate().filter(|(cell, _)| is_wanted(*cell));
-    wanted.for_each(|(cell, facts)| facts.bound_percent2 = engine::bound_percent2(scenario, cell));
+/// Adds the Cramér–Rao bounds of all cells.
+fn add_bounds(scenario: &Scenario, design: &mut Design) {
+    let cells = design.cells.par_iter_mut().enumerate();
+    cells.for_each(|(cell, facts)| facts.bound_percent2 = engine::bound_percent2(scenario, cell));
 }
 
-/// Makes the result folder whole: rows, facts of the cells, showcases, times, and the manifest last.
-fn finish(
-    scenario: &Scenario,
-    plan: &TrialPlan,
-    unfinished: Unfinished,
-    folder: &ResultFolder,
-) -> Result<StoredStudy, Failure> {
-    let rows_sha256 = unfinished.join(folder)?;
-    let own = |cell: usize| plan.holds(Task { cell, replicate: 0 });
-    let mut design = unfinished.design.clone();
-    add_bounds(scenario, &mut design, own);
+/// Makes the result folder whole: facts of the cells, showcases, times, and the manifest last.
+fn finish(scenario: &Scenario, run: StudyRun, folder: &ResultFolder) -> Result<StoredStudy, Failure> {
+    let design = designed(scenario, &run.trials);
     let shown = if scenario.words.output.showcase { scenario.cells.len() } else { 0 };
-    let shown = (0..shown).into_par_iter().filter(|&cell| own(cell));
-    let showcases: Vec<_> = shown.filter_map(|cell| showcase::of_cell(scenario, cell)).collect();
-    let stored = store::finish(folder, &unfinished.manifest, rows_sha256, design, showcases, &unfinished.timings)?;
-    unfinished.remove()?;
-    Ok(stored)
-}
-
-/// Runs some of the stored trials again: rows of a program that computes something else must not be mixed with new
-/// ones.
-struct SpotCheck<'a> {
-    scenario: &'a Scenario,
-    folder: &'a Path,
-    every: usize,
-    kept: BTreeMap<Task, Vec<StudyRow>>,
-}
-
-impl<'a> SpotCheck<'a> {
-    fn new(scenario: &'a Scenario, folder: &'a Path) -> Self {
-        let every = scenario.cells.len().div_ceil(SPOT_CHECKS);
-        Self { scenario, folder, every, kept: BTreeMap::new() }
+    let showcases = (0..shown).into_par_iter().filter_map(|cell| showcase::of_cell(scenario, cell)).collect();
+    let mut timings = Timings::default();
+    let store = BlockStore::new(folder.path(), &run.manifest, &design);
+    for (block, _) in store.of_design() {
+        timings.join(&store.timings(block)?);
     }
-
-    /// Keeps the first trial of some cells.
-    fn see(&mut self, row: StudyRow) -> Result<(), Failure> {
-        let task = Task { cell: row.cell as usize, replicate: row.replicate };
-        if task.cell.is_multiple_of(self.every) && (task.replicate == 0 || self.kept.is_empty())
-            || self.kept.contains_key(&task)
-        {
-            self.kept.entry(task).or_default().push(row);
-        }
-        Ok(())
-    }
-
-    fn finish(self) -> Result<(), Failure> {
-        let differs = self.kept.par_iter().find_first(|(task, rows)| {
-            TrialRunner::new(self.scenario, task.cell..=task.cell).run(**task).rows != **rows
-        });
-        let Some((task, _)) = differs else { return Ok(()) };
-        Err(Failure::input(format!(
-            "the rows in {} are not what this program computes (trial {} of cell {} differs): they were made by another version \
-             of it; give another folder with --out, or --restart to run the study anew",
-            self.folder.display(),
-            task.replicate,
-            task.cell
-        )))
-    }
+    store::finish(folder, run.manifest, design, showcases, &timings)
 }

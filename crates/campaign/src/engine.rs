@@ -1,5 +1,5 @@
 //! The engine: one trial simulated, every method on that same trial, one row each. Which trials there are, and in what
-//! order, is decided in [`crate::plan`]; where rows go in [`crate::unfinished`].
+//! order, is decided in [`crate::plan`]; where rows go in [`crate::blocks`].
 //!
 //! Everything random follows from the key of a trial, so rows do not depend on threads, order or company.
 
@@ -9,9 +9,8 @@ use std::time::{Duration, Instant};
 use ::trace::comparison::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use document::trace::EffectEntry;
-use identify::external::shown;
 use identify::replay::pooled;
-use identify::{Estimate, IdentifyError, StopReason};
+use identify::{Estimate, StopReason};
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use simulate::{PreparedSimulation, SimulateError, Simulated, StreamKey};
@@ -72,7 +71,6 @@ pub struct TrialRunner<'a> {
     references: Vec<OnceLock<TrialReference>>,
     /// The simulations of cells whose trials differ in nothing but chance; empty where that would not pay.
     prepared: Vec<OnceLock<Result<PreparedSimulation, SimulateError>>>,
-    trouble: OnceLock<String>,
 }
 
 /// Most cells whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a tenth of a
@@ -89,14 +87,7 @@ impl<'a> TrialRunner<'a> {
             first_cell: *cells.start(),
             references: (0..count).map(|_| OnceLock::new()).collect(),
             prepared: (0..kept).map(|_| OnceLock::new()).collect(),
-            trouble: OnceLock::new(),
         }
-    }
-
-    /// Why trials cannot be run here and now, whatever their records are: an outside estimator that the system does not
-    /// start. Outcomes since then are not to be kept.
-    pub fn trouble(&self) -> Option<&str> {
-        self.trouble.get().map(String::as_str)
     }
 
     fn simulate(
@@ -169,14 +160,7 @@ impl<'a> TrialRunner<'a> {
         let specification = &*specimen.specification;
         let check = self.scenario.predictions.as_ref();
         let check = check.map(|asked| PredictionCheck::new(asked, &specification.simulation, key, &trials));
-        let question = TrialQuestion {
-            trials: &trials,
-            key,
-            reference,
-            missing: &specification.missing,
-            check,
-            trouble: &self.trouble,
-        };
+        let question = TrialQuestion { trials: &trials, key, reference, missing: &specification.missing, check };
         let row = |(method, own): (usize, &Method)| question.ask(&own.procedure, StudyRow { method, ..blank.clone() });
         cell.methods.iter().enumerate().map(row).unzip()
     }
@@ -200,7 +184,6 @@ struct TrialQuestion<'a> {
     reference: &'a TrialReference,
     missing: &'a [String],
     check: Option<PredictionCheck<'a>>,
-    trouble: &'a OnceLock<String>,
 }
 
 impl TrialQuestion<'_> {
@@ -216,10 +199,6 @@ impl TrialQuestion<'_> {
             first_order => {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
                 let time = start.elapsed();
-                if let Err(IdentifyError::NotStarted(reason)) = &answer {
-                    let command = first_order.outside().map(|outside| shown(outside.command())).unwrap_or_default();
-                    let _ = self.trouble.set(format!("`{command}` is not started: {reason}"));
-                }
                 let row = answer.map(|estimate| self.estimated(&blank, &estimate));
                 (row.map_err(|error| error.in_a_row().into()), time)
             }

@@ -6,9 +6,9 @@
 //! | to learn about | read |
 //! |---|---|
 //! | one trial | [`engine`] |
-//! | many of them, in order | [`task`], [`plan`], [`stopping`], [`collect`], [`merge`] |
-//! | methods that are other programs, and answers from elsewhere | [`outside`], [`answers`] |
-//! | what is stored | [`design`], [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`], [`unfinished`] |
+//! | many of them, in order | [`task`], [`block`], [`plan`], [`stopping`], [`collect`] |
+//! | answers from elsewhere | [`answers`] |
+//! | what is stored | [`design`], [`rows`], [`blocks`], [`store`], [`manifest`], [`showcase`], [`timings`] |
 //! | how it gets to the disk | [`files`], [`folder`], [`disk`] |
 //! | what is said about it | [`summary`], [`statistics`] |
 //! | records and answers for figures and other programs | [`curves`], [`stored_figures`], [`answer`] |
@@ -18,6 +18,8 @@
 pub mod answer;
 pub mod answers;
 pub mod benchmark;
+pub mod block;
+pub mod blocks;
 mod bound;
 pub mod collect;
 pub mod curves;
@@ -29,15 +31,12 @@ pub mod files;
 pub mod folder;
 pub mod known;
 pub mod manifest;
-pub mod merge;
 pub mod observer;
-pub mod outside;
 pub mod plan;
 mod prediction_check;
 mod reference;
 pub mod rows;
 pub mod showcase;
-pub mod sources;
 pub mod statistics;
 pub mod stopping;
 pub mod store;
@@ -49,6 +48,6 @@ mod testing;
 #[cfg(test)]
 mod tests;
 pub mod timings;
-pub mod unfinished;
+mod writer;
 
 pub use observer::{NoObserver, Observer};

@@ -3,17 +3,17 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use scenario::hex;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use crate::disk;
-use crate::files::MANIFEST;
+use crate::files::{DESIGN, MANIFEST};
 use crate::folder::ResultFolder;
-use crate::sources;
-use crate::task::Shard;
 use scenario::failure::{Failure, OnPath};
 use scenario::{Scenario, Words, identity};
 
-/// The manifest of a study or a shard of it.
+/// The manifest of a study: the same whichever shards of it are in the folder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub struct Manifest {
@@ -21,8 +21,6 @@ pub struct Manifest {
     pub name: String,
     /// Seed that was used.
     pub seed: u64,
-    /// Which part of the study this is.
-    pub shard: Shard,
     /// SHA-256 of the scenario text.
     pub scenario_sha256: String,
     /// SHA-256 of all that decides the rows: the scenario without its prose, and the files it reads.
@@ -41,12 +39,9 @@ pub struct Manifest {
     pub assumptions: Vec<String>,
     /// Versions of the crates that decide the numbers.
     pub crates: Vec<String>,
-    /// SHA-256 of the files a finished study is read from, by their names; of one in progress none.
+    /// SHA-256 of the files that are made when all rows are there, by their names; before that none.
     #[serde(default)]
     pub sha256: BTreeMap<String, String>,
-    /// Folder beside this file that stands for that of the scenario, where the study starts scripts.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sources: Option<String>,
     /// The scenario file as it was read.
     pub scenario: String,
 }
@@ -103,12 +98,11 @@ const REPEAT: &str = "# `study manifest.toml --out DIR` runs this study again.\n
 
 impl Manifest {
     /// The manifest of a scenario that is about to run.
-    pub fn new(scenario: &Scenario, shard: Shard) -> Self {
+    pub fn new(scenario: &Scenario) -> Self {
         let ProgramRevision { version, git_revision, git_dirty } = ProgramRevision::own();
         Self {
             name: scenario.name.clone(),
             seed: scenario.seed,
-            shard,
             scenario_sha256: scenario.sha256.clone(),
             design_sha256: scenario.design_sha256.clone(),
             version,
@@ -122,7 +116,6 @@ impl Manifest {
             assumptions: scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect(),
             crates: env!("KEMPF_NUMERIC_CRATES").split_terminator(',').map(str::to_owned).collect(),
             sha256: BTreeMap::new(),
-            sources: sources::place(scenario),
             scenario: scenario.text.clone(),
         }
     }
@@ -133,10 +126,23 @@ impl Manifest {
         ProgramRevision { version, git_revision, git_dirty }
     }
 
-    /// The manifest of the whole study, from that of a shard and the wall time of all of them together, s.
-    pub fn of_whole(self, wall_time_s: f64) -> Self {
-        let machine = Machine { wall_time_s, ..self.machine };
-        Self { shard: Shard::WHOLE, machine, sha256: BTreeMap::new(), ..self }
+    /// The same program in one line, with the crates that decide its numbers: what a block says of where it comes from.
+    pub fn program_label(&self) -> String {
+        let revision = self.git_revision.as_deref().map_or_else(String::new, |revision| format!(" {revision}"));
+        let changed = if self.git_dirty { " (changed)" } else { "" };
+        let crates = hex(&Sha256::digest(self.crates.join(",")));
+        format!("kempf {}{revision}{changed} with crates {}", self.version, &crates[..8])
+    }
+
+    /// The same, of the program and on the machine of another manifest.
+    pub(crate) fn of_program_and_machine(self, other: &Self) -> Self {
+        let Self { version, git_revision, git_dirty, crates, machine, .. } = other.clone();
+        Self { version, git_revision, git_dirty, crates, machine, ..self }
+    }
+
+    /// Whether the study is finished: its design and all else is stored beside its rows.
+    pub fn is_finished(&self) -> bool {
+        self.sha256.contains_key(DESIGN)
     }
 
     /// What makes the rows of another manifest other rows, in words; empty when they are the same.
@@ -148,42 +154,17 @@ impl Manifest {
             let found = designs.map_or_else(Vec::new, |(own, theirs)| identity::differences(&own, &theirs));
             match found.is_empty() {
                 true => differences.push(
-                    "a record that the scenario replays, a file that a command in it names, answers that were read, or a \
-                     method that a program gave, has changed"
+                    "a record that the scenario replays, answers that were read, or a method that a program gave, has \
+                     changed"
                         .to_owned(),
                 ),
                 false => differences.extend(found),
             }
         }
-        let of = |manifest: &Self| [("seed", manifest.seed.to_string()), ("shard", manifest.shard.to_string())];
-        for ((what, own), (_, theirs)) in of(self).into_iter().zip(of(other)).filter(|(own, theirs)| own != theirs) {
-            differences.push(format!("{what}: {own} there, {theirs} here"));
+        if self.seed != other.seed {
+            differences.push(format!("seed: {} there, {} here", self.seed, other.seed));
         }
         differences
-    }
-
-    /// The same for shards of one study, which have to come from one program too.
-    pub fn differences_of_study(&self, other: &Self) -> Vec<String> {
-        let of = |shard: Shard| Shard { number: 1, ..shard };
-        let mut differences = Self { shard: of(self.shard), ..self.clone() }
-            .differences(&Self { shard: of(other.shard), ..other.clone() });
-        if self.version != other.version {
-            differences.push(format!("version: {} there, {} here", self.version, other.version));
-        }
-        let missing = |own: &Self, theirs: &Self| {
-            own.crates.iter().filter(|name| !theirs.crates.contains(name)).cloned().collect::<Vec<_>>().join(", ")
-        };
-        if self.crates != other.crates {
-            differences.push(format!("crates: {} there, {} here", missing(self, other), missing(other, self)));
-        }
-        differences
-    }
-
-    /// Trials of every cell of the study; `None` where a stopping rule decides.
-    pub fn replicates(&self) -> Option<u64> {
-        let scenario: toml::Table = self.scenario.parse().ok()?;
-        let replicates = scenario.get("replicates").map_or(Some(1), |value| u64::try_from(value.as_integer()?).ok());
-        replicates.filter(|_| !scenario.contains_key("stop"))
     }
 
     /// What the scenario says about itself.
@@ -196,7 +177,7 @@ impl Manifest {
         let rounded = Machine { wall_time_s: (self.machine.wall_time_s * 1e3).round() / 1e3, ..self.machine.clone() };
         let text =
             toml::to_string(&Self { machine: rounded, ..self.clone() }).on("describe the run in", folder.path())?;
-        folder.keep(MANIFEST, REPEAT.to_owned() + &text).map(drop)
+        folder.keep(MANIFEST, REPEAT.to_owned() + &text)
     }
 
     /// The manifest in a text that is one.

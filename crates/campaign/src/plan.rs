@@ -1,109 +1,120 @@
-//! Which trials a study runs, in what order, which of them belong to a shard, and when a cell has had enough of them.
+//! Which trials a study runs, in what order, and when a cell has had enough of them.
 //!
-//! The order is cell by cell and replicate by replicate. Without a stopping rule a shard is a run of consecutive
-//! trials, with one it is a run of whole cells, because a rule looks at all the trials of a cell so far. What a rule
-//! sees is fixed by the rows alone, so the same trials are run whatever the number of threads, interruptions and
-//! shards.
+//! The order is cell by cell and replicate by replicate. A shard is a run of consecutive blocks, with a stopping rule a
+//! run of whole cells. The rule looks at whole blocks in their order, so the same trials are run whatever the number of
+//! threads, interruptions and shards.
+
+use std::collections::HashMap;
+use std::ops::Range;
 
 use scenario::Scenario;
+use scenario::failure::Failure;
 
+use crate::block::Block;
 use crate::rows::StudyRow;
 use crate::stopping::StopCheck;
 use crate::task::{Shard, Task};
 
-/// The trials of a study or a shard of it, handed out in order.
-#[derive(Clone)]
+/// What reads the stored rows of a block again.
+type BlockReader<'a> = dyn Fn(Block) -> Result<Vec<StudyRow>, Failure> + 'a;
+
+/// The trials of a study or a shard of it that are not stored, handed out in order.
 pub struct TrialPlan<'a> {
     scenario: &'a Scenario,
-    /// First trial of the part.
-    first: Task,
-    /// Trial after its last.
-    end: Task,
-    /// Next trial that is not yet handed out.
-    next: Task,
-    /// What the stopping rule has seen of the cell of `next`.
-    verdict: Option<StopCheck>,
+    /// Trials that are stored, by their block, from its first on.
+    stored: &'a HashMap<Block, u64>,
+    read: &'a BlockReader<'a>,
+    /// Places of the blocks that are not begun.
+    blocks: Range<u64>,
+    cell: usize,
+    /// Replicates of the block under way that are not handed out.
+    open: Range<u64>,
+    /// What the stopping rule has seen of the cell.
+    rule: Option<StopCheck>,
+    /// Trials that every cell has, as far as it is known.
+    pub trials: Vec<u64>,
+}
+
+/// Places of the blocks of a shard.
+pub fn blocks_of(scenario: &Scenario, shard: Shard) -> Range<u64> {
+    let of_cell = Block::of_cell(scenario.replicates);
+    if scenario.stop.is_none() {
+        return shard.part(Block::count(scenario));
+    }
+    let cells = shard.part(scenario.cells.len() as u64);
+    cells.start * of_cell..cells.end * of_cell
+}
+
+/// Trials of blocks, at most.
+pub fn trials_of(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
+    let of_cell = Block::of_cell(scenario.replicates);
+    let before = |place: u64| {
+        place / of_cell * scenario.replicates + (place % of_cell * Block::REPLICATES).min(scenario.replicates)
+    };
+    before(blocks.end) - before(blocks.start)
 }
 
 impl<'a> TrialPlan<'a> {
-    /// The plan of a shard, at its beginning.
-    pub fn new(scenario: &'a Scenario, shard: Shard) -> Self {
-        let cells = scenario.cells.len() as u64;
-        let at =
-            |trial: u64| Task { cell: (trial / scenario.replicates) as usize, replicate: trial % scenario.replicates };
-        let whole = |cell: u64| Task { cell: cell as usize, replicate: 0 };
-        let (first, end) = match &scenario.stop {
-            None => {
-                let trials = shard.part(cells * scenario.replicates);
-                (at(trials.start), at(trials.end))
-            }
-            Some(_) => {
-                let cells = shard.part(cells);
-                (whole(cells.start), whole(cells.end))
-            }
-        };
-        let verdict = scenario.stop.as_ref().map(|rule| StopCheck::new(rule, scenario.labels()));
-        Self { scenario, first, end, next: first, verdict }
-    }
-
-    /// Most trials the plan may still hand out.
-    pub fn left(&self) -> u64 {
-        self.number(self.end) - self.number(self.next.min(self.end))
-    }
-
-    /// Most trials of the whole part.
-    pub fn most(&self) -> u64 {
-        self.number(self.end) - self.number(self.first)
+    /// The plan of a shard of which some trials are `stored`; `read` gets the rows of such a block.
+    pub fn new(
+        scenario: &'a Scenario,
+        shard: Shard,
+        stored: &'a HashMap<Block, u64>,
+        read: &'a BlockReader<'a>,
+    ) -> Self {
+        Self {
+            scenario,
+            stored,
+            read,
+            blocks: blocks_of(scenario, shard),
+            cell: 0,
+            open: 0..0,
+            rule: scenario.stop.as_ref().map(|rule| StopCheck::new(rule, scenario.labels())),
+            trials: vec![0; scenario.cells.len()],
+        }
     }
 
     /// The next trials, at most `most` of them; none when the part is done. Rows of all trials handed out before have
     /// to have been shown to [`TrialPlan::saw`].
-    pub fn next(&mut self, most: u64) -> Vec<Task> {
-        if let (Some(verdict), Some(rule)) = (&self.verdict, &self.scenario.stop) {
-            let looked = self.next.replicate > 0 && self.next.replicate.is_multiple_of(rule.every);
-            if looked && verdict.is_met() {
-                self.next = Task { cell: self.next.cell + 1, replicate: 0 };
-            }
-        }
+    pub fn next(&mut self, most: u64) -> Result<Vec<Task>, Failure> {
         let mut tasks = Vec::new();
-        while (tasks.len() as u64) < most && self.next < self.end {
-            tasks.push(self.next);
-            self.next = self.after(self.next);
-            // The rule looks at the rows so far before it says what comes next; at the end of a cell too.
-            if self.scenario.stop.as_ref().is_some_and(|rule| self.next.replicate.is_multiple_of(rule.every)) {
-                break;
+        loop {
+            let count = self.open.end.saturating_sub(self.open.start).min(most - tasks.len() as u64);
+            let taken = self.open.start..self.open.start + count;
+            tasks.extend(taken.map(|replicate| Task { cell: self.cell, replicate }));
+            self.open.start += count;
+            // A rule looks at all rows of a block before it says what comes next.
+            let is_enough = tasks.len() as u64 == most || self.rule.is_some() && !tasks.is_empty();
+            if is_enough || !self.begin()? {
+                return Ok(tasks);
             }
         }
-        tasks
     }
 
-    /// Takes note of a row, in order: of a trial handed out, or stored by an earlier run.
+    /// Begins the next block; there may be none.
+    fn begin(&mut self) -> Result<bool, Failure> {
+        while let Some(place) = self.blocks.next() {
+            let block = Block::at(place, self.scenario);
+            if block.number > 0 && self.rule.as_ref().is_some_and(StopCheck::is_met) {
+                continue;
+            }
+            let all = block.range(self.scenario.replicates);
+            let stored = self.stored.get(&block).copied().unwrap_or(0);
+            if stored > 0 && self.rule.is_some() {
+                (self.read)(block)?.iter().for_each(|row| self.saw(row));
+            }
+            self.trials[block.cell] = all.end;
+            (self.cell, self.open) = (block.cell, all.start + stored..all.end);
+            return Ok(true);
+        }
+        Ok(false)
+    }
+
+    /// Takes note of a row, in order.
     pub fn saw(&mut self, row: &StudyRow) {
-        if let Some(verdict) = &mut self.verdict {
-            verdict.see(row);
+        if let Some(rule) = &mut self.rule {
+            rule.see(row);
         }
-    }
-
-    fn after(&self, task: Task) -> Task {
-        let replicate = task.replicate + 1;
-        match replicate < self.scenario.replicates {
-            true => Task { replicate, ..task },
-            false => Task { cell: task.cell + 1, replicate: 0 },
-        }
-    }
-
-    /// Hands out a trial again, and all after it.
-    pub fn go_back_to(&mut self, task: Task) {
-        self.next = task;
-    }
-
-    /// Whether a trial belongs to this part.
-    pub fn holds(&self, task: Task) -> bool {
-        self.first <= task && task < self.end
-    }
-
-    fn number(&self, task: Task) -> u64 {
-        task.cell as u64 * self.scenario.replicates + task.replicate
     }
 }
 
@@ -112,83 +123,71 @@ mod tests {
     use super::*;
     use crate::testing::zig_zag;
 
-    /// 10⁹ trials of `cells` cells, with more keys of the scenario.
-    fn large(cells: u64, more: &str) -> Scenario {
+    fn swept(cells: u64, replicates: u64, more: &str) -> Scenario {
         let sweep = format!("linear = {{ from = 0.1, to = 0.2, points = {cells} }}");
-        zig_zag(1_000_000_000 / cells, &format!("[[sweep]]\nkey = \"sensor.heading-noise-deg\"\n{sweep}\n{more}"))
+        zig_zag(replicates, &format!("[[sweep]]\nkey = \"sensor.heading-noise-deg\"\n{sweep}\n{more}"))
     }
 
-    const SHARDS: u64 = 10_000;
+    const RULE: &str = "[stop]\nfigure = \"rms-T\"\nmethod = \"srivc\"\nstandard-error = 0.05\n";
 
-    fn plans<'a>(scenario: &'a Scenario, of: u64) -> impl Iterator<Item = TrialPlan<'a>> {
-        (1..=of).map(move |number| TrialPlan::new(scenario, Shard { number, of }))
+    fn none(_: Block) -> Result<Vec<StudyRow>, Failure> {
+        Ok(Vec::new())
     }
 
-    /// Every trial belongs to one shard: shards begin where the one before ended, the first at the first trial, the
-    /// last ends with the last. Bookkeeping only, nothing is run.
+    /// Shards begin where the one before ended, the first at the first block, the last ends with the last.
     #[test]
     fn a_thousand_million_trials_belong_to_one_of_ten_thousand_shards_each() {
-        for cells in [2, 7, 1000] {
-            let scenario = large(cells, "");
-            let trials = cells * scenario.replicates;
-            let mut next = Task { cell: 0, replicate: 0 };
-            let mut most = Vec::new();
-            for plan in plans(&scenario, SHARDS) {
-                assert_eq!(plan.first, next);
-                assert!(plan.holds(plan.first) && !plan.holds(plan.end));
-                most.push(plan.most());
-                next = plan.end;
-            }
-            assert_eq!(next, Task { cell: cells as usize, replicate: 0 });
-            assert_eq!(most.iter().sum::<u64>(), trials);
-            assert_eq!(
-                most.iter().max().zip(most.iter().min()).map(|(most, least)| most - least),
-                Some(u64::from(!trials.is_multiple_of(SHARDS)))
-            );
-            // The same from the side of a trial, wherever it is.
-            let all: Vec<TrialPlan> = plans(&scenario, SHARDS).collect();
-            for trial in (0..trials).step_by(10_000_019).chain([trials - 1]) {
-                let task =
-                    Task { cell: (trial / scenario.replicates) as usize, replicate: trial % scenario.replicates };
-                assert_eq!(all.iter().filter(|plan| plan.holds(task)).count(), 1, "{task:?}");
-            }
+        const SHARDS: u64 = 10_000;
+        for (cells, rule) in [(2, ""), (7, ""), (1000, ""), (1000, RULE)] {
+            let scenario = swept(cells, 1_000_000_000 / cells, rule);
+            let parts: Vec<Range<u64>> =
+                (1..=SHARDS).map(|number| blocks_of(&scenario, Shard { number, of: SHARDS })).collect();
+            assert!(parts[0].start == 0 && parts.windows(2).all(|pair| pair[0].end == pair[1].start));
+            assert_eq!(parts[parts.len() - 1].end, Block::count(&scenario));
+            let trials: u64 = parts.iter().map(|part| trials_of(&scenario, part)).sum();
+            assert_eq!(trials, cells * scenario.replicates);
+            let of_cell = Block::of_cell(scenario.replicates);
+            assert!(rule.is_empty() || parts.iter().all(|part| part.start % of_cell == 0));
         }
     }
 
     #[test]
-    fn with_a_stopping_rule_shards_are_whole_cells() {
-        let rule = "[stop]\nfigure = \"rms-T\"\nmethod = \"srivc\"\nstandard-error = 0.05\n";
-        let scenario = large(1000, rule);
-        let mut next = Task { cell: 0, replicate: 0 };
-        let mut empty = 0;
-        for mut plan in plans(&scenario, SHARDS) {
-            assert_eq!((plan.first, plan.first.replicate, plan.end.replicate), (next, 0, 0));
-            empty += u64::from(plan.most() == 0);
-            // More shards than cells: most have nothing to do and say so.
-            assert_eq!(plan.next(10).is_empty(), plan.most() == 0);
-            next = plan.end;
+    fn what_is_stored_is_not_handed_out() {
+        let scenario = swept(2, 600, "");
+        let block = |cell, number| Block { cell, number };
+        let stored = HashMap::from([(block(0, 0), 256), (block(0, 2), 88), (block(1, 1), 10)]);
+        let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &none);
+        let mut tasks = Vec::new();
+        loop {
+            let next = plan.next(100).expect("nothing is read");
+            if next.is_empty() {
+                break;
+            }
+            tasks.extend(next);
         }
-        assert_eq!((next.cell, empty), (1000, SHARDS - 1000));
+        let of = |cell: usize, replicates: Range<u64>| replicates.map(move |replicate| Task { cell, replicate });
+        let expected = of(0, 256..512).chain(of(1, 0..256)).chain(of(1, 266..600));
+        assert_eq!(tasks, expected.collect::<Vec<_>>());
+        assert_eq!(plan.trials, [600, 600]);
     }
 
-    /// Wherever a shard was interrupted, it goes on with the next trial and ends with its last.
     #[test]
-    fn every_shard_goes_on_where_it_was() {
-        let scenario = large(7, "");
-        for mut plan in plans(&scenario, SHARDS) {
-            let whole = plan.most();
-            let first = plan.first;
-            let handed_out = plan.next(3);
-            assert_eq!((handed_out[0], handed_out.len() as u64, plan.left()), (first, 3, whole - 3));
-            plan.go_back_to(handed_out[1]);
-            assert_eq!(plan.left(), whole - 1);
-            let before_last = match plan.end.replicate.checked_sub(2) {
-                Some(replicate) => Task { replicate, ..plan.end },
-                None => Task { cell: plan.end.cell - 1, replicate: scenario.replicates + plan.end.replicate - 2 },
-            };
-            plan.go_back_to(plan.after(before_last));
-            assert_eq!((plan.left(), plan.next(100).len(), plan.left()), (1, 1, 0));
-            assert!(plan.next(1).is_empty());
-        }
+    fn a_rule_sees_a_block_before_the_next_is_handed_out() {
+        let scenario = swept(2, 600, &RULE.replace("0.05", "1e9"));
+        let stored = HashMap::from([(Block { cell: 1, number: 0 }, 256)]);
+        let row = |cell: u64, replicate: u64| StudyRow {
+            cell,
+            replicate,
+            true_t_s: Some(1.0),
+            t_s: Some(1.0 + 0.01 * (replicate % 7) as f64),
+            ..StudyRow::default()
+        };
+        let read = |block: Block| Ok((0..256).map(|replicate| row(block.cell as u64, replicate)).collect());
+        let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
+        let first = plan.next(1000).expect("readable");
+        assert_eq!((first.len(), first[255]), (256, Task { cell: 0, replicate: 255 }));
+        first.iter().for_each(|task| plan.saw(&row(0, task.replicate)));
+        // One block is enough for the rule in the first cell, and in the second it is stored.
+        assert_eq!((plan.next(1000).expect("readable"), plan.trials.as_slice()), (Vec::new(), [256, 256].as_slice()));
     }
 }

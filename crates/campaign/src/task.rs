@@ -5,11 +5,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use serde::{Deserialize, Serialize};
-
 /// One trial of a design.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Task {
     /// Index of the cell.
     pub cell: usize,
@@ -18,8 +15,7 @@ pub struct Task {
 }
 
 /// Part `number` of `of` parts of a study.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(into = "String", try_from = "String")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     /// From 1.
     pub number: u64,
@@ -50,49 +46,20 @@ impl FromStr for Shard {
     }
 }
 
-impl From<Shard> for String {
-    fn from(shard: Shard) -> Self {
-        shard.to_string()
-    }
-}
-
-impl TryFrom<String> for Shard {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
-    }
-}
-
 impl fmt::Display for Shard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.number, self.of)
     }
 }
 
-/// Where a study, or a shard of it, is stored unless another folder is named: shards sort as their numbers.
-pub fn default_folder(name: &str, shard: Shard) -> PathBuf {
-    let whole = Path::new("results").join(name);
-    match shard {
-        Shard::WHOLE => whole,
-        Shard { number, of } => {
-            whole.join("shards").join(format!("{number:0width$}-of-{of}", width = of.to_string().len()))
-        }
-    }
+/// Where a study is stored unless another folder is named.
+pub fn default_folder(name: &str) -> PathBuf {
+    Path::new("results").join(name)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A shell that names the folders of shards with a star names them in their order.
-    #[test]
-    fn folders_of_shards_sort_as_their_numbers() {
-        for of in [9, 10, 10_000, 99_999] {
-            let names: Vec<_> = (1..=of).map(|number| default_folder("s", Shard { number, of })).collect();
-            assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "{of}");
-        }
-    }
 
     #[test]
     fn shards_are_written_as_fractions() {

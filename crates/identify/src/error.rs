@@ -103,10 +103,8 @@ pub enum IdentifyError {
         /// K/T, 1/s².
         gain: f64,
     },
-    /// The system does not start another program, in its words. It is no matter of the record: a study ends with it.
-    #[error("outside: not started: {0}")]
-    NotStarted(String),
-    /// Another program gave no answer, and why, on one line that can be printed; made by [`IdentifyError::outside`].
+    /// An outside estimator gave no answer, and why, on one line that can be printed; made by
+    /// [`IdentifyError::outside`].
     #[error("outside: {0}")]
     Outside(String),
 }
@@ -120,11 +118,11 @@ impl From<Unsolvable> for IdentifyError {
     }
 }
 
-/// Most characters of what another program says.
+/// Most characters of the reason of an outside estimator.
 const LONGEST_REASON: usize = 80;
 
 impl IdentifyError {
-    /// A failure of another program in its own words, on one line of at most 80 characters. Blanks of any kind become
+    /// A failure of an outside estimator in its words, on one line of at most 80 characters. Blanks of any kind become
     /// one, and what cannot be seen is shown as an escape.
     pub fn outside(words: &str) -> Self {
         let one_line = words.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -161,14 +159,14 @@ impl IdentifyError {
             Self::NotConverged { .. } => "not-converged",
             Self::NoRudderEffect { .. } => "no-rudder-effect",
             Self::NotAShip { .. } => "not-a-ship",
-            Self::NotStarted(_) | Self::Outside(_) => "outside",
+            Self::Outside(_) => "outside",
         }
     }
 
-    /// What a row says: the same word, and behind `outside` the words of the other program.
+    /// What a row says: the same word, and behind `outside` the reason that was given.
     pub fn in_a_row(&self) -> Cow<'static, str> {
         match self {
-            Self::NotStarted(_) | Self::Outside(_) => self.to_string().into(),
+            Self::Outside(_) => self.to_string().into(),
             own => own.kind().into(),
         }
     }

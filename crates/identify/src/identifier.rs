@@ -1,8 +1,5 @@
 //! What all methods have in common.
 
-use std::fs::File;
-use std::io;
-
 use trial::Trial;
 
 use crate::error::IdentifyError;
@@ -55,33 +52,4 @@ pub trait Identifier: Send + Sync {
     fn with_seed(&self, _seed: u64) -> Option<Box<dyn Identifier>> {
         None
     }
-
-    /// What another program needs, for a method that is one; `None` for all others.
-    fn outside(&self) -> Option<&dyn Outside> {
-        None
-    }
-}
-
-/// Opens a file to write at its end.
-pub type Opener = Box<dyn Fn() -> io::Result<File> + Send + Sync>;
-
-/// A method that asks another program.
-pub trait Outside {
-    /// The command that is started: a program and its arguments.
-    fn command(&self) -> &[String];
-
-    /// Looks for the program and the scripts that the command names, and starts nothing.
-    ///
-    /// Fails with a sentence that names what is not there.
-    fn find(&self) -> Result<(), String>;
-
-    /// Where what processes that are started from now on say beside their answers goes: opened when there is something,
-    /// written up to a bounded size. Without one it is dropped.
-    fn log_to(&self, open: Opener);
-
-    /// What a person should be told, once: that it was given up.
-    fn notice(&self) -> Option<String>;
-
-    /// Ends the processes that wait for a trial, and the log with them.
-    fn end(&self);
 }

@@ -15,12 +15,10 @@
 //! | `maximum-likelihood` | the same under a random yaw moment, rudder error and coloured compass error |
 //! | `srivc` | refined instrumental variables for continuous time (Young and Jakeman 1980) |
 //! | `recommended` | output error or maximum likelihood, by a rule made from the record |
-//! | `external` | another program, asked in a line of JSON for every trial |
 
 pub mod characteristic_points;
 pub mod error;
 pub mod estimate;
-pub mod external;
 pub mod fourier;
 pub mod fourier_projected;
 pub mod fourier_published;
@@ -33,6 +31,7 @@ pub mod least_squares;
 pub mod likelihood;
 pub mod maximum_likelihood;
 pub mod output_error;
+mod outside_answer;
 mod profile;
 pub mod recommended;
 pub mod registry;
@@ -49,5 +48,6 @@ mod testing;
 
 pub use error::IdentifyError;
 pub use estimate::{Estimate, StopReason, Uncertainty};
-pub use identifier::{Identifier, Outside};
+pub use identifier::Identifier;
+pub use outside_answer::{Answer, Errors};
 pub use registry::IdentifierSettings;

@@ -11,8 +11,6 @@
 //! As a method of its own it makes both fits and returns the one that the rule names, so that a study can hold the
 //! rule.
 
-use std::path::Path;
-
 use document::fit::{Reason, ResidualKind};
 use serde::{Deserialize, Serialize};
 use trial::Trial;
@@ -76,7 +74,7 @@ pub struct Settings {}
 
 impl Settings {
     /// Makes the method; no file is looked for.
-    pub fn build(self, _folder: &Path) -> Result<Recommended, SettingsError> {
+    pub fn build(self) -> Result<Recommended, SettingsError> {
         Ok(Recommended {
             output_error: output_error::Settings::default().build()?,
             maximum_likelihood: maximum_likelihood::Settings::default().build()?,

@@ -1,10 +1,7 @@
 //! The methods of the project by name, with their settings as they are written in scenario files.
 //!
 //! To add a method: a file with its `Settings` and an [`Identifier`], a `mod` for it, and one line in the table below.
-//! The contract of all methods then runs it. A method that has no settings by default, and needs a folder to be made,
-//! stands behind the others.
-
-use std::path::Path;
+//! The contract of all methods then runs it. A method that is made of others stands behind them.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +9,7 @@ use crate::identifier::Identifier;
 use crate::settings::SettingsError;
 
 macro_rules! methods {
-    ($($Method:ident($file:ident)),+ $(,)?; in a folder: $($Outside:ident($outside:ident)),+ $(,)?) => {
+    ($($Method:ident($file:ident)),+ $(,)?; of others: $($Chooser:ident($chooser:ident)),+ $(,)?) => {
         /// A method and its settings; the variant is the key in a scenario file.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
         #[serde(rename_all = "kebab-case")]
@@ -22,27 +19,22 @@ macro_rules! methods {
                 $Method(crate::$file::Settings),
             )+
             $(
-                #[doc = concat!("Settings of ", stringify!($outside), ".")]
-                $Outside(crate::$outside::Settings),
+                #[doc = concat!("Settings of ", stringify!($chooser), ".")]
+                $Chooser(crate::$chooser::Settings),
             )+
         }
 
         impl IdentifierSettings {
-            /// Checks the settings and makes the method. Files that they name are beside those of the program.
+            /// Checks the settings and makes the method.
             pub fn build(&self) -> Result<Box<dyn Identifier>, SettingsError> {
-                self.build_in(Path::new(""))
-            }
-
-            /// Checks the settings and makes the method. Files that they name are in `folder`, or named from there.
-            pub fn build_in(&self, folder: &Path) -> Result<Box<dyn Identifier>, SettingsError> {
                 Ok(match self.clone() {
                     $(Self::$Method(settings) => Box::new(settings.build()?),)+
-                    $(Self::$Outside(settings) => Box::new(settings.build(folder)?),)+
+                    $(Self::$Chooser(settings) => Box::new(settings.build()?),)+
                 })
             }
         }
 
-        /// Every method that has default settings, with them, in the order of reports.
+        /// Every method that is not made of others, with its default settings, in the order of reports.
         pub fn defaults() -> Vec<IdentifierSettings> {
             vec![$(IdentifierSettings::$Method(crate::$file::Settings::default())),+]
         }
@@ -59,7 +51,7 @@ methods! {
     OutputError(output_error),
     Srivc(srivc),
     MaximumLikelihood(maximum_likelihood);
-    in a folder: Recommended(recommended), External(external),
+    of others: Recommended(recommended),
 }
 
 /// Ids of the methods that one record is worth, the best first. Without `srivc`, which comes to the answer of
@@ -77,7 +69,7 @@ pub const USUAL: [&str; 6] = [
 mod tests {
     use crate::fourier_projected::{self, Order};
     use crate::savitzky_golay::SavitzkyGolay;
-    use crate::{characteristic_points, external, fourier_published, least_squares, output_error, srivc};
+    use crate::{characteristic_points, fourier_published, least_squares, output_error, srivc};
 
     use super::IdentifierSettings as Of;
 
@@ -118,20 +110,6 @@ mod tests {
                 "1e-300",
             ),
             (Of::Srivc(srivc::Settings { max_iterations: 1001, ..Default::default() }), "max-iterations", "1001"),
-            (Of::External(external::Settings::new([""; 0])), "command", "a list of 0"),
-            (Of::External(external::Settings::new(["a"; 65])), "command", "a list of 65"),
-            (Of::External(external::Settings::new(["a", " "])), "command", "a list with \" \""),
-            (Of::External(external::Settings::new(["a\0"])), "command", "a list with \"a\\0\""),
-            (
-                Of::External(external::Settings { timeout_s: f64::NAN, ..external::Settings::new(["a"]) }),
-                "timeout-s",
-                "NaN",
-            ),
-            (
-                Of::External(external::Settings { timeout_s: 1e300, ..external::Settings::new(["a"]) }),
-                "timeout-s",
-                "1e300",
-            ),
         ] {
             let error = settings.build().err().expect("it cannot end");
             assert_eq!((error.key, error.found.as_str()), (key, found), "{error}");

@@ -29,7 +29,7 @@ pub fn bench(
         let asked: BenchRequest = request(words.collect())?;
         let method = |(label, function): (String, _)| BenchMethod::new(label, Arc::new(PyIdentifier(function)));
         let own = own.into_iter().map(method).collect();
-        let results = measure(&asked, seed, own, observer.as_ref(), |_, _| Ok(()))?;
+        let results = measure(&asked, seed, own, observer.as_ref(), |_| Ok(()))?;
         let text = results.json().on("describe", "bench.json".as_ref())?;
         Ok((text, results.skipped.iter().map(skipped).collect::<Vec<String>>()))
     };

@@ -1,7 +1,7 @@
 //! A function of Python as a method beside those of the project.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
-use identify::external::{Answer, Errors};
+use identify::{Answer, Errors};
 use identify::{Estimate, Identifier, IdentifyError};
 use nalgebra::Matrix3;
 use pyo3::prelude::*;

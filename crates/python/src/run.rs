@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use campaign::Observer;
 use campaign::collect::collect;
 use campaign::folder::ResultFolder;
-use campaign::task::{Shard, default_folder};
+use campaign::task::default_folder;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -87,8 +87,8 @@ fn study(
 ) -> Result<String, Failure> {
     let scenario = scene.read(seed)?;
     let theme = FigureOptions { paper: None, dpi: 600.0, style: None }.theme()?;
-    let folder = ResultFolder::hold(&out.unwrap_or_else(|| default_folder(&scenario.name, Shard::WHOLE)))?;
-    let stored = collect(&scenario, Shard::WHOLE, &folder, restart, watch)?;
+    let folder = ResultFolder::make(&out.unwrap_or_else(|| default_folder(&scenario.name)))?;
+    let stored = collect(&scenario, &folder, restart, watch)?;
     let publish = || publish::put(&stored, &folder, &theme, FigureChoice::Named);
     let summary = match &watch.threads {
         Some(threads) => threads.install(publish),

@@ -2,11 +2,13 @@
 
 use std::collections::HashMap;
 
-use identify::external::Answer;
-use identify::{Estimate, IdentifyError};
+use identify::{Answer, Estimate, IdentifyError};
 
 /// A trial: its cell, and its number there.
 pub type TrialNumber = (u64, u64);
+
+/// Id of a method whose answers come as a table.
+pub const ID: &str = "external";
 
 /// Answers by trial. A trial without one has failed.
 #[derive(Debug, Clone, PartialEq)]

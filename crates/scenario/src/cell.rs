@@ -194,7 +194,7 @@ pub(crate) fn swept(
     }
     let wire: ScenarioWire = reader::document(&changed).map_err(attribute)?;
     let specification = resolve::specification(&wire, name, folder).map_err(attribute)?;
-    let methods = methods(&wire.identifier, folder).map_err(attribute)?;
+    let methods = methods(&wire.identifier).map_err(attribute)?;
     if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
         return Err(attribute(KeyFault::value(
             KeyPath::dotted("identifier"),

@@ -1,13 +1,12 @@
 //! What decides the rows of a scenario: its document without prose and presentation. Two scenarios with the same one
 //! give the same rows; where they differ, the keys say how.
 
-use std::collections::BTreeSet;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use sha2::{Digest, Sha256};
 use toml::{Table, Value};
-use trial::file::{self, FileError, Kind};
+use trial::file::{self, FileError};
 use trial::reader::RECORD;
 
 use crate::failure::{Failure, OnPath};
@@ -47,39 +46,6 @@ pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
         }
     }
     Ok(hex(&digest.finalize()))
-}
-
-/// A script or program beside a scenario.
-const OF_A_COMMAND: Kind = Kind { name: "a file that a command names", largest: 1 << 30 };
-
-/// A file that a command of a scenario names.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Script {
-    /// How it is named, from the folder of the scenario.
-    pub word: String,
-    /// Where it is.
-    pub path: PathBuf,
-}
-
-/// Those words of commands that are files in the folder of the scenario or named from there.
-pub fn scripts(words: &BTreeSet<&str>, folder: &Path) -> Vec<Script> {
-    let relative = words.iter().filter(|word| Path::new(word).is_relative());
-    let named = relative.map(|word| Script { word: (*word).to_owned(), path: folder.join(word) });
-    named.filter(|script| script.path.is_file()).collect()
-}
-
-/// An identity, and with it the contents of scripts; the identity itself where there are none.
-///
-/// Fails when a script cannot be read.
-pub fn with_files(sha256: String, scripts: &[Script]) -> Result<String, Failure> {
-    let mut digest = Sha256::new_with_prefix(&sha256);
-    for Script { word, path } in scripts {
-        let mut own = Sha256::new();
-        let mut file = file::open(path, OF_A_COMMAND).on("read", path)?;
-        io::copy(&mut file, &mut own).on("read", path)?;
-        digest.update(format!(" {word} {}", hex(&own.finalize())));
-    }
-    Ok(if scripts.is_empty() { sha256 } else { hex(&digest.finalize()) })
 }
 
 /// Bytes as hexadecimal digits.
@@ -143,13 +109,13 @@ mod tests {
         let there =
             document("seed = 1\nsensor.heading-noise-deg = 0.1\nidentifier = [{ method.srivc = {} }]\n[ship.yukun]");
         let here =
-            document("seed = 1.0\nsensor.heading-noise-deg = 0.2\nidentifier = []\nstop.every = 20\n[ship.yukun]");
+            document("seed = 1.0\nsensor.heading-noise-deg = 0.2\nidentifier = []\nstop.figure = 20\n[ship.yukun]");
         assert_eq!(
             differences(&there, &here),
             [
                 "`identifier.0`: { method = { srivc = {} } } there, nothing here",
                 "`sensor.heading-noise-deg`: 0.1 there, 0.2 here",
-                "`stop`: nothing there, { every = 20 } here"
+                "`stop`: nothing there, { figure = 20 } here"
             ]
         );
         assert!(differences(&there, &there).is_empty());

@@ -44,7 +44,7 @@ pub mod words;
 
 pub use answers::Answers;
 pub use cell::{DesignCell, Refusal, TrialSpecification};
-pub use identity::{Script, hex};
+pub use identity::hex;
 pub use method::{Method, MethodName, Procedure, TRACE, identify};
 pub use predictions::Predictions;
 pub use scenario::Scenario;

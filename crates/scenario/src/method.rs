@@ -1,18 +1,17 @@
 //! The methods of a scenario: what each is called, and what it does with a trial.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use ::trace::{EffectId, Rule, Selection, empirical};
 use identify::settings::SettingsError;
-use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError, Outside, external};
+use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use ship::effects::Formula;
 use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
-use crate::answers::Answers;
+use crate::answers::{self, Answers};
 use crate::problem::{KeyFault, KeyPath, of_text};
 use crate::{effect, limits, name};
 
@@ -47,7 +46,7 @@ impl Procedure {
         match self {
             Self::Identify { identifier, .. } => identifier.id(),
             Self::Trace(_) => TRACE,
-            Self::Answers(_) => external::ID,
+            Self::Answers(_) => answers::ID,
         }
     }
 
@@ -58,14 +57,6 @@ impl Procedure {
             Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),
             Self::Trace(_) => None,
             Self::Answers(answers) => Some(answers.to((key.cell, key.replicate))),
-        }
-    }
-
-    /// What another program needs, for a procedure that asks one.
-    pub fn outside(&self) -> Option<&dyn Outside> {
-        match self {
-            Self::Identify { identifier, .. } => identifier.outside(),
-            Self::Trace(_) | Self::Answers(_) => None,
         }
     }
 }
@@ -123,14 +114,14 @@ impl Default for TraceWire {
     }
 }
 
-/// The methods, all with names of their own; files that they name are beside the scenario, in `folder`.
-pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Method>, KeyFault> {
+/// The methods, all with names of their own.
+pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> {
     limits::entries("identifier", wire.len(), limits::MOST_METHODS)?;
     let list = KeyPath::dotted("identifier");
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
     for (index, entry) in wire.iter().enumerate() {
         let key = list.child(index);
-        let procedure = procedure(entry, &key, folder)?;
+        let procedure = procedure(entry, &key)?;
         let label = entry.label.clone().unwrap_or_else(|| procedure.id().to_owned());
         name::label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
         if methods.iter().any(|method| method.label == label) {
@@ -155,11 +146,11 @@ pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Meth
 }
 
 /// What one entry asks for.
-fn procedure(entry: &IdentifierWire, key: &KeyPath, folder: &Path) -> Result<Procedure, KeyFault> {
+fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFault> {
     match (&entry.method, &entry.trace) {
         (Some(settings), None) => {
             let table = key.child("method").child(registry_id(settings));
-            let identifier = settings.build_in(folder).map_err(|error| refused(&table, &error))?;
+            let identifier = settings.build().map_err(|error| refused(&table, &error))?;
             Ok(Procedure::Identify { settings: Some(settings.clone()), identifier: identifier.into() })
         }
         (None, Some(wire)) => {

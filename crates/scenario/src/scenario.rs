@@ -1,10 +1,9 @@
 //! A scenario that has been checked in every cell, and how it is read.
 
-use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use identify::{Identifier, Outside};
+use identify::Identifier;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use simulate::Assumption;
@@ -14,7 +13,7 @@ use trial::file::{self, FileError, Kind};
 use crate::answers::Answers;
 use crate::cell::{self, DesignCell};
 use crate::failure::Failure;
-use crate::identity::{self, Script, hex};
+use crate::identity::{self, hex};
 use crate::method::{Method, MethodName, Procedure, methods};
 use crate::part::ScenarioPart;
 use crate::predictions::Predictions;
@@ -47,9 +46,7 @@ pub struct Scenario {
     pub stop: Option<StopRule>,
     /// What every answer has to predict.
     pub predictions: Option<Predictions>,
-    /// Files that its commands name, in the order of their names.
-    pub scripts: Vec<Script>,
-    /// SHA-256 of all that decides the rows, the seed of the command line apart, and of the files it reads.
+    /// SHA-256 of all that decides the rows, the seed of the command line apart, and of the records it replays.
     pub design_sha256: String,
     /// The file as it was read.
     pub text: String,
@@ -63,8 +60,6 @@ struct ManifestScenario {
     name: String,
     seed: u64,
     scenario: String,
-    /// The folder beside the manifest that stands for that of the scenario.
-    sources: Option<String>,
 }
 
 impl Scenario {
@@ -80,34 +75,22 @@ impl Scenario {
                     of_text(KeyPath::dotted("name"), &manifest.name, unfit);
                 Failure::at(path, &text, locate::span(&text, &key, mark), &found, &expected, &advice)
             })?;
-            let (seed, beside) = (Some(seed.unwrap_or(manifest.seed)), folder_of(path));
-            // A manifest that was copied to where the scenario was finds its files there.
-            let kept = manifest.sources.map(|sources| beside.join(sources)).filter(|kept| kept.is_dir());
-            return Self::parse_in(&kept.unwrap_or(beside), path, &manifest.name, manifest.scenario, seed);
+            return Self::parse(path, &manifest.name, manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
         }
         Self::parse(path, &name::of_file(path)?, text, seed)
     }
 
     /// Resolves the text of a scenario; `path` is where messages and relative files refer to.
     pub fn parse(path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
-        Self::parse_in(&folder_of(path), path, name, text, seed)
-    }
-
-    /// The same with relative files from a folder.
-    fn parse_in(folder: &Path, path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
+        let folder = &folder_of(path);
         let document: Table = text.parse().map_err(|error| not_toml(path, &text, &error))?;
         let scenario = Self::of_document(&document, name, folder).map_err(|problem| {
             let span = locate::span(&text, &problem.key, problem.mark);
             Failure::at(path, &text, span, &problem.found, &problem.expected, &problem.advice)
         })?;
-        let methods = scenario.cells.iter().flat_map(|cell| &cell.methods);
-        let outside = methods.filter_map(|method| method.procedure.outside());
-        let words: BTreeSet<&str> = outside.flat_map(|outside| outside.command()).map(String::as_str).collect();
-        let scripts = identity::scripts(&words, folder);
         let design_sha256 = identity::sha256_of(&identity::design_of(&document), folder)?;
-        let design_sha256 = identity::with_files(design_sha256, &scripts)?;
         let seed = seed.unwrap_or(scenario.seed);
-        Ok(Self { seed, scripts, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
+        Ok(Self { seed, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
     }
 
     /// Resolves a document; its identity and text are for the caller to set.
@@ -130,7 +113,7 @@ impl Scenario {
         words.check()?;
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
         resolve::specification(&wire, name, folder)?;
-        let methods = methods(&wire.identifier, folder)?;
+        let methods = methods(&wire.identifier)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose()?;
         wire.stop.as_ref().map_or(Ok(()), |stop| stop.check(&methods))?;
         let axes = wire.sweep.iter().enumerate().map(|(index, axis)| axis.resolve(index));
@@ -157,7 +140,6 @@ impl Scenario {
             words,
             stop: wire.stop,
             predictions,
-            scripts: Vec::new(),
             design_sha256: String::new(),
             sha256: String::new(),
             text: String::new(),
@@ -168,9 +150,8 @@ impl Scenario {
     ///
     /// Fails when the label cannot be one, or is that of another method.
     pub fn with_identifier(self, label: &str, identifier: Arc<dyn Identifier>) -> Result<Self, Failure> {
-        let command = identifier.outside().map_or_else(String::new, |outside| format!(" {:?}", outside.command()));
-        let own = format!("{}{command}", identifier.id());
-        self.with(label, Procedure::Identify { settings: None, identifier }, &own)
+        let id = identifier.id();
+        self.with(label, Procedure::Identify { settings: None, identifier }, id)
     }
 
     /// The same scenario with answers from elsewhere behind its methods.
@@ -223,14 +204,6 @@ impl Scenario {
             .iter()
             .map(|method| MethodName { label: method.label.clone(), id: method.procedure.id().to_owned() })
             .collect()
-    }
-
-    /// The programs that a run starts: every command once, with the first method that has it.
-    pub fn outside(&self) -> Vec<(&Method, &dyn Outside)> {
-        let mut commands = HashSet::new();
-        let methods = self.cells.iter().flat_map(|cell| &cell.methods);
-        let outside = methods.filter_map(|method| Some((method, method.procedure.outside()?)));
-        outside.filter(|(_, outside)| commands.insert(outside.command())).collect()
     }
 
     /// Labels of the methods, in the order of the scenario.

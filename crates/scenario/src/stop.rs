@@ -16,13 +16,6 @@ pub struct StopRule {
     pub method: Option<String>,
     /// Per cent of K or T; points of per cent for a coverage.
     pub standard_error: f64,
-    /// Trials of a cell between two looks.
-    #[serde(default = "hundred")]
-    pub every: u64,
-}
-
-fn hundred() -> u64 {
-    100
 }
 
 /// An index of the response.
@@ -63,9 +56,6 @@ pub enum StopFigure {
     CoverageT,
 }
 
-/// Fewest trials between two looks: a standard error of fewer is chance itself.
-const FEWEST: u64 = 20;
-
 impl StopFigure {
     /// The index it is about.
     pub fn index(self) -> Index {
@@ -84,11 +74,6 @@ impl StopRule {
             let advice = "give the standard error, in per cent, at which a cell has enough trials";
             let expected = "expected a finite number above 0";
             return Err(KeyFault::of(key.child("standard-error"), ShortNumber(self.standard_error), expected, advice));
-        }
-        if self.every < FEWEST {
-            let expected = format!("expected at least {FEWEST}");
-            let advice = "look less often, or leave the key out for 100";
-            return Err(KeyFault::of(key.child("every"), self.every, expected, advice));
         }
         let labels: Vec<&str> = methods.iter().map(|method| method.label.as_str()).collect();
         let words = ["`stop.method` is", "no such method in this scenario"];

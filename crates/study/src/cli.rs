@@ -6,12 +6,11 @@ use std::process::ExitCode;
 use std::sync::LazyLock;
 
 use crate::commands::{
-    bench, check, doctor, find, fit, list, merge, overview, predict, publish, report, run, schema, score, shell,
-    sidecar, simulate, trace,
+    bench, check, doctor, find, fit, list, overview, predict, report, run, schema, score, shell, sidecar, simulate,
+    trace,
 };
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
-use crate::{failures, screen, threads};
-use campaign::disk::unsupported;
+use crate::{failures, threads};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use scenario::failure::Failure;
@@ -72,8 +71,6 @@ enum Command {
     Report(With<report::ReportRequest>),
     /// Write one page over all published studies of a folder
     Overview(With<overview::OverviewRequest>),
-    /// Make all published results of a folder with one program, and say what changed; goes on where it was stopped
-    Publish(With<publish::PublishRequest>),
     /// Look at the machine and the terminal: versions, threads, instruction sets, whether files can be written
     Doctor(Common),
     /// Print the JSON schema of a file, for editors and programs
@@ -82,29 +79,18 @@ enum Command {
     Completions(With<shell::CompletionsRequest>),
     /// Write manual pages, one for every command
     Man(With<shell::ManRequest>),
-    /// Join the shards of one study
-    Merge(With<merge::MergeRequest>),
 }
 
 impl<R: Args> With<R> {
     /// Runs a command that works on one thread.
     fn answer(&self, run: impl FnOnce(&R, &Common) -> Result<(), Failure>) -> Result<(), Failure> {
-        warn_of_file_systems(&self.common);
         run(&self.request, &self.common)
     }
 
     /// Runs a command that works on several.
     fn work(&self, run: impl FnOnce(&R, &Common) -> Result<(), Failure>) -> Result<(), Failure> {
-        warn_of_file_systems(&self.common);
         threads::start(&self.common)?;
         run(&self.request, &self.common)
-    }
-}
-
-/// Says once what the file system of results lacks.
-fn warn_of_file_systems(common: &Common) {
-    if !common.quiet {
-        unsupported::warn_with(screen::warn);
     }
 }
 
@@ -166,7 +152,6 @@ fn answer(cli: Cli) -> Result<(), Failure> {
     let Some(command) = cli.command else {
         let none = "no scenario is named; try `study scenarios/yukun.toml` or `study --help`";
         let scenario = cli.scenario.ok_or_else(|| Failure::input(none))?;
-        warn_of_file_systems(&cli.common);
         threads::start(&cli.common)?;
         return run::run(&scenario, &cli.request, &cli.common);
     };
@@ -178,8 +163,6 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         Command::Score(own) => own.work(score::run),
         Command::Bench(own) => own.work(bench::run),
         Command::Report(own) => own.work(report::run),
-        Command::Publish(own) => own.work(publish::run),
-        Command::Merge(own) => own.work(merge::run),
         Command::Find(own) => own.answer(find::run),
         Command::Sidecar(own) => own.answer(sidecar::run),
         Command::Check(own) => own.answer(check::run),

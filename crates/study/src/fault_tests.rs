@@ -1,17 +1,16 @@
-//! Every file operation of a study, a merge, a report and a rerun fails once: afterwards the same commands end with the
-//! same bytes, or say what is missing.
+//! Every file operation of a study, a report and a rerun fails once: afterwards the same commands end with the same
+//! bytes, or say what is missing.
 
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::commands::merge::{self, MergeRequest};
 use crate::commands::report::{self, ReportRequest};
 use crate::options::{Common, FigureChoice, FigureOptions, Format, StudyFigureOptions};
 use campaign::NoObserver;
-use campaign::collect::collect;
+use campaign::collect::{collect, collect_shard};
 use campaign::disk::faults;
-use campaign::files;
+use campaign::files::{BLOCK_TIMINGS, MANIFEST, ROWS, TIMINGS};
 use campaign::folder::ResultFolder;
 use campaign::task::Shard;
 use scenario::Scenario;
@@ -51,19 +50,22 @@ fn report_of(folder: &Path) -> ReportRequest {
 }
 
 /// Runs a scenario into a folder.
-fn run(scenario: &Scenario, shard: Shard, folder: &Path) -> Result<(), Failure> {
-    collect(scenario, shard, &ResultFolder::hold(folder)?, false, &NoObserver).map(drop)
+fn run(scenario: &Scenario, folder: &Path) -> Result<(), Failure> {
+    collect(scenario, &ResultFolder::make(folder)?, false, &NoObserver).map(drop)
 }
 
-/// All files of a folder with their bytes; but times differ from run to run.
-fn content(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(folder)
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry"))
-        .map(|entry| (entry.file_name().to_string_lossy().into_owned(), entry.path()))
-        .filter(|(name, _)| !["timings.csv", "manifest.toml"].contains(&name.as_str()))
-        .map(|(name, path)| (name, fs::read(path).expect("only files are left")))
-        .collect();
+/// All files of a folder and those in it, with their bytes; but times differ from run to run.
+fn content(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder").flatten() {
+        let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
+        match path.is_dir() {
+            true if name == BLOCK_TIMINGS => {}
+            true => files.extend(content(&path)),
+            false if [TIMINGS, MANIFEST].contains(&name.as_str()) => {}
+            false => files.push((PathBuf::from(name), fs::read(path).expect("a file"))),
+        }
+    }
     files.sort();
     files
 }
@@ -132,55 +134,49 @@ fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> 
 fn no_fault_of_the_disk_loses_anything_of_a_study() {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let (study, told) = (scenario(""), scenario("finding = \"No.\"\n"));
-    assert!(fail_each(None, |folder| run(&study, Shard::WHOLE, folder)) > 50);
+    assert!(fail_each(None, |folder| run(&study, folder)) > 50);
     // A rerun that has new words to say.
     let whole = desk.path().join("whole");
-    run(&study, Shard::WHOLE, &whole).unwrap_or_else(|failure| panic!("{failure}"));
-    assert!(fail_each(Some(&whole), |folder| run(&told, Shard::WHOLE, folder)) > 20);
+    run(&study, &whole).unwrap_or_else(|failure| panic!("{failure}"));
+    assert!(fail_each(Some(&whole), |folder| run(&told, folder)) > 20);
 }
 
 #[test]
 fn no_fault_of_the_disk_loses_anything_of_a_report() {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let whole = desk.path().join("whole");
-    run(&scenario(""), Shard::WHOLE, &whole).unwrap_or_else(|failure| panic!("{failure}"));
+    run(&scenario(""), &whole).unwrap_or_else(|failure| panic!("{failure}"));
     assert!(fail_each(Some(&whole), |folder| report::run(&report_of(folder), &quiet(None))) > 50);
 }
 
+/// Every operation of putting blocks together that were computed elsewhere fails once.
 #[test]
-fn no_fault_of_the_disk_loses_anything_of_a_merge() {
+fn no_fault_of_the_disk_loses_anything_of_shards() {
     let desk = tempfile::tempdir().expect("a temporary folder");
-    let study = scenario("");
-    let shards: Vec<PathBuf> = (1..=2).map(|number: u64| desk.path().join(number.to_string())).collect();
-    for (number, folder) in (1..).zip(&shards) {
-        run(&study, Shard { number, of: 2 }, folder).unwrap_or_else(|failure| panic!("{failure}"));
+    let (study, shards) = (scenario(""), desk.path().join("shards"));
+    for number in 1..=2 {
+        ResultFolder::make(&shards)
+            .and_then(|folder| collect_shard(&study, Shard { number, of: 2 }, &folder, false, &NoObserver))
+            .unwrap_or_else(|failure| panic!("{failure}"));
     }
-    // All figures fail above.
-    let style = StudyFigureOptions { figures: FigureChoice::None, ..STYLE };
-    let request = MergeRequest { folders: shards, style };
-    assert!(fail_each(None, |folder| merge::run(&request, &quiet(Some(folder)))) > 50);
+    assert!(fail_each(Some(&shards), |folder| report::run(&report_of(folder), &quiet(None))) > 50);
 }
 
-/// Every operation of going on after a kill fails once; no part is lost by it.
+/// A block that is whole stays, whatever fails when its study goes on.
 #[test]
-fn no_fault_of_the_disk_loses_a_part() {
+fn no_fault_of_the_disk_loses_a_block() {
     let desk = tempfile::tempdir().expect("a temporary folder");
-    let study = scenario("");
-    // Killed before the parts were joined.
-    let cut = desk.path().join("cut");
-    let armed = faults::arm(&cut.join("rows.parquet.tmp"), 0..u64::MAX);
-    run(&study, Shard::WHOLE, &cut).expect_err("the disk is gone");
-    drop(armed);
-    let parts = |folder: &Path| {
-        let names = fs::read_dir(folder.join("unfinished")).into_iter().flatten().flatten();
-        names.filter(|entry| entry.path().extension().is_some_and(|extension| extension == "parquet")).count()
-    };
-    assert_eq!(parts(&cut), 1);
+    let (study, begun) = (scenario(""), desk.path().join("begun"));
+    ResultFolder::make(&begun)
+        .and_then(|folder| collect_shard(&study, Shard { number: 1, of: 2 }, &folder, false, &NoObserver))
+        .unwrap_or_else(|failure| panic!("{failure}"));
+    let first = |folder: &Path| fs::read(folder.join(ROWS).join("0000-0000.parquet")).ok();
+    let bytes = first(&begun);
+    assert!(bytes.is_some());
     let go_on = |folder: &Path| {
-        let outcome = run(&study, Shard::WHOLE, folder);
-        let is_whole = folder.join(files::MANIFEST).exists();
-        assert!(is_whole || parts(folder) == 1, "a part is gone: {outcome:?}");
+        let outcome = run(&study, folder);
+        assert!(first(folder) == bytes, "a block is gone: {outcome:?}");
         outcome
     };
-    assert!(fail_each(Some(&cut), go_on) > 50);
+    assert!(fail_each(Some(&begun), go_on) > 20);
 }

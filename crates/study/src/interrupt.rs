@@ -16,23 +16,17 @@ const INTERRUPTED: i32 = 1;
 
 /// Ends the program while work goes on that cannot be stopped, with the message of a failure.
 pub fn give_up(failure: &Failure) -> ! {
-    end(i32::from(failures::fail(failure)))
+    std::process::exit(i32::from(failures::fail(failure)))
 }
 
-/// Ends the program, and the processes of outside estimators with it: a terminal does not tell them.
-fn end(code: i32) -> ! {
-    identify::external::end_all();
-    std::process::exit(code)
-}
-
-/// Sees to it that an interruption ends outside estimators, too. Where no handler can be installed, an interruption
-/// ends the program, as without one.
-pub fn install() {
+/// Takes interruptions from now on. Where no handler can be installed, an interruption ends the program, as without
+/// one.
+fn install() {
     INSTALLED.call_once(|| {
         let handler = || {
             let first = !ASKED.swap(true, Ordering::SeqCst);
             if !(first && LISTENING.load(Ordering::SeqCst)) {
-                end(INTERRUPTED);
+                std::process::exit(INTERRUPTED);
             }
         };
         let _ = ctrlc::set_handler(handler);

@@ -4,7 +4,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | commands and exit codes | [`cli`], [`commands`] |
-//! | options | [`options`], [`outside`], `completed` |
+//! | options | [`options`], `completed` |
 //! | what a command works out | [`work`] |
 //! | what it leaves for other programs | [`documents`] |
 //! | tables, figures and pages | [`views`] |
@@ -20,7 +20,6 @@ mod fault_tests;
 pub mod formula_options;
 mod interrupt;
 pub mod options;
-pub mod outside;
 mod progress;
 pub mod records;
 pub mod scales;

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use crate::completed::{self, completed};
 use crate::formula_options::{Formulas, formula, formulas};
-use crate::outside::NamedCommand;
 pub use crate::ship_options::{ScaleOptions, ShipOptions};
 pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, PageFigures, StudyFigureOptions};
 use ::trace::{EffectId, Rule, Selection};
@@ -23,7 +22,7 @@ use trial::clock::Stamp;
 /// How a scenario is run.
 #[derive(Debug, Clone, Args)]
 pub struct RunRequest {
-    /// Run part I of N only, into a folder of its own; `study merge` joins the parts
+    /// Run part I of N only; all parts may have one folder, or be copied into one, and `study report` makes its page
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
     /// Discard rows of an earlier run in the folder instead of going on with them
@@ -173,9 +172,6 @@ pub struct FitRequest {
     /// errors, is the prior of this one; can be given several times
     #[arg(long = "prior", value_name = "MODEL.json")]
     pub priors: Vec<PathBuf>,
-    /// Also ask another program: it is started, and reads and writes lines of JSON
-    #[arg(long = "external", value_name = "LABEL=COMMAND")]
-    pub external: Vec<NamedCommand>,
     /// How the records are read
     #[command(flatten)]
     pub reading: ReadingOptions,
@@ -416,7 +412,7 @@ pub enum Described {
     Trials,
     /// NAME.truth.json, beside a simulated record
     Truth,
-    /// What a study, `report`, `merge` and `score` say with --format json
+    /// What a study, `report` and `score` say with --format json
     Study,
     /// What a shard of a study says
     Shard,
@@ -432,8 +428,6 @@ pub enum Described {
     SidecarAnswer,
     /// What `overview` says
     Overview,
-    /// What `publish` says
-    Publish,
     /// What every command says on standard error when it fails
     Error,
 }

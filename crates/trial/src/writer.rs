@@ -1,9 +1,11 @@
 //! Writing a record as CSV under the column names of the contract, so that reading it gives the same record. Of what a
-//! table cannot hold, a sidecar has length and speed of the ship and the declared weather; the rest is not written.
+//! table cannot hold, a sidecar has length and speed of the ship, the declared weather and the declared noise; the rest
+//! is not written.
 
 use std::io::Write;
 
 use ship::Particulars;
+use ship::angle::to_deg;
 
 use crate::channel::{Channel, TIME_COLUMN};
 use crate::record::Trial;
@@ -42,12 +44,16 @@ pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
     table.flush()
 }
 
-/// The sidecar of a record, as TOML: the calm that it declares, and length and speed of its ship. `None` where it has
-/// neither.
+/// The sidecar of a record, as TOML: the calm that it declares, length and speed of its ship, and the declared noise of
+/// its instruments. `None` where it has none of these.
 pub fn sidecar(trial: &Trial) -> Option<String> {
     let ship = |Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n");
     let calm = trial.is_calm().then(|| String::from("weather = \"none\"\n"));
-    let text: String = calm.into_iter().chain(trial.particulars().map(ship)).collect();
+    let crate::Noise { heading, yaw_rate, rudder } = trial.noise();
+    let kinds = [("heading-deg", heading), ("yaw-rate-deg-s", yaw_rate), ("rudder-deg", rudder)];
+    let noise: String = kinds.iter().filter_map(|(key, sd)| Some(format!("{key} = {:?}\n", to_deg((*sd)?)))).collect();
+    let noise = (!noise.is_empty()).then(|| format!("[noise]\n{noise}"));
+    let text: String = calm.into_iter().chain(trial.particulars().map(ship)).chain(noise).collect();
     (!text.is_empty()).then_some(text)
 }
 

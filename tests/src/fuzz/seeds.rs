@@ -2,13 +2,13 @@
 
 use std::sync::LazyLock;
 
+use campaign::block::Block;
 use campaign::collect::collect;
 use campaign::design::Design;
 use campaign::files;
 use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
 use campaign::store::StoredStudy;
-use campaign::task::Shard;
 use scenario::Scenario;
 use tempfile::TempDir;
 
@@ -27,8 +27,8 @@ static STUDY: LazyLock<Seed> = LazyLock::new(|| {
     let scenario =
         Scenario::parse(&path, "small", include_str!("../../fuzz/corpus/scenario/small.toml").to_owned(), None)
             .unwrap_or_else(|failure| panic!("{failure}"));
-    ResultFolder::hold(folder.path())
-        .and_then(|held| collect(&scenario, Shard::WHOLE, &held, false, &campaign::NoObserver))
+    ResultFolder::make(folder.path())
+        .and_then(|held| collect(&scenario, &held, false, &campaign::NoObserver))
         .unwrap_or_else(|failure| panic!("{failure}"));
     let stored = StoredStudy::read(folder.path()).unwrap_or_else(|failure| panic!("{failure}"));
     let StoredStudy { design, manifest, .. } = stored;
@@ -44,8 +44,9 @@ fn stored(name: &str) -> Vec<Vec<u8>> {
     vec![super::read(&study().folder.path().join(name))]
 }
 
+/// The first block of rows.
 pub(super) fn rows() -> Vec<Vec<u8>> {
-    stored(files::ROWS)
+    stored(&format!("{}/{}.parquet", files::ROWS, Block { cell: 0, number: 0 }))
 }
 
 pub(super) fn cells() -> Vec<Vec<u8>> {

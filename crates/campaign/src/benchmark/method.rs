@@ -8,7 +8,7 @@ use ::trace::Analysis;
 use ::trace::record::PreparedRecord;
 use document::trace::EffectEntry;
 use identify::replay::{Replay, replay};
-use identify::{Estimate, Identifier, Outside, registry};
+use identify::{Estimate, Identifier, registry};
 use scenario::failure::Failure;
 use scenario::{TRACE, name};
 use simulate::StreamKey;
@@ -104,14 +104,6 @@ impl BenchMethod {
                 "the same from heading, yaw rate and rudder alone, as all others"
             }
             BenchProcedure::StraightOn => "a ship that keeps its heading: the floor",
-        }
-    }
-
-    /// What another program needs, for a method that is one.
-    pub fn outside(&self) -> Option<&dyn Outside> {
-        match &self.procedure {
-            BenchProcedure::Identify(identifier) => identifier.outside(),
-            BenchProcedure::Trace { .. } | BenchProcedure::StraightOn => None,
         }
     }
 

@@ -15,7 +15,6 @@ use crate::benchmark::method::{self, BenchMethod, BenchModel, Failed};
 use crate::benchmark::record_store::{RecordStore, UsedFile};
 use crate::benchmark::results::{BenchDocument, Present, Skipped};
 use crate::engine::{self, simulate, truths};
-use crate::outside::tell;
 use crate::statistics::grouped;
 use crate::task::Task;
 
@@ -73,7 +72,6 @@ pub fn run(
     observer.begin(work.len() as u64, 0);
     let answer = |(fit, method): &(&SharedFit, &BenchMethod)| {
         let answers = (!observer.is_asked_to_stop()).then(|| answers(fit, method));
-        method.outside().into_iter().for_each(|outside| tell(method.label(), outside, observer));
         observer.advance();
         answers
     };

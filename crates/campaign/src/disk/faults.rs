@@ -11,8 +11,6 @@ struct DiskFault {
     root: PathBuf,
     failing: Range<u64>,
     seen: u64,
-    /// Error of the calls that a file system may lack.
-    lack: Option<i32>,
 }
 
 static FAULTS: Mutex<Vec<DiskFault>> = Mutex::new(Vec::new());
@@ -25,19 +23,10 @@ pub struct Armed(PathBuf);
 
 /// Lets the operations below `root` with these numbers, counted from 0, fail.
 pub fn arm(root: &Path, failing: Range<u64>) -> Armed {
-    begin(DiskFault { root: root.to_owned(), failing, seen: 0, lack: None })
-}
-
-/// Lets locks and waiting for the disk fail below `root` with an error of the system.
-pub fn lack(root: &Path, error: i32) -> Armed {
-    begin(DiskFault { root: root.to_owned(), failing: 0..0, seen: 0, lack: Some(error) })
-}
-
-fn begin(fault: DiskFault) -> Armed {
-    let root = fault.root.clone();
+    let fault = DiskFault { root: root.to_owned(), failing, seen: 0 };
     FAULTS.lock().unwrap_or_else(PoisonError::into_inner).push(fault);
     ARMED.fetch_add(1, Ordering::SeqCst);
-    Armed(root)
+    Armed(root.to_owned())
 }
 
 impl Armed {
@@ -67,14 +56,4 @@ pub(super) fn strike(path: &Path) -> io::Result<()> {
         true => Err(io::Error::other(format!("fault {number}"))),
         false => Ok(()),
     }
-}
-
-/// Fails where the file system of a test lacks locks and waiting.
-pub(super) fn is_lacking(path: &Path) -> io::Result<()> {
-    if ARMED.load(Ordering::Relaxed) == 0 {
-        return Ok(());
-    }
-    let faults = FAULTS.lock().unwrap_or_else(PoisonError::into_inner);
-    let lack = faults.iter().find(|fault| path.starts_with(&fault.root)).and_then(|fault| fault.lack);
-    lack.map_or(Ok(()), |error| Err(io::Error::from_raw_os_error(error)))
 }

@@ -1,104 +1,136 @@
-//! Parquet files of rows, written and read a few rows at a time, so that neither needs memory in proportion to the
-//! file.
+//! A block of rows as a Parquet file of one row group. Its metadata say of which study, program and block it is, and
+//! hold the SHA-256 of the values: whoever reads it knows that it is whole, wherever it was copied.
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::sync_channel;
 
 use bytes::Bytes;
 use parquet::basic::Compression;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::file::metadata::{FileMetaData, KeyValue};
 use parquet::file::properties::WriterProperties;
-use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
+use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::ColumnPath;
+use scenario::hex;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use trial::decoder::{CheckedPages, PageHead};
 
 use super::layout::{RowLayout, Values};
 use super::row::StudyRow;
-use crate::disk;
-use crate::folder::{ResultFolder, TemporaryFile};
-use scenario::failure::{Failure, OnPath};
-use trial::decoder::{CheckedPages, PageHead};
+use crate::block::Block;
 
-/// Rows of a row group. Part of the identity of a file: groups are cut here however the rows arrive.
-const GROUP: usize = 65_536;
+/// Key of the label in the metadata of the file, and that of the SHA-256 of the label.
+const LABEL: &str = "kempf.block";
+const LABEL_SHA256: &str = "kempf.block-sha256";
 
-/// Rows handed out at a time.
-const BATCH: usize = 4096;
+/// Longest text of a row, bytes: a failure in the words of another program is far shorter.
+const MAX_TEXT_BYTES: usize = 4096;
 
-/// Longest text in a row, bytes; the labels and words that studies write are shorter.
-const LONGEST_TEXT: usize = 4096;
+/// Largest column of a block when it is unpacked, bytes: texts of traces and predictions.
+const MAX_COLUMN_BYTES: i64 = 1 << 28;
 
-/// Largest size of one column of a row group before it is packed, bytes.
-const LARGEST_COLUMN: i64 = 1 << 28;
+/// Largest page when it is unpacked, bytes, and the most values in one.
+const MAX_PAGE_BYTES: u64 = 1 << 24;
+const MAX_PAGE_VALUES: u64 = 1 << 20;
 
-/// Writes rows in their order to a new file, which appears under its name whole or not at all.
-pub struct RowWriter<'a> {
-    layout: &'a RowLayout,
-    path: PathBuf,
-    file: SerializedFileWriter<TemporaryFile>,
-    waiting: Vec<StudyRow>,
+/// Whether a page is one of a block.
+fn fits(page: PageHead) -> bool {
+    page.unpacked <= MAX_PAGE_BYTES && page.values <= MAX_PAGE_VALUES
 }
 
-impl<'a> RowWriter<'a> {
-    /// Begins a file.
-    pub fn create(folder: &ResultFolder, name: &str, layout: &'a RowLayout) -> Result<Self, Failure> {
-        let file = folder.create(name)?;
-        let path = file.path().to_owned();
-        let mut properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
-        for name in layout.names().filter(|name| !RowLayout::repeats(name)) {
-            properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![name]), false);
-        }
-        let file = SerializedFileWriter::new(file, Arc::new(layout.schema()), Arc::new(properties.build()))
-            .on("write", &path)?;
-        Ok(Self { layout, path, file, waiting: Vec::new() })
-    }
+/// What a block says of itself.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BlockLabel {
+    /// SHA-256 of the design of the study.
+    pub design: String,
+    /// The program that computed it.
+    pub program: String,
+    /// Index of the cell.
+    pub cell: usize,
+    /// Index of the block in its cell.
+    pub block: u64,
+}
 
-    /// Adds rows.
-    pub fn push(&mut self, rows: impl IntoIterator<Item = StudyRow>) -> Result<(), Failure> {
-        for row in rows {
-            self.waiting.push(row);
-            if self.waiting.len() == GROUP {
-                self.write_group()?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Ends the file, waits until it is on the disk and returns it, still without its name, and its SHA-256.
-    pub fn finish(mut self) -> Result<(TemporaryFile, String), Failure> {
-        if !self.waiting.is_empty() {
-            self.write_group()?;
-        }
-        let mut file = self.file.into_inner().on("finish", &self.path)?;
-        let sha256 = file.seal()?;
-        Ok((file, sha256))
-    }
-
-    fn write_group(&mut self) -> Result<(), Failure> {
-        let path = &self.path;
-        let mut group = self.file.next_row_group().on("write", path)?;
-        for values in self.layout.take(&self.waiting) {
-            let mut target = group.next_column().on("write", path)?.expect("the file has the columns of its layout");
-            match values {
-                Values::Counts(values) => write::<Int64Type>(&mut target, values),
-                Values::Numbers(values) => write::<DoubleType>(&mut target, values),
-                Values::Texts(values) => {
-                    let bytes = |text: String| ByteArray::from(text.into_bytes());
-                    write::<ByteArrayType>(&mut target, values.into_iter().map(|text| text.map(bytes)).collect())
-                }
-            }
-            .on("write", path)?;
-            target.close().on("write", path)?;
-        }
-        group.close().on("write", path)?;
-        self.waiting.clear();
-        Ok(())
+impl BlockLabel {
+    /// The block.
+    pub fn block(&self) -> Block {
+        Block { cell: self.cell, number: self.block }
     }
 }
 
-/// Writes the values that are there, and where they are.
+/// A label with what its file holds.
+#[derive(Serialize, Deserialize)]
+struct SealedLabel {
+    #[serde(flatten)]
+    label: BlockLabel,
+    rows: usize,
+    values_sha256: String,
+}
+
+/// Why a file is not the block that is expected.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Damage {
+    /// It is not what was written, in words.
+    Changed(String),
+    /// It is a whole block of another study, program or place.
+    Foreign(BlockLabel),
+}
+
+impl From<String> for Damage {
+    fn from(words: String) -> Self {
+        Self::Changed(words)
+    }
+}
+
+/// SHA-256 of columns.
+fn sha256_of(columns: &[Values]) -> String {
+    let mut digest = Sha256::new();
+    let mut bytes = Vec::new();
+    for column in columns {
+        bytes.clear();
+        column.write_to(&mut bytes);
+        digest.update(&bytes);
+    }
+    hex(&digest.finalize())
+}
+
+/// The file of a block.
+pub fn encode(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> Result<Vec<u8>, String> {
+    written(rows, label, layout).map_err(|error| error.to_string())
+}
+
+fn written(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> parquet::errors::Result<Vec<u8>> {
+    let mut properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
+    for name in layout.names().filter(|name| !RowLayout::repeats(name)) {
+        properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![name]), false);
+    }
+    let mut file = SerializedFileWriter::new(Vec::new(), Arc::new(layout.schema()), Arc::new(properties.build()))?;
+    let columns: Vec<Values> = layout.take(rows).collect();
+    let label = SealedLabel { label: label.clone(), rows: rows.len(), values_sha256: sha256_of(&columns) };
+    let mut group = file.next_row_group()?;
+    for values in columns {
+        let mut target = group.next_column()?.expect("the file has the columns of its layout");
+        match values {
+            Values::Counts(values) => write::<Int64Type>(&mut target, values),
+            Values::Numbers(values) => write::<DoubleType>(&mut target, values),
+            Values::Texts(values) => {
+                let bytes = |text: String| ByteArray::from(text.into_bytes());
+                write::<ByteArrayType>(&mut target, values.into_iter().map(|text| text.map(bytes)).collect())
+            }
+        }?;
+        target.close()?;
+    }
+    group.close()?;
+    let label = serde_json::to_string(&label).expect("texts and numbers");
+    let sha256 = hex(&Sha256::digest(&label));
+    file.append_key_value_metadata(KeyValue::new(LABEL.to_owned(), label));
+    file.append_key_value_metadata(KeyValue::new(LABEL_SHA256.to_owned(), sha256));
+    file.into_inner()
+}
+
+/// Writes the values of a column; those that are missing have level 0.
 fn write<T: DataType>(
     target: &mut SerializedColumnWriter<'_>,
     values: Vec<Option<T::T>>,
@@ -108,120 +140,61 @@ fn write<T: DataType>(
     target.typed::<T>().write_batch(&values, Some(&present), None)
 }
 
-/// Reads rows back in their order. What it reads may have been damaged, or made to do harm: sizes are looked at before
-/// anything is unpacked, and where the decoder gives up the reader fails.
-pub struct RowReader<'a, B: ChunkReader + 'static> {
-    layout: &'a RowLayout,
-    path: PathBuf,
-    file: SerializedFileReader<CheckedPages<B>>,
-    group: usize,
-    columns: Vec<ColumnReader>,
-    left: usize,
-}
-
-/// Bytes of a page before it is packed, at most; the writer begins a new page at about one megabyte.
-const LARGEST_PAGE: u64 = 1 << 24;
-
-/// Values of a page, at most.
-const MOST_VALUES: u64 = 1 << 20;
-
-/// Whether a page of a study may state so much: the decoder would reserve it.
-fn fits(page: PageHead) -> bool {
-    page.unpacked <= LARGEST_PAGE && page.values <= MOST_VALUES
-}
-
-impl<'a> RowReader<'a, disk::File> {
-    /// Opens a file. Fails as wrong input when there is none, or when its columns are not those of the layout.
-    pub fn open(path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
-        let file =
-            disk::File::open(path).map_err(|error| Failure::about(path, format!("cannot be opened: {error}")))?;
-        Self::new(file, path, layout)
+/// The rows of a block: those of whole trials, from the first of the block on.
+///
+/// Fails unless the file is what [`encode`] wrote for this block of this study and program.
+pub fn decode(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Result<Vec<StudyRow>, Damage> {
+    let damaged = || Damage::Changed("it is damaged".to_owned());
+    let rows = trial::decoder::guarded(|| read_file(bytes, expected, layout)).unwrap_or_else(|| Err(damaged()))?;
+    let methods = layout.methods();
+    let is_next = |(place, row): (usize, &StudyRow)| {
+        let replicate = expected.block * Block::REPLICATES + (place / methods) as u64;
+        (row.cell, row.replicate, row.method) == (expected.cell as u64, replicate, place % methods)
+    };
+    let most = Block::REPLICATES as usize * methods;
+    match rows.len().is_multiple_of(methods) && rows.len() <= most && rows.iter().enumerate().all(is_next) {
+        true => Ok(rows),
+        false => Err(Damage::Changed("its rows are not those of whole trials in their order".to_owned())),
     }
 }
 
-impl<'a> RowReader<'a, Bytes> {
-    /// Reads from memory what `path` held. Fails as [`RowReader::open`] does.
-    pub fn of_bytes(bytes: Vec<u8>, path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
-        Self::new(bytes.into(), path, layout)
+fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Result<Vec<StudyRow>, Damage> {
+    let words = |error: parquet::errors::ParquetError| error.to_string();
+    let file = SerializedFileReader::new(CheckedPages { bytes: Bytes::from(bytes), fits }).map_err(words)?;
+    let SealedLabel { label, rows, values_sha256 } = label_of(file.metadata().file_metadata())?;
+    if label != *expected {
+        return Err(Damage::Foreign(label));
     }
+    let schema = file.metadata().file_metadata().schema_descr_ptr();
+    if *schema.root_schema() != layout.schema() || file.num_row_groups() != 1 {
+        return Err("its columns are not those of this study".to_owned().into());
+    }
+    let group = file.metadata().row_group(0);
+    let is_sound = |size: i64| (0..=MAX_COLUMN_BYTES).contains(&size);
+    let sizes = group.columns().iter().map(|column| column.uncompressed_size());
+    let most = Block::REPLICATES as usize * layout.methods();
+    if rows > most || group.num_rows() != rows as i64 || !sizes.into_iter().all(is_sound) {
+        return Err("it has other rows than it says".to_owned().into());
+    }
+    let group = file.get_row_group(0).map_err(words)?;
+    let column = |place: usize| values(&mut group.get_column_reader(place).map_err(words)?, rows);
+    let columns: Vec<Values> = (0..group.num_columns()).map(column).collect::<Result<_, String>>()?;
+    if sha256_of(&columns) != values_sha256 {
+        return Err("its values have another SHA-256".to_owned().into());
+    }
+    Ok(layout.put(columns, rows)?)
 }
 
-impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
-    fn new(file: B, path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
-        let refuse = |problem: String| Failure::about(path, format!("{problem}; expected the rows of this study"));
-        trial::decoder::guarded(|| {
-            let file = SerializedFileReader::new(CheckedPages { bytes: file, fits })
-                .map_err(|error| refuse(error.to_string()))?;
-            let schema = file.metadata().file_metadata().schema_descr_ptr();
-            let found: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
-            if let Some(name) = layout.names().find(|name| !found.contains(&name.as_str())) {
-                return Err(refuse(format!("there is no column `{name}`")));
-            }
-            if *schema.root_schema() != layout.schema() {
-                return Err(refuse(format!("the columns are {}", found.join(", "))));
-            }
-            for group in file.metadata().row_groups() {
-                if !(0..=GROUP as i64).contains(&group.num_rows()) {
-                    return Err(refuse(format!("a group of it has {} rows", group.num_rows())));
-                }
-                let sizes = || group.columns().iter().map(|column| column.uncompressed_size());
-                if let Some(size) = sizes().find(|size| !(0..=LARGEST_COLUMN).contains(size)) {
-                    return Err(refuse(format!("a column of it has {size} bytes")));
-                }
-            }
-            Ok(Self { layout, path: path.to_owned(), file, group: 0, columns: Vec::new(), left: 0 })
-        })
-        .unwrap_or_else(|| Err(refuse("it is damaged".to_owned())))
+/// The label of a file, when it is what was written.
+fn label_of(file: &FileMetaData) -> Result<SealedLabel, String> {
+    let value = |name: &str| {
+        file.key_value_metadata()?.iter().find(|pair| pair.key == name).and_then(|pair| pair.value.as_deref())
+    };
+    let label = value(LABEL).ok_or("it is no block of a study")?;
+    if value(LABEL_SHA256) != Some(hex(&Sha256::digest(label)).as_str()) {
+        return Err("its label is damaged".to_owned());
     }
-
-    /// The next rows, a few thousand at most; nothing when all have been read.
-    pub(super) fn next_rows(&mut self) -> Result<Vec<StudyRow>, Failure> {
-        let path = self.path.clone();
-        trial::decoder::guarded(|| self.decoded())
-            .unwrap_or_else(|| Err(Failure::about(&path, "it is damaged; expected the rows of this study")))
-    }
-
-    fn decoded(&mut self) -> Result<Vec<StudyRow>, Failure> {
-        while self.left == 0 {
-            if self.group == self.file.num_row_groups() {
-                return Ok(Vec::new());
-            }
-            let group = self.file.get_row_group(self.group).map_err(|error| self.damaged(&error.to_string()))?;
-            self.left = group.metadata().num_rows().unsigned_abs() as usize;
-            let columns = (0..group.metadata().num_columns()).map(|column| group.get_column_reader(column));
-            let columns: Result<Vec<ColumnReader>, _> = columns.collect();
-            self.columns = columns.map_err(|error| self.damaged(&error.to_string()))?;
-            self.group += 1;
-        }
-        let length = self.left.min(BATCH);
-        self.left -= length;
-        let values: Result<Vec<Values>, String> =
-            self.columns.iter_mut().map(|column| values(column, length)).collect();
-        values.and_then(|values| self.layout.put(values, length)).map_err(|problem| self.damaged(&problem))
-    }
-
-    fn damaged(&self, problem: &str) -> Failure {
-        Failure::about(&self.path, format!("{problem}; the file was changed or is of another study"))
-    }
-
-    /// Hands every row to `take`, in order.
-    pub fn for_each(mut self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
-        // Rows are decoded while those before them are taken.
-        std::thread::scope(|scope| {
-            let (send, receive) = sync_channel(1);
-            let decoder = scope.spawn(move || {
-                loop {
-                    let rows = self.next_rows()?;
-                    if rows.is_empty() || send.send(rows).is_err() {
-                        return Ok(());
-                    }
-                }
-            });
-            let taken = receive.into_iter().flatten().try_for_each(&mut take);
-            let decoded = decoder.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            taken.and(decoded)
-        })
-    }
+    serde_json::from_str(label).map_err(|error| error.to_string())
 }
 
 fn values(column: &mut ColumnReader, length: usize) -> Result<Values, String> {
@@ -232,14 +205,14 @@ fn values(column: &mut ColumnReader, length: usize) -> Result<Values, String> {
             let texts = read(reader, length)?.into_iter().map(|bytes| bytes.map(|bytes| text(&bytes)).transpose());
             Values::Texts(texts.collect::<Result<_, _>>()?)
         }
-        _ => unreachable!("the schema was compared when the file was opened"),
+        _ => unreachable!("the schema was compared before"),
     })
 }
 
 fn text(bytes: &ByteArray) -> Result<String, String> {
     match bytes.len() {
-        0..=LONGEST_TEXT => bytes.as_utf8().map(str::to_owned).map_err(|error| error.to_string()),
-        long => Err(format!("a text of it has {long} bytes, more than the {LONGEST_TEXT} of any study")),
+        0..=MAX_TEXT_BYTES => bytes.as_utf8().map(str::to_owned).map_err(|error| error.to_string()),
+        long => Err(format!("a text of it has {long} bytes, more than the {MAX_TEXT_BYTES} of any study")),
     }
 }
 

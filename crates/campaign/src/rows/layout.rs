@@ -59,6 +59,11 @@ impl RowLayout {
         }
     }
 
+    /// Number of the methods.
+    pub fn methods(&self) -> usize {
+        self.methods.len()
+    }
+
     /// All columns with their names, in order.
     fn columns(&self) -> impl Iterator<Item = (String, ColumnSource<'_>)> {
         let fixed = self.fixed.iter().map(|&column| (column.name.to_owned(), ColumnSource::Fixed(column)));
@@ -167,6 +172,24 @@ fn present<T>(rows: &mut [StudyRow], values: Vec<Option<T>>) -> impl Iterator<It
 }
 
 impl Values {
+    /// Adds the values to bytes, so that other values are other bytes.
+    pub(super) fn write_to(&self, bytes: &mut Vec<u8>) {
+        fn all<T>(values: &[Option<T>], bytes: &mut Vec<u8>, mut write: impl FnMut(&T, &mut Vec<u8>)) {
+            for value in values {
+                bytes.push(u8::from(value.is_some()));
+                value.iter().for_each(|value| write(value, bytes));
+            }
+        }
+        match self {
+            Self::Counts(values) => all(values, bytes, |count, bytes| bytes.extend(count.to_le_bytes())),
+            Self::Numbers(values) => all(values, bytes, |number, bytes| bytes.extend(number.to_bits().to_le_bytes())),
+            Self::Texts(values) => all(values, bytes, |text, bytes| {
+                bytes.extend((text.len() as u64).to_le_bytes());
+                bytes.extend(text.as_bytes());
+            }),
+        }
+    }
+
     /// Of values of cells, that of the cell of every row; none for a cell that is not there.
     fn of_cells(&self, rows: &[StudyRow]) -> Self {
         fn of<T: Clone>(values: &[Option<T>], rows: &[StudyRow]) -> Vec<Option<T>> {

@@ -1,10 +1,5 @@
-use std::path::Path;
-
-use std::sync::Arc;
-
 use super::*;
 use crate::design::{CellFacts, Design};
-use crate::folder::ResultFolder;
 use ::trace::Verdict;
 use scenario::MethodName;
 
@@ -58,31 +53,23 @@ fn failed(replicate: u64) -> StudyRow {
     }
 }
 
-fn write(path: &Path, layout: &RowLayout, pieces: impl IntoIterator<Item = Vec<StudyRow>>) {
-    let (folder, name) = (path.parent().expect("in a folder"), path.file_name().and_then(|name| name.to_str()));
-    let folder = ResultFolder::hold(folder).expect("held");
-    let mut writer = RowWriter::create(&folder, name.expect("a name"), layout).expect("created");
-    pieces.into_iter().for_each(|rows| writer.push(rows).expect("written"));
-    writer.finish().and_then(|(file, _)| file.put()).expect("finished");
+/// The label of the second block of the second cell.
+fn label() -> BlockLabel {
+    BlockLabel { design: "d".into(), program: "p".into(), cell: 1, block: 1 }
 }
 
-fn read(path: &Path, layout: &RowLayout) -> Vec<StudyRow> {
-    let mut rows = Vec::new();
-    let reader = RowReader::open(path, layout).expect("opened");
-    reader
-        .for_each(|row| {
-            rows.push(row);
-            Ok(())
-        })
-        .expect("read");
-    rows
+/// Trials of the second block, from its first on.
+fn trials(count: u64) -> Vec<StudyRow> {
+    (256..256 + count).flat_map(|replicate| [good(replicate), failed(replicate)]).collect()
+}
+
+fn written(rows: &[StudyRow], layout: &RowLayout) -> Vec<u8> {
+    encode(rows, &label(), layout).expect("plain values")
 }
 
 /// What a trace said, and figures that were predicted from an answer, are read as they were written.
 #[test]
 fn traces_and_predictions_have_columns_of_their_own() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("rows.parquet");
     let mut design = Design { predicts: true, ..design() };
     design.methods[1].id = scenario::TRACE.into();
     let layout = RowLayout::of(&design);
@@ -100,51 +87,73 @@ fn traces_and_predictions_have_columns_of_their_own() {
             band_fitted: Some(0.95),
             band_held_out: None,
         };
-        StudyRow { method: 1, traced: Some(Box::new(answer)), ..good(7) }
+        StudyRow { method: 1, traced: Some(Box::new(answer)), ..good(256) }
     };
     let named = vec![effect("wind_moment", &["port_starboard_asymmetry"]), effect("speed_loss", &[])];
     let name = "zig-zag 20/20 first_overshoot_deg";
     let figure = |truth| PredictedFigure { name: name.into(), truth, median: 1.0 / 3.0, ci90: [-0.1, 1e-17] };
-    let predicts = StudyRow { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(7) };
-    let none = StudyRow { predicted: Some(Box::default()), ..answer(Verdict::Clean, Vec::new()) };
-    let rows = vec![predicts, answer(Verdict::Traced, named), none];
-    write(&path, &layout, [rows.clone()]);
-    assert_eq!(read(&path, &layout), rows);
+    let predicts = StudyRow { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(256) };
+    let none = StudyRow { replicate: 257, predicted: Some(Box::default()), ..answer(Verdict::Clean, Vec::new()) };
+    let rows = vec![predicts, answer(Verdict::Traced, named), good(257), none];
+    assert_eq!(decode(written(&rows, &layout), &label(), &layout), Ok(rows));
     assert_eq!(layout.names().filter(|name| ["trace_margin", "predicted"].contains(&name.as_str())).count(), 2);
 }
 
 #[test]
-fn the_bytes_do_not_depend_on_the_pieces() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+fn a_block_is_read_as_it_was_written() {
     let layout = RowLayout::of(&design());
-    let (one, many) = (folder.path().join("one.parquet"), folder.path().join("many.parquet"));
-    // More than a row group, and more than a batch of the reader.
-    let rows: Vec<StudyRow> = (0..35_000).flat_map(|replicate| [good(replicate), failed(replicate)]).collect();
-    write(&one, &layout, [rows.clone()]);
-    write(&many, &layout, rows.chunks(7919).map(<[StudyRow]>::to_vec));
-    assert!(std::fs::read(&one).expect("there") == std::fs::read(&many).expect("there"));
-    assert!(read(&many, &layout) == rows);
-    assert!(!folder.path().join("many.parquet.tmp").exists());
+    for count in [0, 1, 100, 256] {
+        let rows = trials(count);
+        assert_eq!(decode(written(&rows, &layout), &label(), &layout), Ok(rows));
+    }
+    let whole = trials(3);
+    let not_whole = [&whole[1..], &whole[..5], &[&whole[2..], &whole[..2]].concat(), &trials(257)[..]];
+    for rows in not_whole {
+        let damage = decode(written(rows, &layout), &label(), &layout).expect_err("not whole trials in their order");
+        assert!(matches!(damage, Damage::Changed(_)), "{damage:?}");
+    }
 }
 
 #[test]
-fn rows_of_another_study_are_refused() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("rows.parquet");
-    write(&path, &RowLayout::of(&design()), [vec![good(0)]]);
-    let refused = |design: &Design| {
-        let layout = RowLayout::of(design);
-        let mut reader = RowReader::open(&path, &layout)?;
-        reader.next_rows().map(drop)
-    };
+fn blocks_of_something_else_are_told_from_damaged_ones() {
+    let layout = RowLayout::of(&design());
+    let bytes = written(&trials(2), &layout);
+    let others = [
+        BlockLabel { design: "e".into(), ..label() },
+        BlockLabel { program: "q".into(), ..label() },
+        BlockLabel { cell: 0, ..label() },
+        BlockLabel { block: 0, ..label() },
+    ];
+    for other in others {
+        assert_eq!(decode(bytes.clone(), &other, &layout), Err(Damage::Foreign(label())));
+    }
     let other_axis = Design { axes: vec!["sampling [s]".into(), "trial".into()], ..design() };
-    let message = refused(&other_axis).expect_err("another axis").message;
-    assert!(message.contains("rows.parquet") && message.contains("axis.sampling [s]"), "{message}");
     let other_method = Design { methods: design().methods.split_off(1), ..design() };
-    let message = refused(&other_method).expect_err("another method").message;
-    assert!(message.contains("output-error"), "{message}");
-    std::fs::write(&path, "no Parquet").expect("written");
-    assert!(refused(&design()).is_err());
+    for other in [other_axis, other_method] {
+        let damage = decode(bytes.clone(), &label(), &RowLayout::of(&other)).expect_err("other columns");
+        assert!(matches!(damage, Damage::Changed(_)), "{damage:?}");
+    }
+}
+
+/// Any byte, changed or cut, is found; or it is one that says nothing.
+#[test]
+fn a_damaged_block_never_gives_other_rows() {
+    let layout = RowLayout::of(&design());
+    let rows = trials(4);
+    let bytes = written(&rows, &layout);
+    let mut found = 0;
+    for place in 0..bytes.len() {
+        let mut damaged = bytes.clone();
+        damaged[place] ^= 1 << (place % 8);
+        let cut = bytes[..place].to_vec();
+        assert!(decode(cut, &label(), &layout).is_err(), "cut at {place}");
+        match decode(damaged, &label(), &layout) {
+            Ok(read) => assert!(read == rows, "byte {place}"),
+            Err(Damage::Foreign(other)) => panic!("byte {place}: {other:?}"),
+            Err(Damage::Changed(_)) => found += 1,
+        }
+    }
+    assert!(3 * found > bytes.len(), "{found} of {}", bytes.len());
 }
 
 #[test]
@@ -179,32 +188,4 @@ fn every_column_is_documented() {
         let meaning = meaning.replace('|', "\\|");
         assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");
     }
-}
-
-/// 10⁹ trials of seven methods are 106 812 groups of rows, more than a signed number of 16 bits holds.
-#[test]
-fn a_file_may_have_more_groups_than_sixteen_bits_count() {
-    use parquet::data_type::Int64Type;
-    use parquet::file::reader::{FileReader, SerializedFileReader};
-    use parquet::file::writer::SerializedFileWriter;
-    use parquet::schema::parser::parse_message_type;
-
-    const GROUPS: i64 = 40_000;
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("groups.parquet");
-    let schema = Arc::new(parse_message_type("message rows { required int64 number; }").expect("a schema"));
-    let file = std::fs::File::create(&path).expect("a file");
-    let mut file = SerializedFileWriter::new(file, schema, Arc::default()).expect("a writer");
-    for number in 0..GROUPS {
-        let mut group = file.next_row_group().expect("one more group");
-        let mut column = group.next_column().expect("a column").expect("one column");
-        column.typed::<Int64Type>().write_batch(&[number], None, None).expect("one number");
-        column.close().expect("a column");
-        group.close().expect("a group");
-    }
-    file.close().expect("a file");
-    let file = SerializedFileReader::new(std::fs::File::open(&path).expect("a file")).expect("readable");
-    assert_eq!((file.num_row_groups() as i64, file.metadata().file_metadata().num_rows()), (GROUPS, GROUPS));
-    let last = file.get_row_iter(None).expect("rows").last().expect("a row").expect("readable");
-    assert_eq!(last.get_column_iter().next().map(|(_, field)| field.to_string()), Some((GROUPS - 1).to_string()));
 }

@@ -3,13 +3,11 @@
 
 use std::env;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use campaign::Observer;
 use campaign::benchmark::run::STOPPED;
 use campaign::benchmark::{BenchDocument, BenchMethod, BenchTask, Definition, RecordStore};
 use campaign::folder::ResultFolder;
-use campaign::outside::keep_log;
 use clap::Args;
 use clap::builder::StringValueParser;
 use report::Theme;
@@ -19,9 +17,7 @@ use scenario::problem::suggestion;
 
 use crate::completed::{self, completed};
 use crate::documents::{BENCH, folder_for};
-use crate::interrupt;
 use crate::options::{Common, FigureOptions};
-use crate::outside::{self, NamedCommand};
 use crate::screen::{self, CommandOutput};
 use crate::terminal::Terminal;
 use crate::views::page_files::{REPORT, write_page};
@@ -55,9 +51,6 @@ pub struct BenchRequest {
     #[arg(long = "method", value_name = "ID", hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::competitors))]
     pub methods: Vec<String>,
-    /// An outside estimator that takes part as well: what it is called, and the command that starts it
-    #[arg(long, value_name = "LABEL=COMMAND")]
-    pub external: Vec<NamedCommand>,
     /// Tasks that are set [default: all]
     #[arg(long = "task", value_name = "ID", hide_possible_values = true,
         value_parser = completed(task, completed::tasks))]
@@ -77,8 +70,8 @@ fn task(name: &str) -> Result<BenchTask, String> {
     })
 }
 
-/// Has all methods of a request answer, and those of the caller's `own`. `begin` gets the name of the definition and
-/// the methods before the first answer.
+/// Has all methods of a request answer, and those of the caller's `own`. `begin` gets the name of the definition before
+/// the first answer.
 ///
 /// Fails when the definition is at fault, when a folder of records cannot be listed, and when nothing can be asked.
 pub fn measure(
@@ -86,7 +79,7 @@ pub fn measure(
     seed: Option<u64>,
     own: Vec<BenchMethod>,
     observer: &dyn Observer,
-    begin: impl FnOnce(&str, &[BenchMethod]) -> Result<(), Failure>,
+    begin: impl FnOnce(&str) -> Result<(), Failure>,
 ) -> Result<BenchDocument, Failure> {
     let definition = match &request.definition {
         Some(path) => Definition::read(path, seed)?,
@@ -96,7 +89,7 @@ pub fn measure(
     let mut methods = methods(request)?;
     methods.extend(own);
     let store = RecordStore::search(&folders(&request.data), &definition)?;
-    let begin = || begin(&definition.identity.name, &methods);
+    let begin = || begin(&definition.identity.name);
     let results = campaign::benchmark::run(&definition, &store, &methods, observer, begin)?;
     if results.cases.is_empty() {
         let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
@@ -114,12 +107,9 @@ pub fn measure(
 pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     let mut held = None;
-    let begin = |name: &str, methods: &[BenchMethod]| {
+    let begin = |name: &str| {
         let default = || PathBuf::from("results").join(if request.definition.is_none() { "bench" } else { name });
-        let folder = held.insert(ResultFolder::hold(&folder_for(BENCH, &common.out.clone().unwrap_or_else(default))?)?);
-        for method in methods {
-            method.outside().into_iter().for_each(|outside| keep_log(outside, method.label(), folder));
-        }
+        held = Some(ResultFolder::make(&folder_for(BENCH, &common.out.clone().unwrap_or_else(default))?)?);
         Ok(())
     };
     let results = measure(request, common.seed, Vec::new(), &Terminal::new("fits", common.quiet), begin)?;
@@ -152,7 +142,7 @@ pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, commo
     screen::tell(common, &output, &[] as &[&str])
 }
 
-/// Who takes part: the methods of the project, or those of them that are named, and outside estimators behind them.
+/// Who takes part: the methods of the project, or those of them that are named.
 fn methods(request: &BenchRequest) -> Result<Vec<BenchMethod>, Failure> {
     let names = &request.methods;
     let mut methods = BenchMethod::ours();
@@ -161,12 +151,6 @@ fn methods(request: &BenchRequest) -> Result<Vec<BenchMethod>, Failure> {
         return Err(Failure::input(format!("--method {unknown}: no such method; {}", suggestion(unknown, &known))));
     }
     methods.retain(|method| names.is_empty() || names.iter().any(|name| name == method.label()));
-    let known: Vec<&str> = known.iter().map(String::as_str).collect();
-    let outside = outside::methods(&request.external, &known)?;
-    if !outside.is_empty() {
-        interrupt::install();
-    }
-    methods.extend(outside.into_iter().map(|(label, method)| BenchMethod::new(label, Arc::from(method))));
     Ok(methods)
 }
 

@@ -8,7 +8,6 @@ use crate::documents;
 use crate::documents::answers::{CheckAnswer, CheckedScenario};
 use crate::options::{Common, Format};
 use crate::screen;
-use campaign::outside;
 use report::number::counted;
 use scenario::Scenario;
 use scenario::failure::Failure;
@@ -67,8 +66,7 @@ fn entry(path: &Path, scenario: &Scenario, resolved: bool) -> CheckedScenario {
     }
 }
 
-/// The size of a scenario, and below it the programs that a run starts, and a note on a rudder that moves instantly,
-/// which few mean and no real ship has.
+/// The size of a scenario, and below it a note on a rudder that moves instantly, which few mean and no real ship has.
 fn summary(path: &Path, scenario: &Scenario) -> String {
     let size = format!(
         "{}: {}, {}, {} each",
@@ -79,6 +77,5 @@ fn summary(path: &Path, scenario: &Scenario) -> String {
     );
     let mut defaults = scenario.defaults_that_matter().into_iter();
     let instant = defaults.find(|(assumption, _)| *assumption == Assumption::InstantRudder);
-    let notes = outside::told(scenario).into_iter().chain(instant.map(|(_, sentence)| sentence));
-    size + &notes.map(|note| format!("\n  note: {note}")).collect::<String>()
+    size + &instant.map(|(_, note)| format!("\n  note: {note}")).unwrap_or_default()
 }

@@ -51,7 +51,7 @@ pub fn run(common: &Common) -> Result<(), Failure> {
 
 /// Writes a file as results are written, and removes it.
 fn probe(folder: &Path) -> Result<(), Failure> {
-    let folder = ResultFolder::shared(folder)?;
+    let folder = ResultFolder::make(folder)?;
     folder.write(PROBE, "written and read\n")?;
     let path = folder.path().join(PROBE);
     std::fs::remove_file(&path).map_err(|error| Failure::work(format!("failed to remove {}: {error}", path.display())))

@@ -2,7 +2,6 @@
 //! the curves are written first, and everything else is made of what they hold.
 
 use campaign::folder::ResultFolder;
-use campaign::outside::keep_log;
 use document::fit::FitDocument;
 use document::{Warning, Warnings};
 use report::Theme;
@@ -22,7 +21,7 @@ use crate::work::fit::{fit, methods};
 ///
 /// Fails when a record cannot be read, and when no method can identify the records.
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
-    let methods = methods(&request.methods, &request.external, common.seed)?;
+    let methods = methods(&request.methods, common.seed)?;
     let priors = EarlierModel::of_files(&request.priors)?;
     let mut warnings = Warnings::default();
     let trials = read_all(&request.trials, &request.reading, &mut warnings)?;
@@ -30,15 +29,8 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     warnings.extend(repetitions(&trials, &others));
     let theme = request.style.theme()?;
     let place = folder_for(FIT, &common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
-    let hold = || ResultFolder::hold(&place);
-    // What other programs say has a place from the start; a record that is refused leaves no folder.
-    let outside: Vec<_> = methods.iter().filter_map(|(label, method)| Some((label, method.outside()?))).collect();
-    let early = (!outside.is_empty()).then(hold).transpose()?;
-    for (label, outside) in outside {
-        early.iter().for_each(|folder| keep_log(outside, label, folder));
-    }
     let fit = fit([&trials, &others], &methods, &priors, common.quiet, warnings)?;
-    let folder = early.map_or_else(hold, Ok)?;
+    let folder = ResultFolder::make(&place)?;
     let curves = fit.curves();
     let text = documents::keep_with_curves(&folder, FIT, &fit.document, &curves)?;
     show(&folder, &fit.document, &curves, &text, theme.as_ref(), common)

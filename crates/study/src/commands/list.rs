@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use identify::{IdentifierSettings, external, registry};
+use identify::{IdentifierSettings, registry};
 use report::number::MISSING;
 use report::{Table, TableHead};
 use ship::angle::KNOT;
@@ -72,9 +72,7 @@ pub fn run(request: &ListRequest, common: &Common) -> Result<(), Failure> {
 
 fn identifiers() -> Result<Table, Failure> {
     let mut table = Table::new(TableHead::default().texts(["id", "method", "settings"]));
-    // No program is started by default; the command stands for any.
-    let outside = IdentifierSettings::External(external::Settings::new(["python3", "mine.py"]));
-    for settings in registry::defaults().into_iter().chain([outside]) {
+    for settings in registry::defaults() {
         let method = settings.build().map_err(|error| Failure::work(format!("default settings: {error}")))?;
         table.push([method.id().to_owned(), method.summary().to_owned(), keys(&settings)]);
     }

@@ -41,7 +41,7 @@ pub struct OverviewRequest {
 pub fn run(OverviewRequest { folder }: &OverviewRequest, common: &Common) -> Result<(), Failure> {
     let plan = PublicationPlan::read(folder)?;
     let studies = studies(folder, plan.as_ref())?;
-    let target = ResultFolder::hold(common.out.as_deref().unwrap_or(folder))?;
+    let target = ResultFolder::make(common.out.as_deref().unwrap_or(folder))?;
     let path = write(&studies, &target)?;
     let answer = OverviewAnswer { page: path.display().to_string(), studies: &studies };
     let noun = if studies.len() == 1 { "study" } else { "studies" };

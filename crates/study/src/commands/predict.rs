@@ -51,7 +51,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let earlier = EarlierModel::of_files(&request.priors)?;
     let input = PredictInput { models: &models, earlier: &earlier, ballast: &ballast, records, current, declared };
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
-    let folder = ResultFolder::hold(&place)?;
+    let folder = ResultFolder::make(&place)?;
     let text = documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
     show(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
 }

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use ::predict::PredictDocument;
+use campaign::collect::complete;
 use campaign::folder::ResultFolder;
-use campaign::store::{self, StoredStudy};
+use campaign::store;
 use clap::Args;
 use scenario::failure::Failure;
 
@@ -14,6 +15,7 @@ use super::{bench, fit, predict, trace};
 use crate::documents::curves::TraceCurves;
 use crate::documents::{BENCH, CURVES, FIT, PREDICT, TRACE, read_document, read_json};
 use crate::options::{Common, StudyFigureOptions};
+use crate::terminal::Terminal;
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
 
@@ -36,7 +38,7 @@ pub struct ReportRequest {
 pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     let ReportRequest { folder: stored, open, style } = request;
     let folder = common.out.as_deref().unwrap_or(stored);
-    let held = || ResultFolder::hold(folder);
+    let held = || ResultFolder::make(folder);
     let theme = || style.style.theme();
     let has = |name: &str| stored.join(name).is_file();
     match () {
@@ -65,19 +67,10 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
 
 fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &Common) -> Result<(), Failure> {
     let theme = style.style.theme()?;
-    let is_same =
-        |out: &Path| out.canonicalize().ok().zip(rows.canonicalize().ok()).is_some_and(|(out, rows)| out == rows);
-    match common.out.as_deref().filter(|out| !is_same(out)) {
-        Some(out) => {
-            let stored = StoredStudy::read(rows)?;
-            publish(&stored, &ResultFolder::hold(out)?, &theme, style.figures, common)
-        }
-        None => {
-            store::is_finished(rows)?;
-            let folder = ResultFolder::hold(rows)?;
-            publish(&StoredStudy::held(&folder)?, &folder, &theme, style.figures, common)
-        }
-    }
+    store::expected_in(rows)?;
+    let stored = complete(&ResultFolder::make(rows)?, &Terminal::new("trials", common.quiet))?;
+    let folder = ResultFolder::make(common.out.as_deref().unwrap_or(rows))?;
+    publish(&stored, &folder, &theme, style.figures, common)
 }
 
 /// What opens a file with the program of the user's choice.

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use campaign::collect::collect;
+use campaign::collect::{collect, collect_shard};
 use campaign::files::MANIFEST;
 use campaign::folder::ResultFolder;
-use campaign::task::{Shard, default_folder};
+use campaign::task::default_folder;
 use scenario::Scenario;
 use scenario::failure::Failure;
 
@@ -16,21 +16,22 @@ use crate::options::{Common, RunRequest};
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
 
-/// Runs a scenario, or a shard of it, and publishes it as `study report` would.
+/// Runs a scenario and publishes it as `study report` would, or a shard of it.
 pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(path, common.seed)?;
-    let shard = request.shard.unwrap_or(Shard::WHOLE);
     let theme = request.style.style.theme()?;
-    let place = common.out.clone().unwrap_or_else(|| default_folder(&scenario.name, shard));
-    let folder = ResultFolder::hold(&folder_for(MANIFEST, &place)?)?;
-    let stored = collect(&scenario, shard, &folder, request.restart, &Terminal::new("trials", common.quiet))?;
-    if shard == Shard::WHOLE {
+    let place = common.out.clone().unwrap_or_else(|| default_folder(&scenario.name));
+    let folder = ResultFolder::make(&folder_for(MANIFEST, &place)?)?;
+    let terminal = Terminal::new("trials", common.quiet);
+    let Some(shard) = request.shard else {
+        let stored = collect(&scenario, &folder, request.restart, &terminal)?;
         return publish(&stored, &folder, &theme, request.style.figures, common);
-    }
+    };
+    let manifest = collect_shard(&scenario, shard, &folder, request.restart, &terminal)?;
     let place = folder.path().display().to_string();
     let line = format!(
-        "shard {shard} of {} is in {place}; `study merge DIR… --out DIR` joins all {}",
+        "shard {shard} of {} is in {place}; with the files of all {} in one folder, `study report` makes its page",
         scenario.name, shard.of
     );
-    reply(common, &ShardAnswer { folder: place, manifest: &stored.manifest }, &line)
+    reply(common, &ShardAnswer { folder: place, manifest: &manifest }, &line)
 }

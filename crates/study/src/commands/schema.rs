@@ -18,8 +18,8 @@ use std::path::Path;
 
 use crate::documents;
 use crate::documents::answers::{
-    CheckAnswer, CommandAnswer, ListAnswer, OverviewAnswer, PublishAnswer, ShardAnswer, SidecarAnswer, SimulateAnswer,
-    StudyAnswer, Versioned,
+    CheckAnswer, CommandAnswer, ListAnswer, OverviewAnswer, ShardAnswer, SidecarAnswer, SimulateAnswer, StudyAnswer,
+    Versioned,
 };
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
@@ -66,7 +66,6 @@ pub fn schema(what: Described) -> Schema {
         Described::Simulate => answer::<SimulateAnswer>(),
         Described::SidecarAnswer => answer::<SidecarAnswer>(),
         Described::Overview => answer::<OverviewAnswer>(),
-        Described::Publish => answer::<PublishAnswer>(),
         Described::Error => of::<ErrorDocument>(),
     }
 }

@@ -1,11 +1,11 @@
-//! `study score`: answers that were found elsewhere, as one more method of the scenario that the trials are of.
+//! `study score`: answers that were found elsewhere, as more methods of the scenario that the trials are of.
 
 use std::path::PathBuf;
 
 use campaign::answers::{self, TRIALS, Trials};
 use campaign::collect::collect;
 use campaign::folder::ResultFolder;
-use campaign::task::{Shard, default_folder};
+use campaign::task::default_folder;
 use clap::Args;
 use scenario::Scenario;
 use scenario::failure::Failure;
@@ -19,14 +19,14 @@ use crate::views::publish::publish;
 /// What `study score` is asked to do.
 #[derive(Debug, Clone, Args)]
 pub struct ScoreRequest {
-    /// Answers to trials that `study simulate` wrote: record (or cell and replicate), K_per_s, T_s; and as far as they
-    /// are known delta_r_deg, K_sd_per_s, T_sd_s, delta_r_sd_deg, failed
+    /// Answers to trials that `study simulate` wrote: record (or cell and replicate), K_per_s, T_s; as far as they are
+    /// known delta_r_deg, K_sd_per_s, T_sd_s, delta_r_sd_deg, failed; and of several methods `method`
     #[arg(value_name = "ANSWERS.csv")]
     pub answers: PathBuf,
     /// Scenario of the trials [default: that in trials.toml beside the answers]
     #[arg(long, value_name = "SCENARIO.toml")]
     pub scenario: Option<PathBuf>,
-    /// What the method behind the answers is called [default: the name of the file]
+    /// What the method behind the answers is called, where the table has no `method` [default: the name of the file]
     #[arg(long, value_name = "NAME")]
     pub label: Option<String>,
     /// Discard rows of an earlier run in the folder instead of going on with them
@@ -48,11 +48,14 @@ pub fn run(request: &ScoreRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.style.theme()?;
     let terminal = Terminal::new("trials", common.quiet);
     let label = request.label.clone().map_or_else(|| name::of_file(&request.answers), Ok)?;
-    let answers = answers::read(&request.answers, &scenario, &terminal)?;
-    let place = default_folder(&format!("{}-score", scenario.name), Shard::WHOLE);
-    let scenario = scenario.with_answers(&label, answers)?;
-    let folder = ResultFolder::hold(common.out.as_deref().unwrap_or(&place))?;
-    let stored = collect(&scenario, Shard::WHOLE, &folder, request.restart, &terminal)?;
+    let place = default_folder(&format!("{}-score", scenario.name));
+    let answers = answers::read(&request.answers, &scenario, &terminal)?.into_iter();
+    let add = |scenario: Scenario, (method, answers): (Option<String>, _)| {
+        scenario.with_answers(method.as_deref().unwrap_or(&label), answers)
+    };
+    let scenario = answers.into_iter().try_fold(scenario, add)?;
+    let folder = ResultFolder::make(common.out.as_deref().unwrap_or(&place))?;
+    let stored = collect(&scenario, &folder, request.restart, &terminal)?;
     publish(&stored, &folder, &theme, request.style.figures, common)
 }
 

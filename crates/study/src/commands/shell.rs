@@ -49,7 +49,7 @@ pub fn completions(
 /// Fails when the folder cannot be written.
 pub fn man(ManRequest { folder }: &ManRequest, mut command: Command, common: &Common) -> Result<(), Failure> {
     command.build();
-    let pages = ResultFolder::shared(folder)?;
+    let pages = ResultFolder::make(folder)?;
     let mut files = Vec::new();
     let program = command.get_name().to_owned();
     let below: Vec<Command> = command.get_subcommands().filter(|one| one.get_name() != "help").cloned().collect();

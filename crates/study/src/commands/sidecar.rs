@@ -41,7 +41,7 @@ pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(
     }
     let text = reader::describe(log).map_err(Failure::input)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    ResultFolder::shared(path.parent().unwrap_or(Path::new("")))?.write(&name, &text)?;
+    ResultFolder::make(path.parent().unwrap_or(Path::new("")))?.write(&name, &text)?;
     tell(&text, Some((&path, log)), common)
 }
 

@@ -34,14 +34,14 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     let (folder, names) = match (is_file, count) {
         (true, 1) => {
             let parent = out.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            (ResultFolder::shared(parent)?, vec![scenario::name::of_file(out)?])
+            (ResultFolder::make(parent)?, vec![scenario::name::of_file(out)?])
         }
         (true, several) => {
             let cure = if tasks.len() == 1 { "" } else { ", or one trial with --cell and --replicate" };
             let what = format!("--out {} is one file, and {several} records are asked for", out.display());
             return Err(Failure::input(format!("{what}; name a folder{cure}")));
         }
-        (false, _) => (ResultFolder::hold(out)?, tasks.iter().map(|task| record_name(&scenario, *task)).collect()),
+        (false, _) => (ResultFolder::make(out)?, tasks.iter().map(|task| record_name(&scenario, *task)).collect()),
     };
     let bar = progress::of("records", tasks.len() as u64, common.quiet);
     let work = tasks.par_iter().zip(&names).progress_with(bar);

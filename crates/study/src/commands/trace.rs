@@ -32,7 +32,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     warnings.extend(repetitions(&trials, &others));
     let place = folder_for(TRACE, &common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
     let traced = trace([&trials, &others], &settings, &priors, common.quiet, &mut warnings)?;
-    let folder = ResultFolder::hold(&place)?;
+    let folder = ResultFolder::make(&place)?;
     let text = traced.write(&folder)?;
     show(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
     if interrupt::is_asked() { Err(Failure::work(STOPPED)) } else { Ok(()) }

@@ -9,9 +9,9 @@ use ship::angle::to_deg;
 use trial::scale::scaling;
 use trial::{Quantity, Trial};
 
-use crate::outside::Named;
 use crate::records::file_of;
 use crate::scales::RescaledRecords;
+use crate::work::fit::Named;
 
 /// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
 /// first.

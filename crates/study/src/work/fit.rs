@@ -25,10 +25,9 @@ use super::{single_records, verdict};
 use crate::completed::ALL;
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 use crate::documents::prior;
-use crate::outside::{self, Named, NamedCommand};
+use crate::progress;
 use crate::records::{self, file_of, no_track, source_of};
 use crate::scales::{self, RescaledRecords};
-use crate::{interrupt, progress};
 use campaign::answer::entry;
 use campaign::curves::{curve, phase_curve, phase_of, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
@@ -211,11 +210,14 @@ fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
     zigzag.begins_at_reversal.then(|| Warning::new(Code::LateBegin, source_of(trial), text))
 }
 
-/// The named methods of the project with their default settings, the best first, the usual ones for no name, and
-/// outside estimators behind them; those that draw at random with this seed.
+/// A method with what it is called.
+pub type Named = (String, Box<dyn Identifier>);
+
+/// The named methods of the project with their default settings, the best first, and the usual ones for no name; those
+/// that draw at random with this seed.
 ///
-/// Fails for a name that no method has, and for a command that cannot be one.
-pub fn methods(names: &[String], external: &[NamedCommand], seed: Option<u64>) -> Result<Vec<Named>, Failure> {
+/// Fails for a name that no method has.
+pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Named>, Failure> {
     let all = registry::defaults().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
     let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
     let place = |id: &str| registry::USUAL.iter().position(|usual| *usual == id);
@@ -225,10 +227,6 @@ pub fn methods(names: &[String], external: &[NamedCommand], seed: Option<u64>) -
         let known = known.join(", ");
         return Err(Failure::input(format!("--method {unknown}: no such method; use {ALL}, or one of {known}")));
     }
-    let outside = outside::methods(external, &known)?;
-    if !outside.is_empty() {
-        interrupt::install();
-    }
     let is_named = |id: &str| match names {
         [] => place(id).is_some(),
         names => names.iter().any(|name| name == id || name == ALL),
@@ -237,7 +235,7 @@ pub fn methods(names: &[String], external: &[NamedCommand], seed: Option<u64>) -
         let method = seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method);
         (method.id().to_owned(), method)
     });
-    Ok(own.chain(outside).collect())
+    Ok(own.collect())
 }
 
 /// The methods that were used and gave an answer with an interval, those first whose intervals hold most.

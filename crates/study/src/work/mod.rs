@@ -7,7 +7,6 @@ mod loading;
 mod planned;
 pub mod predict;
 pub mod publication;
-pub mod publication_changes;
 pub mod simulate;
 pub mod single_records;
 pub mod steady;

@@ -1,14 +1,12 @@
 //! The benchmark: `study bench`.
 
-use campaign::folder::sha256_of;
-
-use crate::desk::{Desk, interrupted, zig_zag_csv};
+use crate::desk::{Desk, sha256, zig_zag_csv};
 use crate::scenarios::GOOD;
 
 /// A definition of a measured record and a simulated set beside it, on a desk.
 fn lay_out(desk: &Desk) {
     desk.file("records/far/away.csv", zig_zag_csv());
-    let sha256 = sha256_of(&desk.path("records/far/away.csv")).expect("a file");
+    let sha256 = sha256(&desk.bytes("records/far/away.csv"));
     // Enough trials for an interval.
     desk.file("small.toml", GOOD.replace("replicates = 2", "replicates = 6"));
     let definition = format!(
@@ -138,33 +136,6 @@ fn the_folder_of_results_is_held_before_the_work() {
     let desk = Desk::new();
     lay_out(&desk);
     desk.file("taken", "");
-    desk.file("works.sh", "touch worked; exit 3");
     let asked = ["bench", "own.toml", "--data", "records", "--method", "straight-on", "--out", "taken/x"];
-    desk.run(&[&asked[..], &["--external", "works=sh works.sh"]].concat()).is_refused(1, &["taken/x", "--out"]);
-    assert!(!desk.path("worked").exists(), "the work was begun");
-}
-
-/// What every method has answered is kept, aside from the place of a whole result, and what is missing is named.
-#[cfg(unix)]
-#[test]
-fn an_interrupted_benchmark_keeps_what_all_have_answered() {
-    let desk = Desk::new();
-    lay_out(&desk);
-    desk.file(
-        "slow.sh",
-        r#"while IFS= read -r line; do n=${line#*:}; [ -e first ] && sleep 1
-echo "{\"trial\":${n%%,*},\"K_per_s\":0.1,\"T_s\":16}"; : > first; done"#,
-    );
-    let bench = ["bench", "own.toml", "--data", "records", "--threads", "1", "--method", "srivc"];
-    let run =
-        desk.start_until(&[&bench[..], &["--external", "slow=sh slow.sh"]].concat(), || desk.path("first").exists());
-    let (run, took) = interrupted(run);
-    assert!(run.code == Some(1) && took.as_secs() < 5, "{:?} after {took:?}: {}", run.code, run.err);
-    assert!(run.err.contains("stopped before every method had answered"), "{}", run.err);
-    let kept = desk.json("results/small-bench/unfinished/bench.json");
-    let cases = kept["cases"].as_array().expect("a list");
-    assert!(!cases.is_empty() && cases.len() < 12, "{}", cases.len());
-    assert!(cases.iter().all(|case| case["answers"].as_array().map(Vec::len) == Some(2)));
-    let left = kept["skipped"].as_array().expect("a list").iter().any(|one| one["set"] == "made");
-    assert!(left && !desk.path("results/small-bench/bench.json").exists());
+    desk.run(&asked).is_refused(1, &["taken/x", "--out"]);
 }

@@ -15,12 +15,12 @@ fn a_scenario_runs_and_its_report_is_made_again() {
     assert_eq!(std::fs::read(desk.path("results/small/report.md")).expect("it is there again"), page);
     desk.run(&["report", "results/small", "--out", "elsewhere", "--quiet"]).is_done();
     assert_eq!(std::fs::read(desk.path("elsewhere/report.md")).expect("it is where it was asked for"), page);
-    for file in ["rows.parquet", "summary.csv", "manifest.toml"] {
+    for file in ["rows/0000-0000.parquet", "summary.csv", "manifest.toml"] {
         assert!(desk.path("results/small").join(file).is_file(), "{file}");
     }
     let other = desk.run(&["small.toml", "--out", "one", "--threads", "1", "--quiet"]);
     assert_eq!(other.is_done().out, "");
-    let rows = |folder: &str| std::fs::read(desk.path(folder).join("rows.parquet")).expect("rows");
+    let rows = |folder: &str| std::fs::read(desk.path(folder).join("rows/0000-0000.parquet")).expect("rows");
     assert_eq!(rows("results/small"), rows("one"), "the same rows whatever the number of threads");
     desk.run(&["small.toml", "--out", "two", "--seed", "2", "--quiet"]).is_done();
     assert_ne!(rows("one"), rows("two"));

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use sha2::{Digest, Sha256};
 use ship::Ship;
 use ship::angle::{from_deg, to_deg};
 use simulate::{Manoeuvre, Recording, Simulation, SteeringGear, StreamKey, Vessel};
@@ -109,12 +110,6 @@ fn undrawn<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
     [arguments, told].concat()
 }
 
-/// Kills a run; what it had said.
-pub fn killed(mut run: Child) -> String {
-    run.kill().expect("it is ours to kill");
-    Run::of(run.wait_with_output().expect("it ends")).err
-}
-
 /// Asks a run to stop as Ctrl-C does; how it ended, and how long that took.
 pub fn interrupted(run: Child) -> (Run, Duration) {
     let asked = Instant::now();
@@ -209,4 +204,9 @@ pub fn copy(from: &Path, to: &Path) {
 /// A file or folder of the repository.
 pub fn of_repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
+}
+
+/// SHA-256 of bytes, hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    scenario::hex(&Sha256::digest(bytes))
 }

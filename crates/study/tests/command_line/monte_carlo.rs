@@ -1,11 +1,12 @@
-//! Monte-Carlo studies as a user runs them: interrupted, continued, split and joined, always with the same rows.
+//! Monte-Carlo studies as a user runs them: interrupted, continued, shared out and put together, always with the same rows.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use campaign::rows::StudyRow;
 
-use crate::desk::{Desk, interrupted, killed};
-use crate::outside::rows;
+use crate::desk::{Desk, copy, interrupted};
+use crate::scored::rows;
 
 /// A study of some seconds in two cells.
 fn scenario(replicates: u32) -> String {
@@ -29,66 +30,64 @@ method.integral-least-squares = {{}}
     )
 }
 
-const ROWS: &str = "whole/rows.parquet";
-
-/// The rows of an uninterrupted run.
-fn uninterrupted(desk: &Desk) -> Vec<u8> {
-    desk.run(&["study.toml", "--out", "whole", "--quiet"]).is_done();
-    desk.bytes(ROWS)
+/// The blocks of a folder with their bytes.
+pub fn blocks(desk: &Desk, folder: &str) -> BTreeMap<String, Vec<u8>> {
+    let files = std::fs::read_dir(desk.path(folder).join("rows")).into_iter().flatten().flatten();
+    let blocks = files.filter(|entry| entry.path().extension().is_some_and(|extension| extension == "parquet"));
+    let file =
+        |entry: std::fs::DirEntry| (entry.file_name().to_string_lossy().into_owned(), std::fs::read(entry.path()));
+    blocks.map(file).filter_map(|(name, bytes)| Some((name, bytes.ok()?))).collect()
 }
 
-/// Number of parts stored so far.
-pub fn parts(desk: &Desk, folder: &str) -> usize {
-    let parts = std::fs::read_dir(desk.path(folder).join("unfinished")).into_iter().flatten().flatten();
-    parts.filter(|entry| entry.path().extension().is_some_and(|extension| extension == "parquet")).count()
+/// The blocks of an uninterrupted run.
+fn uninterrupted(desk: &Desk) -> BTreeMap<String, Vec<u8>> {
+    desk.run(&["study.toml", "--out", "whole", "--quiet"]).is_done();
+    blocks(desk, "whole")
 }
 
 #[test]
-fn a_killed_run_goes_on_and_ends_with_the_same_bytes() {
+fn a_run_that_is_killed_again_and_again_ends_with_the_same_bytes() {
     let desk = Desk::new();
     desk.file("study.toml", scenario(12_000));
     let whole = uninterrupted(&desk);
-    // Killed before the first part, and then some time after one more part is stored, wherever that falls.
+    assert_eq!(whole.len(), 2 * 47);
     let mut stored = vec![0];
-    for (round, wait) in [15, 40, 0, 90, 5].into_iter().enumerate() {
-        let threads = ["1", "2", "3"][round % 3];
+    for round in 0..20_u64 {
+        let threads = ["1", "2", "3"][round as usize % 3];
         let mut run = desk.start(&["study.toml", "--out", "killed", "--quiet", "--threads", threads]);
-        let is_over = |run: &mut std::process::Child| run.try_wait().expect("it can be asked").is_some();
-        while round > 0 && parts(&desk, "killed") <= stored[round] && !is_over(&mut run) {
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        std::thread::sleep(Duration::from_millis(wait));
-        if is_over(&mut run) {
-            break;
-        }
+        // Wherever that falls: before the first block, within one, or while one is written.
+        std::thread::sleep(Duration::from_millis(10 + 37 * round % 150));
         run.kill().expect("it is ours to kill");
         run.wait().expect("it ends");
-        if desk.path("killed/rows.parquet").exists() {
-            break;
-        }
-        stored.push(parts(&desk, "killed"));
+        stored.push(blocks(&desk, "killed").len());
     }
     assert!(stored.is_sorted(), "nothing that was stored is lost: {stored:?}");
-    assert!(stored.len() > 3, "the study was over before it was killed three times: {stored:?}");
     desk.run(&["study.toml", "--out", "killed", "--quiet", "--threads", "2"]).is_done();
-    assert!(whole == desk.bytes("killed/rows.parquet"), "the rows differ from those of an uninterrupted run");
-    assert!(!desk.path("killed/unfinished").exists());
+    assert!(whole == blocks(&desk, "killed"), "the rows differ from those of an uninterrupted run");
 }
 
+/// Three hundred blocks, each cut, flipped at some place, or gone.
 #[test]
-fn a_damaged_part_is_run_again() {
+fn damaged_blocks_are_computed_again() {
     let desk = Desk::new();
-    desk.file("study.toml", scenario(6000));
-    let whole = uninterrupted(&desk);
-    let run = ["study.toml", "--out", "damaged", "--quiet", "--threads", "2"];
-    killed(desk.start_until(&run, || parts(&desk, "damaged") >= 2));
-    let part = "damaged/unfinished/00000001.parquet";
-    let bytes = desk.bytes(part);
-    desk.file(part, &bytes[..bytes.len() / 2]);
-    let run = desk.run(&["study.toml", "--out", "damaged"]);
-    run.is_done();
-    assert!(run.err.contains("00000001.parquet") && run.err.contains("run again"), "{}", run.err);
-    assert!(whole == desk.bytes("damaged/rows.parquet"));
+    let many = "linear = { from = 0.1, to = 0.5, points = 300 }";
+    desk.file("study.toml", scenario(1).replace("values = [0.1, 0.5]", many));
+    let (whole, expected) = (uninterrupted(&desk), rows(&desk, "whole"));
+    for (number, (name, bytes)) in whole.iter().enumerate() {
+        let mut damaged = bytes.clone();
+        let place = number * 7919 % bytes.len();
+        match number % 3 {
+            0 => damaged.truncate(place),
+            1 => damaged[place] ^= 1 << (number % 8),
+            _ => damaged[place..].fill(0),
+        }
+        desk.file(&format!("whole/rows/{name}"), damaged);
+    }
+    let report = desk.run(&["report", "whole", "--quiet"]);
+    report.is_refused(2, &["rows/", ".parquet", "run the study again"]);
+    let run = desk.run(&["study.toml", "--out", "whole"]);
+    assert!(run.is_done().err.matches("its trials are run again").count() > 200, "{}", run.err);
+    assert!(expected == rows(&desk, "whole"));
 }
 
 #[cfg(unix)]
@@ -97,35 +96,64 @@ fn ctrl_c_stops_within_a_second_and_keeps_the_rows() {
     let desk = Desk::new();
     desk.file("study.toml", scenario(100_000));
     let run = ["study.toml", "--out", "stopped", "--quiet", "--threads", "2"];
-    let (run, waited) = interrupted(desk.start_until(&run, || parts(&desk, "stopped") >= 1));
+    let (run, waited) = interrupted(desk.start_until(&run, || !blocks(&desk, "stopped").is_empty()));
     assert!(waited < Duration::from_secs(1), "{waited:?}");
     run.is_refused(1, &["error: stopped after ", "the same command goes on"]);
-    desk.run(&["report", "stopped"]).is_refused(2, &["stopped", "not finished", "run it again"]);
+    desk.run(&["report", "stopped"]).is_refused(2, &["of cell", "is not stored", "again"]);
+    let (again, _) =
+        interrupted(desk.start_until(&["study.toml", "--out", "stopped"], || blocks(&desk, "stopped").len() > 10));
+    assert!(again.err.contains("going on after "), "{}", again.err);
 }
 
 #[test]
-fn shards_in_any_order_are_the_whole() {
+fn shards_in_any_order_and_folder_are_the_whole() {
     let desk = Desk::new();
-    desk.file("study.toml", scenario(50));
+    desk.file("study.toml", scenario(600));
     let whole = uninterrupted(&desk);
-    for shard in ["2/3", "1/3", "3/3"] {
-        desk.run(&["study.toml", "--quiet", "--shard", shard]).is_done();
+    // Eight shards in one folder, two at a time.
+    for pair in [[8, 1], [2, 7], [3, 6], [5, 4]] {
+        let runs = pair.map(|shard: u32| {
+            desk.start(&["study.toml", "--quiet", "--out", "shared", "--shard", &format!("{shard}/8")])
+        });
+        desk.run(&["report", "shared"]).is_refused(2, &["shared"]);
+        runs.into_iter().for_each(|mut run| assert!(run.wait().expect("it ends").success()));
     }
-    let folders = ["results/study/shards/3-of-3", "results/study/shards/1-of-3", "results/study/shards/2-of-3"];
-    let merge = |folders: &[&str], out: &str| desk.run(&[&["merge"], folders, &["--out", out, "--quiet"]].concat());
-    merge(&folders, "joined").is_done();
-    assert!(whole == desk.bytes("joined/rows.parquet"));
-    for file in ["summary.csv", "cells.json", "errors.png"] {
-        assert!(desk.bytes(&format!("whole/{file}")) == desk.bytes(&format!("joined/{file}")), "{file}");
+    desk.run(&["report", "shared", "--quiet"]).is_done();
+    // Three in folders of their own, copied into one; a fourth has no block of this study.
+    for (shard, out) in [("2/3", "b"), ("1/3", "a"), ("3/3", "c")] {
+        desk.run(&["study.toml", "--quiet", "--shard", shard, "--out", out]).is_done();
     }
-    merge(&folders[..2], "x").is_refused(2, &["1 of 3 shards are missing", "2/3"]);
-    merge(&[folders[0], folders[0]], "x").is_refused(2, &["both shard 3/3"]);
-    merge(&["whole", folders[0]], "x").is_refused(2, &["not shards of one study", "shard"]);
-    merge(&["nowhere"], "x").is_refused(2, &["nowhere", "no finished shard"]);
-    desk.file("other.toml", scenario(50).replace("0.5]", "0.7]"));
+    copy(&desk.path("a"), &desk.path("copied"));
+    copy(&desk.path("c"), &desk.path("copied"));
+    desk.run(&["report", "copied"])
+        .is_refused(2, &["rows/0000-0002.parquet", "of cell 0 is not stored", "copy the file"]);
+    copy(&desk.path("b"), &desk.path("copied"));
+    desk.run(&["report", "copied", "--quiet"]).is_done();
+    for folder in ["shared", "copied"] {
+        assert!(whole == blocks(&desk, folder), "{folder}");
+        for file in ["summary.csv", "cells.json", "errors.png"] {
+            assert!(desk.bytes(&format!("whole/{file}")) == desk.bytes(&format!("{folder}/{file}")), "{file}");
+        }
+    }
+    desk.file("other.toml", scenario(600).replace("0.5]", "0.7]"));
     desk.run(&["other.toml", "--quiet", "--shard", "2/3", "--out", "foreign"]).is_done();
-    merge(&[folders[0], folders[1], "foreign"], "x").is_refused(2, &["not shards of one study", "sweep.0.values"]);
+    desk.file("copied/rows/0001-0000.parquet", desk.bytes("foreign/rows/0001-0000.parquet"));
+    let refused = ["rows/0001-0000.parquet", "it is a block of another study", "--restart"];
+    desk.run(&["report", "copied"]).is_refused(2, &refused);
+    desk.run(&["study.toml", "--out", "copied"]).is_refused(2, &refused);
     desk.run(&["study.toml", "--shard", "4/3"]).is_refused(2, &["4/3", "expected I/N"]);
+}
+
+#[test]
+fn two_runs_in_one_folder_do_no_harm() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(3000));
+    let whole = uninterrupted(&desk);
+    let runs =
+        ["1", "2"].map(|threads| desk.start(&["study.toml", "--out", "shared", "--quiet", "--threads", threads]));
+    runs.into_iter().for_each(|mut run| assert!(run.wait().expect("it ends").success()));
+    assert!(whole == blocks(&desk, "shared"));
+    desk.run(&["report", "shared", "--quiet"]).is_done();
 }
 
 #[test]
@@ -138,44 +166,41 @@ fn a_folder_belongs_to_one_study() {
     desk.file("other.toml", scenario(20).replace("duration-s = 200.0", "duration-s = 250.0"));
     again("other.toml", &[]).is_refused(2, &["whole", "recording.duration-s", "200", "250", "--out", "--restart"]);
     again("study.toml", &["--seed", "4"]).is_refused(2, &["seed: 3 there, 4 here"]);
-    assert!(rows == desk.bytes(ROWS), "a refusal changes nothing");
+    assert!(rows == blocks(&desk, "whole"), "a refusal changes nothing");
 
     // Prose and layout are not part of a study; the report follows them, the rows stay.
     let told = scenario(20).replace("seed = 3", "# why three\nseed = 3\nanalysis = \"It is precise.\"");
     desk.file("told.toml", told);
     again("told.toml", &[]).is_done();
-    assert!(rows == desk.bytes(ROWS));
+    assert!(rows == blocks(&desk, "whole"));
     assert!(String::from_utf8_lossy(&desk.bytes("whole/report.md")).contains("It is precise."));
 
     again("other.toml", &["--restart"]).is_done();
-    assert!(rows != desk.bytes(ROWS));
+    assert!(rows != blocks(&desk, "whole"));
 }
 
-/// What a kill in the last moment leaves: a folder `unfinished` with its mark and without its manifest.
+/// Rows of another program are kept as long as nothing is missing, and never joined by new ones.
 #[test]
-fn what_is_left_of_an_ended_study_does_no_harm() {
+fn a_folder_belongs_to_one_program() {
     let desk = Desk::new();
-    desk.file("long.toml", scenario(100_000));
-    killed(desk.start_until(&["long.toml", "--out", "cut", "--quiet"], || parts(&desk, "cut") >= 1));
-    let leave = || {
-        desk.file("whole/unfinished/README", desk.bytes("cut/unfinished/README"));
-        desk.file("whole/unfinished/00000000.parquet", "half a part");
-    };
-    desk.file("study.toml", scenario(10));
+    desk.file("study.toml", scenario(20));
     let rows = uninterrupted(&desk);
-    leave();
-    desk.run(&["report", "whole", "--quiet"]).is_done();
-    desk.run(&["study.toml", "--out", "whole", "--quiet"]).is_done();
-    assert!(rows == desk.bytes(ROWS) && !desk.path("whole/unfinished").exists());
-    leave();
-    std::fs::remove_file(desk.path(ROWS)).expect("it was there");
-    // Without finished rows the part may be all that there is of a study, and nobody knows of which one.
-    let again = ["study.toml", "--out", "whole", "--quiet", "--restart"];
-    let parts = ["whole/unfinished", "00000000.parquet", "without manifest.toml", "--restart"];
-    desk.run(&again[..4]).is_refused(2, &parts);
-    assert_eq!(desk.bytes("whole/unfinished/00000000.parquet"), b"half a part");
-    desk.run(&again).is_done();
-    assert!(rows == desk.bytes(ROWS) && !desk.path("whole/unfinished").exists());
+    let own = format!("version = \"{}\"", env!("CARGO_PKG_VERSION"));
+    let manifest = desk.text("whole/manifest.toml");
+    assert!(manifest.contains(&own));
+    desk.file("whole/manifest.toml", manifest.replace(&own, "version = \"0.0.1\""));
+    let refused = ["rows/", "it was computed by kempf", "expected kempf 0.0.1"];
+    desk.run(&["study.toml", "--out", "whole"]).is_refused(2, &refused);
+    std::fs::remove_file(desk.path("whole/manifest.toml")).expect("it was there");
+    desk.run(&["study.toml", "--out", "whole"]).is_refused(2, &["unknown study", "without manifest.toml", "--restart"]);
+    desk.run(&["study.toml", "--out", "whole", "--restart", "--quiet"]).is_done();
+    assert!(rows == blocks(&desk, "whole"));
+    // What versions before stored in one file.
+    desk.file("old/rows.parquet", "rows");
+    desk.file("old/manifest.toml", manifest);
+    let old = ["old/rows.parquet", "by an earlier version", "remove the folder"];
+    desk.run(&["study.toml", "--out", "old"]).is_refused(2, &old);
+    desk.run(&["report", "old"]).is_refused(2, &old);
 }
 
 #[test]
@@ -184,21 +209,7 @@ fn a_manifest_repeats_its_study() {
     desk.file("study.toml", scenario(10));
     desk.run(&["study.toml", "--out", "whole", "--quiet", "--seed", "12"]).is_done();
     desk.run(&["whole/manifest.toml", "--out", "again", "--quiet"]).is_done();
-    assert!(desk.bytes(ROWS) == desk.bytes("again/rows.parquet"));
-}
-
-#[test]
-fn two_runs_do_not_share_a_folder() {
-    let desk = Desk::new();
-    desk.file("study.toml", scenario(100_000));
-    let first = ["study.toml", "--out", "shared", "--quiet", "--threads", "1"];
-    let first = desk.start_until(&first, || parts(&desk, "shared") >= 1);
-    for options in [&[][..], &["--restart"]] {
-        let run = desk.run(&[&["study.toml", "--out", "shared", "--quiet"], options].concat());
-        run.is_refused(1, &["another study is running", "shared"]);
-    }
-    assert!(parts(&desk, "shared") > 0, "nothing was discarded");
-    killed(first);
+    assert!(blocks(&desk, "whole") == blocks(&desk, "again"));
 }
 
 /// Trials of every cell and method of a summary, in its order.
@@ -213,26 +224,22 @@ fn trials(desk: &Desk, folder: &str) -> Vec<u64> {
 #[test]
 fn a_stopping_rule_ends_a_cell_wherever_it_runs() {
     let desk = Desk::new();
-    let rule = "[stop]\nfigure = \"sd-T\"\nmethod = \"output-error\"\nstandard-error = 0.015\nevery = 50\n";
-    desk.file("study.toml", scenario(3000) + rule);
+    let rule = "[stop]\nfigure = \"sd-T\"\nmethod = \"output-error\"\nstandard-error = 0.015\n";
+    desk.file("study.toml", scenario(6000) + rule);
     let whole = uninterrupted(&desk);
     let counts = trials(&desk, "whole");
     // The standard error of a standard deviation is about sd/√(2n), so five times the noise needs 25 times the trials.
     assert!(counts[0] == counts[1] && counts[2] == counts[3], "{counts:?}");
-    assert!(
-        counts[0].is_multiple_of(50) && counts[0] >= 50 && counts[2] > 5 * counts[0] && counts[2] < 3000,
-        "{counts:?}"
-    );
+    assert!(counts[0] == 256 && counts[2].is_multiple_of(256) && counts[2] > 512 && counts[2] < 6000, "{counts:?}");
     for threads in ["1", "3"] {
         desk.run(&["study.toml", "--out", threads, "--threads", threads, "--quiet"]).is_done();
-        assert!(whole == desk.bytes(&format!("{threads}/rows.parquet")), "{threads} threads");
+        assert!(whole == blocks(&desk, threads), "{threads} threads");
     }
     for shard in ["1/2", "2/2"] {
         desk.run(&["study.toml", "--quiet", "--shard", shard]).is_done();
     }
-    let (one, two) = ("results/study/shards/1-of-2", "results/study/shards/2-of-2");
-    desk.run(&["merge", one, two, "--out", "joined", "--quiet"]).is_done();
-    assert!(whole == desk.bytes("joined/rows.parquet"));
+    desk.run(&["report", "results/study", "--quiet"]).is_done();
+    assert!(whole == blocks(&desk, "results/study"));
     // A rule that is never met runs every trial there is.
     desk.file("never.toml", scenario(100) + &rule.replace("0.015", "1e-9"));
     desk.run(&["never.toml", "--out", "never", "--quiet"]).is_done();
@@ -240,7 +247,7 @@ fn a_stopping_rule_ends_a_cell_wherever_it_runs() {
 }
 
 #[test]
-fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
+fn drawn_ships_are_the_same_in_every_cell_and_every_shard() {
     let desk = Desk::new();
     let ship = "ship.first-order = { K-per-s = 0.1, T-s = 16.3 }";
     let draws = "[[draw]]\nkey = \"ship.first-order.T-s\"\nlog-uniform = { from = 5.0, to = 50.0 }\n\
@@ -250,10 +257,7 @@ fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
     for shard in ["1/3", "2/3", "3/3"] {
         desk.run(&["study.toml", "--quiet", "--shard", shard, "--threads", "2"]).is_done();
     }
-    let shards = ["1", "2", "3"].map(|shard| format!("results/study/shards/{shard}-of-3"));
-    let merge = ["merge", &shards[0], &shards[1], &shards[2], "--out", "joined", "--quiet"];
-    desk.run(&merge).is_done();
-    assert!(whole == desk.bytes("joined/rows.parquet"));
+    assert!(whole == blocks(&desk, "results/study"));
 
     let rows = rows(&desk, "whole");
     let ships: Vec<&[f64]> = rows.iter().map(|row| row.drawn.as_deref().expect("a ship of its own")).collect();

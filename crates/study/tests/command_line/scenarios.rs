@@ -263,7 +263,6 @@ fn a_faulty_rule_or_validation_is_shown_at_its_place() {
     let stop = |text: &str| format!("{GOOD}[stop]\nstandard-error = 0.1\n{text}\n");
     refused(&stop("figure = \"rms-k\""), 29, &["rms-k", "`rms-K`"]);
     refused(&stop("figure = \"rms-K\"\nmethod = \"output-eror\""), 30, &["output-eror", "did you mean `output-error`"]);
-    refused(&stop("figure = \"rms-K\"\nevery = 5"), 30, &["`stop.every` is 5", "at least 20"]);
     refused(&stop("figure = \"rms-K\"").replace("error = 0.1", "error = 0"), 28, &["is 0", "above 0"]);
     let second = |text: &str| format!("{GOOD}[validation.manoeuvre.zig-zag]\nheading-deg = 20.0\n{text}\n");
     refused(&second("rudder-deg = 95.0"), 29, &["in the validation manoeuvre", "is 95", "at most 90"]);

@@ -1,0 +1,61 @@
+//! Blocks: the parts in which the trials of a study are computed, stored and shared out.
+
+use std::fmt;
+use std::ops::Range;
+
+use scenario::Scenario;
+
+use crate::task::Task;
+
+/// Consecutive replicates of one cell: one file of rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Block {
+    /// Index of the cell.
+    pub cell: usize,
+    /// Index of the block in its cell.
+    pub number: u64,
+}
+
+impl Block {
+    /// Replicates of a block; the last of a cell may have fewer.
+    pub const REPLICATES: u64 = 256;
+
+    /// Blocks of a cell with so many replicates.
+    pub fn of_cell(replicates: u64) -> u64 {
+        replicates.div_ceil(Self::REPLICATES)
+    }
+
+    /// Blocks of all cells of a scenario.
+    pub fn count(scenario: &Scenario) -> u64 {
+        scenario.cells.len() as u64 * Self::of_cell(scenario.replicates)
+    }
+
+    /// The block of a scenario by its place among all of them, cell by cell.
+    pub fn at(place: u64, scenario: &Scenario) -> Self {
+        let of_cell = Self::of_cell(scenario.replicates);
+        Self { cell: (place / of_cell) as usize, number: place % of_cell }
+    }
+
+    /// Its place among all blocks of a scenario.
+    pub fn place(self, scenario: &Scenario) -> u64 {
+        self.cell as u64 * Self::of_cell(scenario.replicates) + self.number
+    }
+
+    /// The block of a trial.
+    pub fn of(task: Task) -> Self {
+        Self { cell: task.cell, number: task.replicate / Self::REPLICATES }
+    }
+
+    /// Its replicates in a cell that has `replicates` of them.
+    pub fn range(self, replicates: u64) -> Range<u64> {
+        let start = self.number * Self::REPLICATES;
+        start..replicates.min(start + Self::REPLICATES)
+    }
+}
+
+/// The stem of its file.
+impl fmt::Display for Block {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:04}-{:04}", self.cell, self.number)
+    }
+}

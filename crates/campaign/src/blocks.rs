@@ -1,0 +1,189 @@
+//! The blocks of a result folder: which are there and whole, and how they get there.
+//!
+//! A block is a file of rows and one of timings, each written beside its place and renamed when it is whole, the rows
+//! last. Whoever computes a block writes the same rows, so programs that work in one folder do no harm to each other,
+//! and files of several folders may be copied into one.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use scenario::failure::{Failure, OnPath};
+
+use crate::block::Block;
+use crate::design::Design;
+use crate::disk;
+use crate::files::{BLOCK_TIMINGS, ROWS};
+use crate::folder::ResultFolder;
+use crate::manifest::Manifest;
+use crate::observer::Observer;
+use crate::rows::{BlockLabel, Damage, RowLayout, StudyRow, decode, encode};
+use crate::timings::Timings;
+
+/// Largest file of a block, bytes.
+const MAX_BLOCK_BYTES: u64 = 1 << 30;
+
+/// The blocks of one study in a folder.
+pub struct BlockStore<'a> {
+    folder: PathBuf,
+    design_sha256: String,
+    program: String,
+    design: &'a Design,
+    layout: RowLayout,
+}
+
+impl<'a> BlockStore<'a> {
+    /// The blocks of a study that were computed by the program of its manifest.
+    pub fn new(folder: &Path, manifest: &Manifest, design: &'a Design) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            design_sha256: manifest.design_sha256.clone(),
+            program: manifest.program_label(),
+            design,
+            layout: RowLayout::of(design),
+        }
+    }
+
+    fn label(&self, block: Block) -> BlockLabel {
+        let (design, program) = (self.design_sha256.clone(), self.program.clone());
+        BlockLabel { design, program, cell: block.cell, block: block.number }
+    }
+
+    /// The file of a block.
+    pub fn path(&self, block: Block) -> PathBuf {
+        self.folder.join(ROWS).join(rows_name(block))
+    }
+
+    /// The rows of a block, of whole trials from its first on; none where there is no file. The inner failure is a file
+    /// that was changed since it was written.
+    ///
+    /// Fails when a file cannot be read, and when it is a block of something else.
+    pub fn read(&self, block: Block) -> Result<Result<Vec<StudyRow>, String>, Failure> {
+        let path = self.path(block);
+        let Some(bytes) = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)? else { return Ok(Ok(Vec::new())) };
+        match decode(bytes, &self.label(block), &self.layout) {
+            Ok(rows) => Ok(Ok(rows)),
+            Err(Damage::Changed(problem)) => Ok(Err(format!("{}: {problem}", path.display()))),
+            Err(Damage::Foreign(label)) => Err(Failure::about(&path, self.foreign(&label))),
+        }
+    }
+
+    fn foreign(&self, label: &BlockLabel) -> String {
+        let advice = "remove the file, give another folder with --out, or --restart to discard all rows";
+        let what = if label.design != self.design_sha256 {
+            "it is a block of another study".to_owned()
+        } else if label.program != self.program {
+            format!("it was computed by {}, expected {}", label.program, self.program)
+        } else {
+            format!("it is block {}", label.block())
+        };
+        format!("{what}; {advice}")
+    }
+
+    /// Trials that are stored, by their block. A damaged block is told of, and counts as none.
+    ///
+    /// Fails when a file cannot be read, and when one is a block of something else.
+    pub fn survey(&self, observer: &dyn Observer) -> Result<HashMap<Block, u64>, Failure> {
+        let folder = self.folder.join(ROWS);
+        let names =
+            if disk::is_there(&folder).on("look for", &folder)? { disk::names(&folder) } else { Ok(Vec::new()) };
+        let blocks: Vec<Block> = names.on("list", &folder)?.iter().filter_map(|name| block_named(name)).collect();
+        let trials = |rows: Vec<StudyRow>| (rows.len() / self.layout.methods()) as u64;
+        let look = |block: Block| match self.read(block)? {
+            Ok(rows) => Ok(Some((block, trials(rows)))),
+            Err(problem) => {
+                observer.warn(&format!("{problem}; its trials are run again"));
+                Ok(None)
+            }
+        };
+        let known = |block: &Block| block.cell < self.design.cells.len();
+        blocks.into_par_iter().filter(known).filter_map(|block| look(block).transpose()).collect()
+    }
+
+    /// Stores the trials of a block from its first on, and what they took.
+    pub fn write(&self, block: Block, rows: &[StudyRow], timings: &Timings) -> Result<(), Failure> {
+        let results = ResultFolder::make(&self.folder)?;
+        let bytes = encode(rows, &self.label(block), &self.layout);
+        let bytes = bytes.map_err(|error| Failure::work(format!("{}: {error}", self.path(block).display())))?;
+        results.inside(BLOCK_TIMINGS)?.write(&timings_name(block), timings.to_text(self.design)?)?;
+        results.inside(ROWS)?.write(&rows_name(block), bytes)
+    }
+
+    /// What the trials of a block took, as far as it is known. Fails when the file cannot be read.
+    pub fn timings(&self, block: Block) -> Result<Timings, Failure> {
+        let path = self.folder.join(BLOCK_TIMINGS).join(timings_name(block));
+        let text = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)?.unwrap_or_default();
+        Ok(Timings::of_text(&text, self.design).unwrap_or_default())
+    }
+
+    /// The blocks of the trials of the design, in their order, with their trials.
+    pub fn of_design(&self) -> impl Iterator<Item = (Block, u64)> {
+        self.design.cells.iter().enumerate().flat_map(|(cell, facts)| {
+            let count = facts.trials.end;
+            let blocks = (0..Block::of_cell(count)).map(move |number| Block { cell, number });
+            blocks.map(move |block| (block, block.range(count).count() as u64))
+        })
+    }
+
+    /// Hands every row of the design to `take`, in order. Fails when a block is missing, short or damaged.
+    pub fn rows(&self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
+        let blocks: Vec<(Block, u64)> = self.of_design().collect();
+        let whole = |&(block, trials): &(Block, u64)| {
+            let found = self.read(block)?;
+            let expected = trials as usize * self.layout.methods();
+            let rows = found.and_then(|rows| match rows.len() == expected {
+                true => Ok(rows),
+                false => Err(format!("{}: it is missing, or not whole", self.path(block).display())),
+            });
+            rows.map_err(|problem| {
+                Failure::input(format!("{problem}; run the study again: what is whole is not computed again"))
+            })
+        };
+        // So many are decoded side by side.
+        for some in blocks.chunks(2 * rayon::current_num_threads()) {
+            let read: Vec<Result<Vec<StudyRow>, Failure>> = some.par_iter().map(whole).collect();
+            for rows in read {
+                rows?.into_iter().try_for_each(&mut take)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a folder holds blocks.
+pub fn is_in(folder: &Path) -> Result<bool, Failure> {
+    let rows = folder.join(ROWS);
+    if !disk::is_there(&rows).on("look for", &rows)? {
+        return Ok(false);
+    }
+    Ok(disk::names(&rows).on("list", &rows)?.iter().any(|name| block_named(name).is_some()))
+}
+
+/// Throws the blocks of a folder away, whatever study they are of.
+pub fn discard(folder: &ResultFolder) -> Result<(), Failure> {
+    for (name, extension) in [(ROWS, "parquet"), (BLOCK_TIMINGS, "csv")] {
+        if disk::is_there(&folder.path().join(name)).on("look for", &folder.path().join(name))? {
+            folder.inside(name)?.remove_all(|file| stem_of(file, extension).is_some())?;
+        }
+    }
+    Ok(())
+}
+
+fn rows_name(block: Block) -> String {
+    format!("{block}.parquet")
+}
+
+fn timings_name(block: Block) -> String {
+    format!("{block}.csv")
+}
+
+fn block_named(name: &str) -> Option<Block> {
+    stem_of(name, "parquet")
+}
+
+/// The block whose file has this name.
+fn stem_of(name: &str, extension: &str) -> Option<Block> {
+    let (cell, number) = name.strip_suffix(extension)?.strip_suffix('.')?.split_once('-')?;
+    let block = Block { cell: cell.parse().ok()?, number: number.parse().ok()? };
+    (name == format!("{block}.{extension}")).then_some(block)
+}
