@@ -6,8 +6,7 @@ use std::process::ExitCode;
 use std::sync::LazyLock;
 
 use crate::commands::{
-    bench, check, doctor, find, fit, list, merge, overview, predict, publish, report, run, schema, score, shell,
-    sidecar, simulate, trace,
+    bench, check, doctor, find, fit, list, merge, predict, report, run, schema, score, shell, sidecar, simulate, trace,
 };
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
 use crate::{failures, screen, threads};
@@ -68,12 +67,8 @@ enum Command {
     /// List what scenario files can name
     List(With<list::ListRequest>),
     /// Rebuild tables and plots of a study, a fit, a trace or a prediction from what is stored; nothing is simulated or
-    /// fitted
+    /// fitted; of several studies also one page over them
     Report(With<report::ReportRequest>),
-    /// Write one page over all published studies of a folder
-    Overview(With<overview::OverviewRequest>),
-    /// Make all published results of a folder with one program, and say what changed; goes on where it was stopped
-    Publish(With<publish::PublishRequest>),
     /// Look at the machine and the terminal: versions, threads, instruction sets, whether files can be written
     Doctor(Common),
     /// Print the JSON schema of a file, for editors and programs
@@ -178,13 +173,11 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         Command::Score(own) => own.work(score::run),
         Command::Bench(own) => own.work(bench::run),
         Command::Report(own) => own.work(report::run),
-        Command::Publish(own) => own.work(publish::run),
         Command::Merge(own) => own.work(merge::run),
         Command::Find(own) => own.answer(find::run),
         Command::Sidecar(own) => own.answer(sidecar::run),
         Command::Check(own) => own.answer(check::run),
         Command::List(own) => own.answer(list::run),
-        Command::Overview(own) => own.answer(overview::run),
         Command::Schema(own) => own.answer(schema::run),
         Command::Completions(own) => own.answer(|own, common| shell::completions(own, Cli::command(), common)),
         Command::Man(own) => own.answer(|own, common| shell::man(own, Cli::command(), common)),

@@ -430,10 +430,6 @@ pub enum Described {
     Simulate,
     /// What `sidecar` says
     SidecarAnswer,
-    /// What `overview` says
-    Overview,
-    /// What `publish` says
-    Publish,
     /// What every command says on standard error when it fails
     Error,
 }

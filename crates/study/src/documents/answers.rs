@@ -99,72 +99,6 @@ pub struct SimulateAnswer {
     pub files: Vec<String>,
 }
 
-/// A page over studies.
-#[derive(Serialize, JsonSchema)]
-pub struct OverviewAnswer<'a> {
-    /// The page.
-    pub page: String,
-    /// The studies.
-    pub studies: &'a [PublishedStudy],
-}
-
-/// A published study, or results of another program.
-#[derive(Serialize, JsonSchema)]
-pub struct PublishedStudy {
-    /// Its name.
-    pub name: String,
-    /// Its folder, from the page.
-    pub folder: String,
-    /// File of its report there.
-    pub page: String,
-    /// What it asks.
-    pub question: String,
-    /// What came out.
-    pub finding: String,
-    /// File of the figure that stands for it, in its folder.
-    pub figure: Option<String>,
-}
-
-/// A publication.
-#[derive(Serialize, JsonSchema)]
-pub struct PublishAnswer {
-    /// The page over all of it.
-    pub page: String,
-    /// Every study and every program, in the order in which they were made, and checks behind them.
-    pub entries: Vec<PublicationEntry>,
-}
-
-/// A study, a program or a check of a publication.
-#[derive(Serialize, JsonSchema)]
-pub struct PublicationEntry {
-    /// Its name.
-    pub name: String,
-    /// What became of it.
-    pub state: PublicationState,
-    /// Why it was skipped or failed.
-    pub reason: Option<String>,
-    /// Published files that changed.
-    pub changed_files: Vec<String>,
-    /// Figures with an interval that can be held against what they were.
-    pub figures: usize,
-    /// Those that moved beyond their noise, in words.
-    pub moved: Vec<String>,
-}
-
-/// What became of a part of a publication.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum PublicationState {
-    /// It was made now.
-    Made,
-    /// It was there, made by this program.
-    Current,
-    /// It was not made, because what it needs was not given or it was not asked for.
-    Skipped,
-    /// It failed.
-    Failed,
-}
-
 /// Manual pages.
 #[derive(Serialize, JsonSchema)]
 pub struct ManAnswer {
@@ -213,8 +147,6 @@ answers! {
     StudyAnswer<'_>: "study/1",
     ShardAnswer<'_>: "shard/1",
     SimulateAnswer: "simulate/1",
-    OverviewAnswer<'_>: "overview/1",
-    PublishAnswer: "publish/1",
     ManAnswer: "man/1",
     CompletionsAnswer: "completions/1",
     SidecarAnswer: "sidecar/1",

@@ -50,7 +50,6 @@ method.integral-least-squares = {}
         (&["small.toml", "--shard", "1/2", "--out", "a"], "shard/1"),
         (&["small.toml", "--shard", "2/2", "--out", "b"], "shard/1"),
         (&["merge", "a", "b", "--out", "m"], "study/1"),
-        (&["overview", "s"], "overview/1"),
         (&["check", &scenario, "--resolved"], "check/1"),
         (&["find", "run.csv"], "find/1"),
         (&["sidecar", "other.csv"], "sidecar/1"),
