@@ -37,20 +37,25 @@ class Failed(Exception):
     """Why something cannot be done, for a person."""
 
 
+def read(path):
+    """A file of TOML that has to be right."""
+    try:
+        return tomllib.loads(path.read_bytes().decode())
+    except (OSError, ValueError) as error:
+        raise Failed(f"{path}: {error}") from None
+
+
 def table(path):
     """A file of TOML; an empty one where it is missing or belongs to another version."""
     try:
-        return tomllib.loads(path.read_bytes().decode())
-    except (FileNotFoundError, ValueError):
+        return read(path)
+    except Failed:
         return {}
 
 
 def read_plan():
     """`publish.toml`, and the files of the scenarios by their names."""
-    try:
-        plan = {"program": [], "check": []} | tomllib.loads(PLAN.read_bytes().decode())
-    except (OSError, ValueError) as error:
-        raise Failed(f"{PLAN}: {error}") from None
+    plan = {"program": [], "check": []} | read(PLAN)
     for own in plan["program"]:
         if missing := {"name", "question", "page", "commands"} - own.keys():
             raise Failed(f"{PLAN}: program {own.get('name', '')}: give its {' and '.join(sorted(missing))}")
@@ -189,7 +194,7 @@ def write_page(plan, scenarios, place):
     entries = [(own, own["page"], own.get("figure")) for own in plan["program"] if (PUBLISHED / own["name"]).is_dir()]
     for name, file in scenarios.items():
         if (PUBLISHED / name / "manifest.toml").is_file():
-            words = tomllib.loads((ROOT / file).read_bytes().decode())
+            words = read(ROOT / file)
             figure = words.get("output", {}).get("figure")
             stem = "hero" if figure and (PUBLISHED / name / "hero.png").is_file() else figure
             entries.append((words | {"name": name}, "report.md", stem and f"{stem}.png"))
@@ -268,7 +273,7 @@ def main():
         if options.page:
             return 0 if write_page(plan, scenarios, options.page) else 1
         entries = publish(options, plan, scenarios)
-    except Failed as failure:
+    except (Failed, OSError) as failure:
         print(f"error: {failure}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
