@@ -9,8 +9,8 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 68_100,
-    tests: 30_200,
+    code: 67_600,
+    tests: 30_000,
     long_functions: 0,
     shared_types: 15,
     packages: 299,

@@ -6,8 +6,7 @@ use std::process::ExitCode;
 use std::sync::LazyLock;
 
 use crate::commands::{
-    bench, check, doctor, find, fit, list, overview, predict, report, run, schema, score, shell, sidecar, simulate,
-    trace,
+    bench, check, doctor, find, fit, list, predict, report, run, schema, score, shell, sidecar, simulate, trace,
 };
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
 use crate::{failures, threads};
@@ -67,10 +66,8 @@ enum Command {
     /// List what scenario files can name
     List(With<list::ListRequest>),
     /// Rebuild tables and plots of a study, a fit, a trace or a prediction from what is stored; nothing is simulated or
-    /// fitted
+    /// fitted; of several studies also one page over them
     Report(With<report::ReportRequest>),
-    /// Write one page over all published studies of a folder
-    Overview(With<overview::OverviewRequest>),
     /// Look at the machine and the terminal: versions, threads, instruction sets, whether files can be written
     Doctor(Common),
     /// Print the JSON schema of a file, for editors and programs
@@ -167,7 +164,6 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         Command::Sidecar(own) => own.answer(sidecar::run),
         Command::Check(own) => own.answer(check::run),
         Command::List(own) => own.answer(list::run),
-        Command::Overview(own) => own.answer(overview::run),
         Command::Schema(own) => own.answer(schema::run),
         Command::Completions(own) => own.answer(|own, common| shell::completions(own, Cli::command(), common)),
         Command::Man(own) => own.answer(|own, common| shell::man(own, Cli::command(), common)),

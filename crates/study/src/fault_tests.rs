@@ -46,7 +46,7 @@ const STYLE: StudyFigureOptions = StudyFigureOptions {
 };
 
 fn report_of(folder: &Path) -> ReportRequest {
-    ReportRequest { folder: folder.to_owned(), open: false, style: STYLE }
+    ReportRequest { folders: vec![folder.to_owned()], open: false, style: STYLE }
 }
 
 /// Runs a scenario into a folder.

@@ -426,8 +426,6 @@ pub enum Described {
     Simulate,
     /// What `sidecar` says
     SidecarAnswer,
-    /// What `overview` says
-    Overview,
     /// What every command says on standard error when it fails
     Error,
 }

@@ -7,7 +7,6 @@ pub mod doctor;
 pub mod find;
 pub mod fit;
 pub mod list;
-pub mod overview;
 pub mod predict;
 pub mod report;
 pub mod run;

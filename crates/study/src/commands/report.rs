@@ -1,5 +1,5 @@
 //! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace, a prediction or a benchmark, from
-//! what is stored and nothing else.
+//! what is stored and nothing else. Of several studies also the page over them.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -14,17 +14,20 @@ use scenario::failure::Failure;
 use super::{bench, fit, predict, trace};
 use crate::documents::curves::TraceCurves;
 use crate::documents::{BENCH, CURVES, FIT, PREDICT, TRACE, read_document, read_json};
-use crate::options::{Common, StudyFigureOptions};
+use crate::options::{Common, Format, StudyFigureOptions};
+use crate::screen;
 use crate::terminal::Terminal;
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
+use crate::views::studies_page;
 
 /// What `study report` is asked to do.
 #[derive(Debug, Clone, Args)]
 pub struct ReportRequest {
-    /// Folder of a finished study, a fit, a trace, a prediction or a benchmark
-    #[arg(value_name = "DIR")]
-    pub folder: PathBuf,
+    /// Folder of a finished study, a fit, a trace, a prediction or a benchmark; of several studies also one page over
+    /// all is written, README.md in the folder that holds them or in --out
+    #[arg(required = true, value_name = "DIR")]
+    pub folders: Vec<PathBuf>,
     /// Show report.html in a browser
     #[arg(long)]
     pub open: bool,
@@ -34,9 +37,41 @@ pub struct ReportRequest {
 }
 
 /// Makes tables, figures and the pages of a finished study, a fit, a trace, a prediction or a benchmark where it is
-/// stored, or in `--out`; with `open` shows the page in a browser.
+/// stored, or in `--out`; with `open` shows the page in a browser. Several studies are each made where they are stored,
+/// and the page over them where all of them lie, or in `--out`.
 pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
-    let ReportRequest { folder: stored, open, style } = request;
+    let folders = &request.folders[..];
+    if let [folder] = folders {
+        return report(folder, request, common);
+    }
+    if common.format != Format::Text {
+        return Err(Failure::input(
+            "--format: an answer in this form is about one study; give one folder, or no --format",
+        ));
+    }
+    let place = common.out.clone().map_or_else(|| shared_folder(folders), Ok)?;
+    studies_page::is_possible(folders, &place)?;
+    let own = Common { out: None, ..common.clone() };
+    folders.iter().try_for_each(|folder| report(folder, request, &own))?;
+    let page = studies_page::write(folders, &ResultFolder::make(&place)?)?;
+    if common.quiet { Ok(()) } else { screen::say(&format!("page over {} studies: {}", folders.len(), page.display())) }
+}
+
+/// The folder that holds all of some folders. Fails where they lie in different ones.
+fn shared_folder(folders: &[PathBuf]) -> Result<PathBuf, Failure> {
+    let holding = |folder: &PathBuf| match folder.file_name().and(folder.parent()) {
+        Some(parent) if parent == Path::new("") => Some(PathBuf::from(".")),
+        parent => parent.map(Path::to_owned),
+    };
+    let mut all = folders.iter().map(holding);
+    let first = all.next().flatten().filter(|first| all.all(|other| other.as_ref() == Some(first)));
+    let problem = "the folders do not lie beside each other; say with --out DIR where the page over them is to be";
+    first.ok_or_else(|| Failure::input(problem))
+}
+
+/// Makes all there is of one folder.
+fn report(stored: &Path, request: &ReportRequest, common: &Common) -> Result<(), Failure> {
+    let ReportRequest { open, style, .. } = request;
     let folder = common.out.as_deref().unwrap_or(stored);
     let held = || ResultFolder::make(folder);
     let theme = || style.style.theme();

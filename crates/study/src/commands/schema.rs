@@ -18,8 +18,7 @@ use std::path::Path;
 
 use crate::documents;
 use crate::documents::answers::{
-    CheckAnswer, CommandAnswer, ListAnswer, OverviewAnswer, ShardAnswer, SidecarAnswer, SimulateAnswer, StudyAnswer,
-    Versioned,
+    CheckAnswer, CommandAnswer, ListAnswer, ShardAnswer, SidecarAnswer, SimulateAnswer, StudyAnswer, Versioned,
 };
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
@@ -65,7 +64,6 @@ pub fn schema(what: Described) -> Schema {
         Described::List => answer::<ListAnswer>(),
         Described::Simulate => answer::<SimulateAnswer>(),
         Described::SidecarAnswer => answer::<SidecarAnswer>(),
-        Described::Overview => answer::<OverviewAnswer>(),
         Described::Error => of::<ErrorDocument>(),
     }
 }

@@ -99,32 +99,6 @@ pub struct SimulateAnswer {
     pub files: Vec<String>,
 }
 
-/// A page over studies.
-#[derive(Serialize, JsonSchema)]
-pub struct OverviewAnswer<'a> {
-    /// The page.
-    pub page: String,
-    /// The studies.
-    pub studies: &'a [PublishedStudy],
-}
-
-/// A published study, or results of another program.
-#[derive(Serialize, JsonSchema)]
-pub struct PublishedStudy {
-    /// Its name.
-    pub name: String,
-    /// Its folder, from the page.
-    pub folder: String,
-    /// File of its report there.
-    pub page: String,
-    /// What it asks.
-    pub question: String,
-    /// What came out.
-    pub finding: String,
-    /// File of the figure that stands for it, in its folder.
-    pub figure: Option<String>,
-}
-
 /// Manual pages.
 #[derive(Serialize, JsonSchema)]
 pub struct ManAnswer {
@@ -173,7 +147,6 @@ answers! {
     StudyAnswer<'_>: "study/1",
     ShardAnswer<'_>: "shard/1",
     SimulateAnswer: "simulate/1",
-    OverviewAnswer<'_>: "overview/1",
     ManAnswer: "man/1",
     CompletionsAnswer: "completions/1",
     SidecarAnswer: "sidecar/1",

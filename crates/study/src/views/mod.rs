@@ -23,6 +23,7 @@ pub mod predict_tables;
 pub mod publish;
 pub mod record_figures;
 pub mod scale_tables;
+pub mod studies_page;
 pub mod study_figures;
 pub mod study_page;
 pub mod tables;

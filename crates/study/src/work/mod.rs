@@ -6,7 +6,6 @@ pub mod fit;
 mod loading;
 mod planned;
 pub mod predict;
-pub mod publication;
 pub mod simulate;
 pub mod single_records;
 pub mod steady;

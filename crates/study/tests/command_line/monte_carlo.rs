@@ -279,16 +279,25 @@ fn studies_are_gathered_on_one_page() {
     for name in ["one.toml", "two.toml"] {
         desk.run(&[name, "--quiet"]).is_done();
     }
-    assert!(desk.run(&["overview", "results"]).is_done().out.contains("2 studies"));
+    let both = ["report", "results/one", "results/two/"];
+    assert!(desk.run(&both).is_done().out.ends_with("\npage over 2 studies: results/README.md\n"));
     let page = desk.text("results/README.md");
     for part in ["## [one](one/report.md)", "Precise to 0.1 %.", "](one/hero.png)", "So is this.", "](two/hero.png)"] {
         assert!(page.contains(part), "{part} is missing in\n{page}");
     }
     desk.file("two.toml", told("So is this.", "nothing"));
     desk.run(&["two.toml", "--quiet"]).is_done();
-    desk.run(&["overview", "results"]).is_refused(2, &["results/two", "no nothing.png", "coverage, errors"]);
-    desk.run(&["overview", "results/one"]).is_refused(2, &["results/one", "run a scenario first"]);
-    desk.run(&["overview", "nowhere"]).is_refused(2, &["nowhere", "folders of studies"]);
+    let run = desk.run(&[&both[..], &["--quiet"]].concat());
+    assert!(run.code == Some(2) && run.err.contains("no nothing.png; figures there: coverage, errors"), "{}", run.err);
+    desk.run(&["report", "results/one", "results"]).is_refused(2, &["beside each other", "--out"]);
+    desk.run(&["report", "results/one", "nowhere", "--out", "page"])
+        .is_refused(2, &["nowhere", "run a scenario first"]);
+    desk.run(&[&both[..], &["--format", "csv"]].concat()).is_refused(2, &["--format", "give one folder"]);
+    std::fs::remove_dir_all(desk.path("results/two")).expect("it was there");
+    desk.run(&["results/one/manifest.toml", "--out", "two", "--quiet"]).is_done();
+    desk.run(&["report", "results/one", "two", "--out", "page", "--quiet"]).is_done();
+    let page = desk.text("page/README.md");
+    assert!(page.contains("## [one](../results/one/report.md)") && page.contains("](../two/hero.png)"), "{page}");
 }
 
 #[test]

@@ -49,7 +49,6 @@ method.integral-least-squares = {}
         (&["report", "s/small"], "study/1"),
         (&["small.toml", "--shard", "1/1", "--out", "a"], "shard/1"),
         (&["report", "a"], "study/1"),
-        (&["overview", "s"], "overview/1"),
         (&["check", &scenario, "--resolved"], "check/1"),
         (&["find", "run.csv"], "find/1"),
         (&["sidecar", "other.csv"], "sidecar/1"),

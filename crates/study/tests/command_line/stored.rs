@@ -79,13 +79,14 @@ fn files_of_somebody_else_are_left_alone() {
     desk.run(&["study.toml", "--out", "out", "--quiet", "--restart"]).is_done();
     assert_eq!(desk.bytes("out/rows/notes.txt"), b"precious");
 
-    desk.run(&["study.toml", "--quiet"]).is_done();
-    desk.file("results/README.md", "mine");
-    desk.run(&["overview", "results"]).is_refused(2, &["results/README.md", "was not made by"]);
-    assert_eq!(desk.bytes("results/README.md"), b"mine");
-    fs::remove_file(desk.path("results/README.md")).expect("it was there");
-    desk.run(&["overview", "results", "--quiet"]).is_done();
-    desk.run(&["overview", "results", "--quiet"]).is_done();
+    let both = ["report", "one", "two", "--quiet"];
+    both[1..3].iter().for_each(|out| _ = desk.run(&["study.toml", "--out", out, "--quiet"]).is_done());
+    desk.file("README.md", "mine");
+    desk.run(&both).is_refused(2, &["README.md", "was not made by"]);
+    assert_eq!(desk.bytes("README.md"), b"mine");
+    fs::remove_file(desk.path("README.md")).expect("it was there");
+    desk.run(&both).is_done();
+    desk.run(&both).is_done();
 }
 
 #[cfg(unix)]

@@ -1,0 +1,137 @@
+//! One page over several finished studies, each with its question, its answer in a sentence and the figure that stands
+//! for it. Made from their manifests and figures, so it needs no rows.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use campaign::disk;
+use campaign::files;
+use campaign::folder::ResultFolder;
+use campaign::manifest::Manifest;
+use report::markdown;
+use scenario::failure::{Failure, OnPath};
+use scenario::name;
+
+use super::page_files::{KEY_FIGURE, REPORT};
+
+/// Name of the page.
+const PAGE: &str = "README.md";
+
+/// How the page begins; one that begins otherwise belongs to somebody else.
+const MARK: &str = "<!-- Made by `study report` of several studies, which writes it anew. -->\n";
+
+/// Largest page that is looked at, bytes.
+const LARGEST: u64 = 1 << 26;
+
+/// What the page says of a study.
+struct Section {
+    /// Name of its folder.
+    name: String,
+    /// Its folder, from where the page lies.
+    folder: String,
+    /// What it asks.
+    question: String,
+    /// What came out.
+    finding: String,
+    /// File of the figure that stands for it.
+    figure: Option<String>,
+}
+
+/// Fails where a folder is not that of a study, and where a page of somebody else lies in the place of this one.
+pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
+    if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
+        let problem = format!("it holds no {}, and a page over several folders is one over studies", files::MANIFEST);
+        return Err(Failure::about(folder, format!("{problem}; run a scenario first, or give the folder alone")));
+    }
+    let path = place.join(PAGE);
+    if disk::read(&path, LARGEST).on("read", &path)?.is_some_and(|text| !text.starts_with(MARK.as_bytes())) {
+        let problem = "this page was not made by `study report`";
+        return Err(Failure::about(&path, format!("{problem}; move it away, or give another folder with --out")));
+    }
+    Ok(())
+}
+
+/// Writes the page over studies into a folder; returns its path.
+///
+/// Fails where [`is_possible`] does, when a figure that a scenario names is not there, and when it cannot be written.
+pub fn write(studies: &[PathBuf], target: &ResultFolder) -> Result<PathBuf, Failure> {
+    is_possible(studies, target.path())?;
+    let place = target.path().canonicalize().on("find", target.path())?;
+    let sections = studies.iter().map(|folder| section(folder, &place)).collect::<Result<Vec<_>, _>>()?;
+    target.write(PAGE, MARK.to_owned() + &markdown::prose(&page(&sections)))?;
+    Ok(target.path().join(PAGE))
+}
+
+fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
+    let path = folder.join(files::MANIFEST);
+    let missing = || Failure::about(&path, "there is no such file any more");
+    let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
+    let words = manifest.words();
+    let unfit = |stem: &str, unfit| Failure::about(&path, format!("`output.figure` is {}; {unfit}", name::shown(stem)));
+    let figure = match &words.output.figure {
+        Some(stem) => Some(name::file(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?),
+        None => None,
+    };
+    let whole = folder.canonicalize().on("find", folder)?;
+    Ok(Section {
+        // --out may have made another name of the folder than that of the scenario.
+        name: whole.file_name().map_or(manifest.name, |name| name.to_string_lossy().into_owned()),
+        folder: way(place, &whole),
+        question: words.question.trim().to_owned(),
+        finding: words.finding.trim().to_owned(),
+        figure,
+    })
+}
+
+/// The way from one folder to another, as a link has it.
+fn way(from: &Path, to: &Path) -> String {
+    let shared = from.components().zip(to.components()).take_while(|(one, other)| one == other).count();
+    let up = from.components().skip(shared).map(|_| "..".to_owned());
+    let down = to.components().skip(shared).map(|part| part.as_os_str().to_string_lossy().into_owned());
+    let parts: Vec<String> = up.chain(down).collect();
+    if parts.is_empty() { ".".to_owned() } else { parts.join("/") }
+}
+
+/// File of the figure that a scenario names.
+fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
+    let files = [KEY_FIGURE, stem].map(|stem| format!("{stem}.png"));
+    if let Some(file) = files.into_iter().find(|file| folder.join(file).is_file()) {
+        return Ok(file);
+    }
+    let file = format!("{stem}.png");
+    let names = disk::names(folder).on("list", folder)?;
+    let known: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(".png")).collect();
+    let known = known.join(", ");
+    Err(Failure::about(
+        folder,
+        format!("the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {known}"),
+    ))
+}
+
+fn page(sections: &[Section]) -> String {
+    let mut page =
+        String::from("# Results\n\nOne study a section: its question, what came out, and the figure that shows it.\n");
+    for Section { name, folder, question, finding, figure } in sections {
+        write!(page, "\n## [{name}]({folder}/{REPORT})\n\n**{question}**\n")
+            .expect("writing to a string does not fail");
+        if !finding.is_empty() {
+            write!(page, "\n{finding}\n").expect("writing to a string does not fail");
+        }
+        if let Some(figure) = figure {
+            write!(page, "\n![Figure of {name}]({folder}/{figure})\n").expect("writing to a string does not fail");
+        }
+    }
+    page
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_leads_from_the_page_to_the_study() {
+        for (from, to, link) in [("/a", "/a/b", "b"), ("/a/b", "/a/c/d", "../c/d"), ("/a", "/a", ".")] {
+            assert_eq!(way(Path::new(from), Path::new(to)), link);
+        }
+    }
+}
