@@ -4,10 +4,10 @@
 
 use std::path::Path;
 
+use campaign::scenario::Scenario;
 use campaign::{collect, summary};
 use identify::registry;
 use kempf_tests::records::Case;
-use scenario::Scenario;
 
 /// Method, evaluations, share by which they may differ on another machine, why it stopped. Counts of methods without a
 /// search are exact. The search for the Fourier fundamental and the polish of output error, with which maximum

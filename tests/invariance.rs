@@ -3,14 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use campaign::design::Design;
-use campaign::folder::ResultFolder;
 use campaign::rows::{BlockLabel, RowLayout, StudyRow, encode};
+use campaign::scenario::Scenario;
 use campaign::task::Task;
 use campaign::{collect, engine};
 use identify::registry;
 use kempf_tests::records::{Case, zig_zag};
-use scenario::Scenario;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use ship::ships::kvlcc2;

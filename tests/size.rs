@@ -9,8 +9,8 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 67_600,
-    tests: 30_000,
+    code: 65_800,
+    tests: 29_150,
     long_functions: 0,
     shared_types: 15,
     packages: 299,
@@ -18,6 +18,7 @@ const REACHED: Size = Size {
     text_lists: 0,
     leaks: 3,
     looked_up: 1,
+    largest_crate: 11_000,
 };
 
 /// Endings of sources in Rust, Python and JavaScript.
@@ -50,6 +51,8 @@ struct Size {
     leaks: usize,
     /// Diagnostics that are looked up by a word in the code.
     looked_up: usize,
+    /// Lines of code of the crate that has most.
+    largest_crate: usize,
 }
 
 /// A function whose end is not seen yet.
@@ -130,15 +133,16 @@ impl Size {
     fn of_the_house() -> Self {
         let mut size = Self::default();
         let mut names: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        let mut code: BTreeMap<String, usize> = BTreeMap::new();
         for path in FOLDERS.iter().flat_map(|folder| files(&root().join(folder), &LANGUAGES)) {
             let file = path.strip_prefix(root()).expect("it lies below the root").to_string_lossy().into_owned();
-            size.add(
-                &read(&path),
-                ending(&path),
-                is_of_tests(&file),
-                names.entry(package(&file).to_owned()).or_default(),
-            );
+            let (package, before) = (package(&file), size.code);
+            let names = names.entry(package.to_owned()).or_default();
+            size.add(&read(&path), ending(&path), is_of_tests(&file), names);
+            *code.entry(package.to_owned()).or_default() += size.code - before;
         }
+        let crates = code.iter().filter(|(package, _)| package.starts_with("crates/"));
+        size.largest_crate = crates.map(|(_, lines)| *lines).max().unwrap_or(0);
         let mut packages: BTreeMap<&String, usize> = BTreeMap::new();
         names.values().flatten().for_each(|name| *packages.entry(name).or_default() += 1);
         let usual = ["Settings", "Error", "Result"];
@@ -149,7 +153,7 @@ impl Size {
     }
 
     /// What is counted, in the order of its declaration.
-    fn counts(&self) -> [usize; 9] {
+    fn counts(&self) -> [usize; 10] {
         [
             self.code,
             self.tests,
@@ -160,6 +164,7 @@ impl Size {
             self.text_lists,
             self.leaks,
             self.looked_up,
+            self.largest_crate,
         ]
     }
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use campaign::collect::in_memory;
 use campaign::curves::zigzag_figure;
+use campaign::scenario::Scenario;
 use rayon::prelude::*;
 use report::{Drawing, Theme};
-use scenario::Scenario;
 use trial::ZigZag;
 
 use crate::records::{ROWS, first_order_zig_zag, record};

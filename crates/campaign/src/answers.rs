@@ -3,13 +3,13 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use crate::failure::Failure;
+use crate::scenario::answers::{Answers, TrialNumber};
+use crate::scenario::name::{shown, slug};
+use crate::scenario::{Scenario, hex};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use identify::{Answer, Errors};
 use indexmap::IndexMap;
-use scenario::answers::{Answers, TrialNumber};
-use scenario::failure::Failure;
-use scenario::name::{shown, slug};
-use scenario::{Scenario, hex};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use ship::angle::from_deg;
@@ -255,7 +255,7 @@ impl AnswerColumns {
 mod tests {
     use std::sync::Mutex;
 
-    use scenario::MethodName;
+    use crate::scenario::MethodName;
 
     use super::*;
     use crate::testing::zig_zag;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use scenario::Scenario;
+use crate::scenario::Scenario;
 
 use crate::task::Task;
 

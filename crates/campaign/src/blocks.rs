@@ -7,8 +7,8 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use crate::failure::{Failure, OnPath};
 use rayon::prelude::*;
-use scenario::failure::{Failure, OnPath};
 
 use crate::block::Block;
 use crate::design::Design;

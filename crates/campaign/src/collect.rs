@@ -7,9 +7,9 @@ use std::sync::mpsc::{RecvTimeoutError, channel, sync_channel};
 use std::thread::Scope;
 use std::time::{Duration, Instant};
 
+use crate::failure::Failure;
+use crate::scenario::Scenario;
 use rayon::prelude::*;
-use scenario::Scenario;
-use scenario::failure::Failure;
 
 use crate::block::Block;
 use crate::blocks::{self, BlockStore};

@@ -1,11 +1,11 @@
 //! Trials and answers as data of figures, in degrees.
 
+use crate::scenario::MethodName;
 use document::method::MethodEntry;
 use identify::Estimate;
 use identify::replay::replay;
 use report::figures::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
 use report::{CurveOrigin, PlotCurve};
-use scenario::MethodName;
 use ship::angle::to_deg;
 use trial::zigzag::PhasePlane;
 use trial::zigzag::{Execute, Overshoot};

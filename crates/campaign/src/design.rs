@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use scenario::{DesignCell, MethodName, Scenario, Words, name};
+use crate::scenario::{DesignCell, MethodName, Scenario, Words, name};
 use serde::{Deserialize, Serialize};
 
 /// What tables and figures need of a scenario.

@@ -20,10 +20,10 @@ use crate::known::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
 use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
+use crate::scenario::{Method, Procedure, Scenario, Specification, TrialSpecification};
 use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::TrialTiming;
-use scenario::{Method, Procedure, Scenario, Specification, TrialSpecification};
 
 /// Rows of one trial, and what they took.
 pub struct TrialOutcome {

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use crate::disk;
-use scenario::failure::{Failure, OnPath};
+use crate::failure::{Failure, OnPath};
 
 /// What the names of files under way begin with: other programs take such files for none of the folder.
 const UNDER_WAY: &str = ".kempf-";

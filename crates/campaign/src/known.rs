@@ -311,9 +311,9 @@ fn inside_movements(trial: &Trial, rate: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::Predictions;
     use identify::output_error;
     use predict::ShipMixture;
-    use scenario::Predictions;
     use ship::FirstOrder;
     use ship::angle::from_deg;
     use ship::vessel::prior::HullParticulars;

@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use scenario::hex;
+use crate::scenario::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::disk;
+use crate::failure::{Failure, OnPath};
 use crate::files::{DESIGN, MANIFEST};
 use crate::folder::ResultFolder;
-use scenario::failure::{Failure, OnPath};
-use scenario::{Scenario, Words, identity};
+use crate::scenario::{Scenario, Words, identity};
 
 /// The manifest of a study: the same whichever shards of it are in the folder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

@@ -7,8 +7,8 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use scenario::Scenario;
-use scenario::failure::Failure;
+use crate::failure::Failure;
+use crate::scenario::Scenario;
 
 use crate::block::Block;
 use crate::rows::StudyRow;

@@ -1,9 +1,9 @@
 //! Manoeuvres predicted from an answer, and the same ship making them: whether intervals hold.
 
+use crate::scenario::Predictions;
 use document::IdentifiedShip;
 use predict::simulated_manoeuvre::SimulatedManoeuvre;
 use predict::{ShipMixture, figures, standard};
-use scenario::Predictions;
 use simulate::{Manoeuvre, Sensors, Simulation, StreamKey};
 use trial::Trial;
 

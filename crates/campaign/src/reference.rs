@@ -8,7 +8,7 @@ use simulate::{Disturbances, Recording, Sensors, Simulated, Simulation, StreamKe
 use trial::Trial;
 
 use crate::bound;
-use scenario::{Specification, TrialSpecification};
+use crate::scenario::{Specification, TrialSpecification};
 
 /// What the trials of a cell are held against.
 #[derive(Default)]

@@ -13,11 +13,11 @@ use trial::{Quantity, Trial, ZigZag};
 use crate::answer::entry;
 use crate::curves::{curve, origin, replay_curves, zigzag_figure};
 use crate::engine;
+use crate::scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};
 use crate::stored_figures::{
     CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replays,
 };
 use crate::task::Task;
-use scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};
 
 /// The first trial of one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

@@ -1,8 +1,8 @@
 //! The stopping rule: whether a figure of a cell is known well enough. It keeps running sums and no rows.
 
 use crate::rows::StudyRow;
+use crate::scenario::{Index, StopFigure, StopRule};
 use crate::statistics::Moments;
-use scenario::{Index, StopFigure, StopRule};
 
 /// What a rule has seen of one cell.
 #[derive(Clone)]

@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use scenario::failure::{Failure, OnPath};
-use scenario::hex;
+use crate::failure::{Failure, OnPath};
+use crate::scenario::hex;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 

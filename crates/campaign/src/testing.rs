@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use scenario::Scenario;
+use crate::scenario::Scenario;
 
 /// A scenario that is right.
 pub fn scenario(text: impl Into<String>) -> Scenario {

@@ -3,12 +3,12 @@
 
 use std::path::Path;
 
-use scenario::keys::ScenarioKey;
+use crate::scenario::keys::ScenarioKey;
 use simulate::limits::MOST_STEPS;
 
 use crate::engine::{TrialRunner, key};
+use crate::scenario::Scenario;
 use crate::task::Task;
-use scenario::Scenario;
 
 /// Scenarios that together hold every key with a number, one a line.
 const EVERYTHING: [&str; 5] = [
@@ -69,7 +69,7 @@ fn every_declared_number_is_among_them() {
     let documents: Vec<toml::Table> = texts.map(|text| text.parse().expect("it is TOML")).collect();
     const OF_A_TRIAL: [&str; 7] =
         ["manoeuvre", "steering-gear", "helmsman", "approach", "recording", "sensor", "disturbance"];
-    for ScenarioKey { key, unit, .. } in scenario::keys::keys() {
+    for ScenarioKey { key, unit, .. } in crate::scenario::keys::keys() {
         let is_of_a_trial = key.split('.').next().is_some_and(|part| OF_A_TRIAL.contains(&part));
         if !is_of_a_trial || unit == "table" || unit == "text" || unit.contains(" or ") {
             continue;

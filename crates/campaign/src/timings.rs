@@ -6,8 +6,8 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
+use crate::failure::Failure;
 use crate::statistics::Moments;
-use scenario::failure::Failure;
 
 /// Name of the simulation among the methods.
 const SIMULATION: &str = "(simulation)";

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use scenario::failure::Failure;
+use crate::failure::Failure;
 
 use crate::block::Block;
 use crate::blocks::BlockStore;

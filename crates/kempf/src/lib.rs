@@ -38,19 +38,20 @@
 //! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your
 //! own in a study.
 
+pub use campaign::scenario;
 pub use trial::find;
-pub use {campaign, document, identify, predict, scenario, ship, simulate, trace, trial};
+pub use {campaign, document, identify, predict, ship, simulate, trace, trial};
 
 /// What most programs need, under one `use`.
 pub mod prelude {
     pub use campaign::collect::{collect, in_memory};
     pub use campaign::folder::ResultFolder;
+    pub use campaign::scenario::Scenario;
     pub use campaign::summary::summarise;
     pub use campaign::{NoObserver, Observer};
     pub use identify::{
         Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, output_error, registry,
     };
-    pub use scenario::Scenario;
     pub use ship::angle::{from_deg, to_deg};
     pub use ship::{FirstOrder, Particulars};
     pub use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};

@@ -1,7 +1,7 @@
 //! Keywords of Python as options of the command line, so that what may be asked for is declared and checked there.
 
+use campaign::failure::Failure;
 use clap::{Args, Parser};
-use scenario::failure::Failure;
 use study::cli::misused;
 
 #[derive(Parser)]

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use campaign::benchmark::BenchMethod;
+use campaign::failure::OnPath;
 use pyo3::prelude::*;
-use scenario::failure::OnPath;
 use study::commands::bench::{BenchRequest, measure, skipped};
 
 use crate::asked::request;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use scenario::failure::Failure;
+use campaign::failure::Failure;
 use study::work::earlier::EarlierModel;
 
 /// The name of a model, and its text where it is no file.

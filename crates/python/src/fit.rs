@@ -1,13 +1,12 @@
 //! `fit`: every method on the records together.
 
+use campaign::failure::Failure;
+use campaign::scenario::name;
 use document::{Warning, Warnings};
 use identify::Estimate;
 use identify::replay::replay;
 use pyo3::prelude::*;
-use scenario::failure::Failure;
-use scenario::name;
 use study::documents;
-use study::outside::SAME_LABEL;
 use study::records::repetitions;
 use study::work;
 use trial::Trial;
@@ -61,11 +60,13 @@ pub fn fit(
     let (records, others) = (trials(&records), trials(&validate));
     patiently(py, move || {
         let priors = earlier(&priors)?;
-        let mut methods = work::fit::methods(&methods, &[], seed)?;
+        let mut methods = work::fit::methods(&methods, seed)?;
         for (label, function) in own {
             name::label(&label).map_err(|unfit| Failure::input(format!("own: a label is {label:?}; {unfit}")))?;
             if methods.iter().any(|(known, _)| *known == label) {
-                return Err(Failure::input(format!("own: {label:?}: {SAME_LABEL}")));
+                return Err(Failure::input(format!(
+                    "own: {label:?}: another method has this label; give it one of its own"
+                )));
             }
             methods.push((label, Box::new(PyIdentifier(function))));
         }

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use campaign::failure::Failure;
 use document::Warnings;
 use pyo3::prelude::*;
-use scenario::failure::Failure;
 use study::documents;
 use study::options::PredictRequest;
 use study::work::predict::{self as work, PredictInput, StoredModel};

@@ -1,9 +1,9 @@
 //! Failures as exceptions, with the message that the command line would show.
 
+use campaign::failure::{Blame, Failure};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
-use scenario::failure::{Blame, Failure};
 
 create_exception!(
     kempf,

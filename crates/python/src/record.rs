@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use campaign::failure::Failure;
+use campaign::scenario::name;
 use document::{Warning, Warnings};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use scenario::failure::Failure;
-use scenario::name;
 use study::options::ReadingOptions;
 use study::records::{expand, file_of, of_log, read_all, source};
 use trial::channel::TIME_COLUMN;

@@ -6,12 +6,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use campaign::Observer;
 use campaign::collect::collect;
+use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
 use campaign::task::default_folder;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use scenario::failure::Failure;
 use study::options::{FigureChoice, FigureOptions, MOST_THREADS};
 use study::views::publish;
 

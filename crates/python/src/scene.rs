@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use campaign::failure::Failure;
+use campaign::scenario::Scenario;
 use pyo3::prelude::*;
-use scenario::Scenario;
-use scenario::failure::Failure;
 use serde_json::Value;
 
 use crate::raise::raised;

@@ -1,9 +1,9 @@
 //! `simulate`: trials of a scenario as records with their truth.
 
 use campaign::answers::record_name;
+use campaign::failure::Failure;
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use scenario::failure::Failure;
 use study::options::{Replicates, SimulateRequest};
 use study::work::simulate::{RecordFiles, records, tasks};
 

@@ -1,8 +1,8 @@
 //! `trace`: what a first-order ship lacks.
 
+use campaign::failure::Failure;
 use document::Warnings;
 use pyo3::prelude::*;
-use scenario::failure::Failure;
 use study::documents::{self, curves::TracedRecord};
 use study::options::TraceRequest;
 use study::records::repetitions;

@@ -4,8 +4,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
+use campaign::failure::Failure;
 use pyo3::prelude::*;
-use scenario::failure::Failure;
 
 use crate::raise::raised;
 

@@ -10,10 +10,10 @@ use crate::commands::{
 };
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
 use crate::{failures, threads};
+use campaign::failure::Failure;
+use campaign::scenario::problem::suggestion;
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use scenario::failure::Failure;
-use scenario::problem::suggestion;
 
 /// What `--version` tells.
 static VERSION: LazyLock<String> = LazyLock::new(campaign::manifest::version);

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use scenario::failure::Failure;
+use campaign::failure::Failure;
 
 use crate::documents::error;
 use crate::screen;

@@ -10,11 +10,11 @@ use crate::options::{Common, FigureChoice, FigureOptions, Format, StudyFigureOpt
 use campaign::NoObserver;
 use campaign::collect::{collect, collect_shard};
 use campaign::disk::faults;
+use campaign::failure::Failure;
 use campaign::files::{BLOCK_TIMINGS, MANIFEST, ROWS, TIMINGS};
 use campaign::folder::ResultFolder;
+use campaign::scenario::Scenario;
 use campaign::task::Shard;
-use scenario::Scenario;
-use scenario::failure::Failure;
 
 const TEXT: &str = r#"
 question = "Is anything lost?"

@@ -15,9 +15,9 @@ use trial::{Channel, Log, Manoeuvre, Origin, ReadError, ReadRecord, Sidecar, Sid
 use crate::options::{ReadingOptions, TimePoint};
 use crate::ship_options::FormOptions;
 use campaign::answers::TRIALS;
+use campaign::failure::{Failure, FailureParts, OnPath};
 use campaign::known::RecordFacts;
-use scenario::failure::{Failure, FailureParts, OnPath};
-use scenario::name;
+use campaign::scenario::name;
 
 /// Endings of files that a folder of records is looked through for.
 const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "gz", "parquet", "xlsx", "mat"];

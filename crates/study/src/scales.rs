@@ -4,7 +4,7 @@ use report::number::significant;
 use ship::Particulars;
 use trial::{Scales, Trial};
 
-use scenario::failure::Failure;
+use campaign::failure::Failure;
 
 /// Records as they are analysed together.
 pub struct RescaledRecords {

@@ -10,7 +10,7 @@ use report::Table;
 use report::printable::escaped;
 
 use crate::options::{Common, Format};
-use scenario::failure::{Blame, Failure};
+use campaign::failure::{Blame, Failure};
 
 /// Writes lines of results to standard output and ends them with a line break.
 ///

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use campaign::failure::Failure;
 use clap::{Args, ValueEnum};
 use report::Theme;
 use report::theme::{DPI, WIDTH_MM};
-use scenario::failure::Failure;
 use trial::file::{Kind, read_text};
 
 /// How figures are drawn.

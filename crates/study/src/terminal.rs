@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use campaign::Observer;
-use scenario::failure::Failure;
+use campaign::failure::Failure;
 
 use crate::progress::ProgressSteps;
 use crate::{interrupt, screen};

@@ -1,6 +1,6 @@
 //! How many threads the program starts.
 
-use scenario::failure::Failure;
+use campaign::failure::Failure;
 
 use crate::options::{Common, MOST_THREADS};
 

@@ -8,8 +8,8 @@ use campaign::design::Design;
 use campaign::files;
 use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
+use campaign::scenario::Scenario;
 use campaign::store::StoredStudy;
-use scenario::Scenario;
 use tempfile::TempDir;
 
 /// The files of the study, and what they say.

@@ -5,13 +5,13 @@ use std::path::{Component, Path};
 use std::sync::LazyLock;
 
 use campaign::design::Design;
+use campaign::failure::Failure;
 use campaign::files;
 use campaign::manifest::Manifest;
 use campaign::rows::{BlockLabel, Damage, RowLayout, decode};
+use campaign::scenario::Scenario;
 use campaign::summary::Tally;
 use identify::{Identifier, registry};
-use scenario::Scenario;
-use scenario::failure::Failure;
 use ship::effects::{self, Effect, Formula, Now};
 use ship::{EffectReal, Measured, Tangent};
 use study::screen;

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::failure::Failure;
+use crate::scenario::{HULL, Scenario, hex, name};
 use crate::task::Task;
-use scenario::failure::Failure;
-use scenario::{HULL, Scenario, hex, name};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use trial::file::{self, Kind};
@@ -162,7 +162,7 @@ impl Definition {
         let mut known: Vec<String> = self.sets.iter().map(|set| set.group.clone()).collect();
         known.dedup();
         if let Some(unknown) = sets.iter().find(|set| !known.contains(set)) {
-            let advice = scenario::problem::suggestion(unknown, &known);
+            let advice = crate::scenario::problem::suggestion(unknown, &known);
             return Err(Failure::input(format!("--set {unknown}: {} has no such set; {advice}", self.identity.name)));
         }
         self.sets.retain(|set| sets.is_empty() || sets.contains(&set.group));
@@ -334,7 +334,7 @@ impl DefinitionReader<'_> {
             let known = || records.iter().map(|record| record.name.as_str());
             known().position(|name| name == own.get_ref()).ok_or_else(|| {
                 let found = format!("there is no record {}", name::shown(own.get_ref()));
-                let advice = scenario::problem::suggestion(own.get_ref(), &known().collect::<Vec<_>>());
+                let advice = crate::scenario::problem::suggestion(own.get_ref(), &known().collect::<Vec<_>>());
                 self.at(own, &found, "expected a record of the set", &advice)
             })
         };

@@ -4,13 +4,13 @@ use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 
+use crate::failure::Failure;
+use crate::scenario::{TRACE, name};
 use ::trace::Analysis;
 use ::trace::record::PreparedRecord;
 use document::trace::EffectEntry;
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, registry};
-use scenario::failure::Failure;
-use scenario::{TRACE, name};
 use simulate::StreamKey;
 use trial::{Channel, Quantity, Trial};
 
@@ -122,7 +122,7 @@ impl BenchMethod {
         match &self.procedure {
             BenchProcedure::StraightOn => Ok(BenchModel::StraightOn),
             BenchProcedure::Identify(identifier) => {
-                let estimate = scenario::identify(identifier.as_ref(), trials, key);
+                let estimate = crate::scenario::identify(identifier.as_ref(), trials, key);
                 let estimate = estimate.map_err(|error| Failed::of(error.kind(), &error))?;
                 Ok(BenchModel::Response(Box::new(estimate)))
             }

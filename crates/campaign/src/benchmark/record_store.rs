@@ -7,8 +7,8 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use crate::disk;
-use scenario::failure::Failure;
-use scenario::hex;
+use crate::failure::Failure;
+use crate::scenario::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use trial::Trial;

@@ -1,8 +1,8 @@
 //! All records, all methods, all answers. The work is shared by threads; what comes out has the order of the
 //! definition.
 
+use crate::failure::Failure;
 use rayon::prelude::*;
-use scenario::failure::Failure;
 use ship::FirstOrder;
 use ship::angle::to_deg;
 use simulate::StreamKey;

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::scenario::hex;
 use bytes::Bytes;
 use parquet::basic::Compression;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -12,7 +13,6 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::ColumnPath;
-use scenario::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use trial::decoder::{CheckedPages, PageHead};

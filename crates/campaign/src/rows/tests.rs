@@ -1,7 +1,7 @@
 use super::*;
 use crate::design::{CellFacts, Design};
+use crate::scenario::MethodName;
 use ::trace::Verdict;
-use scenario::MethodName;
 
 fn design() -> Design {
     let cell = |noise: f64, trial: &str| CellFacts {
@@ -71,7 +71,7 @@ fn written(rows: &[StudyRow], layout: &RowLayout) -> Vec<u8> {
 #[test]
 fn traces_and_predictions_have_columns_of_their_own() {
     let mut design = Design { predicts: true, ..design() };
-    design.methods[1].id = scenario::TRACE.into();
+    design.methods[1].id = crate::scenario::TRACE.into();
     let layout = RowLayout::of(&design);
     let effect = |id: &str, aliases: &[&str]| NamedEffect {
         id: id.into(),

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::scenario::MethodName;
 use rayon::prelude::*;
-use scenario::MethodName;
 
 use super::detail::{CellDetail, Cloud, ErrorDensity, MOST_PAIRS, MethodDetail};
 use super::predictions::{PredictionSummary, add_predictions};

@@ -2,8 +2,8 @@ use super::*;
 use crate::design::CellFacts;
 use crate::design::Design;
 use crate::rows::StudyRow;
+use crate::scenario::{MethodName, Presentation, Words};
 use crate::statistics::Statistic;
-use scenario::{MethodName, Presentation, Words};
 
 fn design(methods: &[&str], cells: usize) -> Design {
     let cell = |index: usize| CellFacts { labels: vec![index.to_string()], values: vec![None], ..CellFacts::default() };

@@ -8,8 +8,8 @@ use ::trace::Verdict;
 use serde::{Deserialize, Serialize};
 
 use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
+use crate::scenario::HULL;
 use crate::statistics::{Statistic, share};
-use scenario::HULL;
 
 /// Margin in log evidence beyond which the right effect has to be named: below, a rival explains the trial nearly as
 /// well.

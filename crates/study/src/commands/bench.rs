@@ -7,13 +7,13 @@ use std::path::PathBuf;
 use campaign::Observer;
 use campaign::benchmark::run::STOPPED;
 use campaign::benchmark::{BenchDocument, BenchMethod, BenchTask, Definition, RecordStore};
+use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
+use campaign::scenario::problem::suggestion;
 use clap::Args;
 use clap::builder::StringValueParser;
 use report::Theme;
 use report::number::counted;
-use scenario::failure::{Failure, OnPath};
-use scenario::problem::suggestion;
 
 use crate::completed::{self, completed};
 use crate::documents::{BENCH, folder_for};

@@ -8,9 +8,9 @@ use crate::documents;
 use crate::documents::answers::{CheckAnswer, CheckedScenario};
 use crate::options::{Common, Format};
 use crate::screen;
+use campaign::failure::Failure;
+use campaign::scenario::Scenario;
 use report::number::counted;
-use scenario::Scenario;
-use scenario::failure::Failure;
 use simulate::Assumption;
 
 /// What `study check` is asked to do.

@@ -3,10 +3,10 @@
 use std::io::IsTerminal;
 use std::path::Path;
 
+use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
 use campaign::manifest;
 use report::{Table, TableHead};
-use scenario::failure::Failure;
 
 use super::reply;
 use crate::documents::answers::DoctorAnswer;

@@ -12,7 +12,7 @@ use crate::documents::find::{FindAnswer, LogEntry, ManoeuvreEntry};
 use crate::options::{Common, FindRequest, Format};
 use crate::records::{expand, manoeuvres, open};
 use crate::screen;
-use scenario::failure::Failure;
+use campaign::failure::Failure;
 
 /// The logs of a request.
 ///

@@ -1,11 +1,11 @@
 //! `study fit`: identify measured records with every method, replay the answers on them and on others. The document and
 //! the curves are written first, and everything else is made of what they hold.
 
+use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
 use document::fit::FitDocument;
 use document::{Warning, Warnings};
 use report::Theme;
-use scenario::failure::Failure;
 
 use crate::documents::fit_curves::FitCurves;
 use crate::documents::{self, FIT, folder_for};

@@ -17,8 +17,8 @@ use trial::Channel;
 use trial::names::{self, ColumnMeaning};
 use trial::sidecar::{self, Key, Sidecar};
 
-use scenario::failure::Failure;
-use scenario::keys::{ScenarioKey, keys as keys_of_scenario};
+use campaign::failure::Failure;
+use campaign::scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 
 /// What `study list` is asked to do.
 #[derive(Debug, Clone, Args)]

@@ -17,7 +17,7 @@ pub mod sidecar;
 pub mod simulate;
 pub mod trace;
 
-use scenario::failure::Failure;
+use campaign::failure::Failure;
 
 use crate::documents::answers::CommandAnswer;
 use crate::options::{Common, Format};

@@ -18,8 +18,8 @@ use crate::views::page_files::write_page;
 use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
 use crate::work::earlier::EarlierModel;
 use crate::work::predict::{PredictInput, StoredModel, predict};
+use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
-use scenario::failure::Failure;
 
 /// The form of MSC/Circ.1053.
 const FORM: &str = "trial-form.md";

@@ -6,10 +6,10 @@ use std::process::{Command, Stdio};
 
 use ::predict::PredictDocument;
 use campaign::collect::complete;
+use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
 use campaign::store;
 use clap::Args;
-use scenario::failure::Failure;
 
 use super::{bench, fit, predict, trace};
 use crate::documents::curves::TraceCurves;

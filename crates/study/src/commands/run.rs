@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use campaign::collect::{collect, collect_shard};
+use campaign::failure::Failure;
 use campaign::files::MANIFEST;
 use campaign::folder::ResultFolder;
+use campaign::scenario::Scenario;
 use campaign::task::default_folder;
-use scenario::Scenario;
-use scenario::failure::Failure;
 
 use super::reply;
 use crate::documents::answers::ShardAnswer;

@@ -3,6 +3,7 @@
 use campaign::answers::Trials;
 use campaign::benchmark::{BenchDocument, DefinitionWire};
 use campaign::design::Design;
+use campaign::failure::{Failure, OnPath};
 use campaign::manifest::Manifest;
 use campaign::showcase::Showcase;
 use clap::Args;
@@ -10,7 +11,6 @@ use document::fit::FitDocument;
 use document::trace::TraceDocument;
 use predict::PredictDocument;
 use report::Style;
-use scenario::failure::{Failure, OnPath};
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde_json::Value;
@@ -43,7 +43,7 @@ pub fn run(&SchemaRequest { what }: &SchemaRequest, _: &Common) -> Result<(), Fa
 /// The schema of a file, in draft 7, which editors of TOML understand as well.
 pub fn schema(what: Described) -> Schema {
     match what {
-        Described::Scenario => scenario::schema::schema(),
+        Described::Scenario => campaign::scenario::schema::schema(),
         Described::Sidecar => trial::sidecar::schema(),
         Described::Fit => of::<FitDocument>(),
         Described::Trace => of::<TraceDocument>(),

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use campaign::answers::{self, TRIALS, Trials};
 use campaign::collect::collect;
+use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
+use campaign::scenario::Scenario;
+use campaign::scenario::name;
 use campaign::task::default_folder;
 use clap::Args;
-use scenario::Scenario;
-use scenario::failure::Failure;
-use scenario::name;
 use trial::file::{self, Kind};
 
 use crate::options::{Common, StudyFigureOptions};

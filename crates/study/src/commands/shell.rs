@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
 use clap::{Args, Command};
 use clap_complete::Shell;
-use scenario::failure::{Failure, OnPath};
 
 use super::reply;
 use crate::documents::answers::{CompletionsAnswer, ManAnswer};

@@ -11,7 +11,7 @@ use trial::{Sidecar, reader};
 use super::reply;
 use crate::documents::answers::SidecarAnswer;
 use crate::options::Common;
-use scenario::failure::{Failure, OnPath};
+use campaign::failure::{Failure, OnPath};
 
 /// What `study sidecar` is asked to do.
 #[derive(Debug, Clone, Args)]

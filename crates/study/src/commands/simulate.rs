@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use campaign::answers::{TRIALS, Trials, part_name, record_name};
+use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
+use campaign::scenario::Scenario;
 use campaign::task::Task;
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use report::{Table, TableHead};
-use scenario::Scenario;
-use scenario::failure::{Failure, OnPath};
 
 use super::reply;
 use crate::documents::answers::SimulateAnswer;
@@ -34,7 +34,7 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     let (folder, names) = match (is_file, count) {
         (true, 1) => {
             let parent = out.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            (ResultFolder::make(parent)?, vec![scenario::name::of_file(out)?])
+            (ResultFolder::make(parent)?, vec![campaign::scenario::name::of_file(out)?])
         }
         (true, several) => {
             let cure = if tasks.len() == 1 { "" } else { ", or one trial with --cell and --replicate" };

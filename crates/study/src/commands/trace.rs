@@ -1,11 +1,11 @@
 //! `study trace`: close the loop on measured records. The analysis is that of the crate [`mod@trace`]; its document and
 //! curves are written first, and everything else is made from them.
 
+use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
 use document::trace::TraceDocument;
 use document::{Warning, Warnings};
 use report::Theme;
-use scenario::failure::Failure;
 
 use crate::documents::curves::TraceCurves;
 use crate::documents::{TRACE, folder_for};

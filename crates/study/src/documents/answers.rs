@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use campaign::manifest::Manifest;
-use scenario::MethodName;
+use campaign::scenario::MethodName;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};

@@ -7,10 +7,10 @@ use std::path::Path;
 use ::trace::Innovations;
 use ::trace::comparison::RecordComparison;
 use campaign::curves::degrees;
+use campaign::failure::Failure;
+use campaign::scenario::name::slug;
 use document::trace::{RecordEntry, TraceDocument};
 use identify::replay::Replay;
-use scenario::failure::Failure;
-use scenario::name::slug;
 use ship::angle::from_deg;
 use trial::{Channel, Columns as Channels, Origin, Trial};
 

@@ -1,6 +1,6 @@
 //! What a failure is for programs: the message and its parts, as `--format json` writes them to standard error.
 
-use scenario::failure::{Blame, Failure, FailureParts};
+use campaign::failure::{Blame, Failure, FailureParts};
 use serde::Serialize;
 
 use crate::screen;

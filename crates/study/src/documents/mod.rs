@@ -16,9 +16,9 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use campaign::disk;
+use campaign::failure::{Failure, OnPath};
 use campaign::files::MANIFEST;
 use campaign::folder::ResultFolder;
-use scenario::failure::{Failure, OnPath};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use campaign::curves::degrees;
 use campaign::engine::{self, Truths};
+use campaign::scenario::Scenario;
 use campaign::task::Task;
-use scenario::Scenario;
 use schemars::JsonSchema;
 use serde::Serialize;
 use ship::FirstOrder;

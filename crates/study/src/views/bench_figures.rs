@@ -2,9 +2,9 @@
 
 use campaign::benchmark::board::{Board, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
+use campaign::scenario::name::slug;
 use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
 use report::{CurveOrigin, PageFigure};
-use scenario::name::slug;
 
 /// A score over that of the reference beyond which an arrow stands for it.
 const FAR: f64 = 100.0;
@@ -43,7 +43,7 @@ fn origin(method: &str) -> CurveOrigin {
         // The floor is no method: grey.
         campaign::benchmark::method::STRAIGHT_ON => CurveOrigin::Series { label: method.to_owned(), number: 2 },
         campaign::benchmark::method::TRACE_OF_HEADING => {
-            CurveOrigin::Variant { label: method.to_owned(), method: scenario::TRACE.to_owned(), number: 0 }
+            CurveOrigin::Variant { label: method.to_owned(), method: campaign::scenario::TRACE.to_owned(), number: 0 }
         }
         method => CurveOrigin::Method(method.to_owned()),
     }

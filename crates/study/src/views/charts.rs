@@ -1,11 +1,11 @@
 //! From a summary to figures over the axes of a study: what goes along which axis, what into panels, what is left out.
 
+use campaign::scenario::TRACE;
 use report::figures::{
     AxisLine, Division, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Plot, Reference95, RowItem, RowKind,
     RowsColumn, Ruler, Stack,
 };
 use report::{CurveOrigin, PlotCurve};
-use scenario::TRACE;
 
 use campaign::curves;
 use campaign::design::{CellFacts, Design};

@@ -1,12 +1,12 @@
 //! The curves of replays as CSV, so that anyone can draw them again. They hold the data a figure was handed, of records
 //! with more than 4000 rows those that show.
 
+use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
+use campaign::scenario::name::slug;
 use campaign::store::StoredStudy;
 use campaign::stored_figures::Replays;
 use report::{CurveOrigin, PlotCurve};
-use scenario::failure::Failure;
-use scenario::name::slug;
 
 use super::study_figures::{FigurePlace, StudyFigure};
 use crate::documents::columns::CurveTable;

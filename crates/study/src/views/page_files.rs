@@ -1,11 +1,11 @@
 //! A page as files: its figures as SVG and PNG, `report.md`, and `report.html` made of both.
 
 use campaign::disk;
+use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
 use rayon::prelude::*;
 use report::html::{self, Images};
 use report::{Page, PageFigure, Theme};
-use scenario::failure::{Failure, OnPath};
 
 use crate::documents;
 

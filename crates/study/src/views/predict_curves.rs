@@ -9,7 +9,7 @@ use trial::Manoeuvre;
 
 use crate::documents::columns::CurveTable;
 use crate::records::names;
-use scenario::name::slug;
+use campaign::scenario::name::slug;
 
 /// A stem of its own for every manoeuvre and record.
 pub fn stems(document: &PredictDocument) -> Vec<String> {

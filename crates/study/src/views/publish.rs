@@ -3,12 +3,12 @@
 use std::io::Write as _;
 
 use campaign::disk;
+use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
 use campaign::store::StoredStudy;
 use campaign::summary::{Summary, Tally, blind_spots};
 use rayon::prelude::*;
 use report::{Table, Theme};
-use scenario::failure::{Failure, OnPath};
 
 use super::page_files::{KEY_FIGURE, REPORT, write_page};
 use super::study_figures::{self, FigurePlace};

@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use campaign::disk;
+use campaign::failure::{Failure, OnPath};
 use campaign::files;
 use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
+use campaign::scenario::name;
 use report::markdown;
-use scenario::failure::{Failure, OnPath};
-use scenario::name;
 
 use super::page_files::{KEY_FIGURE, REPORT};
 

@@ -1,8 +1,8 @@
 //! The figures of a finished study: which there are, what they say, and where they stand.
 
+use campaign::scenario::name::slug;
 use report::PageFigure;
 use report::figures::Plot;
-use scenario::name::slug;
 
 use super::charts::{self, ErrorMeasure};
 use super::key_figure;

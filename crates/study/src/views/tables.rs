@@ -5,12 +5,12 @@ use report::number::{self, MISSING};
 use report::{Table, TableHead};
 
 use campaign::design::Design;
+use campaign::scenario::MethodName;
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
 use campaign::store::StoredStudy;
 use campaign::summary::{IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use document::method::MethodEntry;
-use scenario::MethodName;
 
 /// The table of a showcase: the methods, and below them the truth and the published values.
 pub fn showcase(showcase: &Showcase) -> Table {

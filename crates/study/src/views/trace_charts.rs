@@ -3,6 +3,7 @@
 use document::names;
 use std::collections::BTreeSet;
 
+use campaign::scenario::{HULL, TRACE};
 use report::figures::{
     CellMap, Division, Layer, LayerKind, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind,
     RowsColumn, Ruler, Shades, Stack,
@@ -11,7 +12,6 @@ use report::palette::{
     BEFORE, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID,
 };
 use report::{CurveOrigin, PlotCurve};
-use scenario::{HULL, TRACE};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
@@ -322,7 +322,7 @@ fn exceeds(freedom: u32, noncentrality: f64, limit: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scenario::MethodName;
+    use campaign::scenario::MethodName;
 
     /// One trial of four has a false name, and one of the two ships that lack something is named exactly.
     #[test]

@@ -9,9 +9,9 @@ use report::{Table, TableHead};
 use super::tables::head_of_cells;
 use super::trace_charts::calibration;
 use campaign::design::Design;
+use campaign::scenario::TRACE;
 use campaign::statistics::{Statistic, share};
 use campaign::summary::{CALIBRATION, CLEAR, Performance, Summary, TraceSummary};
-use scenario::TRACE;
 use trace::Verdict;
 
 /// Every cell with its shares, for people and, with all digits, for `tracing.csv`.

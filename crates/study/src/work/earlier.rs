@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use campaign::earlier::hulls_of;
+use campaign::failure::Failure;
 use campaign::known::RecordFacts;
 use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
 use document::stored_hull::rows_of;
@@ -11,7 +12,6 @@ use document::{Code, IdentifiedShip, Warning};
 use identify::hull::{self, EarlierHull, ExpectationCheck, is_other_froude_number};
 use predict::drawable_hull;
 use report::number::fixed;
-use scenario::failure::Failure;
 use ship::vessel::prior::HullParticulars;
 use trial::{Trial, file};
 

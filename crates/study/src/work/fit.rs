@@ -1,6 +1,7 @@
 //! An identification: all methods asked for on the records together, its answer held against other records, and what is
 //! known of the ship.
 
+use campaign::failure::Failure;
 use campaign::stored_figures::Replays;
 use document::fit::{CriterionEntry, FitDocument, SCHEMA, TrialEntry, ZigZagEntry};
 use document::method::{MethodEntry, Validation};
@@ -14,7 +15,6 @@ use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use report::figures::ZigzagTrial;
 use report::{CurveOrigin, PlotCurve};
-use scenario::failure::Failure;
 use ship::angle::to_deg;
 use trial::{Channel, Trial, ZigZag, ZigZagError, imo};
 

@@ -4,11 +4,11 @@
 use std::path::Path;
 
 use campaign::earlier::hulls_of;
+use campaign::failure::Failure;
 use document::stored_hull::StoredHull;
 use document::{Code, IdentifiedShip, Source, Warnings};
 use identify::hull::ExpectedHull;
 use predict::drawable_hull;
-use scenario::failure::Failure;
 use ship::ShortNumber;
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, priors};
 use trial::{Sidecar, file};

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use campaign::failure::Failure;
+use campaign::scenario::TRACE;
 use document::earlier_trials::Likeness;
 use document::{Code, IdentifiedShip, Source, Warning, Warnings};
 use identify::suspicion::unusual_froude_number;
@@ -13,8 +15,6 @@ use predict::replay::RecordReplay;
 use predict::turn::{self, Current};
 use predict::{PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
 use report::number::fixed;
-use scenario::TRACE;
-use scenario::failure::Failure;
 use ship::Particulars;
 use trial::{Manoeuvre, Trial, file};
 

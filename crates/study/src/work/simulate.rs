@@ -2,10 +2,10 @@
 
 use campaign::answers::part_name;
 use campaign::engine;
+use campaign::failure::Failure;
+use campaign::scenario::Scenario;
+use campaign::scenario::problem::suggestion;
 use campaign::task::Task;
-use scenario::Scenario;
-use scenario::failure::Failure;
-use scenario::problem::suggestion;
 use simulate::Simulated;
 
 use crate::documents::truth::truth;

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use campaign::failure::Failure;
+use campaign::scenario::{TRACE, name};
 use document::IdentifiedShip;
 use document::fit::SCHEMA as FIT_SCHEMA;
 use document::trace::SCHEMA as TRACE_SCHEMA;
-use scenario::failure::Failure;
-use scenario::{TRACE, name};
 use serde_json::Value;
 use trial::file;
 

@@ -1,11 +1,11 @@
 //! The scale of a prediction, and what is brought to it. What is said of a ship of one length does not hold for one of
 //! another, so scales that differ are refused or told.
 
+use campaign::failure::Failure;
 use document::identified_ship::is_same_length;
 use document::{Code, IdentifiedShip, IdentifiedShipError, Warnings};
 use identify::hull::is_other_froude_number;
 use report::number::fixed;
-use scenario::failure::Failure;
 use ship::Particulars;
 use ship::vessel::prior::HullParticulars;
 use trial::{Conditions, Trial};

@@ -3,13 +3,13 @@
 
 use ::trace::{Analysis, Settings, TraceError, Watcher};
 use campaign::Observer;
+use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
 use campaign::known::{self, RecordFacts};
 use document::trace::{MissingMomentEntry, RecordEntry, TraceDocument};
 use document::{Code, Warnings};
 use identify::suspicion::suspicion;
 use indicatif::ProgressBar;
-use scenario::failure::Failure;
 use trial::{Channel, Trial};
 
 use super::earlier::{self, EarlierModel};

@@ -208,5 +208,5 @@ pub fn of_repository(path: &str) -> PathBuf {
 
 /// SHA-256 of bytes, hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    scenario::hex(&Sha256::digest(bytes))
+    campaign::scenario::hex(&Sha256::digest(bytes))
 }

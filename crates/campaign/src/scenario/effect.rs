@@ -13,9 +13,9 @@ use ship::ships::Model;
 use ship::{ResponseModel, Ship, ShortNumber};
 use toml::{Table, Value};
 
-use crate::number_table::{self, NamedNumbers, NumberKey, closed};
-use crate::problem::{KeyFault, KeyPath, suggestion};
-use crate::{limits, reader};
+use crate::scenario::number_table::{self, NamedNumbers, NumberKey, closed};
+use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
+use crate::scenario::{limits, reader};
 
 /// The key of a formula in its entry.
 const FORMULA: &str = "formula";

@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
 use toml::{Table, Value};
 
-use crate::key_words::in_words;
-use crate::limits;
-use crate::name;
-use crate::part::ScenarioPart;
-use crate::problem::{AtFault, KeyFault, KeyPath, of_text};
+use crate::scenario::key_words::in_words;
+use crate::scenario::limits;
+use crate::scenario::name;
+use crate::scenario::part::ScenarioPart;
+use crate::scenario::problem::{AtFault, KeyFault, KeyPath, of_text};
 
 /// Largest number of cells; more is a mistake in a range.
 const MOST_CELLS: usize = 100_000;

@@ -14,9 +14,9 @@ use ::ship::{Particulars, Ship, ShortNumber};
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
 
-use crate::number_table::{self, NamedNumbers, NumberKey, refuse_incomplete, refuse_unknown};
-use crate::problem::{KeyFault, KeyPath, suggestion};
-use crate::{reader, sweep};
+use crate::scenario::number_table::{self, NamedNumbers, NumberKey, refuse_incomplete, refuse_unknown};
+use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
+use crate::scenario::{reader, sweep};
 
 const FIRST_ORDER: &str = "first-order";
 const SECOND_ORDER: &str = "second-order";

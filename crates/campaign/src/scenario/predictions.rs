@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use trial::Manoeuvre;
 use trial::manoeuvre::NoManoeuvre;
 
-use crate::problem::{KeyFault, KeyPath};
+use crate::scenario::problem::{KeyFault, KeyPath};
 
 /// Manoeuvres that are predicted from every answer and held against the same ship making them.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]

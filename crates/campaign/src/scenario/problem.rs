@@ -5,7 +5,7 @@ use std::fmt;
 
 use simulate::SpecificationError;
 
-use crate::name::{Unfit, shown};
+use crate::scenario::name::{Unfit, shown};
 
 /// Path of a key from the root of a scenario; entries of a list are counted from 0, as a sweep addresses them.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]

@@ -1,20 +1,20 @@
 //! A scenario file as it is written: what serde reads, with degrees, knots and units in the names. Nothing here is
-//! believed yet; [`crate::resolve`] turns it into specifications the engine accepts. How a trial is made is declared in
+//! believed yet; [`crate::scenario::resolve`] turns it into specifications the engine accepts. How a trial is made is declared in
 //! [`simulate`] itself.
 
 use serde::{Deserialize, Serialize};
 use simulate::motion::PlanarCoefficients;
 use simulate::{BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear};
 
-use crate::draw::DrawWire;
-use crate::effect::{self, EffectWire};
-use crate::method::IdentifierWire;
-use crate::number_table::NamedNumbers;
-use crate::predictions::PredictWire;
-use crate::ship;
-use crate::stop::StopRule;
-use crate::sweep::AxisWire;
-use crate::words::{Presentation, Published};
+use crate::scenario::draw::DrawWire;
+use crate::scenario::effect::{self, EffectWire};
+use crate::scenario::method::IdentifierWire;
+use crate::scenario::number_table::NamedNumbers;
+use crate::scenario::predictions::PredictWire;
+use crate::scenario::ship;
+use crate::scenario::stop::StopRule;
+use crate::scenario::sweep::AxisWire;
+use crate::scenario::words::{Presentation, Published};
 
 /// A whole scenario file.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::name;
-use crate::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::name;
+use crate::scenario::problem::{KeyFault, KeyPath, of_text};
 
 /// The words of a scenario.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -5,7 +5,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | what a file says, and how it is read | `wire`, `ship`, `effect`, `number_table`, `reader`, [`part`], [`words`] |
-//! | what is wrong with it, and where | [`problem`], `locate`, [`failure`] |
+//! | what is wrong with it, and where | [`problem`], `locate`, [`crate::failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
 //! | answers that were found elsewhere | [`answers`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
@@ -15,10 +15,10 @@
 
 pub mod answers;
 pub mod cell;
+mod checked;
 mod checks;
 mod draw;
 mod effect;
-pub mod failure;
 pub mod identity;
 mod key_words;
 pub mod keys;
@@ -33,7 +33,6 @@ pub mod problem;
 mod reader;
 mod resolve;
 mod resolved;
-mod scenario;
 pub mod schema;
 mod ship;
 mod specification;
@@ -44,10 +43,11 @@ pub mod words;
 
 pub use answers::Answers;
 pub use cell::{DesignCell, Refusal, TrialSpecification};
+pub use checked::Scenario;
 pub use identity::hex;
 pub use method::{Method, MethodName, Procedure, TRACE, identify};
 pub use predictions::Predictions;
-pub use scenario::Scenario;
+
 pub use specification::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
 pub use words::{MarkedValue, Presentation, Published, Words};

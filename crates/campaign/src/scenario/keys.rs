@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 
-use crate::key_words::unit_of;
-use crate::schema::schema;
+use crate::scenario::key_words::unit_of;
+use crate::scenario::schema::schema;
 
 /// A key of a scenario, for a person who looks for it.
 #[derive(Debug, Clone, PartialEq, Eq)]

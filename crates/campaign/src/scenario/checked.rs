@@ -10,19 +10,19 @@ use simulate::Assumption;
 use toml::Table;
 use trial::file::{self, FileError, Kind};
 
-use crate::answers::Answers;
-use crate::cell::{self, DesignCell};
 use crate::failure::Failure;
-use crate::identity::{self, hex};
-use crate::method::{Method, MethodName, Procedure, methods};
-use crate::part::ScenarioPart;
-use crate::predictions::Predictions;
-use crate::problem::{KeyFault, KeyPath, of_text};
-use crate::stop::StopRule;
-use crate::sweep::{self, SweepAxis};
-use crate::wire::ScenarioWire;
-use crate::words::{Published, Words};
-use crate::{checks, locate, name, reader, resolve, resolved};
+use crate::scenario::answers::Answers;
+use crate::scenario::cell::{self, DesignCell};
+use crate::scenario::identity::{self, hex};
+use crate::scenario::method::{Method, MethodName, Procedure, methods};
+use crate::scenario::part::ScenarioPart;
+use crate::scenario::predictions::Predictions;
+use crate::scenario::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::stop::StopRule;
+use crate::scenario::sweep::{self, SweepAxis};
+use crate::scenario::wire::ScenarioWire;
+use crate::scenario::words::{Published, Words};
+use crate::scenario::{checks, locate, name, reader, resolve, resolved};
 
 /// A scenario that has been checked in every cell.
 pub struct Scenario {

@@ -10,7 +10,7 @@ use trial::file::{self, FileError};
 use trial::reader::RECORD;
 
 use crate::failure::{Failure, OnPath};
-use crate::part::ScenarioPart;
+use crate::scenario::part::ScenarioPart;
 
 /// The document without prose and presentation; comments and layout are gone by themselves.
 pub fn design_of(document: &Table) -> Table {

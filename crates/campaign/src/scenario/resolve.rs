@@ -8,10 +8,10 @@ use ::ship::{Particulars, Regressor, Ship, ShortNumber};
 use simulate::motion::{Planar, PlanarShip};
 use simulate::{Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
-use crate::problem::{KeyFault, KeyPath};
-use crate::specification::{HULL, Specification};
-use crate::wire::{FurtherWire, ScenarioWire};
-use crate::{effect, ship};
+use crate::scenario::problem::{KeyFault, KeyPath};
+use crate::scenario::specification::{HULL, Specification};
+use crate::scenario::wire::{FurtherWire, ScenarioWire};
+use crate::scenario::{effect, ship};
 
 /// Resolves everything about a trial, which carries the name of its scenario.
 pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<Specification, KeyFault> {

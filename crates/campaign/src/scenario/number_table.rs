@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use crate::problem::{KeyFault, KeyPath, suggestion};
-use crate::reader;
+use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
+use crate::scenario::reader;
 
 /// One name, and below it numbers by their keys.
 pub type NamedNumbers = BTreeMap<String, BTreeMap<String, f64>>;

@@ -2,12 +2,12 @@
 
 use toml::{Table, Value};
 
-use crate::keys::{LeftOut, ScenarioKey, keys};
-use crate::method::Method;
-use crate::problem::KeyFault;
-use crate::resolve::of_validation;
-use crate::wire::ScenarioWire;
-use crate::{effect, reader, ship};
+use crate::scenario::keys::{LeftOut, ScenarioKey, keys};
+use crate::scenario::method::Method;
+use crate::scenario::problem::KeyFault;
+use crate::scenario::resolve::of_validation;
+use crate::scenario::wire::ScenarioWire;
+use crate::scenario::{effect, reader, ship};
 
 /// The text of a scenario with nothing left out, as TOML. Sweeps and draws stay as they are: it is the scenario they
 /// change.
@@ -123,7 +123,7 @@ mod tests {
 
     use simulate::Simulation;
 
-    use crate::Scenario;
+    use crate::scenario::Scenario;
 
     const BARE: &str = "
 question = \"One line,\\nand another?\"

@@ -9,9 +9,9 @@ use ship::ShortNumber;
 use simulate::{Purpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
 
-use crate::limits;
-use crate::part::ScenarioPart;
-use crate::problem::{AtFault, KeyFault, KeyPath};
+use crate::scenario::limits;
+use crate::scenario::part::ScenarioPart;
+use crate::scenario::problem::{AtFault, KeyFault, KeyPath};
 
 /// A draw as it is written.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]

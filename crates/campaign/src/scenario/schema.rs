@@ -5,7 +5,7 @@
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
 
-use crate::wire::ScenarioWire;
+use crate::scenario::wire::ScenarioWire;
 
 /// The schema, in the draft that editors of TOML understand.
 pub fn schema() -> Schema {

@@ -10,8 +10,8 @@ use serde::{Deserialize, forward_to_deserialize_any};
 use serde_path_to_error::Segment;
 use toml::{Table, Value};
 
-use crate::name::shown;
-use crate::problem::{KeyFault, KeyPath, listed, suggestion};
+use crate::scenario::name::shown;
+use crate::scenario::problem::{KeyFault, KeyPath, listed, suggestion};
 
 /// Reads a whole document.
 ///

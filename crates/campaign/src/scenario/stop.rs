@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
 
-use crate::method::Method;
-use crate::problem::{KeyFault, KeyPath, place_among};
+use crate::scenario::method::Method;
+use crate::scenario::problem::{KeyFault, KeyPath, place_among};
 
 /// When a cell has had enough trials; `replicates` is then the most.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize, schemars::JsonSchema)]

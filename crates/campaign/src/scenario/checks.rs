@@ -2,14 +2,14 @@
 
 use std::collections::HashSet;
 
-use crate::cell::DesignCell;
-use crate::draw::DrawWire;
-use crate::limits;
-use crate::method::Method;
-use crate::name::{self, LONGEST_NAME};
-use crate::problem::{KeyFault, KeyPath, of_text, place_among};
-use crate::sweep::SweepAxis;
-use crate::words::MarkedValue;
+use crate::scenario::cell::DesignCell;
+use crate::scenario::draw::DrawWire;
+use crate::scenario::limits;
+use crate::scenario::method::Method;
+use crate::scenario::name::{self, LONGEST_NAME};
+use crate::scenario::problem::{KeyFault, KeyPath, of_text, place_among};
+use crate::scenario::sweep::SweepAxis;
+use crate::scenario::words::MarkedValue;
 
 /// Largest number of trials; more is a slip of the pen.
 const MOST_TRIALS: u64 = 1_000_000_000;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use toml::de::{DeArray, DeTable, DeValue};
 
-use crate::problem::{AtFault, KeyPath};
+use crate::scenario::problem::{AtFault, KeyPath};
 
 /// Byte range of the name or value at a path, or of the name of the nearest key above it that exists; the first line
 /// that says anything when there is none.

@@ -7,13 +7,13 @@ use ship::Particulars;
 use simulate::{Assumption, StreamKey};
 use toml::{Table, Value};
 
-use crate::draw::DrawnKey;
-use crate::method::{Method, Procedure, methods};
-use crate::part::ScenarioPart;
-use crate::problem::{KeyFault, KeyPath};
-use crate::specification::Specification;
-use crate::wire::ScenarioWire;
-use crate::{limits, reader, resolve, sweep};
+use crate::scenario::draw::DrawnKey;
+use crate::scenario::method::{Method, Procedure, methods};
+use crate::scenario::part::ScenarioPart;
+use crate::scenario::problem::{KeyFault, KeyPath};
+use crate::scenario::specification::Specification;
+use crate::scenario::wire::ScenarioWire;
+use crate::scenario::{limits, reader, resolve, sweep};
 
 /// One cell of the design: everything but chance is fixed.
 pub struct DesignCell {
@@ -42,7 +42,7 @@ struct DrawnSettings {
 pub struct TrialSpecification<'a> {
     /// The specification, whole.
     pub specification: Cow<'a, Specification>,
-    /// Drawn values in the units of their keys, in the order of [`Scenario::draws`](crate::Scenario::draws).
+    /// Drawn values in the units of their keys, in the order of [`Scenario::draws`](crate::scenario::Scenario::draws).
     pub drawn: Vec<f64>,
 }
 

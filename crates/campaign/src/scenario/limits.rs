@@ -2,7 +2,7 @@
 //! writes a few of each; more is a slip or comes from a program, and is several studies. What one trial may cost is
 //! estimated in [`simulate::cost`].
 
-use crate::problem::{KeyFault, KeyPath};
+use crate::scenario::problem::{KeyFault, KeyPath};
 
 /// Most entries of `[[sweep]]`: with two points each they make more cells than a study may have.
 pub const MOST_SWEEPS: usize = 16;

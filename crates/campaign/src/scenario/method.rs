@@ -11,9 +11,9 @@ use ship::effects::Formula;
 use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
-use crate::answers::{self, Answers};
-use crate::problem::{KeyFault, KeyPath, of_text};
-use crate::{effect, limits, name};
+use crate::scenario::answers::{self, Answers};
+use crate::scenario::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::{effect, limits, name};
 
 /// A method as a scenario names it.
 #[derive(Clone)]
