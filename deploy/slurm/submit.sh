@@ -16,7 +16,7 @@ esac
 here=$(cd "$(dirname "$0")" && pwd)
 
 # The largest number of a task is one less than MaxArraySize.
-allowed=$(scontrol show config 2> /dev/null | sed -n 's/^MaxArraySize *= *\([0-9]*\)$/\1/p')
+allowed=$(scontrol show config 2> /dev/null | sed -n 's/^MaxArraySize *= *\([0-9]*\)$/\1/p' || true)
 largest=${LARGEST:-$((${allowed:-1001} - 1))}
 arrays=()
 for ((offset = 0; offset < shards; offset += largest)); do
