@@ -163,7 +163,7 @@ values = [10.0, 20.0]
 #[test]
 fn rows_have_the_same_bytes_on_any_number_of_threads() {
     let scenario = scenario(5);
-    let label = |cell| BlockLabel { design: String::new(), program: String::new(), cell, block: 0 };
+    let label = |cell| BlockLabel { design: String::new(), seed: 0, program: String::new(), cell, block: 0 };
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
         let (design, rows) = pool.install(|| collect::in_memory(&scenario));

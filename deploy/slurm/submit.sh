@@ -1,5 +1,6 @@
 #!/bin/bash
-# Submits a study as an array of shards, or several where Slurm allows no array of that size, and the job that joins them:
+# Submits a study as an array of shards, or several where Slurm allows no array of that size, and the job that makes its
+# page:
 #
 #   deploy/slurm/submit.sh SCENARIO OUT SHARDS [options of sbatch, for the array]
 #
@@ -15,7 +16,7 @@ esac
 here=$(cd "$(dirname "$0")" && pwd)
 
 # The largest number of a task is one less than MaxArraySize.
-allowed=$(scontrol show config 2> /dev/null | sed -n 's/^MaxArraySize *= *\([0-9]*\)$/\1/p')
+allowed=$(scontrol show config 2> /dev/null | sed -n 's/^MaxArraySize *= *\([0-9]*\)$/\1/p' || true)
 largest=${LARGEST:-$((${allowed:-1001} - 1))}
 arrays=()
 for ((offset = 0; offset < shards; offset += largest)); do
@@ -23,5 +24,5 @@ for ((offset = 0; offset < shards; offset += largest)); do
   arrays+=("$(SHARDS=$shards OFFSET=$offset sbatch --parsable --array="1-$tasks" "$@" "$here/study.sbatch" "$scenario" "$out")")
 done
 all=$(IFS=:; echo "${arrays[*]}")
-merge=$(sbatch --parsable --dependency="afterok:$all" "$here/merge.sbatch" "$out")
-echo "array ${all//:/ }, merge $merge"
+report=$(sbatch --parsable --dependency="afterok:$all" "$here/report.sbatch" "$out")
+echo "array ${all//:/ }, report $report"

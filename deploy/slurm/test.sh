@@ -22,12 +22,26 @@ stop() {
 }
 trap stop EXIT
 
-same() {
-  cmp "$work/whole/rows.parquet" "$out/rows.parquet" && echo "test.sh: passed with $1: $shards shards, one of them killed, give the rows of one run"
+# The first file that shard 2 writes, and the last: 79 blocks are 13 or 14 a shard.
+first=$out/rows/0000-0013.parquet last=$out/rows/0000-0025.parquet
+
+begun() {
+  until [ -e "$first" ]; do sleep 0.05; done
 }
 
 killed() {
-  [ ! -e "$out/shards/2-of-$shards/rows.parquet" ] || { echo "test.sh: shard 2 was over before it was killed" >&2; exit 1; }
+  [ ! -e "$last" ] || { echo "test.sh: shard 2 was over before it was killed" >&2; exit 1; }
+}
+
+refused() {
+  if said=$("$STUDY" report "$out" --quiet 2>&1); then echo "test.sh: a page was made though trials are missing" >&2; exit 1; fi
+  [[ $said == *"$out/rows/0000-00"*"is not stored"* ]] || { echo "test.sh: unexpected: $said" >&2; exit 1; }
+}
+
+same() {
+  diff -r "$work/whole/rows" "$out/rows"
+  [ -s "$out/report.html" ] || { echo "test.sh: there is no page" >&2; exit 1; }
+  echo "test.sh: passed with $1: $shards shards, one of them killed, give the rows of one run"
 }
 
 has_slurm() {
@@ -67,30 +81,34 @@ if has_slurm && start_slurm; then
   jobs=$(LARGEST=4 "$here/submit.sh" "$scenario" "$out" "$shards" --cpus-per-task=1 --time=10)
   echo "$jobs"
   array=${jobs#array } array=${array%%,*} array=${array// /,}
-  merge=${jobs##*merge }
+  report=${jobs##*report }
   # Kill the process of one task as a crash would, once it has stored something.
-  until compgen -G "$out/shards/2-of-$shards/unfinished/*.parquet" > /dev/null; do sleep 0.05; done
+  begun
   # The folder is new, so no process but those of this task names it.
-  pgrep -f -- "--shard 2/$shards --out $out/" | xargs -r kill -KILL || true
+  pgrep -f -- "--shard 2/$shards --out $out " | xargs -r kill -KILL || true
   wait_for "$array"
-  scancel "$merge" 2> /dev/null || true
+  scancel "$report" 2> /dev/null || true
   killed
-  # The array has failed in one task, so its merge never runs; that task alone is submitted again.
+  refused
+  # The array has failed in one task, so its report never runs; that task alone is submitted again.
   again=$(SHARDS=$shards sbatch --parsable --array=2 --cpus-per-task=1 --time=10 "$here/study.sbatch" "$scenario" "$out")
   wait_for "$again"
-  wait_for "$(sbatch --parsable --dependency="afterok:$again" --time=10 --cpus-per-task=1 "$here/merge.sbatch" "$out")"
+  wait_for "$(sbatch --parsable --dependency="afterok:$again" --time=10 --cpus-per-task=1 "$here/report.sbatch" "$out")"
   same Slurm
 else
   # In the place of the shell that runs in the background, so that its number is the number of the program.
-  run() { exec "$STUDY" "$scenario" --shard "$1/$shards" --out "$out/shards/$1-of-$shards" --threads 1 --quiet; }
-  run 2 & victim=$!
-  until compgen -G "$out/shards/2-of-$shards/unfinished/*.parquet" > /dev/null; do sleep 0.05; done
-  kill -KILL "$victim"
-  wait "$victim" 2> /dev/null || true
-  killed
+  run() { exec "$STUDY" "$scenario" --shard "$1/$shards" --out "$out" --threads 1 --quiet; }
   running=()
   for shard in $(seq "$shards"); do run "$shard" & running+=($!); done
-  for process in "${running[@]}"; do wait "$process"; done
-  "$STUDY" merge "$out"/shards/* --out "$out" --quiet
+  victim=${running[1]}
+  begun
+  kill -KILL "$victim"
+  for process in "${running[@]}"; do
+    wait "$process" 2> /dev/null || [ "$process" = "$victim" ]
+  done
+  killed
+  refused
+  (run 2)
+  "$STUDY" report "$out" --quiet
   same processes
 fi

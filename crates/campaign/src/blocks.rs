@@ -27,6 +27,7 @@ const MAX_BLOCK_BYTES: u64 = 1 << 30;
 pub struct BlockStore<'a> {
     folder: PathBuf,
     design_sha256: String,
+    seed: u64,
     program: String,
     design: &'a Design,
     layout: RowLayout,
@@ -38,6 +39,7 @@ impl<'a> BlockStore<'a> {
         Self {
             folder: folder.to_owned(),
             design_sha256: manifest.design_sha256.clone(),
+            seed: manifest.seed,
             program: manifest.program_label(),
             design,
             layout: RowLayout::of(design),
@@ -46,7 +48,7 @@ impl<'a> BlockStore<'a> {
 
     fn label(&self, block: Block) -> BlockLabel {
         let (design, program) = (self.design_sha256.clone(), self.program.clone());
-        BlockLabel { design, program, cell: block.cell, block: block.number }
+        BlockLabel { design, seed: self.seed, program, cell: block.cell, block: block.number }
     }
 
     /// The file of a block.
@@ -72,6 +74,8 @@ impl<'a> BlockStore<'a> {
         let advice = "remove the file, give another folder with --out, or --restart to discard all rows";
         let what = if label.design != self.design_sha256 {
             "it is a block of another study".to_owned()
+        } else if label.seed != self.seed {
+            format!("it is a block of the study with seed {}, expected seed {}", label.seed, self.seed)
         } else if label.program != self.program {
             format!("it was computed by {}, expected {}", label.program, self.program)
         } else {
@@ -80,10 +84,16 @@ impl<'a> BlockStore<'a> {
         format!("{what}; {advice}")
     }
 
-    /// Trials that are stored, by their block. A damaged block is told of, and counts as none.
+    /// Trials that are stored, by their block, of those blocks that are asked for. A damaged block is told of with what
+    /// becomes of it, and counts as none.
     ///
     /// Fails when a file cannot be read, and when one is a block of something else.
-    pub fn survey(&self, observer: &dyn Observer) -> Result<HashMap<Block, u64>, Failure> {
+    pub fn survey(
+        &self,
+        is_asked: impl Fn(Block) -> bool + Sync,
+        becomes: &str,
+        observer: &dyn Observer,
+    ) -> Result<HashMap<Block, u64>, Failure> {
         let folder = self.folder.join(ROWS);
         let names =
             if disk::is_there(&folder).on("look for", &folder)? { disk::names(&folder) } else { Ok(Vec::new()) };
@@ -92,11 +102,11 @@ impl<'a> BlockStore<'a> {
         let look = |block: Block| match self.read(block)? {
             Ok(rows) => Ok(Some((block, trials(rows)))),
             Err(problem) => {
-                observer.warn(&format!("{problem}; its trials are run again"));
+                observer.warn(&format!("{problem}; {becomes}"));
                 Ok(None)
             }
         };
-        let known = |block: &Block| block.cell < self.design.cells.len();
+        let known = |block: &Block| block.cell < self.design.cells.len() && is_asked(*block);
         blocks.into_par_iter().filter(known).filter_map(|block| look(block).transpose()).collect()
     }
 

@@ -79,7 +79,7 @@ pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<Stored
     is_same(&manifest, &Manifest::new(&scenario), folder.path())?;
     let design = Design::of(&scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
-    let stored = store.survey(observer)?;
+    let stored = store.survey(|_| true, "its trials count as missing", observer)?;
     let read = |block: Block| reread(&store, block);
     let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
     if let Some(&Task { cell, replicate }) = plan.next(1)?.first() {
@@ -114,11 +114,10 @@ fn run(
     let manifest = begin(scenario, folder, restart)?;
     let design = Design::of(scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
-    let stored = store.survey(observer)?;
     let part = blocks_of(scenario, shard);
     let most = trials_of(scenario, &part);
-    let is_own = |block: &Block| part.contains(&block.place(scenario));
-    let before: u64 = stored.iter().filter(|(block, _)| is_own(block)).map(|(_, trials)| trials).sum();
+    let stored = store.survey(|block| part.contains(&block.place(scenario)), "its trials are run again", observer)?;
+    let before: u64 = stored.values().sum();
     let read = |block: Block| reread(&store, block);
     let mut plan = TrialPlan::new(scenario, shard, &stored, &read);
     let first = plan.next(1)?;
@@ -133,7 +132,9 @@ fn run(
     let mut plan = TrialPlan::new(scenario, shard, &stored, &read);
     let progress = Progress { most, before, folder: folder.path() };
     let computed = run_all(scenario, &mut plan, &store, &progress, observer);
-    let wall_time_s = manifest.machine.wall_time_s + start.elapsed().as_secs_f64();
+    // Of other shards of the study that have ended meanwhile, too.
+    let before = Manifest::read(&folder.path().join(files::MANIFEST))?.unwrap_or_else(|| manifest.clone());
+    let wall_time_s = before.machine.wall_time_s + start.elapsed().as_secs_f64();
     let manifest = Manifest { machine: Machine { wall_time_s, ..manifest.machine }, ..manifest };
     manifest.write(folder)?;
     Ok(StudyRun { manifest, trials: plan.trials, computed: computed? })
@@ -225,7 +226,7 @@ fn run_all(
     std::thread::scope(|scope| {
         // One batch may wait while one is written and one runs: memory stays what it is.
         let (send, receive) = sync_channel::<Vec<TrialOutcome>>(1);
-        let mut writer = BlockWriter::new(store, scenario.replicates);
+        let mut writer = BlockWriter::new(store, scenario);
         let writer = scope.spawn(move || writer.store(receive));
         let mut computed = 0;
         let take = |outcomes: Vec<TrialOutcome>| {
@@ -305,10 +306,12 @@ fn watched<'scope>(
     scope.spawn(move || {
         let runner = runner(scenario, &tasks);
         let run = || {
-            tasks.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
+            runner.units(&tasks).into_par_iter().for_each_with(send, |send, unit| {
                 if !observer.is_asked_to_stop() {
-                    // Nobody receives any more when the wait for a trial was given up.
-                    let _ = send.send((index, runner.run(task)));
+                    for (index, outcome) in unit.clone().zip(runner.run_unit(&tasks[unit])) {
+                        // Nobody receives any more when the wait for a trial was given up.
+                        let _ = send.send((index, outcome));
+                    }
                 }
             });
         };
@@ -347,7 +350,8 @@ pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
     let mut rows = Vec::new();
     let run = |tasks: Vec<Task>| {
         let runner = runner(scenario, &tasks);
-        (tasks.par_iter().map(|&task| runner.run(task)).collect(), RunEnd::Done)
+        let units = runner.units(&tasks).into_par_iter();
+        (units.flat_map_iter(|unit| runner.run_unit(&tasks[unit])).collect(), RunEnd::Done)
     };
     let take = |outcomes: Vec<TrialOutcome>| {
         rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));

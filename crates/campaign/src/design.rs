@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
+use crate::scenario::records::{RecordQuestion, RecordSet};
 use crate::scenario::{DesignCell, MethodName, Scenario, Words, name};
 use serde::{Deserialize, Serialize};
 
@@ -49,9 +50,31 @@ pub struct CellFacts {
     /// Length over approach speed, s, which limits of IMO follow, where manoeuvres are predicted and it is not drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_over_speed_s: Option<f64>,
+    /// Which records are fitted and which judges, a trial each, in a study of measured records.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<JudgedRecord>,
     /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a
     /// bound of its own, and where there is none.
     pub bound_percent2: Option<[[f64; 2]; 2]>,
+}
+
+/// What a trial of a study of measured records is.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JudgedRecord {
+    /// Names of the records that were fitted together, joined by commas.
+    pub fitted: String,
+    /// Name of the record that judges; none where nothing does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judge: Option<String>,
+}
+
+fn judged_records(set: &RecordSet) -> Vec<JudgedRecord> {
+    let of = |question: &RecordQuestion| JudgedRecord {
+        fitted: question.fitted.iter().map(|one| set.name(*one)).collect::<Vec<_>>().join(", "),
+        judge: question.judge.map(|one| set.name(one).to_owned()),
+    };
+    set.questions.iter().map(of).collect()
 }
 
 impl Design {
@@ -64,7 +87,8 @@ impl Design {
             values: cell.values.clone(),
             missing: cell.missing(),
             has_own_indices: cell.has_own_indices(),
-            is_nearest: !cell.is_first_order(),
+            is_nearest: cell.is_nearest(),
+            records: cell.record_set().map_or_else(Vec::new, judged_records),
             length_over_speed_s: cell.particulars().filter(|_| has_limits).map(|own| own.length / own.speed),
             ..CellFacts::default()
         };

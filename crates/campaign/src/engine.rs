@@ -3,6 +3,7 @@
 //!
 //! Everything random follows from the key of a trial, so rows do not depend on threads, order or company.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
@@ -16,6 +17,7 @@ use ship::angle::{from_deg, to_deg};
 use simulate::{PreparedSimulation, SimulateError, Simulated, StreamKey};
 use trial::{Quantity, Trial};
 
+use crate::judged;
 use crate::known::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
@@ -87,6 +89,30 @@ impl<'a> TrialRunner<'a> {
             first_cell: *cells.start(),
             references: (0..count).map(|_| OnceLock::new()).collect(),
             prepared: (0..kept).map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    /// Places of tasks, in order, that are run together: trials of measured records that share a fit.
+    pub fn units(&self, tasks: &[Task]) -> Vec<Range<usize>> {
+        let fit = |task: &Task| {
+            let set = self.scenario.cells[task.cell].record_set()?;
+            Some((task.cell, &set.questions[task.replicate as usize].fitted))
+        };
+        let share = |one: &Task, other: &Task| fit(one).is_some() && fit(one) == fit(other);
+        let mut start = 0;
+        let of = |unit: &[Task]| {
+            let place = start..start + unit.len();
+            start = place.end;
+            place
+        };
+        tasks.chunk_by(share).map(of).collect()
+    }
+
+    /// Runs tasks of one unit.
+    pub fn run_unit(&self, tasks: &[Task]) -> Vec<TrialOutcome> {
+        match self.scenario.cells[tasks[0].cell].record_set() {
+            Some(set) => judged::run(self.scenario, set, tasks),
+            None => tasks.iter().map(|&task| self.run(task)).collect(),
         }
     }
 
@@ -178,12 +204,12 @@ impl<'a> TrialRunner<'a> {
 }
 
 /// What every method of a trial is asked.
-struct TrialQuestion<'a> {
-    trials: &'a [Trial],
-    key: &'a StreamKey,
-    reference: &'a TrialReference,
-    missing: &'a [String],
-    check: Option<PredictionCheck<'a>>,
+pub(crate) struct TrialQuestion<'a> {
+    pub trials: &'a [Trial],
+    pub key: &'a StreamKey,
+    pub reference: &'a TrialReference,
+    pub missing: &'a [String],
+    pub check: Option<PredictionCheck<'a>>,
 }
 
 impl TrialQuestion<'_> {
@@ -194,7 +220,12 @@ impl TrialQuestion<'_> {
             Procedure::Trace(settings) => {
                 let answer = ::trace::trace(self.trials, &[], settings);
                 let time = start.elapsed();
-                (answer.map(|analysis| self.traced(&blank, &analysis)).map_err(|error| failure(&error).into()), time)
+                (
+                    answer
+                        .map(|analysis| self.traced_in_a_calm(&blank, &analysis))
+                        .map_err(|error| failure(&error).into()),
+                    time,
+                )
             }
             first_order => {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
@@ -206,7 +237,7 @@ impl TrialQuestion<'_> {
         (row.unwrap_or_else(|reason| StudyRow { failure: Some(reason), ..blank }), time)
     }
 
-    fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
+    pub fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
         let error = |trials: &[Trial]| pooled(trials, &estimate.response).map(to_deg);
         let validation = self.reference.validation.as_ref();
         StudyRow {
@@ -219,10 +250,15 @@ impl TrialQuestion<'_> {
         }
     }
 
-    /// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
-    fn traced(&self, blank: &StudyRow, analysis: &Analysis) -> StudyRow {
+    /// The row of a trace whose ship makes the second manoeuvre in a calm.
+    fn traced_in_a_calm(&self, blank: &StudyRow, analysis: &Analysis) -> StudyRow {
         let validation = self.reference.validation.as_ref();
         let validation = validation.and_then(|trial| analysis.in_a_calm(trial, [trial.heading()[0], 0.0]));
+        self.traced(blank, analysis, validation.as_ref())
+    }
+
+    /// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
+    pub fn traced(&self, blank: &StudyRow, analysis: &Analysis, validation: Option<&ReplayResult>) -> StudyRow {
         let document = &analysis.document;
         let named = |effect: &EffectEntry| {
             let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
@@ -236,7 +272,7 @@ impl TrialQuestion<'_> {
             |facts: &RecordFacts| Some(known::of_analysis(analysis, &facts.clone().with_motion(Some(analysis), &[])));
         StudyRow {
             heading_rmse_deg: finite(to_deg(misfit(analysis, self.trials))),
-            validation_rmse_deg: validation.as_ref().and_then(|on| finite(to_deg(on.errors.heading))),
+            validation_rmse_deg: validation.and_then(|on| finite(to_deg(on.errors.heading))),
             stop: Some(StopReason::Converged.as_str()),
             predicted: self.check.as_ref().map(|check| check.figures(known)),
             traced: Some(Box::new(TraceAnswer {
@@ -249,7 +285,7 @@ impl TrialQuestion<'_> {
                 margin: margin(analysis, self.missing),
                 expected: self.reference.expected,
                 band_fitted: analysis.identification[0].after.coverage().map(|own| own.share()),
-                band_held_out: validation.as_ref().and_then(ReplayResult::coverage).map(|own| own.share()),
+                band_held_out: validation.and_then(ReplayResult::coverage).map(|own| own.share()),
             })),
             ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
         }

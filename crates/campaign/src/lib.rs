@@ -5,7 +5,7 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | one trial | [`engine`] |
+//! | one trial, simulated or of measured records | [`engine`], `judged` |
 //! | many of them, in order | [`task`], [`block`], [`plan`], [`stopping`], [`collect`] |
 //! | answers from elsewhere | [`answers`] |
 //! | what is stored | [`design`], [`rows`], [`blocks`], [`store`], [`manifest`], [`showcase`], [`timings`] |
@@ -30,6 +30,7 @@ pub mod engine;
 pub mod failure;
 pub mod files;
 pub mod folder;
+mod judged;
 pub mod known;
 pub mod manifest;
 pub mod observer;

@@ -48,6 +48,13 @@ pub fn blocks_of(scenario: &Scenario, shard: Shard) -> Range<u64> {
 /// Trials of blocks, at most.
 pub fn trials_of(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
     let of_cell = Block::of_cell(scenario.replicates);
+    if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
+        let of = |place| {
+            let block = Block::at(place, scenario);
+            block.range(scenario.trials_of(block.cell)).count() as u64
+        };
+        return blocks.clone().map(of).sum();
+    }
     let before = |place: u64| {
         place / of_cell * scenario.replicates + (place % of_cell * Block::REPLICATES).min(scenario.replicates)
     };
@@ -79,12 +86,15 @@ impl<'a> TrialPlan<'a> {
     pub fn next(&mut self, most: u64) -> Result<Vec<Task>, Failure> {
         let mut tasks = Vec::new();
         loop {
-            let count = self.open.end.saturating_sub(self.open.start).min(most - tasks.len() as u64);
+            let open = self.open.end.saturating_sub(self.open.start);
+            // Trials of measured records share their fits: all of a block are handed out at once.
+            let is_shared = self.scenario.cells[self.cell].record_set().is_some();
+            let count = if is_shared { open } else { open.min(most.saturating_sub(tasks.len() as u64)) };
             let taken = self.open.start..self.open.start + count;
             tasks.extend(taken.map(|replicate| Task { cell: self.cell, replicate }));
             self.open.start += count;
             // A rule looks at all rows of a block before it says what comes next.
-            let is_enough = tasks.len() as u64 == most || self.rule.is_some() && !tasks.is_empty();
+            let is_enough = tasks.len() as u64 >= most || self.rule.is_some() && !tasks.is_empty();
             if is_enough || !self.begin()? {
                 return Ok(tasks);
             }
@@ -98,7 +108,10 @@ impl<'a> TrialPlan<'a> {
             if block.number > 0 && self.rule.as_ref().is_some_and(StopCheck::is_met) {
                 continue;
             }
-            let all = block.range(self.scenario.replicates);
+            let all = block.range(self.scenario.trials_of(block.cell));
+            if all.is_empty() {
+                continue;
+            }
             let stored = self.stored.get(&block).copied().unwrap_or(0);
             if stored > 0 && self.rule.is_some() {
                 (self.read)(block)?.iter().for_each(|row| self.saw(row));

@@ -1,5 +1,6 @@
 //! Trials as they come, stored block by block.
 
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use crate::failure::Failure;
@@ -8,6 +9,7 @@ use crate::block::Block;
 use crate::blocks::BlockStore;
 use crate::engine::TrialOutcome;
 use crate::rows::StudyRow;
+use crate::scenario::Scenario;
 use crate::task::Task;
 use crate::timings::Timings;
 
@@ -19,7 +21,7 @@ const AGE_SHARE: f64 = 0.01;
 /// Gathers the rows of a block and stores them when it is whole, and now and then before.
 pub struct BlockWriter<'a> {
     store: &'a BlockStore<'a>,
-    replicates: u64,
+    scenario: &'a Scenario,
     /// The block under way.
     block: Option<Block>,
     rows: Vec<StudyRow>,
@@ -29,9 +31,9 @@ pub struct BlockWriter<'a> {
 }
 
 impl<'a> BlockWriter<'a> {
-    /// For cells with so many replicates, at most.
-    pub fn new(store: &'a BlockStore<'a>, replicates: u64) -> Self {
-        Self { store, replicates, block: None, rows: Vec::new(), timings: Timings::default(), since: None }
+    /// Of a scenario, into a store of its blocks.
+    pub fn new(store: &'a BlockStore<'a>, scenario: &'a Scenario) -> Self {
+        Self { store, scenario, block: None, rows: Vec::new(), timings: Timings::default(), since: None }
     }
 
     /// Stores trials as they come, in order, until there are no more.
@@ -47,11 +49,16 @@ impl<'a> BlockWriter<'a> {
         self.write()
     }
 
+    /// Replicates of a block.
+    fn range(&self, block: Block) -> Range<u64> {
+        block.range(self.scenario.trials_of(block.cell))
+    }
+
     fn add(&mut self, outcome: TrialOutcome) -> Result<(), Failure> {
         let Some(row) = outcome.rows.first() else { return Ok(()) };
         let task = Task { cell: row.cell as usize, replicate: row.replicate };
         let block = Block::of(task);
-        let all = block.range(self.replicates);
+        let all = self.range(block);
         if self.block != Some(block) {
             // Of one that was begun before, the first rows are stored.
             let is_new = task.replicate == all.start;
@@ -69,6 +76,11 @@ impl<'a> BlockWriter<'a> {
     /// Stores what there is of the block under way.
     fn write(&mut self) -> Result<(), Failure> {
         let Some(block) = self.block.filter(|_| self.since.take().is_some()) else { return Ok(()) };
+        // Another program may have more of it.
+        let is_whole = self.rows.last().is_some_and(|row| row.replicate + 1 == self.range(block).end);
+        if !is_whole && self.store.read(block)?.is_ok_and(|rows| rows.len() > self.rows.len()) {
+            return Ok(());
+        }
         self.store.write(block, &self.rows, &self.timings)
     }
 }

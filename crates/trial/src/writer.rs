@@ -51,10 +51,16 @@ pub fn sidecar(trial: &Trial) -> Option<String> {
     let calm = trial.is_calm().then(|| String::from("weather = \"none\"\n"));
     let crate::Noise { heading, yaw_rate, rudder } = trial.noise();
     let kinds = [("heading-deg", heading), ("yaw-rate-deg-s", yaw_rate), ("rudder-deg", rudder)];
-    let noise: String = kinds.iter().filter_map(|(key, sd)| Some(format!("{key} = {:?}\n", to_deg((*sd)?)))).collect();
+    let noise: String =
+        kinds.iter().filter_map(|(key, sd)| Some(format!("{key} = {:?}\n", short(to_deg((*sd)?))))).collect();
     let noise = (!noise.is_empty()).then(|| format!("[noise]\n{noise}"));
     let text: String = calm.into_iter().chain(trial.particulars().map(ship)).chain(noise).collect();
     (!text.is_empty()).then_some(text)
+}
+
+/// A number without the rounding of a change of units.
+fn short(value: f64) -> f64 {
+    (1e12 * value).round() / 1e12
 }
 
 #[cfg(test)]

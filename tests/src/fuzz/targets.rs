@@ -192,7 +192,7 @@ fn summarised(rows: &[u8], design: &Design) -> bool {
     let mut tally = Tally::new(design);
     let manifest = &seeds::study().manifest;
     let (design_sha256, program) = (manifest.design_sha256.clone(), manifest.program_label());
-    let label = BlockLabel { design: design_sha256, program, cell: 0, block: 0 };
+    let label = BlockLabel { design: design_sha256, seed: manifest.seed, program, cell: 0, block: 0 };
     match decode(rows.to_vec(), &label, &layout) {
         Ok(rows) => {
             assert!(rows.iter().all(|row| row.cell == 0 && row.method < design.methods.len()), "rows of the block");

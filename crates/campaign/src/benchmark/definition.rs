@@ -308,7 +308,7 @@ impl DefinitionReader<'_> {
             }
             records.push(SetRecord { name: name.get_ref().clone(), manoeuvre });
         }
-        if let Some(at) = wire.tasks.indices.first().filter(|_| !own.is_first_order()) {
+        if let Some(at) = wire.tasks.indices.first().filter(|_| own.is_nearest()) {
             let found = format!("{} is asked for K and T", own.title());
             return Err(self.at(at, &found, "expected a ship that is first order", "leave it out"));
         }

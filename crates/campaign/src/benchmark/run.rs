@@ -147,7 +147,7 @@ fn simulated<'a>(set: &'a RecordSet, skipped: &mut Vec<Skipped>) -> Vec<BenchTri
         let task = Task { cell: *cell, replicate };
         let refused = |reason| Skipped { set: set.name.clone(), record: format!("trial {replicate}"), reason };
         let records = simulate(scenario, task).map_err(refused)?;
-        let truth = match scenario.cells[*cell].is_first_order() {
+        let truth = match !scenario.cells[*cell].is_nearest() {
             true => truths(scenario, task).map_err(refused)?.nearest,
             false => None,
         };

@@ -45,6 +45,8 @@ fn fits(page: PageHead) -> bool {
 pub struct BlockLabel {
     /// SHA-256 of the design of the study.
     pub design: String,
+    /// Seed of the study.
+    pub seed: u64,
     /// The program that computed it.
     pub program: String,
     /// Index of the cell.

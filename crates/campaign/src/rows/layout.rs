@@ -10,7 +10,7 @@ use parquet::schema::types::Type;
 
 use super::columns::{Access, COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RowColumn, TRACE_COLUMNS};
 use super::row::StudyRow;
-use crate::design::Design;
+use crate::design::{Design, JudgedRecord};
 
 /// Values of one column for several rows.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +26,8 @@ pub struct RowLayout {
     fixed: Vec<&'static RowColumn>,
     /// Names, and the points of the cells.
     axes: Vec<(String, Values)>,
+    /// In a study of measured records those of every cell, a trial each.
+    records: Option<Vec<Vec<JudgedRecord>>>,
     draws: Vec<String>,
 }
 
@@ -33,6 +35,7 @@ pub struct RowLayout {
 enum ColumnSource<'a> {
     Fixed(&'static RowColumn),
     Axis(&'a str, &'a Values),
+    Record(fn(&JudgedRecord) -> Option<&str>, &'a [Vec<JudgedRecord>]),
     Draw(usize),
 }
 
@@ -56,6 +59,11 @@ impl RowLayout {
             fixed: groups.into_iter().filter(|(is_there, _)| *is_there).flat_map(|(_, columns)| columns).collect(),
             axes: design.axes.iter().enumerate().map(axis).collect(),
             draws: design.draws.clone(),
+            records: design
+                .cells
+                .iter()
+                .any(|cell| !cell.records.is_empty())
+                .then(|| design.cells.iter().map(|cell| cell.records.clone()).collect()),
         }
     }
 
@@ -70,7 +78,13 @@ impl RowLayout {
         let axes = self.axes.iter().map(|(name, points)| (format!("axis.{name}"), ColumnSource::Axis(name, points)));
         let draws =
             self.draws.iter().enumerate().map(|(index, key)| (format!("draw.{key}"), ColumnSource::Draw(index)));
-        fixed.chain(axes).chain(draws)
+        let records = self.records.iter().flat_map(|records| {
+            let fitted: fn(&JudgedRecord) -> Option<&str> = |record| Some(record.fitted.as_str());
+            let judge: fn(&JudgedRecord) -> Option<&str> = |record| record.judge.as_deref();
+            [("fitted", fitted), ("judge", judge)]
+                .map(|(name, of)| (name.to_owned(), ColumnSource::Record(of, records.as_slice())))
+        });
+        fixed.chain(axes).chain(draws).chain(records)
     }
 
     /// Names of all columns, in order.
@@ -86,9 +100,8 @@ impl RowLayout {
                     (Physical::INT64, Repetition::REQUIRED, None)
                 }
                 ColumnSource::Fixed(RowColumn { access: Access::Text(..) | Access::Method, .. })
-                | ColumnSource::Axis(_, Values::Texts(_)) => {
-                    (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String))
-                }
+                | ColumnSource::Axis(_, Values::Texts(_))
+                | ColumnSource::Record(..) => (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
                 _ => (Physical::DOUBLE, Repetition::OPTIONAL, None),
             };
             let field = Type::primitive_type_builder(&name, physical)
@@ -102,8 +115,18 @@ impl RowLayout {
 
     /// Whether the values of a column repeat so often that a dictionary of them pays: estimates hardly ever do.
     pub(super) fn repeats(name: &str) -> bool {
-        let text = ["method", "failure", "stop", "trace_verdict", "trace_named", "trace_groups", "trace_expected"]
-            .contains(&name);
+        let text = [
+            "method",
+            "failure",
+            "stop",
+            "trace_verdict",
+            "trace_named",
+            "trace_groups",
+            "trace_expected",
+            "fitted",
+            "judge",
+        ]
+        .contains(&name);
         text || ["true_", "own_", "bound_", "axis."].iter().any(|start| name.starts_with(start))
     }
 
@@ -119,6 +142,7 @@ impl RowLayout {
                 }
             },
             ColumnSource::Axis(_, points) => points.of_cells(rows),
+            ColumnSource::Record(of, records) => names_of_records(of, records, rows),
             ColumnSource::Draw(index) => {
                 Values::Numbers(rows.iter().map(|row| row.drawn.as_ref().map(|drawn| drawn[index])).collect())
             }
@@ -151,6 +175,8 @@ impl RowLayout {
                 }
                 // Axes follow from the cell; other ones belong to another design.
                 (ColumnSource::Axis(_, points), values) if points.of_cells(&rows) == values => {}
+                (ColumnSource::Record(of, records), values) if names_of_records(of, records, &rows) == values => {}
+                (ColumnSource::Record(..), _) => return Err("a row has other records than its trial".to_owned()),
                 (ColumnSource::Axis(name, _), _) => {
                     return Err(format!("a row has another point of the axis {name:?} than its cell"));
                 }
@@ -164,6 +190,12 @@ impl RowLayout {
         }
         Ok(rows)
     }
+}
+
+/// What the records of trials are called.
+fn names_of_records(of: fn(&JudgedRecord) -> Option<&str>, records: &[Vec<JudgedRecord>], rows: &[StudyRow]) -> Values {
+    let name = |row: &StudyRow| of(records.get(row.cell as usize)?.get(row.replicate as usize)?).map(str::to_owned);
+    Values::Texts(rows.iter().map(name).collect())
 }
 
 /// The rows that have a value, with it.

@@ -55,7 +55,7 @@ fn failed(replicate: u64) -> StudyRow {
 
 /// The label of the second block of the second cell.
 fn label() -> BlockLabel {
-    BlockLabel { design: "d".into(), program: "p".into(), cell: 1, block: 1 }
+    BlockLabel { design: "d".into(), seed: 1, program: "p".into(), cell: 1, block: 1 }
 }
 
 /// Trials of the second block, from its first on.
@@ -120,6 +120,7 @@ fn blocks_of_something_else_are_told_from_damaged_ones() {
     let bytes = written(&trials(2), &layout);
     let others = [
         BlockLabel { design: "e".into(), ..label() },
+        BlockLabel { seed: 2, ..label() },
         BlockLabel { program: "q".into(), ..label() },
         BlockLabel { cell: 0, ..label() },
         BlockLabel { block: 0, ..label() },

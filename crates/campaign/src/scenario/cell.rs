@@ -11,6 +11,7 @@ use crate::scenario::draw::DrawnKey;
 use crate::scenario::method::{Method, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{KeyFault, KeyPath};
+use crate::scenario::records::RecordSet;
 use crate::scenario::specification::Specification;
 use crate::scenario::wire::ScenarioWire;
 use crate::scenario::{limits, reader, resolve, sweep};
@@ -23,14 +24,25 @@ pub struct DesignCell {
     pub values: Vec<Option<f64>>,
     /// The methods, all on the same trial.
     pub methods: Vec<Method>,
-    /// How a trial is made; drawn values are in the middle of their distributions.
-    specification: Specification,
-    /// How a trial with drawn values is made.
-    drawn: Option<DrawnSettings>,
+    /// Where its trials come from.
+    pub(crate) source: TrialSource,
+}
+
+/// Where the trials of a cell come from.
+pub(crate) enum TrialSource {
+    /// They are simulated.
+    Simulated {
+        /// How a trial is made; drawn values are in the middle of their distributions.
+        specification: Box<Specification>,
+        /// How a trial with drawn values is made.
+        drawn: Option<DrawnSettings>,
+    },
+    /// They are records.
+    Measured(RecordSet),
 }
 
 /// What a trial with drawn values is made from.
-struct DrawnSettings {
+pub(crate) struct DrawnSettings {
     draws: Vec<DrawnKey>,
     /// What the document of the cell says of how a trial is made.
     document: Table,
@@ -57,35 +69,55 @@ impl DesignCell {
         self.methods.iter().any(|method| matches!(method.procedure, Procedure::Trace(_)))
     }
 
-    /// Records of each of its trials.
-    pub fn records(&self) -> usize {
-        1 + self.specification.also.len()
+    /// The records of a study of measured ones.
+    pub fn record_set(&self) -> Option<&RecordSet> {
+        match &self.source {
+            TrialSource::Simulated { .. } => None,
+            TrialSource::Measured(set) => Some(set),
+        }
     }
 
-    /// Effects a first-order base lacks in its trials.
+    /// How its trials are simulated, where they are.
+    fn specification(&self) -> Option<&Specification> {
+        match &self.source {
+            TrialSource::Simulated { specification, .. } => Some(specification),
+            TrialSource::Measured(_) => None,
+        }
+    }
+
+    /// Simulated records of each of its trials.
+    pub fn records(&self) -> usize {
+        self.specification().map_or(0, |own| 1 + own.also.len())
+    }
+
+    /// Effects a first-order base lacks in its trials, as far as they are known.
     pub fn missing(&self) -> Vec<String> {
-        self.specification.missing.clone()
+        self.specification().map_or_else(Vec::new, |own| own.missing.clone())
     }
 
     /// Whether the ship is a first-order base with effects, so that its own K and T are not those of the first-order
     /// response nearest to it.
     pub fn has_own_indices(&self) -> bool {
-        self.specification.truth.is_none() && self.specification.base.is_some()
+        self.specification().is_some_and(|own| own.truth.is_none() && own.base.is_some())
     }
 
-    /// Whether the ship is a first-order response, so that K and T of a method are held against its own.
-    pub fn is_first_order(&self) -> bool {
-        self.specification.truth.is_some()
+    /// Whether the ship is simulated and no first-order response, so that K and T of a method are held against those of
+    /// the response nearest to it.
+    pub fn is_nearest(&self) -> bool {
+        self.specification().is_some_and(|own| own.truth.is_none())
     }
 
     /// Length and approach speed of the ship, where they are known; with drawn values those in the middle.
     pub fn particulars(&self) -> Option<Particulars> {
-        self.specification.simulation.vessel.particulars()
+        match &self.source {
+            TrialSource::Simulated { specification, .. } => specification.simulation.vessel.particulars(),
+            TrialSource::Measured(set) => set.trials.iter().find_map(|trial| trial.particulars()),
+        }
     }
 
     /// Whether its trials make an assumption.
     pub(crate) fn assumes(&self, assumption: Assumption) -> bool {
-        assumption.holds(&self.specification.simulation)
+        self.specification().is_some_and(|own| assumption.holds(&own.simulation))
     }
 
     /// Labels of the points joined, or nothing when there is no axis.
@@ -95,15 +127,18 @@ impl DesignCell {
 
     /// Whether all its trials have one specification.
     pub fn is_fixed(&self) -> bool {
-        self.drawn.is_none()
+        !matches!(self.source, TrialSource::Simulated { drawn: Some(_), .. })
     }
 
     /// How the trial of `key` is made.
     ///
-    /// Fails when drawn values make no trial, which only a distribution without ends can do.
+    /// Fails when drawn values make no trial, which only a distribution without ends can do, and for measured records.
     pub fn specimen(&self, key: &StreamKey) -> Result<TrialSpecification<'_>, Refusal> {
-        let Some(drawn) = &self.drawn else {
-            return Ok(TrialSpecification { specification: Cow::Borrowed(&self.specification), drawn: Vec::new() });
+        let TrialSource::Simulated { specification, drawn } = &self.source else {
+            return Err(Refusal("the trials are measured records, and nothing is simulated".to_owned()));
+        };
+        let Some(drawn) = drawn else {
+            return Ok(TrialSpecification { specification: Cow::Borrowed(&**specification), drawn: Vec::new() });
         };
         let values: Vec<f64> = drawn.draws.iter().map(|draw| draw.value(key)).collect();
         let specification = drawn.specification(&values).map_err(|problem| Refusal(problem.found))?;
@@ -218,5 +253,6 @@ pub(crate) fn swept(
         None => (None, specification),
     };
     let values = points.iter().map(|point| point.value).collect();
-    Ok(DesignCell { labels, values, methods, specification, drawn })
+    let source = TrialSource::Simulated { specification: Box::new(specification), drawn };
+    Ok(DesignCell { labels, values, methods, source })
 }

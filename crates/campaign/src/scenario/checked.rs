@@ -18,11 +18,15 @@ use crate::scenario::method::{Method, MethodName, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::predictions::Predictions;
 use crate::scenario::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::records::{self, RecordStudyWire};
 use crate::scenario::stop::StopRule;
 use crate::scenario::sweep::{self, SweepAxis};
 use crate::scenario::wire::ScenarioWire;
 use crate::scenario::words::{Published, Words};
 use crate::scenario::{checks, locate, name, reader, resolve, resolved};
+
+/// The key that stands in the place of ship, manoeuvre and instruments.
+const RECORDS: &str = "records";
 
 /// A scenario that has been checked in every cell.
 pub struct Scenario {
@@ -88,7 +92,11 @@ impl Scenario {
             let span = locate::span(&text, &problem.key, problem.mark);
             Failure::at(path, &text, span, &problem.found, &problem.expected, &problem.advice)
         })?;
-        let design_sha256 = identity::sha256_of(&identity::design_of(&document), folder)?;
+        let design = identity::design_of(&document);
+        let design_sha256 = match document.contains_key(RECORDS) {
+            true => records::design_sha256(&design, &scenario.cells),
+            false => identity::sha256_of(&design, folder)?,
+        };
         let seed = seed.unwrap_or(scenario.seed);
         Ok(Self { seed, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
     }
@@ -102,6 +110,9 @@ impl Scenario {
                 "expected keys",
                 "start from one of the files in scenarios/; docs/src/reference/scenarios.md explains the keys",
             ));
+        }
+        if document.contains_key(RECORDS) {
+            return Self::of_records(document, name, folder);
         }
         let wire: ScenarioWire = reader::document(document)?;
         let words = Words {
@@ -146,6 +157,48 @@ impl Scenario {
         })
     }
 
+    /// Resolves a document of measured records.
+    fn of_records(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
+        let wire: RecordStudyWire = reader::document(document)?;
+        let RecordStudyWire { question, analysis, finding, seed, predict, identifier, sweep, output, .. } = wire;
+        let words = Words { question, analysis, finding, output };
+        words.check()?;
+        let methods = methods(&identifier)?;
+        let predictions = predict.as_ref().map(|predict| predict.resolve()).transpose()?;
+        let axes = sweep.iter().enumerate().map(|(index, axis)| axis.resolve(index));
+        let axes: Vec<SweepAxis> = axes.collect::<Result<_, _>>()?;
+        let combinations = sweep::product(&axes)?;
+        checks::titles(&axes)?;
+        let cells = combinations.iter().map(|points| records::cell(document, points, &methods, folder));
+        let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
+        checks::detail(&words.output.detail, &cells)?;
+        checks::marks(&words.output.marks, &axes)?;
+        checks::about(&words.output.methods, &methods)?;
+        let counts = cells.iter().filter_map(DesignCell::record_set).map(|set| set.questions.len() as u64);
+        let replicates = counts.max().unwrap_or(0);
+        checks::size(replicates, cells.len(), methods.len())?;
+        Ok(Self {
+            name: name.to_owned(),
+            seed,
+            replicates,
+            draws: Vec::new(),
+            axes,
+            cells,
+            published: Published::default(),
+            words,
+            stop: None,
+            predictions,
+            design_sha256: String::new(),
+            sha256: String::new(),
+            text: String::new(),
+        })
+    }
+
+    /// Trials of a cell, at most: those of a study of measured records are as many as its records make.
+    pub fn trials_of(&self, cell: usize) -> u64 {
+        self.cells[cell].record_set().map_or(self.replicates, |set| set.questions.len() as u64)
+    }
+
     /// The same scenario with a method of the caller's own behind its methods, on the same trials.
     ///
     /// Fails when the label cannot be one, or is that of another method.
@@ -178,7 +231,10 @@ impl Scenario {
 
     /// The scenario with nothing left out, as TOML: every default that was taken is marked as one.
     pub fn resolved(&self) -> String {
-        let document = self.text.parse().expect("it has been read");
+        let document: Table = self.text.parse().expect("it has been read");
+        if document.contains_key(RECORDS) {
+            return self.text.clone();
+        }
         resolved::text(&document, &self.cells[0].methods).expect("it has been resolved")
     }
 

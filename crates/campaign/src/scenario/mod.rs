@@ -7,6 +7,7 @@
 //! | what a file says, and how it is read | `wire`, `ship`, `effect`, `number_table`, `reader`, [`part`], [`words`] |
 //! | what is wrong with it, and where | [`problem`], `locate`, [`crate::failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
+//! | measured records in the place of simulated ships | [`records`] |
 //! | answers that were found elsewhere | [`answers`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
 //! | which scenarios give the same rows | [`identity`] |
@@ -31,6 +32,7 @@ pub mod part;
 pub mod predictions;
 pub mod problem;
 mod reader;
+pub mod records;
 mod resolve;
 mod resolved;
 pub mod schema;

@@ -33,14 +33,34 @@ pub struct Predictions {
     pub draws: usize,
 }
 
+/// Predictions of the records that judge.
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct RecordPredictWire {
+    /// Ships drawn for every prediction.
+    #[serde(default = "draws")]
+    pub draws: u64,
+}
+
+impl RecordPredictWire {
+    /// Checks the number of draws.
+    pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
+        Ok(Predictions { kinds: Vec::new(), draws: checked(self.draws)? })
+    }
+}
+
+/// A number of draws that says something and ends.
+fn checked(draws: u64) -> Result<usize, KeyFault> {
+    let key = KeyPath::dotted("predict.draws");
+    let fault = || KeyFault::of(key, draws, "expected 50 to 10000", "200 tell an interval of 90 %");
+    if DRAWS.contains(&draws) { Ok(draws as usize) } else { Err(fault()) }
+}
+
 impl PredictWire {
     /// Checks every value; fails with the first one that makes no sense.
     pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
         let key = KeyPath::dotted("predict");
-        if !DRAWS.contains(&self.draws) {
-            let advice = "200 tell an interval of 90 %";
-            return Err(KeyFault::of(key.child("draws"), self.draws, "expected 50 to 10000", advice));
-        }
+        let draws = checked(self.draws)?;
         if self.manoeuvres.is_empty() {
             let expected = "expected at least one, such as \"zig-zag:20/20\"";
             return Err(KeyFault::of(key.child("manoeuvres"), "empty", expected, "name one, or leave [predict] out"));
@@ -60,7 +80,7 @@ impl PredictWire {
             }
             kinds.push(kind);
         }
-        Ok(Predictions { kinds, draws: self.draws as usize })
+        Ok(Predictions { kinds, draws })
     }
 }
 

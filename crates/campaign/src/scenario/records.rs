@@ -1,0 +1,356 @@
+//! Studies of measured records: `[records]` stands in the place of ship, manoeuvre and instruments. Methods are fitted
+//! to some records of a ship and judged on others, which have chosen nothing.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use toml::Table;
+use trial::Trial;
+use trial::file::{self, FileError};
+use trial::reader::RECORD;
+
+use crate::scenario::cell::{DesignCell, TrialSource};
+use crate::scenario::method::{IdentifierWire, Method, methods};
+use crate::scenario::predictions::RecordPredictWire;
+use crate::scenario::problem::{KeyFault, KeyPath, place_among};
+use crate::scenario::sweep::{self, AxisWire, SweepPoint};
+use crate::scenario::words::Presentation;
+use crate::scenario::{identity, reader};
+
+/// Environment variable that names a folder of records which are not beside the scenario.
+pub const DATA: &str = "KEMPF_DATA";
+
+/// Most records of a cell.
+const MAX_RECORDS: usize = 1000;
+
+/// A scenario of measured records.
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct RecordStudyWire {
+    /// What the study asks, in one sentence.
+    pub question: String,
+    /// How to read its results, in paragraphs.
+    #[serde(default)]
+    pub analysis: String,
+    /// The answer in one sentence.
+    #[serde(default)]
+    pub finding: String,
+    /// Seed of methods and predictions that draw at random.
+    #[serde(default)]
+    pub seed: u64,
+    /// The records, and how they are shared out.
+    pub records: RecordsWire,
+    /// What is predicted of every judging record.
+    pub(crate) predict: Option<RecordPredictWire>,
+    /// The methods, all on the same records.
+    pub(crate) identifier: Vec<IdentifierWire>,
+    /// Axes of the design, such as one of several ships.
+    #[serde(default)]
+    pub(crate) sweep: Vec<AxisWire>,
+    /// Which figures are made.
+    #[serde(default)]
+    pub output: Presentation,
+}
+
+/// Measured records of one ship.
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct RecordsWire {
+    /// Files, `*` standing for anything in a name; from the folder of the scenario, or else from that of KEMPF_DATA.
+    pub files: Vec<String>,
+    /// Sidecar that describes the columns of all of them; left out, each has its own beside it, if any.
+    pub sidecar: Option<String>,
+    /// Which records are fitted, and which judge.
+    #[serde(default)]
+    pub judge: JudgeWire,
+}
+
+/// Which records are fitted, and which judge.
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(untagged, expecting = "\"others\", \"left-out\", \"none\", or a table with `fit` and `judge`")]
+pub enum JudgeWire {
+    /// By a rule.
+    Rule(JudgeRule),
+    /// By lists of names of records.
+    Lists {
+        /// Records that are fitted together.
+        fit: Vec<String>,
+        /// Records that judge.
+        judge: Vec<String>,
+    },
+}
+
+/// How records are shared out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum JudgeRule {
+    /// Each record is fitted alone and judged by all others.
+    Others,
+    /// All records but one are fitted together and judged by that one, each in turn.
+    LeftOut,
+    /// Each record is fitted alone, and nothing judges.
+    None,
+}
+
+impl Default for JudgeWire {
+    fn default() -> Self {
+        Self::Rule(JudgeRule::Others)
+    }
+}
+
+/// What a trial of a study of records is: some are fitted, one judges. Places are those in the list of records.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RecordQuestion {
+    /// Records that are fitted together.
+    pub fitted: Vec<usize>,
+    /// The record that judges.
+    pub judge: Option<usize>,
+}
+
+/// The records of a cell.
+pub struct RecordSet {
+    /// The records, in the order of their names.
+    pub trials: Vec<Trial>,
+    /// The trials of the cell: those with the same fit follow each other.
+    pub questions: Vec<RecordQuestion>,
+    /// What reading them had to decide, a line each.
+    pub warnings: Vec<String>,
+    /// SHA-256 of every file and of the sidecar.
+    sha256: String,
+}
+
+impl RecordSet {
+    /// The name of a record.
+    pub fn name(&self, place: usize) -> &str {
+        self.trials[place].name()
+    }
+
+    /// Reads the records of a table.
+    ///
+    /// Fails when a file is missing or is no record, and when nothing is left to be asked.
+    fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
+        let key = KeyPath::dotted("records");
+        let sidecar = wire.sidecar.as_deref().map(|own| folder.join(own));
+        let mut paths: Vec<PathBuf> = Vec::new();
+        for (index, pattern) in wire.files.iter().enumerate() {
+            let found = matching(folder, pattern);
+            if found.is_empty() {
+                let advice = format!("give files beside the scenario, or name their folder in {DATA}");
+                let found = format!("`records.files` holds {pattern:?}, and there is no such file");
+                return Err(KeyFault::value(key.child("files").child(index), found, "expected records", advice));
+            }
+            paths.extend(found);
+        }
+        let mut digest = Sha256::new();
+        let (mut trials, mut warnings) = (Vec::new(), Vec::new());
+        for path in paths.iter().chain(&sidecar) {
+            let refuse = |problem: String| {
+                let advice = "`study fit` says what is wrong with it";
+                let found = format!("{}: {problem}", path.display());
+                KeyFault::value(key.child("files"), found, "expected a record that can be read", advice)
+            };
+            digest_file(path, &mut digest).map_err(refuse)?;
+            if Some(path) != sidecar.as_ref() {
+                let read = trial::read_with(path, sidecar.as_deref()).map_err(|error| refuse(error.to_string()))?;
+                warnings.extend(read.warnings.iter().map(|warning| format!("{}: {}", path.display(), warning.text)));
+                trials.push(read.trial);
+            }
+        }
+        let names: Vec<&str> = trials.iter().map(Trial::name).collect();
+        let mut known = HashSet::new();
+        let twice = names.iter().find(|name| !known.insert(**name));
+        if twice.is_some() || names.len() > MAX_RECORDS {
+            let found =
+                twice.map_or_else(|| format!("{} records", names.len()), |name| format!("{name} stands there twice"));
+            let expected = format!("expected at most {MAX_RECORDS} records, each with a name of its own");
+            return Err(KeyFault::value(
+                key.child("files"),
+                found,
+                expected,
+                "leave records out, or call one otherwise",
+            ));
+        }
+        let questions = questions(&wire.judge, &names, &key.child("judge"))?;
+        Ok(Self { trials, questions, warnings, sha256: identity::hex(&digest.finalize()) })
+    }
+}
+
+fn digest_file(path: &Path, digest: &mut Sha256) -> Result<(), String> {
+    let mut own = Sha256::new();
+    let mut file = file::open(path, RECORD).map_err(|error: FileError| error.to_string())?;
+    std::io::copy(&mut file, &mut own).map_err(|error| error.to_string())?;
+    digest.update(own.finalize());
+    Ok(())
+}
+
+/// The trials of a cell.
+fn questions(judge: &JudgeWire, names: &[&str], key: &KeyPath) -> Result<Vec<RecordQuestion>, KeyFault> {
+    let all = 0..names.len();
+    let without = |one: usize| all.clone().filter(|other| *other != one).collect::<Vec<usize>>();
+    let question = |fitted: Vec<usize>, judge| RecordQuestion { fitted, judge };
+    let questions: Vec<RecordQuestion> = match judge {
+        JudgeWire::Rule(JudgeRule::None) => all.map(|one| question(vec![one], None)).collect(),
+        JudgeWire::Rule(JudgeRule::Others) => {
+            let of = |one: usize| without(one).into_iter().map(move |other| question(vec![one], Some(other)));
+            all.clone().flat_map(of).collect()
+        }
+        JudgeWire::Rule(JudgeRule::LeftOut) if names.len() > 1 => {
+            all.clone().map(|one| question(without(one), Some(one))).collect()
+        }
+        JudgeWire::Rule(JudgeRule::LeftOut) => Vec::new(),
+        JudgeWire::Lists { fit, judge } => {
+            let places = |list: &[String], part: &str| -> Result<Vec<usize>, KeyFault> {
+                let place = |name: &String| {
+                    let words = ["no record is called", "expected the name of a file, without its ending"];
+                    let key = key.child(part);
+                    place_among(name, names, key, words)
+                };
+                list.iter().map(place).collect()
+            };
+            let (fit, judge) = (places(fit, "fit")?, places(judge, "judge")?);
+            if let Some(both) = fit.iter().find(|one| judge.contains(one)) {
+                let found = format!("{} is fitted and judges", names[*both]);
+                return Err(KeyFault::value(
+                    key.clone(),
+                    found,
+                    "expected each record once",
+                    "take it out of one list",
+                ));
+            }
+            let fits = !fit.is_empty();
+            judge.into_iter().filter(|_| fits).map(|one| question(fit.clone(), Some(one))).collect()
+        }
+    };
+    if questions.is_empty() {
+        let advice = "give more records, or `judge = \"none\"` to fit each alone";
+        let found = format!("{} records, none of which judges another", names.len());
+        return Err(KeyFault::value(key.clone(), found, "expected one to fit and one to judge at least", advice));
+    }
+    Ok(questions)
+}
+
+/// Files that a pattern names, sorted: beside the scenario, or else in the folder of [`DATA`].
+fn matching(folder: &Path, pattern: &str) -> Vec<PathBuf> {
+    let data = std::env::var_os(DATA).map(PathBuf::from);
+    let below = |folder: &Path| -> Vec<PathBuf> {
+        let path = folder.join(pattern);
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        if !name.contains('*') {
+            return Some(path).filter(|path| path.is_file()).into_iter().collect();
+        }
+        let entries = path.parent().and_then(|parent| parent.read_dir().ok()).into_iter().flatten().flatten();
+        let is_one = |entry: &std::fs::DirEntry| fits(&entry.file_name().to_string_lossy(), &name);
+        let mut files: Vec<PathBuf> = entries.filter(is_one).map(|entry| entry.path()).collect();
+        files.retain(|path| path.is_file());
+        files.sort();
+        files
+    };
+    let found = below(folder);
+    if found.is_empty() { data.map_or(found, |data| below(&data)) } else { found }
+}
+
+/// Whether a name is of a pattern in which `*` stands for anything.
+fn fits(name: &str, pattern: &str) -> bool {
+    let mut parts = pattern.split('*');
+    let Some(mut rest) = parts.next().and_then(|first| name.strip_prefix(first)) else { return false };
+    let parts: Vec<&str> = parts.collect();
+    let Some((last, middle)) = parts.split_last() else { return rest.is_empty() };
+    for part in middle {
+        let Some(place) = rest.find(part) else { return false };
+        rest = &rest[place + part.len()..];
+    }
+    rest.ends_with(last)
+}
+
+/// A cell: the document with the keys of its points changed.
+///
+/// Fails as the document alone would, at the point that is at fault.
+pub(crate) fn cell(
+    document: &Table,
+    points: &[&SweepPoint],
+    base: &[Method],
+    folder: &Path,
+) -> Result<DesignCell, KeyFault> {
+    let settings = || points.iter().flat_map(|point| &point.set);
+    let attribute = |problem: KeyFault| match settings().rfind(|setting| setting.key.is_related(&problem.key)) {
+        Some(setting) => setting.attributed(problem, None),
+        None => problem,
+    };
+    let mut changed = document.clone();
+    for setting in settings() {
+        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(attribute)?;
+    }
+    let wire: RecordStudyWire = reader::document(&changed).map_err(attribute)?;
+    let set = RecordSet::read(&wire.records, folder).map_err(attribute)?;
+    let methods = methods(&wire.identifier).map_err(attribute)?;
+    let labels = |methods: &[Method]| methods.iter().map(|method| method.label.clone()).collect::<Vec<String>>();
+    if labels(&methods) != labels(base) {
+        let found = "the methods are not the same in every cell";
+        let advice = "sweep settings only, and name every method once in an [[identifier]] of its own";
+        return Err(attribute(KeyFault::value(KeyPath::dotted("identifier"), found, "expected settings", advice)));
+    }
+    Ok(DesignCell {
+        labels: points.iter().map(|point| point.label.clone()).collect(),
+        values: points.iter().map(|point| point.value).collect(),
+        methods,
+        source: TrialSource::Measured(set),
+    })
+}
+
+/// SHA-256 of a design and of the records of its cells.
+pub(crate) fn design_sha256(design: &Table, cells: &[DesignCell]) -> String {
+    let mut digest = Sha256::new_with_prefix(design.to_string());
+    cells.iter().filter_map(DesignCell::record_set).for_each(|set| digest.update(&set.sha256));
+    identity::hex(&digest.finalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stars_stand_for_anything() {
+        for (name, pattern, holds) in [
+            ("zigzag_10.csv", "zigzag_*.csv", true),
+            ("zigzag_10.csv", "*", true),
+            ("zigzag_10.csv", "*10*", true),
+            ("zigzag_10.csv", "zigzag_*.txt", false),
+            ("a.csv", "a.csv", true),
+            ("a.csv.bak", "a.csv", false),
+            ("ab", "ab*b", false),
+        ] {
+            assert_eq!(fits(name, pattern), holds, "{name} {pattern}");
+        }
+    }
+
+    #[test]
+    fn records_are_shared_out_by_rules_and_lists() {
+        let names = ["a", "b", "c"];
+        let key = KeyPath::dotted("records.judge");
+        let of = |judge: &JudgeWire| -> Vec<(Vec<usize>, Option<usize>)> {
+            let all = questions(judge, &names, &key).unwrap_or_else(|fault| panic!("{}", fault.found));
+            all.into_iter().map(|own| (own.fitted, own.judge)).collect()
+        };
+        let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)].map(|(fit, judge)| (vec![fit], Some(judge)));
+        assert_eq!(of(&JudgeWire::default()), pairs);
+        let left_out = [(vec![1, 2], Some(0)), (vec![0, 2], Some(1)), (vec![0, 1], Some(2))];
+        assert_eq!(of(&JudgeWire::Rule(JudgeRule::LeftOut)), left_out);
+        assert_eq!(of(&JudgeWire::Rule(JudgeRule::None)), [0, 1, 2].map(|one| (vec![one], None)));
+        let lists = |fit: &[&str], judge: &[&str]| JudgeWire::Lists {
+            fit: fit.iter().map(|name| (*name).to_owned()).collect(),
+            judge: judge.iter().map(|name| (*name).to_owned()).collect(),
+        };
+        assert_eq!(of(&lists(&["c", "a"], &["b"])), [(vec![2, 0], Some(1))]);
+        for (wrong, part) in [
+            (lists(&["a"], &["a"]), "is fitted and judges"),
+            (lists(&["a"], &["d"]), "no record is called"),
+            (lists(&[], &["a"]), "none of which judges another"),
+        ] {
+            let fault = questions(&wrong, &names, &key).expect_err("wrong");
+            assert!(fault.found.contains(part), "{}", fault.found);
+        }
+        assert!(questions(&JudgeWire::default(), &["a"], &key).is_err());
+    }
+}
