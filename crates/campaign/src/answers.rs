@@ -15,6 +15,7 @@ use sha2::{Digest, Sha256};
 use ship::angle::from_deg;
 use trial::file::{self, Kind};
 
+use crate::design::Design;
 use crate::observer::Observer;
 use crate::task::Task;
 
@@ -77,7 +78,8 @@ const MOST_COLUMNS: usize = 20;
 /// Lines at fault that a message names.
 const MOST_FAULTS: usize = 10;
 
-/// Reads a table of answers to the trials of a scenario: `record`, or `cell` and `replicate`; `K_per_s` and `T_s`; and
+/// Reads a table of answers to the trials of a scenario: `record` (of measured ones those that were fitted together), or
+/// `cell` and `replicate`; `K_per_s` and `T_s`; and
 /// what else is known, `delta_r_deg`, `K_sd_per_s`, `T_sd_s`, `delta_r_sd_deg`, and `failed`, the reason why there is
 /// no answer. Where `method` says whose a line is, there are answers of several methods, in the order of their first
 /// lines. Tells trials without an answer and columns that are not read.
@@ -106,11 +108,14 @@ pub fn read(
     for row in table.records() {
         let row = row.map_err(|error| refuse(error.to_string()))?;
         let line = row.position().map_or(0, |position| position.line());
-        let read = columns.place(&row, &records).and_then(|place| Ok((place, columns.answer(&row)?)));
+        let read = columns.places(&row, &records).and_then(|places| Ok((places, columns.answer(&row)?)));
         let method = columns.text(&row, "method").map(str::to_owned);
-        let mut keep = |(place, answer): (TrialNumber, _)| {
-            answers.entry(method.clone()).or_default().insert(place, answer);
-            lines.insert((method.clone(), place), line)
+        let mut keep = |(places, answer): (Vec<TrialNumber>, Result<Answer, String>)| {
+            let own = answers.entry(method.clone()).or_default();
+            places.into_iter().fold(None, |before, place| {
+                own.insert(place, answer.clone());
+                before.or(lines.insert((method.clone(), place), line))
+            })
         };
         match read.map(&mut keep) {
             Ok(None) => {}
@@ -132,7 +137,7 @@ pub fn read(
     if answers.is_empty() {
         answers.insert(None, HashMap::new());
     }
-    let trials = scenario.cells.len() as u64 * scenario.replicates;
+    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.trials_of(cell)).sum();
     for (method, own) in &answers {
         let left = trials - own.len() as u64;
         if left > 0 && scenario.stop.is_none() {
@@ -150,6 +155,8 @@ struct Records<'a> {
     scenario: &'a Scenario,
     /// By the names of cells: in most studies there are far fewer cells than trials.
     cells: HashMap<String, u64>,
+    /// In a study of measured records the trials whose fit has these records.
+    fits: HashMap<String, Vec<TrialNumber>>,
 }
 
 impl<'a> Records<'a> {
@@ -157,11 +164,27 @@ impl<'a> Records<'a> {
         let name = |cell: usize| record_name(scenario, Task { cell, replicate: 0 });
         let several = scenario.replicates > 1;
         let of_cell = |cell: usize| if several { stem(&name(cell)).0.to_owned() } else { name(cell) };
-        Self { scenario, cells: (0..scenario.cells.len()).map(|cell| (of_cell(cell), cell as u64)).collect() }
+        let mut fits: HashMap<String, Vec<TrialNumber>> = HashMap::new();
+        for (cell, facts) in Design::of(scenario).cells.into_iter().enumerate() {
+            for (replicate, record) in facts.records.into_iter().enumerate() {
+                fits.entry(record.fitted).or_default().push((cell as u64, replicate as u64));
+            }
+        }
+        let cells = (0..scenario.cells.len()).map(|cell| (of_cell(cell), cell as u64)).collect();
+        Self { scenario, cells, fits }
     }
 
-    /// The trial of a record, by the name of its file.
-    fn find(&self, record: &str) -> Option<TrialNumber> {
+    /// The trials that an answer to a record is of: one of a simulated record, by the name of its file, and all that
+    /// fit these measured ones, by their names as `records.csv` has them.
+    fn find(&self, record: &str) -> Option<Vec<TrialNumber>> {
+        match self.fits.is_empty() {
+            true => self.simulated(record).map(|trial| vec![trial]),
+            false => self.fits.get(record.strip_suffix(".csv").unwrap_or(record)).cloned(),
+        }
+    }
+
+    /// The trial of a simulated record.
+    fn simulated(&self, record: &str) -> Option<TrialNumber> {
         let file = record.rsplit(['/', '\\']).next().unwrap_or(record);
         let name = file.strip_suffix(".csv").unwrap_or(file);
         let (cell, replicate) = match self.scenario.replicates {
@@ -216,7 +239,7 @@ impl AnswerColumns {
         Ok(Some(number).filter(|number| number.is_finite()))
     }
 
-    fn place(&self, row: &StringRecord, records: &Records) -> Result<TrialNumber, String> {
+    fn places(&self, row: &StringRecord, records: &Records) -> Result<Vec<TrialNumber>, String> {
         if let Some(record) = self.text(row, "record") {
             return records.find(record).ok_or_else(|| format!("{} is no record of this scenario", shown(record)));
         }
@@ -227,7 +250,7 @@ impl AnswerColumns {
         let (cell, replicate) = (whole("cell")?, whole("replicate")?);
         let Scenario { cells, replicates, .. } = records.scenario;
         match cell < cells.len() as u64 && replicate < *replicates {
-            true => Ok((cell, replicate)),
+            true => Ok(vec![(cell, replicate)]),
             false => Err(format!(
                 "there is no trial {replicate} of cell {cell}; the scenario has {} cells with {replicates} trials each, \
                  counted from 0",
@@ -291,7 +314,7 @@ mod tests {
             {
                 let name = record_name(&scenario, task);
                 for written in [name.clone(), format!("{name}.csv"), format!("a/b/{name}.csv"), format!("c:\\{name}")] {
-                    assert_eq!(records.find(&written), Some((task.cell as u64, task.replicate)), "{written}");
+                    assert_eq!(records.find(&written), Some(vec![(task.cell as u64, task.replicate)]), "{written}");
                 }
                 assert_eq!(records.find(&part_name(&name, 1)), None);
                 assert_eq!(records.find(&format!("{name}9")), None);

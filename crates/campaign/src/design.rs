@@ -145,6 +145,11 @@ impl Design {
         Ok(())
     }
 
+    /// Whether the trials are measured records.
+    pub fn is_measured(&self) -> bool {
+        self.cells.iter().any(|cell| !cell.records.is_empty())
+    }
+
     /// Indices of the cells whose errors are shown one by one.
     pub fn detail(&self) -> Vec<usize> {
         if self.cells.len() == 1 {

@@ -56,7 +56,7 @@ def test_an_interrupted_study_keeps_its_rows_and_goes_on(tmp_path, interrupted):
     with pytest.raises(KeyboardInterrupt, match=r"stopped after \d+ of 1000000 trials; their rows are kept"):
         kempf.run(many, tmp_path / "out")
     assert time.monotonic() - start < 20, "it was not waited for the end"
-    assert any((tmp_path / "out" / "unfinished").iterdir())
+    assert any((tmp_path / "out" / "rows").glob("*.parquet"))
     interrupted(1.5)
     told = []
     with pytest.raises(KeyboardInterrupt):
@@ -75,10 +75,13 @@ def test_rows_are_the_same_however_often_a_study_was_interrupted(tmp_path, inter
 
     with pytest.raises(KeyboardInterrupt):
         kempf.run(some, tmp_path / "parts", progress=stop)
-    assert not (tmp_path / "parts" / "rows.parquet").exists()
+    assert not (tmp_path / "parts" / "cells.json").exists()
     parts = kempf.run(some, tmp_path / "parts", threads=1)
     assert "going on after" in parts.notes[0]
-    assert parts.rows_path.read_bytes() == whole.rows_path.read_bytes()
+    blocks = sorted(path.name for path in whole.rows_path.iterdir())
+    assert len(blocks) == 32
+    for block in blocks:
+        assert (parts.rows_path / block).read_bytes() == (whole.rows_path / block).read_bytes(), block
 
 
 def test_what_a_progress_raises_comes_out(tmp_path):
@@ -87,7 +90,7 @@ def test_what_a_progress_raises_comes_out(tmp_path):
 
     with pytest.raises(LookupError, match="my own"):
         kempf.run(ZIGZAG, tmp_path / "out", progress=fail)
-    assert kempf.run(ZIGZAG, tmp_path / "out").rows_path.is_file()
+    assert kempf.run(ZIGZAG, tmp_path / "out").rows_path.is_dir()
 
 
 def test_an_interrupted_trace_returns_at_once(undeclared, interrupted):

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value};
 
 use crate::scenario::key_words::unit_of;
-use crate::scenario::schema::schema;
+use crate::scenario::schema::of_simulated;
 
 /// A key of a scenario, for a person who looks for it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,7 +41,7 @@ impl std::fmt::Display for LeftOut {
 
 /// Every key of a scenario, in the order of its types.
 pub fn keys() -> Vec<ScenarioKey> {
-    let schema = schema().to_value();
+    let schema = of_simulated().to_value();
     let mut keys = Vec::new();
     SchemaWalk { definitions: &schema["definitions"] }.below("", &schema, &mut keys);
     keys

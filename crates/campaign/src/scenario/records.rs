@@ -4,6 +4,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use report::number::counted;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml::Table;
@@ -225,7 +226,7 @@ fn questions(judge: &JudgeWire, names: &[&str], key: &KeyPath) -> Result<Vec<Rec
     };
     if questions.is_empty() {
         let advice = "give more records, or `judge = \"none\"` to fit each alone";
-        let found = format!("{} records, none of which judges another", names.len());
+        let found = format!("{}, none of which judges another", counted(names.len() as u64, "record"));
         return Err(KeyFault::value(key.clone(), found, "expected one to fit and one to judge at least", advice));
     }
     Ok(questions)

@@ -5,11 +5,26 @@
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
 
+use crate::scenario::records::RecordStudyWire;
 use crate::scenario::wire::ScenarioWire;
 
-/// The schema, in the draft that editors of TOML understand.
+/// A scenario of either kind.
+#[derive(schemars::JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "it is described and never made")]
+enum AnyScenario {
+    Simulated(Box<ScenarioWire>),
+    Measured(Box<RecordStudyWire>),
+}
+
+/// The schema of a scenario, in the draft that editors of TOML understand.
 pub fn schema() -> Schema {
-    let mut schema = SchemaSettings::draft07().into_generator().into_root_schema_for::<ScenarioWire>();
+    let mut schema = SchemaSettings::draft07().into_generator().into_root_schema_for::<AnyScenario>();
     schema.insert("title".into(), "Scenario of a study".into());
     schema
+}
+
+/// The schema of a scenario of simulated ships.
+pub(crate) fn of_simulated() -> Schema {
+    SchemaSettings::draft07().into_generator().into_root_schema_for::<ScenarioWire>()
 }

@@ -15,5 +15,6 @@ pub use groups::{distinct, grouped};
 pub use logistic::{SizeTrials, size_of_share};
 pub use moments::Moments;
 pub use sample::{ErrorSample, Ordered};
+pub(crate) use statistic::FEWEST;
 pub use statistic::{Statistic, Z95, share};
 pub use sums::{BATCHES, BatchSums, ErrorSums, PairSums};

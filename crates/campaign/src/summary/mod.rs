@@ -8,6 +8,7 @@ mod blind_spots;
 mod detail;
 mod predictions;
 mod record;
+mod records;
 mod tally;
 mod tracing;
 
@@ -15,6 +16,7 @@ pub use blind_spots::{BlindSpot, axis_of_sizes, blind_spots};
 pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
 pub use predictions::{CriterionTally, PredictionSummary};
 pub use record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
+pub use records::{RecordSummary, record_summaries};
 pub use tally::{Tally, summarise};
 pub use tracing::{CALIBRATION, CLEAR, CalibrationBin, TraceSummary, effect_ids};
 

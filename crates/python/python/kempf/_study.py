@@ -45,12 +45,13 @@ class StudyResult(Result):
 
     @property
     def rows_path(self) -> Path:
-        """The rows: one for every trial and method, as Parquet."""
-        return self.folder / "rows.parquet"
+        """The folder of the rows: one for every trial and method, a file of Parquet a block of trials."""
+        return self.folder / "rows"
 
     def rows(self, kind: str = "pandas") -> Any:
         """The rows as a table of ``"pandas"`` or ``"polars"``."""
-        return _table.library(kind).read_parquet(os.fspath(self.rows_path))
+        files = self.rows_path / "*.parquet" if kind == "polars" else self.rows_path
+        return _table.library(kind).read_parquet(os.fspath(files))
 
     def to_frame(self, kind: str = "pandas") -> Any:
         """The summary, one row for every cell and method, as a table of ``"pandas"`` or ``"polars"``."""

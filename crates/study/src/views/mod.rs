@@ -22,6 +22,7 @@ pub mod predict_page;
 pub mod predict_tables;
 pub mod publish;
 pub mod record_figures;
+pub mod record_study;
 pub mod scale_tables;
 pub mod studies_page;
 pub mod study_figures;

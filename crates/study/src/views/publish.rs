@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use report::{Table, Theme};
 
 use super::page_files::{KEY_FIGURE, REPORT, write_page};
+use super::record_study::{self, RecordStudy};
 use super::study_figures::{self, FigurePlace};
 use super::study_page::{on_screen, page};
 use super::{blind_spots_table, coverage_table, curve_tables, tables, tracing_table};
@@ -26,14 +27,22 @@ pub fn publish(
     figures: FigureChoice,
     common: &Common,
 ) -> Result<(), Failure> {
-    let summary = put(stored, folder, theme, figures)?;
     let design = &stored.design;
+    if design.is_measured() {
+        let study = RecordStudy::of(stored)?;
+        record_study::put(stored, &study, folder, theme, figures)?;
+        return match common.format {
+            _ if common.is_silent() => Ok(()),
+            Format::Text => say_with_page(&record_study::on_screen(stored, &study), folder),
+            Format::Csv => screen::say(record_study::summary(&study.lines, design).to_csv().trim_end()),
+            Format::Json => screen::say_document(&document(stored, &study.summary, folder)?),
+            format => screen::say(format.render(&record_study::brief(&study.lines, design)).trim_end()),
+        };
+    }
+    let summary = put(stored, folder, theme, figures)?;
     match common.format {
         _ if common.is_silent() => Ok(()),
-        Format::Text => {
-            let page = folder.path().join(REPORT);
-            screen::say(&format!("{}\nreport: {}", on_screen(stored, &summary), page.display()))
-        }
+        Format::Text => say_with_page(&on_screen(stored, &summary), folder),
         // Another program reads the table: nothing else may stand beside it.
         Format::Csv => screen::say(tables::summary(&summary.methods, design).to_csv().trim_end()),
         Format::Json => screen::say_document(&document(stored, &summary, folder)?),
@@ -41,12 +50,21 @@ pub fn publish(
     }
 }
 
+/// Says something, and where the page is.
+fn say_with_page(text: &str, folder: &ResultFolder) -> Result<(), Failure> {
+    screen::say(&format!("{text}\nreport: {}", folder.path().join(REPORT).display()))
+}
+
 /// What was published, for other programs. Fails where it cannot be written as JSON.
 pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) -> Result<String, Failure> {
+    let lines = match stored.design.is_measured() {
+        true => record_study::summary(&RecordStudy::of(stored)?.lines, &stored.design),
+        false => tables::summary(&summary.methods, &stored.design),
+    };
     documents::of(&StudyAnswer {
         folder: folder.path().display().to_string(),
         manifest: &stored.manifest,
-        summary: tables::summary(&summary.methods, &stored.design).to_records(),
+        summary: lines.to_records(),
         failures: tables::failures(summary, &stored.design),
     })
 }
@@ -59,6 +77,11 @@ pub fn put(
     figures: FigureChoice,
 ) -> Result<Summary, Failure> {
     let design = &stored.design;
+    if design.is_measured() {
+        let study = RecordStudy::of(stored)?;
+        record_study::put(stored, &study, folder, theme, figures)?;
+        return Ok(study.summary);
+    }
     let mut tally = Tally::new(design);
     stored.rows(|row| {
         tally.add(&row);

@@ -154,7 +154,8 @@ fn over_all_trials(page: &mut Page, stored: &StoredStudy, summary: &Summary, bri
     page.list(tables::failures(summary, design).iter().map(|line| text(line)));
 }
 
-fn how_it_was_made(page: &mut Page, manifest: &Manifest) {
+/// What the study was made by.
+pub fn how_it_was_made(page: &mut Page, manifest: &Manifest) {
     if !manifest.assumptions.is_empty() {
         page.say("The scenario does not say, and the trials take for granted:");
         page.list(manifest.assumptions.iter().map(ToString::to_string));

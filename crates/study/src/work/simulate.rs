@@ -18,6 +18,10 @@ const MOST_RECORDS: u64 = 100_000;
 ///
 /// Fails when no such cell or trial is there, and for too many.
 pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>, Failure> {
+    if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
+        let problem = "its trials are measured records, and nothing is simulated; give a scenario with a ship";
+        return Err(Failure::about(&request.scenario, problem));
+    }
     let titles: Vec<String> = scenario.cells.iter().map(|cell| cell.title()).collect();
     let cells = match &request.cell {
         None => 0..titles.len(),

@@ -17,6 +17,7 @@ mod predictions;
 mod priors;
 mod programs;
 mod publications;
+mod record_studies;
 mod records;
 mod reference;
 mod scales;

@@ -1,0 +1,156 @@
+//! What methods make of measured records: how near they come to those that were fitted, and to those that judge.
+//!
+//! Trials that share a fit are not independent, nor are those with one judge: an interval of a median is a percentile
+//! bootstrap (Efron 1979) over fits, or over judging records where there is one fit alone.
+
+use std::collections::BTreeMap;
+
+use estimation::statistics::median;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+
+use crate::design::Design;
+use crate::rows::StudyRow;
+use crate::statistics::{FEWEST, RESAMPLES, SEED, Statistic};
+
+/// One method on the records of a cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordSummary {
+    /// Index of the cell.
+    pub cell: usize,
+    /// Index of the method.
+    pub method: usize,
+    /// Fits that were tried.
+    pub fits: usize,
+    /// Fits that failed.
+    pub failed: usize,
+    /// Median over fits of the heading error on the records that were fitted, deg.
+    pub fitted_deg: Option<Statistic>,
+    /// Median over trials of the heading error on the record that judges, deg.
+    pub judged_deg: Option<Statistic>,
+    /// Median over trials of that error over the one of the first method on the same trial; none of the first method.
+    pub ratio: Option<Statistic>,
+    /// Effects that a trace named, with the number of fits that did.
+    pub named: BTreeMap<String, usize>,
+}
+
+/// Summarises the rows of a study of measured records, cell by cell and method by method.
+pub fn record_summaries(rows: &[StudyRow], design: &Design) -> Vec<RecordSummary> {
+    let cells = (0..design.cells.len()).flat_map(|cell| (0..design.methods.len()).map(move |method| (cell, method)));
+    cells.map(|(cell, method)| summary(rows, design, cell, method)).collect()
+}
+
+fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> RecordSummary {
+    let of = |method: usize| {
+        let is_own = move |row: &&StudyRow| row.cell == cell as u64 && row.method == method;
+        rows.iter().filter(is_own).collect::<Vec<&StudyRow>>()
+    };
+    let (own, first) = (of(method), of(0));
+    let records = &design.cells[cell].records;
+    let fit = |row: &StudyRow| records[row.replicate as usize].fitted.as_str();
+    let mut fits: Vec<&StudyRow> = Vec::new();
+    for row in &own {
+        if fits.last().is_none_or(|last| fit(last) != fit(row)) {
+            fits.push(row);
+        }
+    }
+    let group = |row: &StudyRow| match fits.len() {
+        1 => row.replicate as usize,
+        _ => fits.iter().position(|one| fit(one) == fit(row)).unwrap_or(0),
+    };
+    let grouped = |values: &mut dyn Iterator<Item = (usize, Option<f64>)>| {
+        let mut groups: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        values.for_each(|(place, value)| groups.entry(place).or_default().extend(value));
+        middle(&groups.into_values().collect::<Vec<_>>())
+    };
+    let ratio = |(row, other): (&&StudyRow, &&StudyRow)| Some(row.validation_rmse_deg? / other.validation_rmse_deg?);
+    let mut named: BTreeMap<String, usize> = BTreeMap::new();
+    for effect in fits.iter().filter_map(|row| row.traced.as_ref()).flat_map(|traced| &traced.named) {
+        *named.entry(effect.id.to_string()).or_default() += 1;
+    }
+    RecordSummary {
+        cell,
+        method,
+        fits: fits.len(),
+        failed: fits.iter().filter(|row| row.failure.is_some()).count(),
+        fitted_deg: grouped(&mut fits.iter().map(|row| (group(row), row.heading_rmse_deg))),
+        judged_deg: grouped(&mut own.iter().map(|row| (group(row), row.validation_rmse_deg))),
+        ratio: (method > 0)
+            .then(|| grouped(&mut own.iter().zip(&first).map(|pair| (group(pair.0), ratio(pair)))))
+            .flatten(),
+        named,
+    }
+}
+
+/// The median of all values, with an interval where there are enough groups.
+fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
+    let of = |groups: &mut dyn Iterator<Item = &Vec<f64>>| median(&mut groups.flatten().copied().collect::<Vec<f64>>());
+    let value = of(&mut groups.iter())?;
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let ci95 = (groups.len() as u64 >= FEWEST).then(|| {
+        let mut drawn: Vec<f64> = (0..RESAMPLES)
+            .filter_map(|_| {
+                let places: Vec<usize> = groups.iter().map(|_| rng.random_range(0..groups.len())).collect();
+                of(&mut places.iter().map(|place| &groups[*place]))
+            })
+            .collect();
+        drawn.sort_by(f64::total_cmp);
+        let rank = |p: f64| ((drawn.len() - 1) as f64 * p).round() as usize;
+        [drawn[rank(0.025)], drawn[rank(0.975)]]
+    });
+    Some(Statistic { value, ci95 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::{CellFacts, JudgedRecord};
+    use crate::rows::{NamedEffect, TraceAnswer};
+    use crate::scenario::MethodName;
+
+    /// Seven records, each fitted alone and judged by the six others.
+    fn design() -> Design {
+        let name = |number: usize| format!("r{number}");
+        let pairs = (0..7).flat_map(|fit| (0..7).filter(move |judge| *judge != fit).map(move |judge| (fit, judge)));
+        let records = pairs.map(|(fit, judge)| JudgedRecord { fitted: name(fit), judge: Some(name(judge)) });
+        let method = |label: &str| MethodName { label: label.into(), id: label.into() };
+        Design {
+            methods: vec![method("output-error"), method("trace")],
+            cells: vec![CellFacts { records: records.collect(), trials: 0..42, ..CellFacts::default() }],
+            ..Design::default()
+        }
+    }
+
+    #[test]
+    fn methods_are_compared_on_the_same_trial() {
+        let named = NamedEffect { id: "speed_loss".into(), aliases: Vec::new() };
+        let rows = (0..42).flat_map(|replicate| {
+            let fit = replicate / 6;
+            let error = 1.0 + replicate as f64;
+            let row = |method: usize, error: f64| StudyRow {
+                replicate,
+                method,
+                heading_rmse_deg: Some(0.1 * (1.0 + fit as f64)),
+                validation_rmse_deg: Some(error),
+                ..StudyRow::default()
+            };
+            let traced = TraceAnswer { named: vec![named.clone()], ..TraceAnswer::default() };
+            [row(0, error), StudyRow { traced: Some(Box::new(traced)), ..row(1, 0.25 * error) }]
+        });
+        let rows: Vec<StudyRow> = rows.collect();
+        let [first, trace] = &record_summaries(&rows, &design())[..] else { panic!("two methods") };
+        assert_eq!((first.fits, first.failed, first.ratio), (7, 0, None));
+        assert_eq!(first.judged_deg.map(|own| own.value), Some(21.5));
+        assert!((first.fitted_deg.expect("fitted").value - 0.4).abs() < 1e-12);
+        assert_eq!(trace.ratio, Some(Statistic { value: 0.25, ci95: Some([0.25, 0.25]) }));
+        let [low, high] = first.judged_deg.and_then(|own| own.ci95).expect("seven fits");
+        assert!(low < 15.0 && high > 28.0, "fits are drawn and not trials: {low} {high}");
+        assert_eq!(trace.named, BTreeMap::from([("speed_loss".to_owned(), 7)]));
+    }
+
+    #[test]
+    fn of_few_fits_there_is_no_interval() {
+        assert_eq!(middle(&[vec![1.0, 2.0], vec![4.0]]), Some(Statistic { value: 2.0, ci95: None }));
+        assert_eq!(middle(&[]), None);
+    }
+}

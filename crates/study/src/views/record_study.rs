@@ -1,0 +1,248 @@
+//! A finished study of measured records: its tables, its figure and its page.
+
+use campaign::design::Design;
+use campaign::failure::Failure;
+use campaign::folder::ResultFolder;
+use campaign::rows::StudyRow;
+use campaign::statistics::Statistic;
+use campaign::store::StoredStudy;
+use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
+use document::names;
+use report::figures::{Division, NamedRows, Plot, RowItem, RowKind, RowsColumn, Ruler};
+use report::number::{self, MISSING, significant};
+use report::palette::Look;
+use report::{CurveOrigin, Page, PageFigure, Table, Theme};
+
+use super::bench_figures::capital;
+use super::page_files::{KEY_FIGURE, write_page};
+use super::{coverage_table, study_page, tables};
+use crate::options::FigureChoice;
+
+/// The rows as a table for people.
+const RECORDS: &str = "records.csv";
+
+/// Figure of the errors on the records that judge.
+const JUDGED: &str = "judged";
+
+/// What was made of the records.
+pub struct RecordStudy {
+    /// All rows, in their order.
+    pub rows: Vec<StudyRow>,
+    /// A line for every cell and method.
+    pub lines: Vec<RecordSummary>,
+    /// Predictions of the records that judge, where there are any.
+    pub summary: Summary,
+}
+
+impl RecordStudy {
+    /// Reads the rows of a study.
+    ///
+    /// Fails when one is missing.
+    pub fn of(stored: &StoredStudy) -> Result<Self, Failure> {
+        let (mut rows, mut tally) = (Vec::new(), Tally::new(&stored.design));
+        stored.rows(|row| {
+            tally.add(&row);
+            rows.push(row);
+            Ok(())
+        })?;
+        Ok(Self { lines: record_summaries(&rows, &stored.design), rows, summary: tally.finish() })
+    }
+}
+
+/// A line for every cell and method, for a person.
+pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
+    let mut head = tables::head(design).counts(["failed"]);
+    for name in ["own error", "judged error"] {
+        head = head.numbers([name]).unit("deg").interval();
+    }
+    let first = &design.methods[0].label;
+    let head = head.numbers([format!("over {first}")]).interval().texts(["named"]);
+    let mut table = Table::new(head);
+    for line in lines {
+        let mut cells = tables::place(design, line.cell, line.method);
+        cells.push(format!("{}/{}", line.failed, line.fits));
+        for figure in [line.fitted_deg, line.judged_deg, line.ratio] {
+            cells.push(figure.map_or_else(|| MISSING.into(), |own| number::supported(own.value, own.ci95)));
+            cells.push(number::interval(figure.and_then(|own| own.ci95)));
+        }
+        let named = line.named.iter().map(|(id, count)| format!("{} ({count})", names::effect(id)));
+        cells.push(named.collect::<Vec<_>>().join(", "));
+        table.push(cells);
+    }
+    table
+}
+
+/// The same for other programs: `summary.csv`.
+pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
+    let mut head = tables::head(design).counts(["fits", "failed"]);
+    for name in ["own error [deg]", "judged error [deg]", "ratio to the first method"] {
+        head = head.numbers(["", " lower 95", " upper 95"].map(|end| format!("{name}{end}")));
+    }
+    let mut table = Table::new(head.texts(["named"]));
+    for line in lines {
+        let mut cells = tables::place(design, line.cell, line.method);
+        cells.extend([line.fits.to_string(), line.failed.to_string()]);
+        for figure in [line.fitted_deg, line.judged_deg, line.ratio] {
+            cells
+                .extend(Statistic::flat(figure).map(|value| value.map_or_else(String::new, |own| significant(own, 6))));
+        }
+        cells.push(line.named.iter().map(|(id, count)| format!("{id}={count}")).collect::<Vec<_>>().join("+"));
+        table.push(cells);
+    }
+    table
+}
+
+/// Every trial, with K and T of every fit.
+fn trials(rows: &[StudyRow], design: &Design) -> Table {
+    let head = tables::head(design).texts(["fitted", "judge"]);
+    let head = head.numbers(["K_per_s", "T_s", "own_error_deg", "judged_error_deg"]);
+    let mut table = Table::new(head.texts(["verdict", "named", "failure"]));
+    let number = |value: Option<f64>| value.map_or_else(String::new, |own| significant(own, 6));
+    for row in rows {
+        let cell = &design.cells[row.cell as usize];
+        let Some(record) = cell.records.get(row.replicate as usize) else { continue };
+        let mut cells = tables::place(design, row.cell as usize, row.method);
+        cells.extend([record.fitted.clone(), record.judge.clone().unwrap_or_default()]);
+        cells.extend([row.k_per_s, row.t_s, row.heading_rmse_deg, row.validation_rmse_deg].map(number));
+        let traced = row.traced.as_ref();
+        cells.push(traced.map_or_else(String::new, |own| own.verdict.to_string()));
+        let named = traced.map(|own| own.named.iter().map(|effect| effect.id.to_string()).collect::<Vec<_>>());
+        cells.push(named.unwrap_or_default().join("+"));
+        cells.push(row.failure.as_deref().unwrap_or_default().to_owned());
+        table.push(cells);
+    }
+    table
+}
+
+/// The heading error of every method on every record that judges, a line each.
+fn judged(study: &RecordStudy, design: &Design) -> PageFigure {
+    let mut names = Vec::new();
+    let rows = study.lines.iter().map(|line| {
+        let method = &design.methods[line.method];
+        let labels = design.cells[line.cell].labels.join(", ");
+        names.push(if labels.is_empty() { method.label.clone() } else { format!("{labels}: {}", method.label) });
+        let look = CurveOrigin::Method(method.id.clone()).look();
+        let pale = Look { hollow: true, ..look.clone() };
+        let own = study.rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
+        let mut items: Vec<RowItem> = own
+            .filter_map(|row| row.validation_rmse_deg)
+            .map(|error| RowItem::new("", RowKind::Mark(pale.clone(), error, None)).softly())
+            .collect();
+        items.extend(line.judged_deg.map(|own| RowItem::new("", RowKind::Mark(look, own.value, own.ci95))));
+        items
+    });
+    let column = RowsColumn {
+        x: Ruler::new("heading error on records that were not fitted [°]", Division::Factors),
+        rows: rows.collect(),
+        ..RowsColumn::default()
+    };
+    let caption = "Heading error of every method on the records that judge, which it has not seen: the recorded rudder is \
+                   replayed, and the initial state alone is fitted. Hollow marks: trials; full ones: medians, with 95 % intervals over \
+                   fits where there are six or more.";
+    let plot = NamedRows {
+        title: Some(finding(study, design)),
+        names,
+        columns: vec![column],
+        note: Some(String::from(
+            "Hollow marks: one trial each; full marks: medians; bars: 95 % intervals over fits, of six or more.",
+        )),
+        ..NamedRows::default()
+    };
+    PageFigure::new(JUDGED, caption, Plot::from(plot))
+}
+
+/// Cells that a finding names one by one.
+const NAMED_CELLS: usize = 3;
+
+/// What came out, in a sentence: of the method that is nearest over all cells.
+fn finding(study: &RecordStudy, design: &Design) -> String {
+    let first = &design.methods[0].label;
+    let ratios = |method: usize| -> Vec<(usize, f64)> {
+        let own = study.lines.iter().filter(|line| line.method == method);
+        own.filter_map(|line| Some((line.cell, line.ratio?.value))).collect()
+    };
+    let mean = |method: &usize| {
+        let all = ratios(*method);
+        all.iter().map(|(_, ratio)| ratio.ln()).sum::<f64>() / all.len() as f64
+    };
+    let methods = (1..design.methods.len()).filter(|method| ratios(*method).len() == design.cells.len());
+    let Some(best) = methods.min_by(|one, other| mean(one).total_cmp(&mean(other))) else {
+        return format!("Heading error of {first} on records that were not fitted");
+    };
+    let shares = ratios(best);
+    let share = |(cell, ratio): &(usize, f64)| {
+        let labels = design.cells[*cell].labels.join(", ");
+        let of = if labels.is_empty() { String::new() } else { format!(" ({labels})") };
+        format!("{}{of}", significant(*ratio, 2))
+    };
+    let shares = match shares.len() {
+        0..=NAMED_CELLS => shares.iter().map(share).collect::<Vec<_>>().join(", "),
+        _ => {
+            let end = |pick: fn(f64, f64) -> f64| shares.iter().map(|(_, own)| *own).reduce(pick).unwrap_or(f64::NAN);
+            format!("{} to {}", significant(end(f64::min), 2), significant(end(f64::max), 2))
+        }
+    };
+    let method = &design.methods[best].label;
+    format!("{} foretells records that it has not seen at {shares} of the error of {first}", capital(method))
+}
+
+/// What a person sees.
+pub fn on_screen(stored: &StoredStudy, study: &RecordStudy) -> String {
+    let design = &stored.design;
+    let mut text = format!("{}: {}\n\n", stored.manifest.name, design.words.question.trim());
+    text += &brief(&study.lines, design).to_text();
+    if !study.summary.predictions.is_empty() {
+        text += "\nwhat 90 % intervals of predictions hold\n";
+        text += &coverage_table::pooled(&study.summary.predictions, design).to_text();
+    }
+    text
+}
+
+const READING: &str = "*own error*: median over fits of the heading error on the records that were fitted; *judged error*: median \
+                       over trials on the record that judges, which chose nothing: its rudder is replayed, and the initial \
+                       state alone is fitted; *over*: median over trials of this error over that of the first method on the \
+                       same trial; *named*: effects with the number of fits that named them. Intervals are those of a \
+                       bootstrap over fits, or over judging records where there is one fit. `records.csv` has every trial \
+                       with K and T, `rows` the same for programs.";
+
+fn page(stored: &StoredStudy, study: &RecordStudy, figures: Vec<PageFigure>) -> Page {
+    let StoredStudy { manifest, design, .. } = stored;
+    let mut page = Page::titled(manifest.name.as_str());
+    page.say(format!("**{}**", design.words.question.trim()));
+    page.say(&design.words.finding);
+    page.figures(figures);
+    page.say(&design.words.analysis);
+    page.table(brief(&study.lines, design));
+    page.say(READING);
+    if !study.summary.predictions.is_empty() {
+        page.part("What intervals of predictions hold");
+        page.table(coverage_table::pooled(&study.summary.predictions, design));
+    }
+    study_page::how_it_was_made(&mut page, manifest);
+    page
+}
+
+/// Makes the tables, the figure and the page in a folder.
+///
+/// Fails when they cannot be written.
+pub fn put(
+    stored: &StoredStudy,
+    study: &RecordStudy,
+    folder: &ResultFolder,
+    theme: &Theme,
+    choice: FigureChoice,
+) -> Result<(), Failure> {
+    let design = &stored.design;
+    folder.write("summary.csv", summary(&study.lines, design).to_csv())?;
+    folder.write(RECORDS, trials(&study.rows, design).to_csv())?;
+    let judges = study.rows.iter().any(|row| row.validation_rmse_deg.is_some());
+    let mut figures: Vec<PageFigure> =
+        (judges && choice != FigureChoice::None).then(|| judged(study, design)).into_iter().collect();
+    if let (Some(figure), Some(_)) = (figures.first_mut(), &design.words.output.figure) {
+        figure.stem = KEY_FIGURE.to_owned();
+        if design.words.output.title.is_some() {
+            figure.plot.title_mut().clone_from(&design.words.output.title);
+        }
+    }
+    write_page(folder, page(stored, study, figures), Some(theme))
+}
