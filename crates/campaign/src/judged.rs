@@ -6,6 +6,7 @@ use ::trace::Analysis;
 use document::IdentifiedShip;
 use identify::Estimate;
 use predict::ShipMixture;
+use simulate::StreamKey;
 use trial::Trial;
 
 use crate::engine::{self, TrialOutcome, TrialQuestion};
@@ -23,66 +24,87 @@ enum RecordFit {
     Trace(Box<Analysis>),
 }
 
+/// Trials that share a fit.
+struct SharedTrials<'a> {
+    scenario: &'a Scenario,
+    tasks: &'a [Task],
+    fitted: Vec<Trial>,
+    /// The record that judges each of them.
+    judges: Vec<Option<&'a Trial>>,
+}
+
 /// Runs trials that share a fit, in their order.
 pub fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome> {
-    let cell = &scenario.cells[tasks[0].cell];
-    let key = engine::key(scenario, tasks[0]);
     let question = |task: &Task| &set.questions[task.replicate as usize];
-    let fitted: Vec<Trial> = question(&tasks[0]).fitted.iter().map(|&one| set.trials[one].clone()).collect();
-    let judges: Vec<Option<&Trial>> =
-        tasks.iter().map(|task| question(task).judge.map(|one| &set.trials[one])).collect();
-    let held_out: Vec<Trial> = judges.iter().flatten().map(|trial| (*trial).clone()).collect();
-    let mut outcomes: Vec<TrialOutcome> = tasks
-        .iter()
-        .map(|task| TrialOutcome {
-            rows: Vec::with_capacity(cell.methods.len()),
-            timing: TrialTiming { cell: task.cell as u64, simulation: Duration::ZERO, methods: Vec::new() },
-        })
-        .collect();
-    for (place, method) in cell.methods.iter().enumerate() {
+    let trials = SharedTrials {
+        scenario,
+        tasks,
+        fitted: question(&tasks[0]).fitted.iter().map(|&one| set.trials[one].clone()).collect(),
+        judges: tasks.iter().map(|task| question(task).judge.map(|one| &set.trials[one])).collect(),
+    };
+    let blank = |task: &Task| TrialOutcome {
+        rows: Vec::new(),
+        timing: TrialTiming { cell: task.cell as u64, simulation: Duration::ZERO, methods: Vec::new() },
+    };
+    let mut outcomes: Vec<TrialOutcome> = tasks.iter().map(blank).collect();
+    for (place, method) in scenario.cells[tasks[0].cell].methods.iter().enumerate() {
         let start = Instant::now();
-        let shared = match &method.procedure {
-            Procedure::Trace(settings) => Some(
-                ::trace::trace(&fitted, &held_out, settings)
-                    .map(|analysis| RecordFit::Trace(Box::new(analysis)))
-                    .map_err(|error| engine::failure(&error).to_owned()),
-            ),
-            Procedure::Identify { .. } => response(&method.procedure, &fitted, &key),
-            Procedure::Answers(_) => None,
-        };
+        let rows = trials.rows(place, &method.procedure);
         let each = start.elapsed() / tasks.len() as u32;
-        for (trial, (task, outcome)) in tasks.iter().zip(&mut outcomes).enumerate() {
-            let own;
-            let fit = match &shared {
-                Some(fit) => fit,
-                // Answers from elsewhere are looked up by their trial.
-                None => {
-                    own = response(&method.procedure, &fitted, &engine::key(scenario, *task));
-                    own.as_ref().expect("it is no trace")
-                }
-            };
-            let blank =
-                StudyRow { cell: task.cell as u64, replicate: task.replicate, method: place, ..StudyRow::default() };
-            let judge = judges[trial];
-            let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };
-            let asked = TrialQuestion { trials: &fitted, key: &key, reference: &reference, missing: &[], check: None };
-            let row = match fit {
-                Err(reason) => StudyRow { failure: Some(reason.as_str().into()), ..blank },
-                Ok(RecordFit::Response(estimate)) => asked.estimated(&blank, estimate),
-                Ok(RecordFit::Trace(analysis)) => {
-                    let validation = judge.and(analysis.validation.get(trial)).map(|one| &one.after);
-                    asked.traced(&blank, analysis, validation)
-                }
-            };
-            let predicted = scenario.predictions.as_ref().map(|predictions| match (fit, judge) {
-                (Ok(fit), Some(judge)) => predicted(fit, &fitted, judge, predictions),
-                _ => Box::default(),
-            });
-            outcome.rows.push(StudyRow { predicted, ..row });
+        for (outcome, row) in outcomes.iter_mut().zip(rows) {
+            outcome.rows.push(row);
             outcome.timing.methods.push(each);
         }
     }
     outcomes
+}
+
+impl SharedTrials<'_> {
+    /// The rows of a method, one a trial.
+    fn rows(&self, method: usize, procedure: &Procedure) -> Vec<StudyRow> {
+        let key = |task: &Task| engine::key(self.scenario, *task);
+        let shared = match procedure {
+            Procedure::Trace(settings) => {
+                let held_out: Vec<Trial> = self.judges.iter().flatten().map(|trial| (*trial).clone()).collect();
+                let analysis = ::trace::trace(&self.fitted, &held_out, settings);
+                Some(
+                    analysis.map(|own| RecordFit::Trace(Box::new(own))).map_err(|error| engine::failure(&error).into()),
+                )
+            }
+            Procedure::Identify { .. } => response(procedure, &self.fitted, &key(&self.tasks[0])),
+            // Answers from elsewhere are looked up by their trial.
+            Procedure::Answers(_) => None,
+        };
+        let row = |(trial, task): (usize, &Task)| {
+            let own = if shared.is_none() { response(procedure, &self.fitted, &key(task)) } else { None };
+            let fit = shared.as_ref().or(own.as_ref()).expect("a trace is shared");
+            let blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, method, ..StudyRow::default() };
+            match fit {
+                Ok(fit) => self.row(trial, fit, &blank, &key(task)),
+                Err(reason) => StudyRow { failure: Some(reason.as_str().into()), ..blank },
+            }
+        };
+        self.tasks.iter().enumerate().map(row).collect()
+    }
+
+    /// The row of a fit on a trial.
+    fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
+        let judge = self.judges[trial];
+        let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };
+        let asked = TrialQuestion { trials: &self.fitted, key, reference: &reference, missing: &[], check: None };
+        let row = match fit {
+            RecordFit::Response(estimate) => asked.estimated(blank, estimate),
+            RecordFit::Trace(analysis) => {
+                let validation = judge.and(analysis.validation.get(trial)).map(|one| &one.after);
+                asked.traced(blank, analysis, validation)
+            }
+        };
+        let predicted = self.scenario.predictions.as_ref().map(|asked| match judge {
+            Some(judge) => predicted(fit, &self.fitted, judge, asked),
+            None => Box::default(),
+        });
+        StudyRow { predicted, ..row }
+    }
 }
 
 /// The first-order response of records; `None` for a trace.
