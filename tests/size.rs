@@ -9,11 +9,11 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 65_800,
-    tests: 29_150,
+    code: 66_720,
+    tests: 29_350,
     long_functions: 0,
     shared_types: 15,
-    packages: 299,
+    packages: 298,
     tuple_parameters: 0,
     text_lists: 0,
     leaks: 3,

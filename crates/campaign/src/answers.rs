@@ -78,11 +78,11 @@ const MOST_COLUMNS: usize = 20;
 /// Lines at fault that a message names.
 const MOST_FAULTS: usize = 10;
 
-/// Reads a table of answers to the trials of a scenario: `record` (of measured ones those that were fitted together), or
-/// `cell` and `replicate`; `K_per_s` and `T_s`; and
-/// what else is known, `delta_r_deg`, `K_sd_per_s`, `T_sd_s`, `delta_r_sd_deg`, and `failed`, the reason why there is
-/// no answer. Where `method` says whose a line is, there are answers of several methods, in the order of their first
-/// lines. Tells trials without an answer and columns that are not read.
+/// Reads a table of answers to the trials of a scenario: `record` (of measured ones those that were fitted together),
+/// or `cell` and `replicate`; `K_per_s` and `T_s`; and what else is known, `delta_r_deg`, `K_sd_per_s`, `T_sd_s`,
+/// `delta_r_sd_deg`, and `failed`, the reason why there is no answer. Where `method` says whose a line is, there are
+/// answers of several methods, in the order of their first lines. Tells trials without an answer and columns that are
+/// not read.
 ///
 /// Fails when a column is missing, and with all lines that are not of one trial of the scenario, or hold no numbers.
 pub fn read(
@@ -137,17 +137,20 @@ pub fn read(
     if answers.is_empty() {
         answers.insert(None, HashMap::new());
     }
-    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.trials_of(cell)).sum();
-    for (method, own) in &answers {
-        let left = trials - own.len() as u64;
-        if left > 0 && scenario.stop.is_none() {
-            let whose = method.as_ref().map_or_else(String::new, |method| format!("{method}: "));
-            let problem = format!("{whose}{left} of {trials} trials have no answer, which counts as failed");
-            observer.warn(&format!("{}: {problem}", path.display()));
-        }
-    }
+    answers.iter().for_each(|(method, own)| missing(path, scenario, method.as_deref(), own.len() as u64, observer));
     let sha256 = hex(&Sha256::digest(text.as_bytes()));
     Ok(answers.into_iter().map(|(method, own)| (method, Answers::new(own, sha256.clone()))).collect())
+}
+
+/// Tells how many trials a method has not answered; with a stopping rule nobody knows how many there are.
+fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64, observer: &dyn Observer) {
+    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.trials_of(cell)).sum();
+    let left = trials - answered;
+    if left > 0 && scenario.stop.is_none() {
+        let whose = method.map_or_else(String::new, |method| format!("{method}: "));
+        let problem = format!("{whose}{left} of {trials} trials have no answer, which counts as failed");
+        observer.warn(&format!("{}: {problem}", path.display()));
+    }
 }
 
 /// Which trial a record is of.

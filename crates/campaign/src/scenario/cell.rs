@@ -11,7 +11,7 @@ use crate::scenario::draw::DrawnKey;
 use crate::scenario::method::{Method, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{KeyFault, KeyPath};
-use crate::scenario::records::RecordSet;
+use crate::scenario::records::{RecordSet, RecordStudyWire};
 use crate::scenario::specification::Specification;
 use crate::scenario::wire::ScenarioWire;
 use crate::scenario::{limits, reader, resolve, sweep};
@@ -255,4 +255,39 @@ pub(crate) fn swept(
     let values = points.iter().map(|point| point.value).collect();
     let source = TrialSource::Simulated { specification: Box::new(specification), drawn };
     Ok(DesignCell { labels, values, methods, source })
+}
+
+/// One cell of a design of measured records: the document with the keys of its points changed.
+///
+/// Fails as the document alone would, at the point that is at fault.
+pub(crate) fn measured(
+    document: &Table,
+    points: &[&sweep::SweepPoint],
+    base: &[Method],
+    folder: &Path,
+) -> Result<DesignCell, KeyFault> {
+    let settings = || points.iter().flat_map(|point| &point.set);
+    let attribute = |problem: KeyFault| match settings().rfind(|setting| setting.key.is_related(&problem.key)) {
+        Some(setting) => setting.attributed(problem, None),
+        None => problem,
+    };
+    let mut changed = document.clone();
+    for setting in settings() {
+        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(attribute)?;
+    }
+    let wire: RecordStudyWire = reader::document(&changed).map_err(attribute)?;
+    let set = RecordSet::read(&wire.records, folder).map_err(attribute)?;
+    let methods = methods(&wire.identifier).map_err(attribute)?;
+    let labels = |methods: &[Method]| methods.iter().map(|method| method.label.clone()).collect::<Vec<String>>();
+    if labels(&methods) != labels(base) {
+        let found = "the methods are not the same in every cell";
+        let advice = "sweep settings only, and name every method once in an [[identifier]] of its own";
+        return Err(attribute(KeyFault::value(KeyPath::dotted("identifier"), found, "expected settings", advice)));
+    }
+    Ok(DesignCell {
+        labels: points.iter().map(|point| point.label.clone()).collect(),
+        values: points.iter().map(|point| point.value).collect(),
+        methods,
+        source: TrialSource::Measured(set),
+    })
 }

@@ -94,7 +94,7 @@ impl Scenario {
         })?;
         let design = identity::design_of(&document);
         let design_sha256 = match document.contains_key(RECORDS) {
-            true => records::design_sha256(&design, &scenario.cells),
+            true => records::design_sha256(&design, scenario.cells.iter().filter_map(DesignCell::record_set)),
             false => identity::sha256_of(&design, folder)?,
         };
         let seed = seed.unwrap_or(scenario.seed);
@@ -169,7 +169,7 @@ impl Scenario {
         let axes: Vec<SweepAxis> = axes.collect::<Result<_, _>>()?;
         let combinations = sweep::product(&axes)?;
         checks::titles(&axes)?;
-        let cells = combinations.iter().map(|points| records::cell(document, points, &methods, folder));
+        let cells = combinations.iter().map(|points| cell::measured(document, points, &methods, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         checks::detail(&words.output.detail, &cells)?;
         checks::marks(&words.output.marks, &axes)?;

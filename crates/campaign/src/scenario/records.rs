@@ -12,13 +12,12 @@ use trial::Trial;
 use trial::file::{self, FileError};
 use trial::reader::RECORD;
 
-use crate::scenario::cell::{DesignCell, TrialSource};
-use crate::scenario::method::{IdentifierWire, Method, methods};
+use crate::scenario::identity;
+use crate::scenario::method::IdentifierWire;
 use crate::scenario::predictions::RecordPredictWire;
 use crate::scenario::problem::{KeyFault, KeyPath, place_among};
-use crate::scenario::sweep::{self, AxisWire, SweepPoint};
+use crate::scenario::sweep::AxisWire;
 use crate::scenario::words::Presentation;
-use crate::scenario::{identity, reader};
 
 /// Environment variable that names a folder of records which are not beside the scenario.
 pub const DATA: &str = "KEMPF_DATA";
@@ -131,7 +130,7 @@ impl RecordSet {
     /// Reads the records of a table.
     ///
     /// Fails when a file is missing or is no record, and when nothing is left to be asked.
-    fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
+    pub(crate) fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
         let key = KeyPath::dotted("records");
         let sidecar = wire.sidecar.as_deref().map(|own| folder.join(own));
         let mut paths: Vec<PathBuf> = Vec::new();
@@ -265,45 +264,10 @@ fn fits(name: &str, pattern: &str) -> bool {
     rest.ends_with(last)
 }
 
-/// A cell: the document with the keys of its points changed.
-///
-/// Fails as the document alone would, at the point that is at fault.
-pub(crate) fn cell(
-    document: &Table,
-    points: &[&SweepPoint],
-    base: &[Method],
-    folder: &Path,
-) -> Result<DesignCell, KeyFault> {
-    let settings = || points.iter().flat_map(|point| &point.set);
-    let attribute = |problem: KeyFault| match settings().rfind(|setting| setting.key.is_related(&problem.key)) {
-        Some(setting) => setting.attributed(problem, None),
-        None => problem,
-    };
-    let mut changed = document.clone();
-    for setting in settings() {
-        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(attribute)?;
-    }
-    let wire: RecordStudyWire = reader::document(&changed).map_err(attribute)?;
-    let set = RecordSet::read(&wire.records, folder).map_err(attribute)?;
-    let methods = methods(&wire.identifier).map_err(attribute)?;
-    let labels = |methods: &[Method]| methods.iter().map(|method| method.label.clone()).collect::<Vec<String>>();
-    if labels(&methods) != labels(base) {
-        let found = "the methods are not the same in every cell";
-        let advice = "sweep settings only, and name every method once in an [[identifier]] of its own";
-        return Err(attribute(KeyFault::value(KeyPath::dotted("identifier"), found, "expected settings", advice)));
-    }
-    Ok(DesignCell {
-        labels: points.iter().map(|point| point.label.clone()).collect(),
-        values: points.iter().map(|point| point.value).collect(),
-        methods,
-        source: TrialSource::Measured(set),
-    })
-}
-
 /// SHA-256 of a design and of the records of its cells.
-pub(crate) fn design_sha256(design: &Table, cells: &[DesignCell]) -> String {
+pub(crate) fn design_sha256<'a>(design: &Table, sets: impl Iterator<Item = &'a RecordSet>) -> String {
     let mut digest = Sha256::new_with_prefix(design.to_string());
-    cells.iter().filter_map(DesignCell::record_set).for_each(|set| digest.update(&set.sha256));
+    sets.for_each(|set| digest.update(&set.sha256));
     identity::hex(&digest.finalize())
 }
 

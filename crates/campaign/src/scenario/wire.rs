@@ -1,6 +1,6 @@
 //! A scenario file as it is written: what serde reads, with degrees, knots and units in the names. Nothing here is
-//! believed yet; [`crate::scenario::resolve`] turns it into specifications the engine accepts. How a trial is made is declared in
-//! [`simulate`] itself.
+//! believed yet; [`crate::scenario::resolve`] turns it into specifications the engine accepts. How a trial is made is
+//! declared in [`simulate`] itself.
 
 use serde::{Deserialize, Serialize};
 use simulate::motion::PlanarCoefficients;

@@ -11,11 +11,13 @@ use trial::{Quantity, Trial};
 
 use crate::records::file_of;
 use crate::scales::RescaledRecords;
-use crate::work::fit::Named;
 
 /// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
 /// first.
 pub const PREFERRED_METHODS: [&str; 2] = ["maximum-likelihood", "output-error"];
+
+/// A method with what it is called.
+pub type Named = (String, Box<dyn Identifier>);
 
 /// Every method on the records of every scale alone, against its answer for all; `None` where all have one scale.
 pub fn compared(

@@ -19,7 +19,7 @@ use ship::angle::to_deg;
 use trial::{Channel, Trial, ZigZag, ZigZagError, imo};
 
 use super::earlier::{self, EarlierModel};
-use super::every_scale::{self, PREFERRED_METHODS};
+use super::every_scale::{self, Named, PREFERRED_METHODS};
 use super::loading::{AGAINST_FORM, speak_against_form};
 use super::{single_records, verdict};
 use crate::completed::ALL;
@@ -209,9 +209,6 @@ fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
                 log does";
     zigzag.begins_at_reversal.then(|| Warning::new(Code::LateBegin, source_of(trial), text))
 }
-
-/// A method with what it is called.
-pub type Named = (String, Box<dyn Identifier>);
 
 /// The named methods of the project with their default settings, the best first, and the usual ones for no name; those
 /// that draw at random with this seed.

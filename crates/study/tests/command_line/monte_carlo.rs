@@ -1,4 +1,5 @@
-//! Monte-Carlo studies as a user runs them: interrupted, continued, shared out and put together, always with the same rows.
+//! Monte-Carlo studies as a user runs them: interrupted, continued, shared out and put together, always with the same
+//! rows.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
