@@ -17,6 +17,7 @@ use crate::design::Design;
 use crate::engine::{self, TrialOutcome, TrialRunner};
 use crate::files;
 use crate::folder::ResultFolder;
+use crate::judged;
 use crate::manifest::{Machine, Manifest};
 use crate::observer::Observer;
 use crate::plan::{TrialPlan, blocks_of, trials_of};
@@ -306,9 +307,9 @@ fn watched<'scope>(
     scope.spawn(move || {
         let runner = runner(scenario, &tasks);
         let run = || {
-            runner.units(&tasks).into_par_iter().for_each_with(send, |send, unit| {
+            judged::units(scenario, &tasks).into_par_iter().for_each_with(send, |send, unit| {
                 if !observer.is_asked_to_stop() {
-                    for (index, outcome) in unit.clone().zip(runner.run_unit(&tasks[unit])) {
+                    for (index, outcome) in unit.clone().zip(judged::run_unit(&runner, scenario, &tasks[unit])) {
                         // Nobody receives any more when the wait for a trial was given up.
                         let _ = send.send((index, outcome));
                     }
@@ -350,8 +351,8 @@ pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
     let mut rows = Vec::new();
     let run = |tasks: Vec<Task>| {
         let runner = runner(scenario, &tasks);
-        let units = runner.units(&tasks).into_par_iter();
-        (units.flat_map_iter(|unit| runner.run_unit(&tasks[unit])).collect(), RunEnd::Done)
+        let units = judged::units(scenario, &tasks).into_par_iter();
+        (units.flat_map_iter(|unit| judged::run_unit(&runner, scenario, &tasks[unit])).collect(), RunEnd::Done)
     };
     let take = |outcomes: Vec<TrialOutcome>| {
         rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));

@@ -3,7 +3,6 @@
 //!
 //! Everything random follows from the key of a trial, so rows do not depend on threads, order or company.
 
-use std::ops::Range;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
@@ -17,7 +16,6 @@ use ship::angle::{from_deg, to_deg};
 use simulate::{PreparedSimulation, SimulateError, Simulated, StreamKey};
 use trial::{Quantity, Trial};
 
-use crate::judged;
 use crate::known::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
@@ -89,30 +87,6 @@ impl<'a> TrialRunner<'a> {
             first_cell: *cells.start(),
             references: (0..count).map(|_| OnceLock::new()).collect(),
             prepared: (0..kept).map(|_| OnceLock::new()).collect(),
-        }
-    }
-
-    /// Places of tasks, in order, that are run together: trials of measured records that share a fit.
-    pub fn units(&self, tasks: &[Task]) -> Vec<Range<usize>> {
-        let fit = |task: &Task| {
-            let set = self.scenario.cells[task.cell].record_set()?;
-            Some((task.cell, &set.questions[task.replicate as usize].fitted))
-        };
-        let share = |one: &Task, other: &Task| fit(one).is_some() && fit(one) == fit(other);
-        let mut start = 0;
-        let of = |unit: &[Task]| {
-            let place = start..start + unit.len();
-            start = place.end;
-            place
-        };
-        tasks.chunk_by(share).map(of).collect()
-    }
-
-    /// Runs tasks of one unit.
-    pub fn run_unit(&self, tasks: &[Task]) -> Vec<TrialOutcome> {
-        match self.scenario.cells[tasks[0].cell].record_set() {
-            Some(set) => judged::run(self.scenario, set, tasks),
-            None => tasks.iter().map(|&task| self.run(task)).collect(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Trials of measured records that share a fit: every method is fitted once, and each trial is judged by its record.
 
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use ::trace::Analysis;
@@ -9,7 +10,7 @@ use predict::ShipMixture;
 use simulate::StreamKey;
 use trial::Trial;
 
-use crate::engine::{self, TrialOutcome, TrialQuestion};
+use crate::engine::{self, TrialOutcome, TrialQuestion, TrialRunner};
 use crate::known::{self, RecordFacts};
 use crate::reference::TrialReference;
 use crate::rows::{PredictedFigure, StudyRow};
@@ -17,6 +18,30 @@ use crate::scenario::records::RecordSet;
 use crate::scenario::{Predictions, Procedure, Scenario};
 use crate::task::Task;
 use crate::timings::TrialTiming;
+
+/// Places of tasks, in order, that are run together: trials of measured records that share a fit.
+pub fn units(scenario: &Scenario, tasks: &[Task]) -> Vec<Range<usize>> {
+    let fit = |task: &Task| {
+        let set = scenario.cells[task.cell].record_set()?;
+        Some((task.cell, &set.questions[task.replicate as usize].fitted))
+    };
+    let share = |one: &Task, other: &Task| fit(one).is_some() && fit(one) == fit(other);
+    let mut start = 0;
+    let of = |unit: &[Task]| {
+        let place = start..start + unit.len();
+        start = place.end;
+        place
+    };
+    tasks.chunk_by(share).map(of).collect()
+}
+
+/// Runs the tasks of one unit.
+pub fn run_unit(runner: &TrialRunner, scenario: &Scenario, tasks: &[Task]) -> Vec<TrialOutcome> {
+    match scenario.cells[tasks[0].cell].record_set() {
+        Some(set) => run(scenario, set, tasks),
+        None => tasks.iter().map(|&task| runner.run(task)).collect(),
+    }
+}
 
 /// What a method made of the records that were fitted together.
 enum RecordFit {
@@ -34,7 +59,7 @@ struct SharedTrials<'a> {
 }
 
 /// Runs trials that share a fit, in their order.
-pub fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome> {
+fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome> {
     let question = |task: &Task| &set.questions[task.replicate as usize];
     let trials = SharedTrials {
         scenario,

@@ -122,11 +122,11 @@ fn judged(study: &RecordStudy, design: &Design) -> PageFigure {
         let labels = design.cells[line.cell].labels.join(", ");
         names.push(if labels.is_empty() { method.label.clone() } else { format!("{labels}: {}", method.label) });
         let look = CurveOrigin::Method(method.id.clone()).look();
-        let pale = Look { hollow: true, ..look.clone() };
+        let pale = Look { hollow: true, ..look };
         let own = study.rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
         let mut items: Vec<RowItem> = own
             .filter_map(|row| row.validation_rmse_deg)
-            .map(|error| RowItem::new("", RowKind::Mark(pale.clone(), error, None)).softly())
+            .map(|error| RowItem::new("", RowKind::Mark(pale, error, None)).softly())
             .collect();
         items.extend(line.judged_deg.map(|own| RowItem::new("", RowKind::Mark(look, own.value, own.ci95))));
         items
