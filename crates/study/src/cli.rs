@@ -9,7 +9,7 @@ use crate::commands::{
     bench, check, doctor, find, fit, list, predict, report, run, schema, score, shell, sidecar, simulate, trace,
 };
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
-use crate::{failures, threads};
+use crate::{failures, interrupt, threads};
 use campaign::failure::Failure;
 use campaign::scenario::problem::suggestion;
 use clap::error::ErrorKind;
@@ -93,6 +93,7 @@ impl<R: Args> With<R> {
 
 /// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong.
 pub fn main() -> ExitCode {
+    interrupt::of_program();
     let words: Vec<OsString> = std::env::args_os().collect();
     if asks_for_json(&words) {
         failures::tell_programs();

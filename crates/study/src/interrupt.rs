@@ -10,6 +10,7 @@ use campaign::failure::Failure;
 static LISTENING: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
 static INSTALLED: Once = Once::new();
+static IS_PROGRAM: AtomicBool = AtomicBool::new(false);
 
 /// Exit code of a program that was interrupted: the work was not done.
 const INTERRUPTED: i32 = 1;
@@ -33,9 +34,17 @@ fn install() {
     });
 }
 
+/// Says that this process is the program `study`, whose interruptions are its own; another one, such as Python, sees to
+/// them itself.
+pub fn of_program() {
+    IS_PROGRAM.store(true, Ordering::SeqCst);
+}
+
 /// Takes an interruption as a request from now on, or no more: then it ends the program again.
 pub fn listen(is_request: bool) {
-    install();
+    if IS_PROGRAM.load(Ordering::SeqCst) {
+        install();
+    }
     LISTENING.store(is_request, Ordering::SeqCst);
 }
 
