@@ -43,27 +43,18 @@ const SCENARIO: &str = r#"
 question = "Is the table what it was?"
 seed = 5
 replicates = 6
-[ship.yukun]
-[manoeuvre.zig-zag]
-rudder-deg = 10.0
-heading-deg = 10.0
-[steering-gear]
-rate-deg-s = 2.5
-[recording]
-sampling-s = 1.0
-duration-s = 270.0
-[sensor]
-heading-noise-deg = 0.2
-[[identifier]]
-method.characteristic-points = {}
-[[identifier]]
-method.least-squares = {}
-[[identifier]]
-method.integral-least-squares = {}
-[[identifier]]
-method.output-error = {}
-[[identifier]]
-method.srivc = {}
+ship.yukun = {}
+manoeuvre.zig-zag = { rudder-deg = 10.0, heading-deg = 10.0 }
+steering-gear.rate-deg-s = 2.5
+recording = { sampling-s = 1.0, duration-s = 270.0 }
+identifier = [
+    { method.characteristic-points = {} },
+    { method.least-squares = {} },
+    { method.integral-least-squares = {} },
+    { method.output-error = {} },
+    { method.srivc = {} },
+]
+sensor.heading-noise-deg = 0.2
 "#;
 
 /// Median and rms error of K, the same of T (%), median heading rms of the replay (deg).

@@ -115,17 +115,20 @@ fn scenario(replicates: u64) -> Scenario {
 question = "Do threads and order matter?"
 seed = 31
 replicates = {replicates}
-[ship.yukun]
-[manoeuvre.zig-zag]
-rudder-deg = 10.0
-heading-deg = 10.0
-[steering-gear]
-rate-deg-s = 2.5
-[helmsman]
-reads-display-every-s = 1.0
-[recording]
-sampling-s = 1.0
-duration-s = 200.0
+ship.yukun = {{}}
+manoeuvre.zig-zag = {{ rudder-deg = 10.0, heading-deg = 10.0 }}
+steering-gear.rate-deg-s = 2.5
+helmsman.reads-display-every-s = 1.0
+recording = {{ sampling-s = 1.0, duration-s = 200.0 }}
+identifier = [
+    {{ method.fourier-published = {{}} }},
+    {{ method.fourier-projected = {{}} }},
+    {{ method.characteristic-points = {{}} }},
+    {{ method.least-squares = {{}} }},
+    {{ method.integral-least-squares = {{}} }},
+    {{ method.output-error = {{}} }},
+    {{ method.srivc = {{}} }},
+]
 [sensor]
 heading-noise-deg = 0.2
 heading-quantum-deg = 0.1
@@ -137,20 +140,6 @@ jitter-s = 0.05
 drop-out = {{ probability = 0.02 }}
 [disturbance]
 gusts = {{ sd-deg = 0.2, correlation-s = 10.0 }}
-[[identifier]]
-method.fourier-published = {{}}
-[[identifier]]
-method.fourier-projected = {{}}
-[[identifier]]
-method.characteristic-points = {{}}
-[[identifier]]
-method.least-squares = {{}}
-[[identifier]]
-method.integral-least-squares = {{}}
-[[identifier]]
-method.output-error = {{}}
-[[identifier]]
-method.srivc = {{}}
 [[sweep]]
 key = "manoeuvre.zig-zag.heading-deg"
 values = [10.0, 20.0]

@@ -9,8 +9,8 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 66_720,
-    tests: 29_350,
+    code: 66_710,
+    tests: 29_333,
     long_functions: 0,
     shared_types: 15,
     packages: 298,

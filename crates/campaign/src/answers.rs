@@ -3,10 +3,6 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::failure::Failure;
-use crate::scenario::answers::{Answers, TrialNumber};
-use crate::scenario::name::{shown, slug};
-use crate::scenario::{Scenario, hex};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use identify::{Answer, Errors};
 use indexmap::IndexMap;
@@ -16,7 +12,11 @@ use ship::angle::from_deg;
 use trial::file::{self, Kind};
 
 use crate::design::Design;
+use crate::failure::Failure;
 use crate::observer::Observer;
+use crate::scenario::answers::{Answers, TrialNumber};
+use crate::scenario::name::{shown, slug};
+use crate::scenario::{Scenario, hex};
 use crate::task::Task;
 
 /// File beside simulated records from which their scenario can be read, with its seed.

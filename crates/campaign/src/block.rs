@@ -4,7 +4,6 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::scenario::Scenario;
-
 use crate::task::Task;
 
 /// Consecutive replicates of one cell: one file of rows.

@@ -7,12 +7,12 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use crate::failure::{Failure, OnPath};
 use rayon::prelude::*;
 
 use crate::block::Block;
 use crate::design::Design;
 use crate::disk;
+use crate::failure::{Failure, OnPath};
 use crate::files::{BLOCK_TIMINGS, ROWS};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
@@ -70,6 +70,14 @@ impl<'a> BlockStore<'a> {
         }
     }
 
+    /// Rows of a block that was whole a moment ago.
+    ///
+    /// Fails as [`BlockStore::read`] does, and when it has changed since.
+    pub fn reread(&self, block: Block) -> Result<Vec<StudyRow>, Failure> {
+        self.read(block)?
+            .map_err(|problem| Failure::work(format!("{problem}; it changed meanwhile, run the study again")))
+    }
+
     fn foreign(&self, label: &BlockLabel) -> String {
         let advice = "remove the file, give another folder with --out, or --restart to discard all rows";
         let what = if label.design != self.design_sha256 {
@@ -94,10 +102,6 @@ impl<'a> BlockStore<'a> {
         becomes: &str,
         observer: &dyn Observer,
     ) -> Result<HashMap<Block, u64>, Failure> {
-        let folder = self.folder.join(ROWS);
-        let names =
-            if disk::is_there(&folder).on("look for", &folder)? { disk::names(&folder) } else { Ok(Vec::new()) };
-        let blocks: Vec<Block> = names.on("list", &folder)?.iter().filter_map(|name| block_named(name)).collect();
         let trials = |rows: Vec<StudyRow>| (rows.len() / self.layout.methods()) as u64;
         let look = |block: Block| match self.read(block)? {
             Ok(rows) => Ok(Some((block, trials(rows)))),
@@ -107,7 +111,7 @@ impl<'a> BlockStore<'a> {
             }
         };
         let known = |block: &Block| block.cell < self.design.cells.len() && is_asked(*block);
-        blocks.into_par_iter().filter(known).filter_map(|block| look(block).transpose()).collect()
+        blocks_in(&self.folder)?.into_par_iter().filter(known).filter_map(|block| look(block).transpose()).collect()
     }
 
     /// Stores the trials of a block from its first on, and what they took.
@@ -160,13 +164,19 @@ impl<'a> BlockStore<'a> {
     }
 }
 
-/// Whether a folder holds blocks.
-pub fn is_in(folder: &Path) -> Result<bool, Failure> {
+/// Blocks of a result folder, by the names of their files.
+fn blocks_in(folder: &Path) -> Result<Vec<Block>, Failure> {
     let rows = folder.join(ROWS);
     if !disk::is_there(&rows).on("look for", &rows)? {
-        return Ok(false);
+        return Ok(Vec::new());
     }
-    Ok(disk::names(&rows).on("list", &rows)?.iter().any(|name| block_named(name).is_some()))
+    let names = disk::names(&rows).on("list", &rows)?;
+    Ok(names.iter().filter_map(|name| stem_of(name, "parquet")).collect())
+}
+
+/// Whether a folder holds blocks.
+pub fn is_in(folder: &Path) -> Result<bool, Failure> {
+    Ok(!blocks_in(folder)?.is_empty())
 }
 
 /// Throws the blocks of a folder away, whatever study they are of.
@@ -185,10 +195,6 @@ fn rows_name(block: Block) -> String {
 
 fn timings_name(block: Block) -> String {
     format!("{block}.csv")
-}
-
-fn block_named(name: &str) -> Option<Block> {
-    stem_of(name, "parquet")
 }
 
 /// The block whose file has this name.

@@ -1,20 +1,19 @@
 //! Runs the trials of a study or a shard of it: what is stored is kept, the rest is computed in parallel and stored as
 //! it comes, and when all rows are there everything is where [`crate::store`] expects it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::mpsc::{RecvTimeoutError, channel, sync_channel};
 use std::thread::Scope;
 use std::time::{Duration, Instant};
 
-use crate::failure::Failure;
-use crate::scenario::Scenario;
 use rayon::prelude::*;
 
 use crate::block::Block;
 use crate::blocks::{self, BlockStore};
 use crate::design::Design;
 use crate::engine::{self, TrialOutcome, TrialRunner};
+use crate::failure::Failure;
 use crate::files;
 use crate::folder::ResultFolder;
 use crate::judged;
@@ -22,6 +21,7 @@ use crate::manifest::{Machine, Manifest};
 use crate::observer::Observer;
 use crate::plan::{TrialPlan, blocks_of, trials_of};
 use crate::rows::StudyRow;
+use crate::scenario::{DesignCell, Scenario};
 use crate::showcase;
 use crate::store::{self, StoredStudy};
 use crate::task::{Shard, Task};
@@ -81,13 +81,13 @@ pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<Stored
     let design = Design::of(&scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
     let stored = store.survey(|_| true, "its trials count as missing", observer)?;
-    let read = |block: Block| reread(&store, block);
+    let read = |block: Block| store.reread(block);
     let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
-    if let Some(&Task { cell, replicate }) = plan.next(1)?.first() {
+    if let Some(Task { cell, replicate }) = plan.peek()? {
         let path = store.path(Block::of(Task { cell, replicate }));
         let problem = format!(
-            "trial {replicate} of cell {cell} is not stored; run the study, or the shard that holds it, again, or copy the \
-             file here"
+            "trial {replicate} of cell {cell} is not stored; run the study, or the shard that holds it, again, or copy \
+             the file here"
         );
         return Err(Failure::about(&path, problem));
     }
@@ -119,18 +119,17 @@ fn run(
     let most = trials_of(scenario, &part);
     let stored = store.survey(|block| part.contains(&block.place(scenario)), "its trials are run again", observer)?;
     let before: u64 = stored.values().sum();
-    let read = |block: Block| reread(&store, block);
+    let read = |block: Block| store.reread(block);
     let mut plan = TrialPlan::new(scenario, shard, &stored, &read);
-    let first = plan.next(1)?;
-    if first.is_empty() {
+    if plan.peek()?.is_none() {
         return Ok(StudyRun { manifest, trials: plan.trials, computed: 0 });
     }
     is_own_program(&manifest, &Manifest::new(scenario), folder.path())?;
     if before > 0 {
         observer.note(&format!("going on after {before} of {most} trials in {}", folder.path().display()));
     }
+    told_of_records(scenario, observer);
     let start = Instant::now();
-    let mut plan = TrialPlan::new(scenario, shard, &stored, &read);
     let progress = Progress { most, before, folder: folder.path() };
     let computed = run_all(scenario, &mut plan, &store, &progress, observer);
     // Of other shards of the study that have ended meanwhile, too.
@@ -141,9 +140,11 @@ fn run(
     Ok(StudyRun { manifest, trials: plan.trials, computed: computed? })
 }
 
-/// Rows of a block that were whole a moment ago.
-fn reread(store: &BlockStore, block: Block) -> Result<Vec<StudyRow>, Failure> {
-    store.read(block)?.map_err(|problem| Failure::work(format!("{problem}; it changed meanwhile, run the study again")))
+/// Tells what reading measured records had to decide, of every record once.
+fn told_of_records(scenario: &Scenario, observer: &dyn Observer) {
+    let mut known = HashSet::new();
+    let warnings = scenario.cells.iter().filter_map(DesignCell::record_set).flat_map(|set| &set.warnings);
+    warnings.filter(|warning| known.insert(*warning)).for_each(|warning| observer.warn(warning));
 }
 
 /// The manifest of a folder in which a study is about to run; written where there is none of its rows.
@@ -159,8 +160,8 @@ fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Ma
         blocks::discard(folder)?;
     } else if blocks::is_in(folder.path())? {
         return Err(Failure::input(format!(
-            "{} holds rows of an unknown study, without {}; put it back, give another folder with --out, or --restart to \
-             discard them",
+            "{} holds rows of an unknown study, without {}; put it back, give another folder with --out, or --restart \
+             to discard them",
             folder.path().display(),
             files::MANIFEST
         )));
@@ -190,8 +191,8 @@ fn is_own_program(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<()
         return Ok(());
     }
     Err(Failure::input(format!(
-        "the rows in {} were computed by another version of this program ({there}; this is {here}), and some are missing; \
-         give another folder with --out, or --restart to run the study anew",
+        "the rows in {} were computed by another version of this program ({there}; this is {here}), and some are \
+         missing; give another folder with --out, or --restart to run the study anew",
         folder.display()
     )))
 }
@@ -240,8 +241,8 @@ fn run_all(
         observer.end();
         let stopped = || {
             Failure::work(format!(
-                "stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there, without \
-                 --restart",
+                "stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there, \
+                 without --restart",
                 progress.before + computed,
                 progress.most,
                 progress.folder.join(files::ROWS).display()

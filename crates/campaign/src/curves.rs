@@ -1,6 +1,5 @@
 //! Trials and answers as data of figures, in degrees.
 
-use crate::scenario::MethodName;
 use document::method::MethodEntry;
 use identify::Estimate;
 use identify::replay::replay;
@@ -11,6 +10,7 @@ use trial::zigzag::PhasePlane;
 use trial::zigzag::{Execute, Overshoot};
 use trial::{Quantity, Trial, ZigZag};
 
+use crate::scenario::MethodName;
 use crate::stored_figures::ReplayCurves;
 
 /// How a method of a scenario is drawn: as itself when it goes by its id, else as a variant of it.

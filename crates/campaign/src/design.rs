@@ -3,9 +3,10 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use crate::scenario::records::{RecordQuestion, RecordSet};
 use crate::scenario::{DesignCell, MethodName, Scenario, Words, name};
-use serde::{Deserialize, Serialize};
 
 /// What tables and figures need of a scenario.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

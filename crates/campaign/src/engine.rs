@@ -335,21 +335,13 @@ mod tests {
     const TEXT: &str = r#"
 question = "?"
 seed = 8
-[ship.first-order]
-K-per-s = 0.1
-T-s = 25.0
+ship.first-order = { K-per-s = 0.1, T-s = 25.0 }
+manoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }
+steering-gear.rate-deg-s = 2.5
+recording = { sampling-s = 1.0, duration-s = 300.0 }
+sensor.heading-noise-deg = 0.1
 [[effect]]
 nonlinear_damping.n3-s2-per-deg2 = 1.0
-[manoeuvre.zig-zag]
-rudder-deg = 20.0
-heading-deg = 20.0
-[steering-gear]
-rate-deg-s = 2.5
-[recording]
-sampling-s = 1.0
-duration-s = 300.0
-[sensor]
-heading-noise-deg = 0.1
 [[identifier]]
 method.output-error = {}
 "#;

@@ -44,7 +44,14 @@ pub fn run_unit(runner: &TrialRunner, scenario: &Scenario, tasks: &[Task]) -> Ve
 }
 
 /// What a method made of the records that were fitted together.
-enum RecordFit {
+struct RecordFit {
+    answer: FitAnswer,
+    /// The ship that predicts; none where nothing is predicted, and where the answer has no covariance.
+    ship: Option<ShipMixture>,
+}
+
+/// The answer of a method.
+enum FitAnswer {
     Response(Box<Estimate>),
     Trace(Box<Analysis>),
 }
@@ -92,16 +99,15 @@ impl SharedTrials<'_> {
             Procedure::Trace(settings) => {
                 let held_out: Vec<Trial> = self.judges.iter().flatten().map(|trial| (*trial).clone()).collect();
                 let analysis = ::trace::trace(&self.fitted, &held_out, settings);
-                Some(
-                    analysis.map(|own| RecordFit::Trace(Box::new(own))).map_err(|error| engine::failure(&error).into()),
-                )
+                let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)));
+                Some(analysis.map(fit).map_err(|error| engine::failure(&error).into()))
             }
-            Procedure::Identify { .. } => response(procedure, &self.fitted, &key(&self.tasks[0])),
+            Procedure::Identify { .. } => self.response(procedure, &key(&self.tasks[0])),
             // Answers from elsewhere are looked up by their trial.
             Procedure::Answers(_) => None,
         };
         let row = |(trial, task): (usize, &Task)| {
-            let own = if shared.is_none() { response(procedure, &self.fitted, &key(task)) } else { None };
+            let own = if shared.is_none() { self.response(procedure, &key(task)) } else { None };
             let fit = shared.as_ref().or(own.as_ref()).expect("a trace is shared");
             let blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, method, ..StudyRow::default() };
             match fit {
@@ -112,42 +118,52 @@ impl SharedTrials<'_> {
         self.tasks.iter().enumerate().map(row).collect()
     }
 
+    /// The first-order response of the records; `None` for a trace.
+    fn response(&self, procedure: &Procedure, key: &StreamKey) -> Option<Result<RecordFit, String>> {
+        let answer = procedure.identify(&self.fitted, key)?;
+        let fit = |estimate| self.fit(FitAnswer::Response(Box::new(estimate)));
+        Some(answer.map(fit).map_err(|error| error.in_a_row().into_owned()))
+    }
+
+    /// An answer with the ship that predicts, where anything is predicted.
+    fn fit(&self, answer: FitAnswer) -> RecordFit {
+        let is_asked = self.scenario.predictions.is_some() && self.judges.iter().any(Option::is_some);
+        RecordFit { ship: if is_asked { ship(&answer, &self.fitted) } else { None }, answer }
+    }
+
     /// The row of a fit on a trial.
     fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
         let judge = self.judges[trial];
         let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };
         let asked = TrialQuestion { trials: &self.fitted, key, reference: &reference, missing: &[], check: None };
-        let row = match fit {
-            RecordFit::Response(estimate) => asked.estimated(blank, estimate),
-            RecordFit::Trace(analysis) => {
+        let row = match &fit.answer {
+            FitAnswer::Response(estimate) => asked.estimated(blank, estimate),
+            FitAnswer::Trace(analysis) => {
                 let validation = judge.and(analysis.validation.get(trial)).map(|one| &one.after);
                 asked.traced(blank, analysis, validation)
             }
         };
-        let predicted = self.scenario.predictions.as_ref().map(|asked| match judge {
-            Some(judge) => predicted(fit, &self.fitted, judge, asked),
-            None => Box::default(),
+        let predicted = self.scenario.predictions.as_ref().map(|asked| match (judge, &fit.ship) {
+            (Some(judge), Some(ship)) => predicted(ship, judge, asked),
+            _ => Box::default(),
         });
         StudyRow { predicted, ..row }
     }
 }
 
-/// The first-order response of records; `None` for a trace.
-fn response(procedure: &Procedure, fitted: &[Trial], key: &simulate::StreamKey) -> Option<Result<RecordFit, String>> {
-    let answer = procedure.identify(fitted, key)?;
-    Some(answer.map(|estimate| RecordFit::Response(Box::new(estimate))).map_err(|error| error.in_a_row().into_owned()))
+/// The ship of an answer; none where it has no covariance.
+fn ship(answer: &FitAnswer, fitted: &[Trial]) -> Option<ShipMixture> {
+    let facts = RecordFacts::of(fitted);
+    let known: IdentifiedShip = match answer {
+        FitAnswer::Response(estimate) => known::of_estimate(estimate, &facts)?,
+        FitAnswer::Trace(analysis) => known::of_analysis(analysis, &facts.with_motion(Some(analysis), &[])),
+    };
+    ShipMixture::new(vec![(known, 1.0)]).ok()
 }
 
-/// Figures of the record that judges, predicted by replaying its helm with drawn ships; empty where the answer has no
-/// covariance.
-fn predicted(fit: &RecordFit, fitted: &[Trial], judge: &Trial, predictions: &Predictions) -> Box<[PredictedFigure]> {
-    let facts = RecordFacts::of(fitted);
-    let known: Option<IdentifiedShip> = match fit {
-        RecordFit::Response(estimate) => known::of_estimate(estimate, &facts),
-        RecordFit::Trace(analysis) => Some(known::of_analysis(analysis, &facts.with_motion(Some(analysis), &[]))),
-    };
-    let mixture = known.and_then(|known| ShipMixture::new(vec![(known, 1.0)]).ok());
-    let replay = mixture.and_then(|mixture| mixture.replay(judge, predictions.draws, None).ok().flatten());
+/// Figures of the record that judges, predicted by replaying its helm with drawn ships.
+fn predicted(ship: &ShipMixture, judge: &Trial, predictions: &Predictions) -> Box<[PredictedFigure]> {
+    let replay = ship.replay(judge, predictions.draws, None).ok().flatten();
     let figures = replay.into_iter().flat_map(|replay| replay.figures);
     let figure = |(name, own): (String, predict::replay::Compared)| PredictedFigure {
         name: name.into(),

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::scenario::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -11,6 +10,7 @@ use crate::disk;
 use crate::failure::{Failure, OnPath};
 use crate::files::{DESIGN, MANIFEST};
 use crate::folder::ResultFolder;
+use crate::scenario::hex;
 use crate::scenario::{Scenario, Words, identity};
 
 /// The manifest of a study: the same whichever shards of it are in the folder.
@@ -58,30 +58,6 @@ pub struct Machine {
     pub wall_time_s: f64,
 }
 
-/// Which program made something: what is published is of one.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub struct ProgramRevision {
-    /// Its version.
-    pub version: String,
-    /// The last revision in which its source changed, where it was built in a repository.
-    pub git_revision: Option<String>,
-    /// Whether that source had been changed since.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub git_dirty: bool,
-}
-
-impl ProgramRevision {
-    /// That of this program.
-    pub fn own() -> Self {
-        Self {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            git_revision: option_env!("KEMPF_GIT_REVISION").map(str::to_owned),
-            git_dirty: option_env!("KEMPF_GIT_DIRTY").is_some(),
-        }
-    }
-}
-
 /// Version and revision of the program: "0.2.0 (revision 1a2b3c4d5e)", with a word where its source had been changed.
 pub fn version() -> String {
     let number = env!("CARGO_PKG_VERSION");
@@ -99,15 +75,14 @@ const REPEAT: &str = "# `study manifest.toml --out DIR` runs this study again.\n
 impl Manifest {
     /// The manifest of a scenario that is about to run.
     pub fn new(scenario: &Scenario) -> Self {
-        let ProgramRevision { version, git_revision, git_dirty } = ProgramRevision::own();
         Self {
             name: scenario.name.clone(),
             seed: scenario.seed,
             scenario_sha256: scenario.sha256.clone(),
             design_sha256: scenario.design_sha256.clone(),
-            version,
-            git_revision,
-            git_dirty,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            git_revision: option_env!("KEMPF_GIT_REVISION").map(str::to_owned),
+            git_dirty: option_env!("KEMPF_GIT_DIRTY").is_some(),
             machine: Machine {
                 target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
                 threads: rayon::current_num_threads(),
@@ -120,13 +95,8 @@ impl Manifest {
         }
     }
 
-    /// The program that ran it.
-    pub fn program(&self) -> ProgramRevision {
-        let Self { version, git_revision, git_dirty, .. } = self.clone();
-        ProgramRevision { version, git_revision, git_dirty }
-    }
-
-    /// The same program in one line, with the crates that decide its numbers: what a block says of where it comes from.
+    /// The program that ran it in one line, with the crates that decide its numbers: what a block says of its
+    /// origin.
     pub fn program_label(&self) -> String {
         let revision = self.git_revision.as_deref().map_or_else(String::new, |revision| format!(" {revision}"));
         let changed = if self.git_dirty { " (changed)" } else { "" };
@@ -178,11 +148,6 @@ impl Manifest {
         let text =
             toml::to_string(&Self { machine: rounded, ..self.clone() }).on("describe the run in", folder.path())?;
         folder.keep(MANIFEST, REPEAT.to_owned() + &text)
-    }
-
-    /// The manifest in a text that is one.
-    pub fn of_text(text: &str) -> Option<Self> {
-        toml::from_str(text).ok()
     }
 
     /// Reads a manifest; `None` when there is none.

@@ -1,7 +1,8 @@
 //! Who watches a study while it runs: the command line with its bar, its warnings and Ctrl-C, or nobody.
 
-use crate::failure::Failure;
 use rayon::ThreadPool;
+
+use crate::failure::Failure;
 
 /// Is told how far a study is and what was odd, and asked whether to stop.
 pub trait Observer: Sync {

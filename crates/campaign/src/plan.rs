@@ -7,11 +7,10 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::failure::Failure;
-use crate::scenario::Scenario;
-
 use crate::block::Block;
+use crate::failure::Failure;
 use crate::rows::StudyRow;
+use crate::scenario::Scenario;
 use crate::stopping::StopCheck;
 use crate::task::{Shard, Task};
 
@@ -81,6 +80,12 @@ impl<'a> TrialPlan<'a> {
         }
     }
 
+    /// The first trial that is left, which is handed out as if nobody had asked; none when the part is done.
+    pub fn peek(&mut self) -> Result<Option<Task>, Failure> {
+        let is_left = !self.open.is_empty() || self.begin()?;
+        Ok(is_left.then_some(Task { cell: self.cell, replicate: self.open.start }))
+    }
+
     /// The next trials, at most `most` of them; none when the part is done. Rows of all trials handed out before have
     /// to have been shown to [`TrialPlan::saw`].
     pub fn next(&mut self, most: u64) -> Result<Vec<Task>, Failure> {
@@ -101,7 +106,7 @@ impl<'a> TrialPlan<'a> {
         }
     }
 
-    /// Begins the next block; there may be none.
+    /// Begins the next block of which trials are left; there may be none.
     fn begin(&mut self) -> Result<bool, Failure> {
         while let Some(place) = self.blocks.next() {
             let block = Block::at(place, self.scenario);
@@ -118,7 +123,9 @@ impl<'a> TrialPlan<'a> {
             }
             self.trials[block.cell] = all.end;
             (self.cell, self.open) = (block.cell, all.start + stored..all.end);
-            return Ok(true);
+            if !self.open.is_empty() {
+                return Ok(true);
+            }
         }
         Ok(false)
     }
@@ -170,6 +177,7 @@ mod tests {
         let block = |cell, number| Block { cell, number };
         let stored = HashMap::from([(block(0, 0), 256), (block(0, 2), 88), (block(1, 1), 10)]);
         let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &none);
+        assert_eq!(plan.peek().expect("nothing is read"), Some(Task { cell: 0, replicate: 256 }));
         let mut tasks = Vec::new();
         loop {
             let next = plan.next(100).expect("nothing is read");
@@ -182,6 +190,7 @@ mod tests {
         let expected = of(0, 256..512).chain(of(1, 0..256)).chain(of(1, 266..600));
         assert_eq!(tasks, expected.collect::<Vec<_>>());
         assert_eq!(plan.trials, [600, 600]);
+        assert_eq!(plan.peek().expect("nothing is read"), None);
     }
 
     #[test]

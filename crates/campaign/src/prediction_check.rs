@@ -1,6 +1,5 @@
 //! Manoeuvres predicted from an answer, and the same ship making them: whether intervals hold.
 
-use crate::scenario::Predictions;
 use document::IdentifiedShip;
 use predict::simulated_manoeuvre::SimulatedManoeuvre;
 use predict::{ShipMixture, figures, standard};
@@ -9,6 +8,7 @@ use trial::Trial;
 
 use crate::known::RecordFacts;
 use crate::rows::PredictedFigure;
+use crate::scenario::Predictions;
 
 /// What the ship of a trial does in the manoeuvres that are predicted from answers to it.
 pub struct PredictionCheck<'a> {

@@ -4,18 +4,18 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::failure::{Failure, OnPath};
-use crate::scenario::hex;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use crate::blocks::{self, BlockStore};
 use crate::design::Design;
 use crate::disk;
+use crate::failure::{Failure, OnPath};
 use crate::files::{DESIGN, MANIFEST, ROWS_OF_OLD, SHOWCASES, TIMINGS};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::rows::StudyRow;
+use crate::scenario::hex;
 use crate::showcase::Showcase;
 use crate::timings::Timings;
 

@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use crate::scenario::keys::ScenarioKey;
 use simulate::limits::MOST_STEPS;
 
 use crate::engine::{TrialRunner, key};
 use crate::scenario::Scenario;
+use crate::scenario::keys::ScenarioKey;
 use crate::task::Task;
 
 /// Scenarios that together hold every key with a number, one a line.

@@ -3,11 +3,10 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use crate::failure::Failure;
-
 use crate::block::Block;
 use crate::blocks::BlockStore;
 use crate::engine::TrialOutcome;
+use crate::failure::Failure;
 use crate::rows::StudyRow;
 use crate::scenario::Scenario;
 use crate::task::Task;
@@ -62,8 +61,7 @@ impl<'a> BlockWriter<'a> {
         if self.block != Some(block) {
             // Of one that was begun before, the first rows are stored.
             let is_new = task.replicate == all.start;
-            let problem = |problem| Failure::work(format!("{problem}; it changed meanwhile, run the study again"));
-            self.rows = if is_new { Vec::new() } else { self.store.read(block)?.map_err(problem)? };
+            self.rows = if is_new { Vec::new() } else { self.store.reread(block)? };
             self.timings = if is_new { Timings::default() } else { self.store.timings(block)? };
             self.block = Some(block);
         }

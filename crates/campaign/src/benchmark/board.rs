@@ -1,13 +1,13 @@
 //! Leaderboards: the scores of one task on measured or on simulated records, method by method. An answer that failed is
 //! worse than any other, whatever is made of it.
 
-use crate::statistics::{Statistic, grouped, share};
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::cases::{BenchCase, BenchTask};
-use crate::benchmark::statistics::{mean, middle_and_high, ranks, ratio, resampled};
+use crate::benchmark::statistics::{mean, middle_and_high, ranks, ratio};
+use crate::statistics::{Statistic, grouped, resampled, share};
 
-pub use crate::benchmark::statistics::{FEWEST, ScoreFigure};
+pub use crate::benchmark::statistics::ScoreFigure;
 
 /// All methods on one task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

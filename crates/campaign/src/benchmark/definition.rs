@@ -3,9 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::failure::Failure;
-use crate::scenario::{HULL, Scenario, hex, name};
-use crate::task::Task;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use trial::file::{self, Kind};
@@ -16,6 +13,9 @@ use crate::benchmark::embedded;
 use crate::benchmark::wire::{
     DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire, words,
 };
+use crate::failure::Failure;
+use crate::scenario::{HULL, Scenario, hex, name};
+use crate::task::Task;
 
 /// Which definition was run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]

@@ -4,8 +4,6 @@ use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::failure::Failure;
-use crate::scenario::{TRACE, name};
 use ::trace::Analysis;
 use ::trace::record::PreparedRecord;
 use document::trace::EffectEntry;
@@ -15,6 +13,8 @@ use simulate::StreamKey;
 use trial::{Channel, Quantity, Trial};
 
 use crate::engine::failure;
+use crate::failure::Failure;
+use crate::scenario::{TRACE, name};
 use crate::statistics::{Moments, distinct};
 
 /// Label of the method that takes every ship to go straight on.

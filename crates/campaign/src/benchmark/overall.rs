@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::{ScoreFigure, Scores, by_field};
 use crate::benchmark::cases::{BenchCase, BenchTask};
-use crate::benchmark::statistics::{mean, resampled_by_set};
-use crate::statistics::grouped;
+use crate::benchmark::statistics::mean;
+use crate::statistics::{grouped, resampled_by_set};
 
 /// The ranking.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

@@ -6,15 +6,15 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use crate::disk;
-use crate::failure::Failure;
-use crate::scenario::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use trial::Trial;
 use trial::reader::{RECORD, read_bytes};
 
 use crate::benchmark::definition::{Definition, RecordFile, SetSource};
+use crate::disk;
+use crate::failure::Failure;
+use crate::scenario::hex;
 
 /// Folders below one another that are searched: a link that leads back is not followed, and nobody has as many.
 const DEEPEST: usize = 32;

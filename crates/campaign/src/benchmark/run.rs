@@ -1,7 +1,6 @@
 //! All records, all methods, all answers. The work is shared by threads; what comes out has the order of the
 //! definition.
 
-use crate::failure::Failure;
 use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::to_deg;
@@ -15,6 +14,7 @@ use crate::benchmark::method::{self, BenchMethod, BenchModel, Failed};
 use crate::benchmark::record_store::{RecordStore, UsedFile};
 use crate::benchmark::results::{BenchDocument, Present, Skipped};
 use crate::engine::{self, simulate, truths};
+use crate::failure::Failure;
 use crate::statistics::grouped;
 use crate::task::Task;
 

@@ -1,17 +1,11 @@
-//! Quantiles of scores among which some are infinite, and their intervals by drawing clusters with replacement (Efron
-//! 1979; Field and Welsh 2007 for clusters).
+//! Quantiles of scores among which some are infinite, and their intervals.
 
 use std::cmp::Ordering;
 
 use estimation::statistics::quantile;
-use rand::rngs::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use crate::statistics::{Moments, RESAMPLES, SEED};
-
-/// Fewest clusters of which an interval is given: no pair of order statistics of fewer covers the median in 95 %.
-pub const FEWEST: usize = 6;
+use crate::statistics::{Moments, interval};
 
 /// A figure with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -25,12 +19,9 @@ pub struct ScoreFigure {
 
 impl ScoreFigure {
     /// A figure of some clusters; of several of its values, in any order, the ends of the interval.
-    pub fn new(value: f64, clusters: usize, mut resampled: Vec<f64>) -> Self {
+    pub fn new(value: f64, clusters: usize, resampled: Vec<f64>) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
-        resampled.sort_by(f64::total_cmp);
-        let end = |p: f64| resampled[((resampled.len() - 1) as f64 * p).round() as usize];
-        let ci95 = (clusters >= FEWEST && !resampled.is_empty()).then(|| [finite(end(0.025)), finite(end(0.975))]);
-        Self { value: finite(value), ci95 }
+        Self { value: finite(value), ci95: interval(clusters, resampled).map(|ends| ends.map(finite)) }
     }
 
     /// Order of two figures, that which an answer that failed decides behind all others.
@@ -53,34 +44,6 @@ pub fn middle_and_high(mut scores: Vec<f64>) -> [f64; 2] {
     [0.5, 0.9].map(|p| quantile(&scores, p))
 }
 
-/// What is computed from the cases of many draws of clusters, in the order of the draws.
-pub fn resampled<T>(clusters: &[Vec<usize>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
-    draws(|rng, cases| draw_clusters(clusters, rng, cases), compute)
-}
-
-/// The same where sets are drawn, and from every set that was drawn its clusters.
-pub fn resampled_by_set<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
-    let draw = |rng: &mut ChaCha8Rng, cases: &mut Vec<usize>| {
-        (0..sets.len()).for_each(|_| draw_clusters(&sets[rng.random_range(0..sets.len())], rng, cases));
-    };
-    draws(draw, compute)
-}
-
-fn draw_clusters(clusters: &[Vec<usize>], rng: &mut ChaCha8Rng, cases: &mut Vec<usize>) {
-    (0..clusters.len()).for_each(|_| cases.extend(&clusters[rng.random_range(0..clusters.len())]));
-}
-
-fn draws<T>(draw: impl Fn(&mut ChaCha8Rng, &mut Vec<usize>), compute: impl Fn(&[usize]) -> T) -> Vec<T> {
-    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
-    let mut cases = Vec::new();
-    let one = |_| {
-        cases.clear();
-        draw(&mut rng, &mut cases);
-        compute(&cases)
-    };
-    (0..RESAMPLES).map(one).collect()
-}
-
 /// One score over another of the same case: two that failed are alike, and one that failed is endlessly worse.
 pub fn ratio(one: f64, other: f64) -> f64 {
     if one == other { 1.0 } else { one / other }
@@ -99,6 +62,9 @@ pub fn ranks(scores: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::resampled;
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
     use std::f64::consts::LN_2;
 
     const WORST: f64 = f64::INFINITY;
@@ -149,13 +115,5 @@ mod tests {
             ScoreFigure::new(WORST, 6, vec![1.0, WORST]),
             ScoreFigure { value: None, ci95: Some([Some(1.0), None]) }
         );
-    }
-
-    /// Sets of very different size: where one is drawn, all its clusters are.
-    #[test]
-    fn sets_are_drawn_whole() {
-        let sets = vec![vec![vec![0]; 30], vec![vec![1]; 2]];
-        let sizes = resampled_by_set(&sets, <[usize]>::len);
-        assert!(sizes.iter().all(|size| [4, 32, 60].contains(size)), "{sizes:?}");
     }
 }

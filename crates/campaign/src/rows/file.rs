@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::scenario::hex;
 use bytes::Bytes;
 use parquet::basic::Compression;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -20,6 +19,7 @@ use trial::decoder::{CheckedPages, PageHead};
 use super::layout::{RowLayout, Values};
 use super::row::StudyRow;
 use crate::block::Block;
+use crate::scenario::hex;
 
 /// Key of the label in the metadata of the file, and that of the SHA-256 of the label.
 const LABEL: &str = "kempf.block";

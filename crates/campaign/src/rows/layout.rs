@@ -4,13 +4,13 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::scenario::TRACE;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::schema::types::Type;
 
 use super::columns::{Access, COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RowColumn, TRACE_COLUMNS};
 use super::row::StudyRow;
 use crate::design::{Design, JudgedRecord};
+use crate::scenario::TRACE;
 
 /// Values of one column for several rows.
 #[derive(Debug, Clone, PartialEq)]

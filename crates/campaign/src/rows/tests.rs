@@ -1,7 +1,8 @@
+use ::trace::Verdict;
+
 use super::*;
 use crate::design::{CellFacts, Design};
 use crate::scenario::MethodName;
-use ::trace::Verdict;
 
 fn design() -> Design {
     let cell = |noise: f64, trial: &str| CellFacts {

@@ -8,7 +8,7 @@ use simulate::{Assumption, StreamKey};
 use toml::{Table, Value};
 
 use crate::scenario::draw::DrawnKey;
-use crate::scenario::method::{Method, Procedure, methods};
+use crate::scenario::method::{IdentifierWire, Method, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{KeyFault, KeyPath};
 use crate::scenario::records::{RecordSet, RecordStudyWire};
@@ -64,6 +64,12 @@ pub struct TrialSpecification<'a> {
 pub struct Refusal(String);
 
 impl DesignCell {
+    fn new(points: &[&sweep::SweepPoint], methods: Vec<Method>, source: TrialSource) -> Self {
+        let labels = points.iter().map(|point| point.label.clone()).collect();
+        let values = points.iter().map(|point| point.value).collect();
+        Self { labels, values, methods, source }
+    }
+
     /// Whether one of its methods is a trace.
     pub fn traces(&self) -> bool {
         self.methods.iter().any(|method| matches!(method.procedure, Procedure::Trace(_)))
@@ -202,42 +208,56 @@ pub(crate) fn only(document: &Table, parts: &[ScenarioPart]) -> Table {
     some
 }
 
+/// What the points of a cell change.
+fn settings<'a>(points: &'a [&sweep::SweepPoint]) -> impl DoubleEndedIterator<Item = &'a sweep::SweepSetting> {
+    points.iter().flat_map(|point| &point.set)
+}
+
+/// A document with the keys of points changed.
+fn changed(document: &Table, points: &[&sweep::SweepPoint]) -> Result<Table, KeyFault> {
+    let mut changed = document.clone();
+    settings(points).try_for_each(|setting| sweep::set(&mut changed, &setting.key, setting.value.clone()))?;
+    Ok(changed)
+}
+
+/// The methods of a cell: those of the design, with settings of their own.
+fn methods_of_cell(wires: &[IdentifierWire], design: &[Method]) -> Result<Vec<Method>, KeyFault> {
+    let methods = methods(wires)?;
+    if methods.iter().map(|method| &method.label).eq(design.iter().map(|method| &method.label)) {
+        return Ok(methods);
+    }
+    Err(KeyFault::value(
+        KeyPath::dotted("identifier"),
+        "the methods are not the same in every cell",
+        "expected settings of methods",
+        "sweep settings only, and name every method once in an [[identifier]] of its own",
+    ))
+}
+
 /// One cell of the design: what the document says of trials and methods, with the keys of its points changed, resolved
 /// like any scenario.
 pub(crate) fn swept(
     document: &Table,
     points: &[&sweep::SweepPoint],
-    base: &[Method],
+    design: &[Method],
     name: &str,
     folder: &Path,
 ) -> Result<DesignCell, KeyFault> {
-    let labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
-    let settings = || points.iter().flat_map(|point| &point.set);
+    let labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
     let cell = (labels.len() > 1).then(|| labels.join(", "));
     // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of
     // several.
     let attribute = |problem: KeyFault| {
-        let of_key = settings().rfind(|setting| setting.key.is_related(&problem.key));
-        match of_key.or_else(|| settings().next_back()) {
+        let of_key = settings(points).rfind(|setting| setting.key.is_related(&problem.key));
+        match of_key.or_else(|| settings(points).next_back()) {
             Some(setting) => setting.attributed(problem, cell.as_deref()),
             None => problem,
         }
     };
-    let mut changed = document.clone();
-    for setting in settings() {
-        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(attribute)?;
-    }
+    let changed = changed(document, points).map_err(attribute)?;
     let wire: ScenarioWire = reader::document(&changed).map_err(attribute)?;
     let specification = resolve::specification(&wire, name, folder).map_err(attribute)?;
-    let methods = methods(&wire.identifier).map_err(attribute)?;
-    if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
-        return Err(attribute(KeyFault::value(
-            KeyPath::dotted("identifier"),
-            "the methods are not the same in every cell",
-            "expected settings of methods",
-            "sweep settings only, and name every method once in an [[identifier]] of its own",
-        )));
-    }
+    let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
     limits::entries("draw", wire.draw.len(), limits::MOST_DRAWS).map_err(attribute)?;
     let draws: Vec<DrawnKey> = wire
         .draw
@@ -252,42 +272,26 @@ pub(crate) fn swept(
         Some((drawn, specification)) => (Some(drawn), specification),
         None => (None, specification),
     };
-    let values = points.iter().map(|point| point.value).collect();
     let source = TrialSource::Simulated { specification: Box::new(specification), drawn };
-    Ok(DesignCell { labels, values, methods, source })
+    Ok(DesignCell::new(points, methods, source))
 }
 
 /// One cell of a design of measured records: the document with the keys of its points changed.
 ///
-/// Fails as the document alone would, at the point that is at fault.
+/// Fails as the document alone would, at the point that is at fault; the document alone need not be whole.
 pub(crate) fn measured(
     document: &Table,
     points: &[&sweep::SweepPoint],
-    base: &[Method],
+    design: &[Method],
     folder: &Path,
 ) -> Result<DesignCell, KeyFault> {
-    let settings = || points.iter().flat_map(|point| &point.set);
-    let attribute = |problem: KeyFault| match settings().rfind(|setting| setting.key.is_related(&problem.key)) {
+    let attribute = |problem: KeyFault| match settings(points).rfind(|own| own.key.is_related(&problem.key)) {
         Some(setting) => setting.attributed(problem, None),
         None => problem,
     };
-    let mut changed = document.clone();
-    for setting in settings() {
-        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(attribute)?;
-    }
+    let changed = changed(document, points).map_err(attribute)?;
     let wire: RecordStudyWire = reader::document(&changed).map_err(attribute)?;
     let set = RecordSet::read(&wire.records, folder).map_err(attribute)?;
-    let methods = methods(&wire.identifier).map_err(attribute)?;
-    let labels = |methods: &[Method]| methods.iter().map(|method| method.label.clone()).collect::<Vec<String>>();
-    if labels(&methods) != labels(base) {
-        let found = "the methods are not the same in every cell";
-        let advice = "sweep settings only, and name every method once in an [[identifier]] of its own";
-        return Err(attribute(KeyFault::value(KeyPath::dotted("identifier"), found, "expected settings", advice)));
-    }
-    Ok(DesignCell {
-        labels: points.iter().map(|point| point.label.clone()).collect(),
-        values: points.iter().map(|point| point.value).collect(),
-        methods,
-        source: TrialSource::Measured(set),
-    })
+    let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
+    Ok(DesignCell::new(points, methods, TrialSource::Measured(set)))
 }

@@ -127,8 +127,7 @@ impl Scenario {
         let methods = methods(&wire.identifier)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose()?;
         wire.stop.as_ref().map_or(Ok(()), |stop| stop.check(&methods))?;
-        let axes = wire.sweep.iter().enumerate().map(|(index, axis)| axis.resolve(index));
-        let axes: Vec<SweepAxis> = axes.collect::<Result<_, _>>()?;
+        let axes = sweep::axes(&wire.sweep)?;
         let combinations = sweep::product(&axes)?;
         checks::titles(&axes)?;
         checks::size(wire.replicates, combinations.len(), methods.len())?;
@@ -136,24 +135,16 @@ impl Scenario {
         let of_cells = cell::only(document, &[ScenarioPart::Trial, ScenarioPart::Cell]);
         let cells = combinations.iter().map(|points| cell::swept(&of_cells, points, &methods, name, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
-        checks::detail(&words.output.detail, &cells)?;
-        checks::marks(&words.output.marks, &axes)?;
-        checks::about(&words.output.methods, &methods)?;
         wire.published.check()?;
+        let design = Self::of_design(name, words, axes, cells, &methods)?;
         Ok(Self {
-            name: name.to_owned(),
             seed: wire.seed,
             replicates: wire.replicates,
-            draws: wire.draw.iter().map(|draw| draw.key().to_owned()).collect(),
-            axes,
-            cells,
             published: wire.published,
-            words,
+            draws: wire.draw.iter().map(|draw| draw.key().to_owned()).collect(),
             stop: wire.stop,
             predictions,
-            design_sha256: String::new(),
-            sha256: String::new(),
-            text: String::new(),
+            ..design
         })
     }
 
@@ -165,32 +156,46 @@ impl Scenario {
         words.check()?;
         let methods = methods(&identifier)?;
         let predictions = predict.as_ref().map(|predict| predict.resolve()).transpose()?;
-        let axes = sweep.iter().enumerate().map(|(index, axis)| axis.resolve(index));
-        let axes: Vec<SweepAxis> = axes.collect::<Result<_, _>>()?;
+        let axes = sweep::axes(&sweep)?;
         let combinations = sweep::product(&axes)?;
         checks::titles(&axes)?;
         let cells = combinations.iter().map(|points| cell::measured(document, points, &methods, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
-        checks::detail(&words.output.detail, &cells)?;
-        checks::marks(&words.output.marks, &axes)?;
-        checks::about(&words.output.methods, &methods)?;
         let counts = cells.iter().filter_map(DesignCell::record_set).map(|set| set.questions.len() as u64);
         let replicates = counts.max().unwrap_or(0);
         checks::size(replicates, cells.len(), methods.len())?;
+        let design = Self::of_design(name, words, axes, cells, &methods)?;
+        Ok(Self { seed, replicates, predictions, ..design })
+    }
+
+    /// A design of which nothing is published, drawn, stopped or predicted; number of trials, seed, identity and text
+    /// are for the caller to set.
+    ///
+    /// Fails where the words speak of cells, axes or methods that are not there.
+    fn of_design(
+        name: &str,
+        words: Words,
+        axes: Vec<SweepAxis>,
+        cells: Vec<DesignCell>,
+        methods: &[Method],
+    ) -> Result<Self, KeyFault> {
+        checks::detail(&words.output.detail, &cells)?;
+        checks::marks(&words.output.marks, &axes)?;
+        checks::about(&words.output.methods, methods)?;
         Ok(Self {
             name: name.to_owned(),
-            seed,
-            replicates,
-            draws: Vec::new(),
+            seed: 0,
+            replicates: 0,
             axes,
             cells,
             published: Published::default(),
             words,
+            draws: Vec::new(),
             stop: None,
-            predictions,
+            predictions: None,
             design_sha256: String::new(),
-            sha256: String::new(),
             text: String::new(),
+            sha256: String::new(),
         })
     }
 

@@ -1,11 +1,12 @@
 //! What decides the rows of a scenario: its document without prose and presentation. Two scenarios with the same one
 //! give the same rows; where they differ, the keys say how.
 
-use std::io;
 use std::path::Path;
+use std::{io, iter};
 
 use sha2::{Digest, Sha256};
 use toml::{Table, Value};
+use trial::Sidecar;
 use trial::file::{self, FileError};
 use trial::reader::RECORD;
 
@@ -21,7 +22,7 @@ pub fn design_of(document: &Table) -> Table {
         .collect()
 }
 
-/// SHA-256 of a design and of the records it replays.
+/// SHA-256 of a design and of the records it replays, each with the sidecar beside it, if any.
 ///
 /// Fails when such a record is there and cannot be read to its end.
 pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
@@ -32,12 +33,15 @@ pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
             match value {
                 Value::Table(inner) => tables.push(inner),
                 Value::String(name) if key == "file" => {
-                    let path = folder.join(name);
-                    match file::open(&path, RECORD) {
-                        Ok(mut record) => drop(io::copy(&mut record, &mut digest).on("read", &path)?),
-                        // It has been refused, or belongs to a point that is never resolved with it.
-                        Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}
-                        Err(error) => return Err(error).on("read", &path),
+                    let record = folder.join(name);
+                    let sidecar = Sidecar::found_beside(&record);
+                    for path in iter::once(record).chain(sidecar) {
+                        match file::open(&path, RECORD) {
+                            Ok(mut file) => drop(io::copy(&mut file, &mut digest).on("read", &path)?),
+                            // It has been refused, or belongs to a point that is never resolved with it.
+                            Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}
+                            Err(error) => return Err(error).on("read", &path),
+                        }
                     }
                 }
                 Value::Array(items) => tables.extend(items.iter().filter_map(Value::as_table)),

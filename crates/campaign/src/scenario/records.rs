@@ -2,15 +2,16 @@
 //! to some records of a ship and judged on others, which have chosen nothing.
 
 use std::collections::HashSet;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use report::number::counted;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml::Table;
-use trial::Trial;
-use trial::file::{self, FileError};
-use trial::reader::RECORD;
+use trial::file;
+use trial::sidecar::SIDECAR;
+use trial::{Origin, Sidecar, Trial};
 
 use crate::scenario::identity;
 use crate::scenario::method::IdentifierWire;
@@ -117,7 +118,7 @@ pub struct RecordSet {
     pub questions: Vec<RecordQuestion>,
     /// What reading them had to decide, a line each.
     pub warnings: Vec<String>,
-    /// SHA-256 of every file and of the sidecar.
+    /// SHA-256 of every file and of the sidecar that describes it.
     sha256: String,
 }
 
@@ -145,18 +146,23 @@ impl RecordSet {
         }
         let mut digest = Sha256::new();
         let (mut trials, mut warnings) = (Vec::new(), Vec::new());
-        for path in paths.iter().chain(&sidecar) {
-            let refuse = |problem: String| {
+        for path in &paths {
+            let refuse = |problem: &dyn Display| {
                 let advice = "`study fit` says what is wrong with it";
                 let found = format!("{}: {problem}", path.display());
                 KeyFault::value(key.child("files"), found, "expected a record that can be read", advice)
             };
-            digest_file(path, &mut digest).map_err(refuse)?;
-            if Some(path) != sidecar.as_ref() {
-                let read = trial::read_with(path, sidecar.as_deref()).map_err(|error| refuse(error.to_string()))?;
-                warnings.extend(read.warnings.iter().map(|warning| format!("{}: {}", path.display(), warning.text)));
-                trials.push(read.trial);
+            let sidecar = sidecar.clone().or_else(|| Sidecar::found_beside(path));
+            let read = trial::read_with(path, sidecar.as_deref()).map_err(|error| refuse(&error))?;
+            if let Origin::Measured { sha256, .. } = read.trial.origin() {
+                digest.update(sha256);
             }
+            if let Some(sidecar) = sidecar {
+                let text = file::read_text(&sidecar, SIDECAR).map_err(|error| refuse(&error))?;
+                digest.update(Sha256::digest(text));
+            }
+            warnings.extend(read.warnings.iter().map(|warning| format!("{}: {}", path.display(), warning.text)));
+            trials.push(read.trial);
         }
         let names: Vec<&str> = trials.iter().map(Trial::name).collect();
         let mut known = HashSet::new();
@@ -175,14 +181,6 @@ impl RecordSet {
         let questions = questions(&wire.judge, &names, &key.child("judge"))?;
         Ok(Self { trials, questions, warnings, sha256: identity::hex(&digest.finalize()) })
     }
-}
-
-fn digest_file(path: &Path, digest: &mut Sha256) -> Result<(), String> {
-    let mut own = Sha256::new();
-    let mut file = file::open(path, RECORD).map_err(|error: FileError| error.to_string())?;
-    std::io::copy(&mut file, &mut own).map_err(|error| error.to_string())?;
-    digest.update(own.finalize());
-    Ok(())
 }
 
 /// The trials of a cell.

@@ -117,13 +117,9 @@ fn written(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
+    use simulate::{Assumption, Simulation};
 
-    use simulate::Assumption;
-
-    use simulate::Simulation;
-
-    use crate::scenario::Scenario;
+    use crate::testing::scenario;
 
     const BARE: &str = "
 question = \"One line,\\nand another?\"
@@ -146,10 +142,6 @@ method.srivc = {}
 name = \"rate\"
 points = [{ label = \"none\", set = {} }, { label = \"2.5\", set = { \"steering-gear.rate-deg-s\" = 2.5 } }]
 ";
-
-    fn scenario(text: &str) -> Scenario {
-        Scenario::parse(Path::new("bare.toml"), "bare", text.to_owned(), None).expect("it is right")
-    }
 
     #[test]
     fn a_resolved_scenario_is_the_same_scenario_and_marks_its_defaults() {

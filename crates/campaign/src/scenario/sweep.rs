@@ -331,6 +331,11 @@ fn trim(number: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// The axes of a design.
+pub fn axes(wires: &[AxisWire]) -> Result<Vec<SweepAxis>, KeyFault> {
+    wires.iter().enumerate().map(|(index, axis)| axis.resolve(index)).collect()
+}
+
 /// Every combination of points, the first axis slowest; one empty combination when there is no axis.
 ///
 /// Fails when there are too many, and when two axes change the same key.

@@ -3,6 +3,7 @@
 //! moments, [`Moments`] for the running moments of one quantity.
 
 mod bootstrap;
+mod clusters;
 mod groups;
 mod logistic;
 mod moments;
@@ -10,11 +11,11 @@ mod sample;
 mod statistic;
 mod sums;
 
-pub use bootstrap::{RESAMPLES, Resamples, SEED};
+pub use bootstrap::Resamples;
+pub use clusters::{interval, resampled, resampled_by_set};
 pub use groups::{distinct, grouped};
 pub use logistic::{SizeTrials, size_of_share};
 pub use moments::Moments;
 pub use sample::{ErrorSample, Ordered};
-pub(crate) use statistic::FEWEST;
-pub use statistic::{Statistic, Z95, share};
+pub use statistic::{FEWEST, Statistic, Z95, share};
 pub use sums::{BATCHES, BatchSums, ErrorSums, PairSums};

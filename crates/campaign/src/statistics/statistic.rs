@@ -29,7 +29,7 @@ impl Statistic {
 pub const Z95: f64 = 1.959_963_984_540_054;
 
 /// Fewest values of which an interval is given: no pair of order statistics of fewer covers the median in 95 %.
-pub(crate) const FEWEST: u64 = 6;
+pub const FEWEST: u64 = 6;
 
 /// A share with Wilson's interval (1927); `None` of nothing.
 pub fn share(count: u64, of: u64) -> Option<Statistic> {

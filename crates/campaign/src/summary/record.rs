@@ -6,6 +6,7 @@ use crate::statistics::Statistic;
 
 use super::detail::CellDetail;
 use super::predictions::PredictionSummary;
+use super::records::RecordSummary;
 use super::tracing::TraceSummary;
 
 /// Errors of one index over trials, relative to the truth. All but shares are in per cent.
@@ -125,6 +126,8 @@ pub struct Summary {
     pub tracing: Vec<TraceSummary>,
     /// Whether intervals of predictions hold, in studies that predict manoeuvres.
     pub predictions: Vec<PredictionSummary>,
+    /// What methods make of measured records, in studies of such.
+    pub records: Vec<RecordSummary>,
 }
 
 impl Summary {

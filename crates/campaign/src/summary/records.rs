@@ -6,15 +6,14 @@
 use std::collections::BTreeMap;
 
 use estimation::statistics::median;
-use rand::rngs::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
+use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
 use crate::rows::StudyRow;
-use crate::statistics::{FEWEST, RESAMPLES, SEED, Statistic};
+use crate::statistics::{Statistic, interval, resampled};
 
 /// One method on the records of a cell.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RecordSummary {
     /// Index of the cell.
     pub cell: usize,
@@ -84,21 +83,19 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
 
 /// The median of all values, with an interval where there are enough groups.
 fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
-    let of = |groups: &mut dyn Iterator<Item = &Vec<f64>>| median(&mut groups.flatten().copied().collect::<Vec<f64>>());
-    let value = of(&mut groups.iter())?;
-    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
-    let ci95 = (groups.len() as u64 >= FEWEST).then(|| {
-        let mut drawn: Vec<f64> = (0..RESAMPLES)
-            .filter_map(|_| {
-                let places: Vec<usize> = groups.iter().map(|_| rng.random_range(0..groups.len())).collect();
-                of(&mut places.iter().map(|place| &groups[*place]))
-            })
-            .collect();
-        drawn.sort_by(f64::total_cmp);
-        let rank = |p: f64| ((drawn.len() - 1) as f64 * p).round() as usize;
-        [drawn[rank(0.025)], drawn[rank(0.975)]]
-    });
-    Some(Statistic { value, ci95 })
+    let values = groups.concat();
+    let of = |places: &[usize]| median(&mut places.iter().map(|&place| values[place]).collect::<Vec<f64>>());
+    let mut end = 0;
+    let clusters: Vec<Vec<usize>> = groups
+        .iter()
+        .map(|group| {
+            end += group.len();
+            (end - group.len()..end).collect()
+        })
+        .collect();
+    let value = of(&clusters.concat())?;
+    let drawn = resampled(&clusters, of).into_iter().flatten().collect();
+    Some(Statistic { value, ci95: interval(groups.len(), drawn) })
 }
 
 #[cfg(test)]

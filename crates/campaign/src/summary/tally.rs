@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::scenario::MethodName;
 use rayon::prelude::*;
 
 use super::detail::{CellDetail, Cloud, ErrorDensity, MOST_PAIRS, MethodDetail};
@@ -11,6 +10,7 @@ use super::record::{Comparison, IndexErrors, MethodSummary, PairSummary, Perform
 use super::tracing::TraceTally;
 use crate::design::{CellFacts, Design};
 use crate::rows::StudyRow;
+use crate::scenario::MethodName;
 use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, share};
 
 /// The method that others are compared with, where a study has it.

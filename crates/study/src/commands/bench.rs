@@ -10,6 +10,7 @@ use campaign::benchmark::{BenchDocument, BenchMethod, BenchTask, Definition, Rec
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
 use campaign::scenario::problem::suggestion;
+use campaign::scenario::records::DATA;
 use clap::Args;
 use clap::builder::StringValueParser;
 use report::Theme;
@@ -34,9 +35,6 @@ const METHODS: &str = "methods";
 
 /// Folder inside that of the results for those of a run that was stopped.
 const UNFINISHED: &str = "unfinished";
-
-/// Names the folder of measured records where the command line does not.
-const DATA: &str = "KEMPF_DATA";
 
 /// What `study bench` is asked to do.
 #[derive(Debug, Clone, Args)]

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use campaign::benchmark::BenchDocument;
-use campaign::benchmark::board::FEWEST;
 use campaign::benchmark::cases::{BenchCase, CaseAnswer};
+use campaign::statistics::FEWEST;
 use report::Page;
 use report::markdown::text;
 
@@ -96,7 +96,7 @@ fn boards(page: &mut Page, results: &BenchDocument) {
 }
 
 fn counted(cases: usize, clusters: usize) -> String {
-    let few = if clusters < FEWEST { ", too few for an interval" } else { "" };
+    let few = if (clusters as u64) < FEWEST { ", too few for an interval" } else { "" };
     match cases == clusters {
         true => format!("{}{few}", report::number::counted(cases as u64, "record")),
         false => format!("{cases} cases on {clusters} records{few}"),

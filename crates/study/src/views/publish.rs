@@ -2,6 +2,7 @@
 
 use std::io::Write as _;
 
+use campaign::design::Design;
 use campaign::disk;
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
@@ -11,7 +12,7 @@ use rayon::prelude::*;
 use report::{Table, Theme};
 
 use super::page_files::{KEY_FIGURE, REPORT, write_page};
-use super::record_study::{self, RecordStudy};
+use super::record_study;
 use super::study_figures::{self, FigurePlace};
 use super::study_page::{on_screen, page};
 use super::{blind_spots_table, coverage_table, curve_tables, tables, tracing_table};
@@ -28,43 +29,43 @@ pub fn publish(
     common: &Common,
 ) -> Result<(), Failure> {
     let design = &stored.design;
-    if design.is_measured() {
-        let study = RecordStudy::of(stored)?;
-        record_study::put(stored, &study, folder, theme, figures)?;
-        return match common.format {
-            _ if common.is_silent() => Ok(()),
-            Format::Text => say_with_page(&record_study::on_screen(stored, &study), folder),
-            Format::Csv => screen::say(record_study::summary(&study.lines, design).to_csv().trim_end()),
-            Format::Json => screen::say_document(&document(stored, &study.summary, folder)?),
-            format => screen::say(format.render(&record_study::brief(&study.lines, design)).trim_end()),
-        };
-    }
     let summary = put(stored, folder, theme, figures)?;
     match common.format {
         _ if common.is_silent() => Ok(()),
-        Format::Text => say_with_page(&on_screen(stored, &summary), folder),
+        Format::Text => {
+            let text = match design.is_measured() {
+                true => record_study::on_screen(stored, &summary),
+                false => on_screen(stored, &summary),
+            };
+            screen::say(&format!("{text}\nreport: {}", folder.path().join(REPORT).display()))
+        }
         // Another program reads the table: nothing else may stand beside it.
-        Format::Csv => screen::say(tables::summary(&summary.methods, design).to_csv().trim_end()),
+        Format::Csv => screen::say(table(&summary, design).to_csv().trim_end()),
         Format::Json => screen::say_document(&document(stored, &summary, folder)?),
-        format => screen::say(format.render(&tables::summary_in_brief(&summary, design)).trim_end()),
+        format => {
+            let brief = match design.is_measured() {
+                true => record_study::brief(&summary.records, design),
+                false => tables::summary_in_brief(&summary, design),
+            };
+            screen::say(format.render(&brief).trim_end())
+        }
     }
 }
 
-/// Says something, and where the page is.
-fn say_with_page(text: &str, folder: &ResultFolder) -> Result<(), Failure> {
-    screen::say(&format!("{text}\nreport: {}", folder.path().join(REPORT).display()))
+/// A line for every cell and method, for other programs: `summary.csv`.
+fn table(summary: &Summary, design: &Design) -> Table {
+    match design.is_measured() {
+        true => record_study::summary(&summary.records, design),
+        false => tables::summary(&summary.methods, design),
+    }
 }
 
 /// What was published, for other programs. Fails where it cannot be written as JSON.
 pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) -> Result<String, Failure> {
-    let lines = match stored.design.is_measured() {
-        true => record_study::summary(&RecordStudy::of(stored)?.lines, &stored.design),
-        false => tables::summary(&summary.methods, &stored.design),
-    };
     documents::of(&StudyAnswer {
         folder: folder.path().display().to_string(),
         manifest: &stored.manifest,
-        summary: lines.to_records(),
+        summary: table(summary, &stored.design).to_records(),
         failures: tables::failures(summary, &stored.design),
     })
 }
@@ -78,9 +79,7 @@ pub fn put(
 ) -> Result<Summary, Failure> {
     let design = &stored.design;
     if design.is_measured() {
-        let study = RecordStudy::of(stored)?;
-        record_study::put(stored, &study, folder, theme, figures)?;
-        return Ok(study.summary);
+        return record_study::put(stored, folder, theme, figures);
     }
     let mut tally = Tally::new(design);
     stored.rows(|row| {

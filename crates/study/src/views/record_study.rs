@@ -24,31 +24,6 @@ const RECORDS: &str = "records.csv";
 /// Figure of the errors on the records that judge.
 const JUDGED: &str = "judged";
 
-/// What was made of the records.
-pub struct RecordStudy {
-    /// All rows, in their order.
-    pub rows: Vec<StudyRow>,
-    /// A line for every cell and method.
-    pub lines: Vec<RecordSummary>,
-    /// Predictions of the records that judge, where there are any.
-    pub summary: Summary,
-}
-
-impl RecordStudy {
-    /// Reads the rows of a study.
-    ///
-    /// Fails when one is missing.
-    pub fn of(stored: &StoredStudy) -> Result<Self, Failure> {
-        let (mut rows, mut tally) = (Vec::new(), Tally::new(&stored.design));
-        stored.rows(|row| {
-            tally.add(&row);
-            rows.push(row);
-            Ok(())
-        })?;
-        Ok(Self { lines: record_summaries(&rows, &stored.design), rows, summary: tally.finish() })
-    }
-}
-
 /// A line for every cell and method, for a person.
 pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
     let mut head = tables::head(design).counts(["failed"]);
@@ -115,15 +90,15 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
 }
 
 /// The heading error of every method on every record that judges, a line each.
-fn judged(study: &RecordStudy, design: &Design) -> PageFigure {
+fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFigure {
     let mut names = Vec::new();
-    let rows = study.lines.iter().map(|line| {
+    let marks = lines.iter().map(|line| {
         let method = &design.methods[line.method];
         let labels = design.cells[line.cell].labels.join(", ");
         names.push(if labels.is_empty() { method.label.clone() } else { format!("{labels}: {}", method.label) });
         let look = CurveOrigin::Method(method.id.clone()).look();
         let pale = Look { hollow: true, ..look };
-        let own = study.rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
+        let own = rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
         let mut items: Vec<RowItem> = own
             .filter_map(|row| row.validation_rmse_deg)
             .map(|error| RowItem::new("", RowKind::Mark(pale, error, None)).softly())
@@ -133,14 +108,14 @@ fn judged(study: &RecordStudy, design: &Design) -> PageFigure {
     });
     let column = RowsColumn {
         x: Ruler::new("heading error on records that were not fitted [°]", Division::Factors),
-        rows: rows.collect(),
+        rows: marks.collect(),
         ..RowsColumn::default()
     };
     let caption = "Heading error of every method on the records that judge, which it has not seen: the recorded rudder is \
                    replayed, and the initial state alone is fitted. Hollow marks: trials; full ones: medians, with 95 % intervals over \
                    fits where there are six or more.";
     let plot = NamedRows {
-        title: Some(finding(study, design)),
+        title: Some(finding(lines, design)),
         names,
         columns: vec![column],
         note: Some(String::from(
@@ -155,10 +130,10 @@ fn judged(study: &RecordStudy, design: &Design) -> PageFigure {
 const NAMED_CELLS: usize = 3;
 
 /// What came out, in a sentence: of the method that is nearest over all cells.
-fn finding(study: &RecordStudy, design: &Design) -> String {
+fn finding(lines: &[RecordSummary], design: &Design) -> String {
     let first = &design.methods[0].label;
     let ratios = |method: usize| -> Vec<(usize, f64)> {
-        let own = study.lines.iter().filter(|line| line.method == method);
+        let own = lines.iter().filter(|line| line.method == method);
         own.filter_map(|line| Some((line.cell, line.ratio?.value))).collect()
     };
     let mean = |method: &usize| {
@@ -187,13 +162,13 @@ fn finding(study: &RecordStudy, design: &Design) -> String {
 }
 
 /// What a person sees.
-pub fn on_screen(stored: &StoredStudy, study: &RecordStudy) -> String {
+pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let design = &stored.design;
     let mut text = format!("{}: {}\n\n", stored.manifest.name, design.words.question.trim());
-    text += &brief(&study.lines, design).to_text();
-    if !study.summary.predictions.is_empty() {
+    text += &brief(&summary.records, design).to_text();
+    if !summary.predictions.is_empty() {
         text += "\nwhat 90 % intervals of predictions hold\n";
-        text += &coverage_table::pooled(&study.summary.predictions, design).to_text();
+        text += &coverage_table::pooled(&summary.predictions, design).to_text();
     }
     text
 }
@@ -205,44 +180,51 @@ const READING: &str = "*own error*: median over fits of the heading error on the
                        bootstrap over fits, or over judging records where there is one fit. `records.csv` has every trial \
                        with K and T, `rows` the same for programs.";
 
-fn page(stored: &StoredStudy, study: &RecordStudy, figures: Vec<PageFigure>) -> Page {
+fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<PageFigure>) -> Page {
     let StoredStudy { manifest, design, .. } = stored;
     let mut page = Page::titled(manifest.name.as_str());
     page.say(format!("**{}**", design.words.question.trim()));
     page.say(&design.words.finding);
     page.figures(figures);
     page.say(&design.words.analysis);
-    page.table(brief(&study.lines, design));
+    page.table(brief(&summary.records, design));
     page.say(READING);
-    if !study.summary.predictions.is_empty() {
+    if !summary.predictions.is_empty() {
         page.part("What intervals of predictions hold");
-        page.table(coverage_table::pooled(&study.summary.predictions, design));
+        page.table(coverage_table::pooled(&summary.predictions, design));
     }
     study_page::how_it_was_made(&mut page, manifest);
     page
 }
 
-/// Makes the tables, the figure and the page in a folder.
+/// Makes the tables, the figure and the page in a folder; returns what they are made from.
 ///
-/// Fails when they cannot be written.
+/// Fails when rows are missing, and when something cannot be written.
 pub fn put(
     stored: &StoredStudy,
-    study: &RecordStudy,
     folder: &ResultFolder,
     theme: &Theme,
     choice: FigureChoice,
-) -> Result<(), Failure> {
+) -> Result<Summary, Failure> {
     let design = &stored.design;
-    folder.write("summary.csv", summary(&study.lines, design).to_csv())?;
-    folder.write(RECORDS, trials(&study.rows, design).to_csv())?;
-    let judges = study.rows.iter().any(|row| row.validation_rmse_deg.is_some());
+    let (mut rows, mut tally) = (Vec::new(), Tally::new(design));
+    stored.rows(|row| {
+        tally.add(&row);
+        rows.push(row);
+        Ok(())
+    })?;
+    let made = Summary { records: record_summaries(&rows, design), ..tally.finish() };
+    folder.write("summary.csv", summary(&made.records, design).to_csv())?;
+    folder.write(RECORDS, trials(&rows, design).to_csv())?;
+    let judges = rows.iter().any(|row| row.validation_rmse_deg.is_some());
     let mut figures: Vec<PageFigure> =
-        (judges && choice != FigureChoice::None).then(|| judged(study, design)).into_iter().collect();
+        (judges && choice != FigureChoice::None).then(|| judged(&rows, &made.records, design)).into_iter().collect();
     if let (Some(figure), Some(_)) = (figures.first_mut(), &design.words.output.figure) {
         figure.stem = KEY_FIGURE.to_owned();
         if design.words.output.title.is_some() {
             figure.plot.title_mut().clone_from(&design.words.output.title);
         }
     }
-    write_page(folder, page(stored, study, figures), Some(theme))
+    write_page(folder, page(stored, &made, figures), Some(theme))?;
+    Ok(made)
 }

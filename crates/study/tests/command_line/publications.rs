@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::process::Command;
 
-use campaign::manifest::{Manifest, ProgramRevision};
+use toml::Table;
 
 use crate::desk::{Desk, of_repository};
 
@@ -17,7 +17,7 @@ fn published_results_belong_to_the_scenarios() {
         let Some(name) = path.file_name().and_then(|name| name.to_str()?.strip_suffix(".toml")) else { continue };
         let manifest = results.join("published").join(name).join("manifest.toml");
         let manifest = fs::read_to_string(&manifest).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let manifest: toml::Table = manifest.parse().expect("it is TOML");
+        let manifest: Table = manifest.parse().expect("it is TOML");
         let scenario = fs::read_to_string(&path).expect("it was just listed");
         assert!(manifest["scenario"].as_str() == Some(&scenario), "{name} was changed after its results were made");
     }
@@ -40,17 +40,15 @@ fn the_page_over_published_results_is_that_of_the_script() {
     assert!(fs::read(page).expect("it was made") == stored, "run `python3 results/publish.py --page`");
 }
 
-/// The program that made each folder of the published results.
-fn programs() -> Vec<(String, Option<ProgramRevision>)> {
+/// What each folder of the published results says of the program that made it.
+fn programs() -> Vec<(String, Table)> {
     let published = of_repository("results/published");
-    let names = campaign::disk::names(&published).expect("the folder is there");
     let program = |name: &String| {
-        let folder = published.join(name);
-        let manifest = Manifest::read(&folder.join("manifest.toml")).expect("a manifest, or none");
-        let stamp = || fs::read_to_string(folder.join("program.toml")).ok()?.parse::<toml::Table>().ok();
-        let of_program = || stamp()?.remove("program")?.try_into().ok();
-        manifest.map(|manifest| manifest.program()).or_else(of_program)
+        let table = |file: &str| fs::read_to_string(published.join(name).join(file)).ok()?.parse::<Table>().ok();
+        let stamp = || table("program.toml")?.remove("program")?.try_into().ok();
+        table("manifest.toml").or_else(stamp).unwrap_or_default()
     };
+    let names = campaign::disk::names(&published).expect("the folder is there");
     names.iter().map(|name| (name.clone(), program(name))).collect()
 }
 
@@ -58,12 +56,14 @@ fn programs() -> Vec<(String, Option<ProgramRevision>)> {
 #[test]
 fn published_results_are_of_one_version() {
     let programs = programs();
-    let (_, first) = &programs[0];
-    let version = first.as_ref().map(|first| &first.version);
-    let is_clean =
-        |own: &ProgramRevision| Some(&own.version) == version && !own.git_dirty && own.git_revision.is_some();
-    let others: Vec<_> = programs.iter().filter(|(_, program)| !program.as_ref().is_some_and(is_clean)).collect();
-    assert!(others.is_empty(), "not made by {first:?}; run `results/publish.py`: {others:?}");
+    let version = programs[0].1.get("version");
+    let is_clean = |own: &Table| {
+        let is_changed = own.get("git-dirty").is_some_and(|dirty| dirty.as_bool() != Some(false));
+        version.is_some() && own.get("version") == version && !is_changed && own.contains_key("git-revision")
+    };
+    let others = programs.iter().filter(|(_, program)| !is_clean(program)).map(|(name, _)| name);
+    let others: Vec<_> = others.collect();
+    assert!(others.is_empty(), "not made by one clean revision of {version:?}; run `results/publish.py`: {others:?}");
 }
 
 /// A clone is small.

@@ -49,6 +49,24 @@ fn every_record_is_fitted_and_judged_by_the_others() {
     desk.run(&["fleet.toml", "--out", "out"]).is_refused(2, &["another study", "record"]);
 }
 
+/// A sidecar beside a record decides its rows; what it leaves to be decided is told once.
+#[test]
+fn a_record_has_a_sidecar_beside_it() {
+    let desk = desk();
+    let run = |sidecar: &str| {
+        desk.file("logs/zz_1.trial.toml", sidecar);
+        let said = desk.run(&["fleet.toml", "--out", "out", "--restart"]).is_done().err.clone();
+        (desk.text("out/records.csv"), said.matches("warning: logs/zz_1.csv").count())
+    };
+    let whole = run("");
+    assert_eq!(whole.1, 0);
+    assert_ne!(whole.0, run("[part]\nuntil-s = 90.0\n").0);
+    desk.file("logs/zz_1.trial.toml", "");
+    desk.run(&["fleet.toml", "--out", "out"]).is_refused(2, &["another study", "record"]);
+    // The rudder against its sign is implausible, and said to be right.
+    assert_eq!(run("[check]\nplausibility = false\n[[column]]\nname = \"rudder_deg\"\nflip = true\n").1, 1);
+}
+
 #[test]
 fn records_are_left_out_listed_or_fitted_alone() {
     let desk = desk();

@@ -330,6 +330,10 @@ fn the_record_of_a_replay_is_read_with_the_scenario() {
     desk.file("studies/case.toml", replay("../record.csv"));
     desk.file("record.csv", zig_zag_csv());
     desk.run(&["check", "studies/case.toml"]).is_done();
+    // What the sidecar beside the record says decides the rows.
+    desk.run(&["studies/case.toml", "--out", "out", "--quiet"]).is_done();
+    desk.file("record.trial.toml", "[part]\nuntil-s = 100.0\n");
+    desk.run(&["studies/case.toml", "--out", "out"]).is_refused(2, &["another study", "record"]);
     let late = replay("../record.csv").replace("duration-s = 270.0\n", "duration-s = 270.0\nafter-execute = 1\n");
     desk.file("studies/case.toml", late);
     desk.run(&["check", "studies/case.toml"]).is_refused(2, &["`recording.after-execute` is 1", "leave the key out"]);

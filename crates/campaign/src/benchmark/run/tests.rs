@@ -1,10 +1,10 @@
 use std::sync::{Arc, LazyLock};
 
-use crate::NoObserver;
 use identify::estimate::{Estimate, StopReason, Uncertainty};
 use identify::{Identifier, IdentifyError};
 
 use super::*;
+use crate::NoObserver;
 
 const DEFINITION: &str = r#"
 name = "own"
