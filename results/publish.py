@@ -108,6 +108,8 @@ def make_study(name, scenario, program, answers, restart):
     that answer its trials, if any do."""
     place = PUBLISHED / name
     report = place / "report.md"
+    if "records" in read(ROOT / scenario) and not os.environ.get("KEMPF_DATA"):
+        return "skipped: it needs --data DIR, the measured records"
     [checked] = json.loads(said(program.path, "check", scenario, "--format", "json"))["scenarios"]
 
     def has_rows_of(stored):
@@ -156,6 +158,8 @@ def make_program(own, program, data, restart):
     for command in own["commands"]:
         words = [re.sub(r"\{folder\}|\{records\}", lambda found: places[found[0]], word) for word in command]
         run(*([program.path, *words[1:]] if words[0] == "study" else words))
+    if "keep" in own:
+        keep_only(made, own["keep"])
     stamp = f"commands = {json.dumps(own['commands'], ensure_ascii=False)}\n"
     stamp += f"wall-time-s = {round(time.monotonic() - start)}.0\n\n[program]\n"
     stamp += "".join(f'{key} = "{value}"\n' for key, value in program.revision.items())
@@ -164,6 +168,17 @@ def make_program(own, program, data, restart):
     made.rename(place)
     shutil.rmtree(scratch)
     return "made"
+
+
+def keep_only(folder, kept):
+    """Removes all other files, and what pages say of figures among them: each a line with its caption below."""
+    for file in [file for file in folder.rglob("*") if file.is_file()]:
+        if file.relative_to(folder).as_posix() not in kept:
+            file.unlink()
+    for page in folder.rglob("*.md"):
+        figure = re.compile(r"!\[[^]\n]*\]\(([^)\n]+)\)\n\n(?:\*[^\n]+\*\n\n)?")
+        shown = lambda found: found[0] if (page.parent / found[1]).is_file() else ""  # noqa: E731
+        page.write_bytes(figure.sub(shown, page.read_bytes().decode()).encode())
 
 
 def changes(name):
@@ -233,7 +248,7 @@ def publish(options, plan, scenarios):
         raise Failed(f"--data {data}: there is no such folder; give that of the measured records")
     if changed := said("git", "status", "--porcelain", "--", ".", ":!results/published", ":!results/README.md"):
         raise Failed(f"this is not the source of a revision; commit or put away what was changed:\n{changed.rstrip()}")
-    os.environ.update({"TRIAL_DATA": str(data), "KEMPF_DATA": str(data)} if data else {})
+    os.environ.update({"KEMPF_DATA": str(data)} if data else {})
     program, entries = Program(), []
     for name in sorted({place.name for place in PUBLISHED.iterdir()} - set(known)):
         print(f"warning: {PUBLISHED / name}: no scenario and no program makes it", file=sys.stderr)

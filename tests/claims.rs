@@ -41,6 +41,10 @@ struct Lines {
 struct TableCopy {
     page: String,
     table: String,
+    /// Cells of the rows that are copied.
+    rows: BTreeMap<String, String>,
+    /// Columns, each with its heading in the page.
+    columns: Vec<[String; 2]>,
 }
 
 /// One sentence, or a part of one.
@@ -128,12 +132,12 @@ impl Claim {
 impl TableCopy {
     /// The page with the table as it is stored now.
     fn renewed(&self) -> Result<String, String> {
-        let Self { page, table } = self;
+        let Self { page, table, rows, columns } = self;
         let text = read(page)?;
         let mark = format!("<!-- Table: {table} -->\n\n");
         let (before, rest) = text.split_once(&mark).ok_or_else(|| format!("{page} has no {}", mark.trim()))?;
         let length: usize = rest.split_inclusive('\n').take_while(|line| line.starts_with('|')).map(str::len).sum();
-        Ok(format!("{before}{mark}{}{}", in_markdown(table)?, &rest[length..]))
+        Ok(format!("{before}{mark}{}{}", in_markdown(table, rows, columns)?, &rest[length..]))
     }
 }
 

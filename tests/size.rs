@@ -28,7 +28,7 @@ const LANGUAGES: [&str; 3] = ["rs", "py", "js"];
 const FOLDERS: [&str; 5] = ["benches", "crates", "docs", "examples", "tests"];
 
 /// Programs of the tests package that make pages: code, wherever they lie.
-const PRODUCT: [&str; 4] = ["bin", "measured", "predicted", "unlisted"];
+const PRODUCT: [&str; 2] = ["bin", "unlisted"];
 
 /// The size of the house: lines of code and tests, and what is counted outside of tests.
 #[derive(Debug, Default, PartialEq)]
@@ -205,6 +205,6 @@ fn pages_are_code_wherever_they_lie() {
         ["tests/golden.rs", "tests/src/lib.rs", "crates/a/tests/b.py", "crates/a/src/b/tests.rs"].map(is_of_tests)
             == [true; 4]
     );
-    assert!(["tests/src/measured/a.rs", "crates/a/src/b.rs", "benches/all.rs"].map(is_of_tests) == [false; 3]);
+    assert!(["tests/src/bin/a.rs", "crates/a/src/b.rs", "benches/all.rs"].map(is_of_tests) == [false; 3]);
     assert_eq!(["crates/trace/src/a.rs", "tests/a/b.rs"].map(package), ["crates/trace", "tests"]);
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use estimation::statistics::wilson;
+use report::number::significant;
 use serde::Deserialize;
 
 use super::wording::parsed;
@@ -128,17 +129,25 @@ impl Number {
     }
 }
 
-/// A stored table in Markdown.
-pub fn in_markdown(table: &str) -> Result<String, String> {
+/// Some rows and columns of a stored table in Markdown, numbers with three digits.
+pub fn in_markdown(table: &str, kept: &BTreeMap<String, String>, columns: &[[String; 2]]) -> Result<String, String> {
     let text = read(table)?;
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
-    let rows: Result<Vec<csv::StringRecord>, _> = reader.records().collect();
-    let rows = rows.map_err(|error| format!("{table}: {error}"))?;
-    let is_number =
-        |column: usize| rows.iter().skip(1).all(|row| parsed(&row[column]).is_some() || &row[column] == "–");
-    let line = |row: &csv::StringRecord| row.iter().map(|cell| format!("| {} ", cell.replace('|', "\\|"))).collect();
-    let mut lines: Vec<String> = rows.iter().map(line).collect();
-    let width = rows.first().map_or(0, csv::StringRecord::len);
-    lines.insert(1, (0..width).map(|column| if is_number(column) { "|---:" } else { "|---" }).collect());
-    Ok(lines.iter().map(|line| format!("{}|\n", line)).collect())
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let rows: Result<Vec<BTreeMap<String, String>>, _> = reader.deserialize().collect();
+    let mut rows = rows.map_err(|error| format!("{table}: {error}"))?;
+    rows.retain(|row| kept.iter().all(|(name, value)| row.get(name) == Some(value)));
+    let cells = |name: &String| -> Option<Vec<&str>> { rows.iter().map(|row| Some(row.get(name)?.as_str())).collect() };
+    let mut lines = vec![String::new(); 2 + rows.len()];
+    for [name, heading] in columns {
+        let cells = cells(name).ok_or_else(|| format!("{table}: no column {name:?}"))?;
+        let is_number = cells.iter().all(|cell| parsed(cell).is_some());
+        let shown = |cell: &&str| match parsed(cell).filter(|_| cell.contains('.')) {
+            Some(value) => significant(value, 3),
+            None => cell.replace('|', "\\|").replace('+', ", "),
+        };
+        let column = [heading.clone(), if is_number { "---:" } else { "---" }.to_owned()];
+        let column = column.into_iter().chain(cells.iter().map(shown));
+        lines.iter_mut().zip(column).for_each(|(line, cell)| *line += &format!("| {cell} "));
+    }
+    Ok(lines.into_iter().map(|line| line.replace("| --- ", "|---").replace("| ---: ", "|---:") + "|\n").collect())
 }

@@ -7,18 +7,12 @@
 //! | simulated records, and what can be done to a record | [`records`] |
 //! | logs in every format and with every trouble, of one known ship | [`logs`] |
 //! | damaged files for every reader | [`fuzz`] |
-//! | measured records, which are not part of the project | [`measured`], [`autopilot`], [`wrapped`] |
-//! | manoeuvres of measured ships, predicted | [`predicted`] |
-//! | effects of one hull, record by record | [`stability`] |
+//! | measured records, which are not part of the project | [`measured`] |
 //! | ships that are on no list, traced | [`unlisted`] |
 
-pub mod autopilot;
 pub mod fuzz;
 pub mod logs;
 pub mod measured;
-pub mod predicted;
 pub mod records;
-pub mod stability;
 pub mod unlisted;
 pub mod validation;
-pub mod wrapped;

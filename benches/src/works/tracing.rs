@@ -27,19 +27,19 @@ const MOST_OF_EIGHT: f64 = 13.0;
 const TOGETHER: usize = 3;
 
 /// The measured records of a folder, which are not part of the project; `None`, and one line on standard error, when
-/// one is not there. They are looked for in the folder named by the environment variable `TRIAL_DATA`, or else in the
+/// one is not there. They are looked for in the folder named by the environment variable `KEMPF_DATA`, or else in the
 /// shared folder beside the project.
 ///
 /// # Panics
 /// When a record is there and cannot be read.
 fn measured(folder: &str, names: &[&str]) -> Option<Vec<Trial>> {
     let project = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let data = std::env::var_os("TRIAL_DATA").map_or_else(|| project.join("../../shared/data"), PathBuf::from);
+    let data = std::env::var_os("KEMPF_DATA").map_or_else(|| project.join("../../shared/data"), PathBuf::from);
     let sidecar = project.join(format!("../scenarios/measured/{folder}.trial.toml"));
     let read = |name: &&str| {
         let path = data.join(folder).join(format!("{name}.csv"));
         if !path.is_file() {
-            eprintln!("skipped: no measured record {folder}/{name}.csv; set TRIAL_DATA to the folder that holds it");
+            eprintln!("skipped: no measured record {folder}/{name}.csv; set KEMPF_DATA to the folder that holds it");
             return None;
         }
         let reading = trial::read_with(&path, Some(&sidecar));

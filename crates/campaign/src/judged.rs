@@ -4,20 +4,28 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use ::trace::Analysis;
+use ::trace::comparison::before as of_base;
+use ::trace::record::PreparedRecord;
 use document::IdentifiedShip;
 use identify::Estimate;
 use predict::ShipMixture;
+use predict::turn::without_current;
+use ship::angle::to_deg;
 use simulate::StreamKey;
-use trial::Trial;
+use trial::{Channel, Trial};
 
 use crate::engine::{self, TrialOutcome, TrialQuestion, TrialRunner};
 use crate::known::{self, RecordFacts};
+use crate::prediction_check::is_in_lengths;
 use crate::reference::TrialReference;
 use crate::rows::{PredictedFigure, StudyRow};
 use crate::scenario::records::RecordSet;
 use crate::scenario::{Predictions, Procedure, Scenario};
 use crate::task::Task;
 use crate::timings::TrialTiming;
+
+/// By how much the lengths of two records of one scale may differ, as a share.
+const SCALE: f64 = 0.01;
 
 /// Places of tasks, in order, that are run together: trials of measured records that share a fit.
 pub fn units(scenario: &Scenario, tasks: &[Task]) -> Vec<Range<usize>> {
@@ -47,7 +55,7 @@ pub fn run_unit(runner: &TrialRunner, scenario: &Scenario, tasks: &[Task]) -> Ve
 struct RecordFit {
     answer: FitAnswer,
     /// The ship that predicts; none where nothing is predicted, and where the answer has no covariance.
-    ship: Option<ShipMixture>,
+    ship: Option<IdentifiedShip>,
 }
 
 /// The answer of a method.
@@ -97,9 +105,10 @@ impl SharedTrials<'_> {
         let key = |task: &Task| engine::key(self.scenario, *task);
         let shared = match procedure {
             Procedure::Trace(settings) => {
-                let held_out: Vec<Trial> = self.judges.iter().flatten().map(|trial| (*trial).clone()).collect();
-                let analysis = ::trace::trace(&self.fitted, &held_out, settings);
-                let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)));
+                let held_out: Vec<Trial> = self.replayed(self.judges.len()).cloned().collect();
+                let settings = ::trace::Settings { hulls: true, ..settings.clone() };
+                let analysis = ::trace::trace(&self.fitted, &held_out, &settings);
+                let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)), Some(&settings));
                 Some(analysis.map(fit).map_err(|error| engine::failure(&error).into()))
             }
             Procedure::Identify { .. } => self.response(procedure, &key(&self.tasks[0])),
@@ -118,55 +127,91 @@ impl SharedTrials<'_> {
         self.tasks.iter().enumerate().map(row).collect()
     }
 
+    /// The judging records of the first trials that are of the length of the fitted ones: a response of another scale
+    /// is not replayed on them.
+    fn replayed(&self, trials: usize) -> impl Iterator<Item = &Trial> {
+        let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
+        let fitted = self.fitted.iter().find_map(length);
+        let is_of_scale = move |judge: &&Trial| {
+            let ratio = length(judge).zip(fitted).map(|(one, other)| one / other);
+            ratio.is_none_or(|ratio| (ratio - 1.0).abs() < SCALE)
+        };
+        self.judges[..trials].iter().copied().flatten().filter(is_of_scale)
+    }
+
     /// The first-order response of the records; `None` for a trace.
     fn response(&self, procedure: &Procedure, key: &StreamKey) -> Option<Result<RecordFit, String>> {
         let answer = procedure.identify(&self.fitted, key)?;
-        let fit = |estimate| self.fit(FitAnswer::Response(Box::new(estimate)));
+        let fit = |estimate| self.fit(FitAnswer::Response(Box::new(estimate)), None);
         Some(answer.map(fit).map_err(|error| error.in_a_row().into_owned()))
     }
 
-    /// An answer with the ship that predicts, where anything is predicted.
-    fn fit(&self, answer: FitAnswer) -> RecordFit {
+    /// An answer, with the settings of a trace, and the ship that predicts, where anything is predicted.
+    fn fit(&self, answer: FitAnswer, settings: Option<&::trace::Settings>) -> RecordFit {
         let is_asked = self.scenario.predictions.is_some() && self.judges.iter().any(Option::is_some);
-        RecordFit { ship: if is_asked { ship(&answer, &self.fitted) } else { None }, answer }
+        RecordFit { ship: if is_asked { ship(&answer, &self.fitted, settings) } else { None }, answer }
     }
 
     /// The row of a fit on a trial.
     fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
-        let judge = self.judges[trial];
+        let before = self.replayed(trial).count();
+        let judge = self.replayed(trial + 1).nth(before);
         let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };
         let asked = TrialQuestion { trials: &self.fitted, key, reference: &reference, missing: &[], check: None };
-        let row = match &fit.answer {
-            FitAnswer::Response(estimate) => asked.estimated(blank, estimate),
+        let (row, errors) = match &fit.answer {
+            FitAnswer::Response(estimate) => {
+                let replayed = |judge| of_base(judge, &PreparedRecord::whole(judge), &estimate.response, true).ok();
+                (asked.estimated(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
+            }
             FitAnswer::Trace(analysis) => {
-                let validation = judge.and(analysis.validation.get(trial)).map(|one| &one.after);
-                asked.traced(blank, analysis, validation)
+                let validation = judge.and(analysis.validation.get(before)).map(|compared| &compared.after);
+                (asked.traced(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }
         };
-        let predicted = self.scenario.predictions.as_ref().map(|asked| match (judge, &fit.ship) {
+        let [_, windows] = errors.map_or([None; 2], |errors| errors.horizon);
+        let predicted = self.scenario.predictions.as_ref().map(|asked| match (self.judges[trial], &fit.ship) {
             (Some(judge), Some(ship)) => predicted(ship, judge, asked),
             _ => Box::default(),
         });
-        StudyRow { predicted, ..row }
+        StudyRow { predicted, validation_windows_deg: windows.map(to_deg), ..row }
     }
 }
 
 /// The ship of an answer; none where it has no covariance.
-fn ship(answer: &FitAnswer, fitted: &[Trial]) -> Option<ShipMixture> {
-    let facts = RecordFacts::of(fitted);
-    let known: IdentifiedShip = match answer {
-        FitAnswer::Response(estimate) => known::of_estimate(estimate, &facts)?,
-        FitAnswer::Trace(analysis) => known::of_analysis(analysis, &facts.with_motion(Some(analysis), &[])),
+///
+/// Of a trace whose model needs a speed and a sway that a trial that was not made does not have, the one that is traced
+/// without them.
+fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Settings>) -> Option<IdentifiedShip> {
+    let sound = |ship: &IdentifiedShip| ShipMixture::new(vec![(ship.clone(), 1.0)]).is_ok();
+    let traced = |analysis: &Analysis, trials: &[Trial]| {
+        known::of_analysis(analysis, &RecordFacts::of(trials).with_motion(Some(analysis), &[]))
     };
-    ShipMixture::new(vec![(known, 1.0)]).ok()
+    match answer {
+        FitAnswer::Response(estimate) => known::of_estimate(estimate, &RecordFacts::of(fitted)).filter(sound),
+        FitAnswer::Trace(analysis) => Some(traced(analysis, fitted)).filter(sound).or_else(|| {
+            let withheld = [Channel::Speed, Channel::Surge, Channel::Sway];
+            let without: Vec<Trial> = fitted.iter().map(|trial| trial.clone().without(&withheld)).collect();
+            let analysis = ::trace::trace(&without, &[], settings?).ok()?;
+            Some(traced(&analysis, &without)).filter(sound)
+        }),
+    }
 }
 
-/// Figures of the record that judges, predicted by replaying its helm with drawn ships.
-fn predicted(ship: &ShipMixture, judge: &Trial, predictions: &Predictions) -> Box<[PredictedFigure]> {
-    let replay = ship.replay(judge, predictions.draws, None).ok().flatten();
-    let figures = replay.into_iter().flat_map(|replay| replay.figures);
-    let figure = |(name, own): (String, predict::replay::Compared)| PredictedFigure {
-        name: name.into(),
+/// Figures of the record that judges, predicted by replaying its helm with drawn ships of its scale; a current that its
+/// track shows is taken out.
+fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) -> Box<[PredictedFigure]> {
+    let scaled = match (ship.length_m.zip(ship.speed_m_s), judge.particulars()) {
+        (Some(_), Some(of_judge)) => ship.scaled_to(of_judge.length, Some(of_judge.speed)).ok(),
+        _ => Some(ship.clone()),
+    };
+    let mixture = scaled.and_then(|ship| ShipMixture::new(vec![(ship, 1.0)]).ok());
+    let (judge, current) = without_current(judge.clone(), None);
+    let replay = mixture.and_then(|ships| ships.replay(&judge, predictions.draws, current).ok().flatten());
+    let Some(replay) = replay else { return Box::default() };
+    let is_counted = |name: &str| !is_in_lengths(name, |lengths| replay.figures.contains_key(lengths));
+    let figures = replay.figures.iter().filter(|(name, _)| is_counted(name));
+    let figure = |(name, own): (&String, &predict::replay::Compared)| PredictedFigure {
+        name: name.as_str().into(),
         truth: own.measured,
         median: own.interval.median,
         ci90: own.interval.ci90,

@@ -21,6 +21,11 @@ pub struct PredictionCheck<'a> {
 /// A time of a ship that is known by its simulation alone, s: rows of a record are closer than it.
 const ROWS: f64 = 10.0;
 
+/// Whether a figure is a length in metres that stands there in lengths of the ship, too: it counts once.
+pub fn is_in_lengths(name: &str, is_there: impl Fn(&str) -> bool) -> bool {
+    name.strip_suffix("_m").is_some_and(|name| is_there(&format!("{name}_lengths")))
+}
+
 impl<'a> PredictionCheck<'a> {
     /// Steers the ship of a trial through the manoeuvres, with her gear and in her weather; the chance is not that of
     /// the records.
@@ -37,11 +42,8 @@ impl<'a> PredictionCheck<'a> {
             };
             let passage = SimulatedManoeuvre::of(calm, &other, timescale).ok()?;
             let all = figures::of(kind, &passage, None);
-            // A length counts once.
-            let in_lengths = |name: &str| {
-                name.strip_suffix("_m").is_some_and(|name| all.contains_key(format!("{name}_lengths").as_str()))
-            };
-            Some(all.iter().filter(|(name, _)| !in_lengths(name)).map(|(name, value)| (*name, *value)).collect())
+            let is_counted = |name: &str| !is_in_lengths(name, |lengths| all.contains_key(lengths));
+            Some(all.iter().filter(|(name, _)| is_counted(name)).map(|(name, value)| (*name, *value)).collect())
         };
         Self { asked, true_manoeuvres: asked.kinds.iter().map(one).collect(), facts: RecordFacts::of(records) }
     }

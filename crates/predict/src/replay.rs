@@ -20,7 +20,7 @@ use crate::line::StraightLine;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::prediction::{Bands, drawn, enough, lost};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
-use crate::turn::{self, HeldTurn};
+use crate::turn::{self, HeldTurn, TurnTracks};
 
 /// Beginning of a record from which its first heading and yaw rate are read, in times of the ship.
 const BEGINNING: f64 = 1.0;
@@ -57,6 +57,9 @@ pub struct RecordReplay {
     /// Name of the record.
     #[serde(default)]
     pub name: String,
+    /// Of a turn, where it has positions.
+    #[serde(skip)]
+    pub tracks: Option<TurnTracks>,
     /// Time from the first row, s, and rudder, rad.
     #[serde(skip)]
     pub rudder: [Vec<f64>; 2],
@@ -149,9 +152,10 @@ impl ShipMixture {
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let square: f64 = measured.iter().zip(&heading.most_probable).map(|(one, other)| (one - other).powi(2)).sum();
-        let figures = match Measured::of(trial) {
-            Ok(zigzag) if zigzag.executes.len() > 1 => ships.zig_zag(trial, &zigzag, draws)?,
-            _ => turns(trial, &made, self.timescale(), current),
+        let zigzag = Measured::of(trial).ok().filter(|zigzag| zigzag.executes.len() > 1);
+        let figures = match &zigzag {
+            Some(zigzag) => ships.zig_zag(trial, zigzag, draws)?,
+            None => turns(trial, &made, self.timescale(), current),
         };
         Ok(Some(RecordReplay {
             file: file_of(trial).to_owned(),
@@ -160,6 +164,7 @@ impl ShipMixture {
             band_coverage_90: held as f64 / rows.len() as f64,
             heading_rmse_deg: to_deg((square / rows.len() as f64).sqrt()),
             figures,
+            tracks: TurnTracks::of(trial, &most_probable, &made, self.timescale()).filter(|_| zigzag.is_none()),
             current,
             heading,
             measured,

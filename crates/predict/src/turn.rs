@@ -17,6 +17,12 @@ const HELD: f64 = 0.8;
 /// How much longer a rudder is held for ships that turn more slowly than that of the record, as a share of its time.
 const LONGER: f64 = 2.0;
 
+/// Change of heading after which a track is not drawn on, rad: one and a half circles.
+const LONGEST_TRACK: f64 = 3.0 * std::f64::consts::PI;
+
+/// Drawn ships whose tracks are kept.
+const DRAWN_TRACKS: usize = 40;
+
 /// The uniform current that a circle of 720° or more shows; `None` for any other record, and without positions.
 pub fn current_of(trial: &Trial) -> Option<Current> {
     let turn = HeldTurn::of(trial)?;
@@ -112,6 +118,21 @@ impl HeldTurn {
         figures
     }
 
+    /// The track from the execute on, where the course is north: north and east in lengths of the ship, one and a half
+    /// circles at most. `None` where there is no track.
+    fn track(&self, passage: &SimulatedManoeuvre) -> Option<Vec<[f64; 2]>> {
+        let (track, length) = (passage.track()?, passage.way.as_ref()?.length);
+        let first = (self.approach() / passage.period).round() as usize;
+        let (begin, course) = (*track.get(first)?, *passage.heading.get(first)?);
+        let (sin, cos) = course.sin_cos();
+        let place = |row: usize| {
+            let [north, east] = [0, 1].map(|axis| (track[row][axis] - begin[axis]) / length);
+            [north * cos + east * sin, east * cos - north * sin]
+        };
+        let is_shown = |row: &usize| (passage.heading[*row] - course).abs() < LONGEST_TRACK;
+        Some((first..track.len()).take_while(is_shown).map(place).collect())
+    }
+
     /// The rudder of the record up to the end of the turn, and held on from there.
     pub(crate) fn held_on(&self, signal: &Polyline) -> Option<Polyline> {
         let mut times: Vec<f64> = signal.times().iter().copied().take_while(|time| *time <= self.until).collect();
@@ -119,6 +140,36 @@ impl HeldTurn {
         times.push(self.until + LONGER * (self.until - self.execute));
         values.push(*values.last()?);
         Polyline::new(times, values).ok()
+    }
+}
+
+/// A recorded turn from above, with its prediction: tracks of north and east in lengths of the ship, from the execute
+/// on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TurnTracks {
+    /// As it was recorded.
+    pub measured: Vec<[f64; 2]>,
+    /// Of the most probable ship.
+    pub most_probable: Vec<[f64; 2]>,
+    /// Of some drawn ships.
+    pub drawn: Vec<Vec<[f64; 2]>>,
+}
+
+impl TurnTracks {
+    /// Those of a record that is a turn; `None` without positions, and where no drift is predicted.
+    pub(crate) fn of(
+        trial: &Trial,
+        most_probable: &SimulatedManoeuvre,
+        made: &[SimulatedManoeuvre],
+        timescale: f64,
+    ) -> Option<Self> {
+        let turn = HeldTurn::of(trial)?;
+        let record = recorded(trial, timescale, Some(most_probable.way.as_ref()?.length))?;
+        Some(Self {
+            measured: turn.track(&record)?,
+            most_probable: turn.track(most_probable)?,
+            drawn: made.iter().take(DRAWN_TRACKS).filter_map(|passage| turn.track(passage)).collect(),
+        })
     }
 }
 
@@ -149,4 +200,37 @@ pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Op
     };
     let yaw_rate = (0..count).map(|row| slope(row.min(count.saturating_sub(2)))).collect();
     Some(SimulatedManoeuvre { period, yaw_rate, way: way(), heading, ..SimulatedManoeuvre::default() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trial::{Columns, Origin};
+
+    /// A circle of radius 50 m after a straight approach to the north-east, in lengths of 10 m; the rudder moves in the
+    /// second before it, on the last metre of the approach.
+    #[test]
+    fn a_recorded_circle_has_its_advance_and_diameter() {
+        let (course, radius, rate) = (0.8, 50.0, 0.02);
+        let time: Vec<f64> = (0..600).map(f64::from).collect();
+        let angle = |t: f64| rate * (t - 20.0).max(0.0);
+        let heading: Vec<f64> = time.iter().map(|t| course + angle(*t)).collect();
+        let ahead = |t: f64| if t < 20.0 { t - 20.0 } else { radius * angle(t).sin() };
+        let aside = |t: f64| radius * (1.0 - angle(t).cos());
+        let north = time.iter().map(|t| ahead(*t) * course.cos() - aside(*t) * course.sin()).collect();
+        let east = time.iter().map(|t| ahead(*t) * course.sin() + aside(*t) * course.cos()).collect();
+        let rudder = time.iter().map(|t| if *t < 20.0 { 0.0 } else { 0.35 }).collect();
+        let channels =
+            [(Channel::Heading, heading), (Channel::Rudder, rudder), (Channel::North, north), (Channel::East, east)];
+        let columns = Columns { time, channels: channels.into(), unknown: Vec::new() };
+        let trial = Trial::new("circle", Origin::Measured { file: "made up".into(), sha256: String::new() }, columns);
+        let trial = trial.expect("a record");
+        let record = recorded(&trial, 10.0, Some(10.0)).expect("headings");
+        let track = HeldTurn::of(&trial).expect("a turn").track(&record).expect("positions");
+        // The heading begins to change a second after the execute.
+        let row = |angle: f64| track[((angle / rate + 1.0) / record.period).round() as usize];
+        let (quarter, half) = (row(std::f64::consts::FRAC_PI_2), row(std::f64::consts::PI));
+        assert!((quarter[0] - 5.1).abs() < 0.03 && (half[1] - 10.0).abs() < 0.03, "{quarter:?} {half:?}");
+        assert!((track.len() as f64 * record.period * rate - LONGEST_TRACK).abs() < 0.1);
+    }
 }

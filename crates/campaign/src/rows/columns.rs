@@ -119,6 +119,12 @@ pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
         => traced(band_held_out);
 };
 
+/// Columns that follow in a study of measured records.
+pub const RECORD_COLUMNS: [RowColumn; 1] = columns! {
+    "validation_60_s_rmse_deg", "rms error of the heading on the record that judges, its replay restarted every 60 s"
+        => number(validation_windows_deg);
+};
+
 /// Columns that follow in a study that predicts manoeuvres.
 pub const PREDICT_COLUMNS: [RowColumn; 1] = columns! {
     "predicted",

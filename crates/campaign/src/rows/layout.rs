@@ -7,7 +7,7 @@ use std::sync::Arc;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::schema::types::Type;
 
-use super::columns::{Access, COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RowColumn, TRACE_COLUMNS};
+use super::columns::{Access, COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS};
 use super::row::StudyRow;
 use crate::design::{Design, JudgedRecord};
 use crate::scenario::TRACE;
@@ -52,6 +52,7 @@ impl RowLayout {
             (true, COLUMNS.as_slice()),
             (design.cells.iter().any(|cell| cell.has_own_indices), &OWN_COLUMNS),
             (design.methods.iter().any(|method| method.id == TRACE), &TRACE_COLUMNS),
+            (design.is_measured(), &RECORD_COLUMNS),
             (design.predicts, &PREDICT_COLUMNS),
         ];
         Self {
@@ -59,11 +60,7 @@ impl RowLayout {
             fixed: groups.into_iter().filter(|(is_there, _)| *is_there).flat_map(|(_, columns)| columns).collect(),
             axes: design.axes.iter().enumerate().map(axis).collect(),
             draws: design.draws.clone(),
-            records: design
-                .cells
-                .iter()
-                .any(|cell| !cell.records.is_empty())
-                .then(|| design.cells.iter().map(|cell| cell.records.clone()).collect()),
+            records: design.is_measured().then(|| design.cells.iter().map(|cell| cell.records.clone()).collect()),
         }
     }
 

@@ -98,6 +98,8 @@ pub struct StudyRow {
     pub heading_rmse_deg: Option<f64>,
     /// The same on the validation manoeuvre, which the method has not seen, deg.
     pub validation_rmse_deg: Option<f64>,
+    /// The same restarted every 60 s, deg; in a study of measured records.
+    pub validation_windows_deg: Option<f64>,
     /// Model evaluations of the method.
     pub evaluations: Option<f64>,
     /// Why the method stopped.

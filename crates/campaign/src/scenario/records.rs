@@ -61,11 +61,22 @@ pub struct RecordStudyWire {
 pub struct RecordsWire {
     /// Files, `*` standing for anything in a name; from the folder of the scenario, or else from that of KEMPF_DATA.
     pub files: Vec<String>,
-    /// Sidecar that describes the columns of all of them; left out, each has its own beside it, if any.
-    pub sidecar: Option<String>,
+    /// Sidecar that describes the columns of all of them, or a list with one for each entry of `files`; a folder stands
+    /// for the NAME.trial.toml of each record in it. Left out, each has its own beside it, if any.
+    pub sidecar: Option<SidecarWire>,
     /// Which records are fitted, and which judge.
     #[serde(default)]
     pub judge: JudgeWire,
+}
+
+/// What describes the columns of records.
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(untagged, expecting = "a sidecar or a folder of them, or a list with one for each entry of `files`")]
+pub enum SidecarWire {
+    /// Of all records.
+    All(String),
+    /// Of the records of each entry of the files.
+    Each(Vec<String>),
 }
 
 /// Which records are fitted, and which judge.
@@ -76,10 +87,13 @@ pub enum JudgeWire {
     Rule(JudgeRule),
     /// By lists of names of records.
     Lists {
-        /// Records that are fitted together.
+        /// Records that are fitted: together, or each alone.
         fit: Vec<String>,
-        /// Records that judge.
+        /// Records that judge; where each is fitted alone, all but the fitted one.
         judge: Vec<String>,
+        /// Whether each record is fitted alone.
+        #[serde(default)]
+        each: bool,
     },
 }
 
@@ -133,32 +147,21 @@ impl RecordSet {
     /// Fails when a file is missing or is no record, and when nothing is left to be asked.
     pub(crate) fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
         let key = KeyPath::dotted("records");
-        let sidecar = wire.sidecar.as_deref().map(|own| folder.join(own));
-        let mut paths: Vec<PathBuf> = Vec::new();
-        for (index, pattern) in wire.files.iter().enumerate() {
-            let found = matching(folder, pattern);
-            if found.is_empty() {
-                let advice = format!("give files beside the scenario, or name their folder in {DATA}");
-                let found = format!("`records.files` holds {pattern:?}, and there is no such file");
-                return Err(KeyFault::value(key.child("files").child(index), found, "expected records", advice));
-            }
-            paths.extend(found);
-        }
+        let paths = files(wire, folder, &key)?;
         let mut digest = Sha256::new();
         let (mut trials, mut warnings) = (Vec::new(), Vec::new());
-        for path in &paths {
+        for (path, sidecar) in &paths {
             let refuse = |problem: &dyn Display| {
                 let advice = "`study fit` says what is wrong with it";
                 let found = format!("{}: {problem}", path.display());
                 KeyFault::value(key.child("files"), found, "expected a record that can be read", advice)
             };
-            let sidecar = sidecar.clone().or_else(|| Sidecar::found_beside(path));
             let read = trial::read_with(path, sidecar.as_deref()).map_err(|error| refuse(&error))?;
             if let Origin::Measured { sha256, .. } = read.trial.origin() {
                 digest.update(sha256);
             }
             if let Some(sidecar) = sidecar {
-                let text = file::read_text(&sidecar, SIDECAR).map_err(|error| refuse(&error))?;
+                let text = file::read_text(sidecar, SIDECAR).map_err(|error| refuse(&error))?;
                 digest.update(Sha256::digest(text));
             }
             warnings.extend(read.warnings.iter().map(|warning| format!("{}: {}", path.display(), warning.text)));
@@ -183,6 +186,41 @@ impl RecordSet {
     }
 }
 
+/// The files of a table, each with the sidecar that describes it.
+fn files(wire: &RecordsWire, folder: &Path, key: &KeyPath) -> Result<Vec<(PathBuf, Option<PathBuf>)>, KeyFault> {
+    let sidecars: Vec<Option<PathBuf>> = match &wire.sidecar {
+        None => vec![None; wire.files.len()],
+        Some(SidecarWire::All(path)) => vec![Some(folder.join(path)); wire.files.len()],
+        Some(SidecarWire::Each(paths)) if paths.len() == wire.files.len() => {
+            paths.iter().map(|path| Some(folder.join(path))).collect()
+        }
+        Some(SidecarWire::Each(paths)) => {
+            let found = counted(paths.len() as u64, "sidecar");
+            let expected = format!("expected one for each entry of `files`, which has {}", wire.files.len());
+            return Err(KeyFault::value(key.child("sidecar"), found, expected, "give one path for all, or as many"));
+        }
+    };
+    let mut paths: Vec<(PathBuf, Option<PathBuf>)> = Vec::new();
+    for (index, (pattern, sidecar)) in wire.files.iter().zip(sidecars).enumerate() {
+        let found = matching(folder, pattern);
+        if found.is_empty() {
+            let advice = format!("give files beside the scenario, or name their folder in {DATA}");
+            let found = format!("`records.files` holds {pattern:?}, and there is no such file");
+            return Err(KeyFault::value(key.child("files").child(index), found, "expected records", advice));
+        }
+        let described = |path: PathBuf| {
+            let sidecar = match &sidecar {
+                Some(folder) if folder.is_dir() => Sidecar::found_beside(&folder.join(path.file_name()?)),
+                Some(file) => Some(file.clone()),
+                None => Sidecar::found_beside(&path),
+            };
+            Some((path, sidecar))
+        };
+        paths.extend(found.into_iter().filter_map(described));
+    }
+    Ok(paths)
+}
+
 /// The trials of a cell.
 fn questions(judge: &JudgeWire, names: &[&str], key: &KeyPath) -> Result<Vec<RecordQuestion>, KeyFault> {
     let all = 0..names.len();
@@ -198,7 +236,7 @@ fn questions(judge: &JudgeWire, names: &[&str], key: &KeyPath) -> Result<Vec<Rec
             all.clone().map(|one| question(without(one), Some(one))).collect()
         }
         JudgeWire::Rule(JudgeRule::LeftOut) => Vec::new(),
-        JudgeWire::Lists { fit, judge } => {
+        JudgeWire::Lists { fit, judge, each } => {
             let places = |list: &[String], part: &str| -> Result<Vec<usize>, KeyFault> {
                 let place = |name: &String| {
                     let words = ["no record is called", "expected the name of a file, without its ending"];
@@ -208,7 +246,7 @@ fn questions(judge: &JudgeWire, names: &[&str], key: &KeyPath) -> Result<Vec<Rec
                 list.iter().map(place).collect()
             };
             let (fit, judge) = (places(fit, "fit")?, places(judge, "judge")?);
-            if let Some(both) = fit.iter().find(|one| judge.contains(one)) {
+            if let Some(both) = fit.iter().find(|one| !each && judge.contains(one)) {
                 let found = format!("{} is fitted and judges", names[*both]);
                 return Err(KeyFault::value(
                     key.clone(),
@@ -217,8 +255,15 @@ fn questions(judge: &JudgeWire, names: &[&str], key: &KeyPath) -> Result<Vec<Rec
                     "take it out of one list",
                 ));
             }
-            let fits = !fit.is_empty();
-            judge.into_iter().filter(|_| fits).map(|one| question(fit.clone(), Some(one))).collect()
+            let fits = match each {
+                true => fit.into_iter().map(|record| vec![record]).collect(),
+                false => vec![fit],
+            };
+            let judged = |fit: Vec<usize>| {
+                let others = judge.iter().filter(|record| !fit.is_empty() && !fit.contains(record)).copied();
+                others.map(|record| question(fit.clone(), Some(record))).collect::<Vec<_>>()
+            };
+            fits.into_iter().flat_map(judged).collect()
         }
     };
     if questions.is_empty() {
@@ -304,7 +349,11 @@ mod tests {
         let lists = |fit: &[&str], judge: &[&str]| JudgeWire::Lists {
             fit: fit.iter().map(|name| (*name).to_owned()).collect(),
             judge: judge.iter().map(|name| (*name).to_owned()).collect(),
+            each: false,
         };
+        let JudgeWire::Lists { fit, judge, .. } = lists(&["c", "a"], &["a", "b"]) else { panic!() };
+        let pairs = [(2, 0), (2, 1), (0, 1)].map(|(fit, judge)| (vec![fit], Some(judge)));
+        assert_eq!(of(&JudgeWire::Lists { fit, judge, each: true }), pairs);
         assert_eq!(of(&lists(&["c", "a"], &["b"])), [(vec![2, 0], Some(1))]);
         for (wrong, part) in [
             (lists(&["a"], &["a"]), "is fitted and judges"),

@@ -29,6 +29,8 @@ pub struct RecordSummary {
     pub judged_deg: Option<Statistic>,
     /// Median over trials of that error over the one of the first method on the same trial; none of the first method.
     pub ratio: Option<Statistic>,
+    /// The same where the replay is restarted every 60 s.
+    pub window_ratio: Option<Statistic>,
     /// Effects that a trace named, with the number of fits that did.
     pub named: BTreeMap<String, usize>,
 }
@@ -62,7 +64,11 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
         values.for_each(|(place, value)| groups.entry(place).or_default().extend(value));
         middle(&groups.into_values().collect::<Vec<_>>())
     };
-    let ratio = |(row, other): (&&StudyRow, &&StudyRow)| Some(row.validation_rmse_deg? / other.validation_rmse_deg?);
+    let ratio = |error: fn(&StudyRow) -> Option<f64>| {
+        let over = |(row, other): (&&StudyRow, &&StudyRow)| Some(error(row)? / error(other)?);
+        let mut pairs = own.iter().zip(&first).map(|pair| (group(pair.0), over(pair)));
+        (method > 0).then(|| grouped(&mut pairs)).flatten()
+    };
     let mut named: BTreeMap<String, usize> = BTreeMap::new();
     for effect in fits.iter().filter_map(|row| row.traced.as_ref()).flat_map(|traced| &traced.named) {
         *named.entry(effect.id.to_string()).or_default() += 1;
@@ -74,9 +80,8 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
         failed: fits.iter().filter(|row| row.failure.is_some()).count(),
         fitted_deg: grouped(&mut fits.iter().map(|row| (group(row), row.heading_rmse_deg))),
         judged_deg: grouped(&mut own.iter().map(|row| (group(row), row.validation_rmse_deg))),
-        ratio: (method > 0)
-            .then(|| grouped(&mut own.iter().zip(&first).map(|pair| (group(pair.0), ratio(pair)))))
-            .flatten(),
+        ratio: ratio(|row| row.validation_rmse_deg),
+        window_ratio: ratio(|row| row.validation_windows_deg),
         named,
     }
 }

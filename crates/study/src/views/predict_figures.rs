@@ -7,11 +7,13 @@ use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
 use predict::prediction::Bands;
 use predict::replay::RecordReplay;
+use predict::turn::TurnTracks;
 use predict::{PredictDocument, Prediction};
 use report::figures::{
     Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn, Ruler, Stack,
 };
-use report::palette::{BEFORE, HEADING, Look, Marker, SOLID};
+use report::number::significant;
+use report::palette::{BEFORE, DASHED, HEADING, INK, Look, Marker, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::Manoeuvre;
@@ -34,6 +36,15 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
         let caption =
             format!("{}: the record and its rudder replayed, nothing fitted to it.", names::record(&replayed.name));
         figures.push(PageFigure::new(stem.as_str(), caption, replay(replayed)));
+        figures.extend(replayed.tracks.as_ref().map(|tracks| {
+            let caption = format!(
+                "{}: the recorded turn from above, from the execute on, and what was predicted of it; nothing is fitted \
+                 to it, and a current that it shows is taken out. Thin: {} drawn ships.",
+                names::record(&replayed.name),
+                tracks.drawn.len()
+            );
+            PageFigure::new(format!("{stem}-track"), caption, turn(replayed, tracks))
+        }));
     }
     for (unit, stem) in [(Unit::Degrees, "imo-overshoots"), (Unit::ShipLengths, "imo-lengths")] {
         let criteria = document.imo.iter().filter(|criterion| criterion.unit == unit.symbol());
@@ -105,11 +116,33 @@ fn replay(replayed: &RecordReplay) -> Panels {
     bands(format!("{}, predicted", names::record(&replayed.name)), &replayed.heading, Some(recorded), rudder)
 }
 
+/// A track, north over east.
+fn from_above(track: &[[f64; 2]]) -> PlotCurve {
+    let (east, north): (Vec<f64>, Vec<f64>) = track.iter().map(|place| (place[1], place[0])).unzip();
+    PlotCurve::new(east, north)
+}
+
+/// A recorded turn beside its prediction.
+fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
+    let line = |name: &str, track: &[[f64; 2]], pen| Layer::line(name, from_above(track), pen);
+    let mut layers: Vec<Layer> =
+        tracks.drawn.iter().map(|track| line("drawn ships", track, Pen::pale()).within(0.15)).collect();
+    layers.push(line("measured", &tracks.measured, Pen::new(INK).width(1.8)));
+    let dashed = Pen { dash: DASHED, ..Pen::new(HEADING).width(1.4) };
+    layers.push(line("most probable ship", &tracks.most_probable, dashed));
+    let row = PanelRow::new(Ruler::decimal("north [L]"), 0.62);
+    let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [L]"), vec![(row, layers)]) };
+    let diameter = replayed.figures.get("tactical_diameter_lengths").map(|diameter| {
+        let [low, high] = diameter.interval.ci90.map(|end| significant(end, 3));
+        let [measured, median] = [diameter.measured, diameter.interval.median].map(|value| significant(value, 3));
+        format!(": tactical diameter {median} L [{low}, {high}] predicted, {measured} L measured")
+    });
+    let title = format!("{}{}", names::record(&replayed.name), diameter.unwrap_or_default());
+    let cut = Some(String::from("Some drawn ships are cut at the frame."));
+    Panels { title: Some(title), cut, ..Panels::of(stack) }
+}
+
 fn track(prediction: &Prediction) -> Panels {
-    let curve = |track: &[[f64; 2]]| {
-        let (east, north): (Vec<f64>, Vec<f64>) = track.iter().map(|place| (place[1], place[0])).unzip();
-        PlotCurve::new(east, north)
-    };
     let passage = prediction.curves.most_probable.as_ref();
     let own = passage.and_then(|passage| passage.track()).unwrap_or_default();
     let step = (own.len() / HEADINGS).max(1);
@@ -119,10 +152,13 @@ fn track(prediction: &Prediction) -> Panels {
         places.y.push(own[row][0]);
         headings.extend(passage.map(|passage| to_deg(passage.heading[row])));
     }
-    let drawn =
-        prediction.curves.tracks.iter().map(|track| Layer::line("drawn ships", curve(track), Pen::pale()).within(0.35));
+    let drawn = prediction
+        .curves
+        .tracks
+        .iter()
+        .map(|track| Layer::line("drawn ships", from_above(track), Pen::pale()).within(0.35));
     let layers = drawn.chain([
-        Layer::line("most probable ship", curve(own), Pen::new(HEADING).width(1.2)),
+        Layer::line("most probable ship", from_above(own), Pen::new(HEADING).width(1.2)),
         Layer::new("its heading (not to scale)", places, LayerKind::Ships(HEADING, headings)),
     ]);
     let row = PanelRow::new(Ruler::decimal("north [m]"), 0.7);

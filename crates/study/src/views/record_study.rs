@@ -14,7 +14,8 @@ use report::palette::Look;
 use report::{CurveOrigin, Page, PageFigure, Table, Theme};
 
 use super::bench_figures::capital;
-use super::page_files::{KEY_FIGURE, write_page};
+use super::page_files::write_page;
+use super::study_figures::{self, FigurePlace};
 use super::{coverage_table, study_page, tables};
 use crate::options::FigureChoice;
 
@@ -31,12 +32,13 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
         head = head.numbers([name]).unit("deg").interval();
     }
     let first = &design.methods[0].label;
-    let head = head.numbers([format!("over {first}")]).interval().texts(["named"]);
+    let head = head.numbers([format!("over {first}")]).interval().numbers(["over it in 60 s"]).interval();
+    let head = head.texts(["named"]);
     let mut table = Table::new(head);
     for line in lines {
         let mut cells = tables::place(design, line.cell, line.method);
         cells.push(format!("{}/{}", line.failed, line.fits));
-        for figure in [line.fitted_deg, line.judged_deg, line.ratio] {
+        for figure in [line.fitted_deg, line.judged_deg, line.ratio, line.window_ratio] {
             cells.push(figure.map_or_else(|| MISSING.into(), |own| number::supported(own.value, own.ci95)));
             cells.push(number::interval(figure.and_then(|own| own.ci95)));
         }
@@ -50,16 +52,16 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
 /// The same for other programs: `summary.csv`.
 pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
     let mut head = tables::head(design).counts(["fits", "failed"]);
-    for name in ["own error [deg]", "judged error [deg]", "ratio to the first method"] {
+    for name in ["own error [deg]", "judged error [deg]", "ratio to the first method", "ratio in 60 s"] {
         head = head.numbers(["", " lower 95", " upper 95"].map(|end| format!("{name}{end}")));
     }
     let mut table = Table::new(head.texts(["named"]));
     for line in lines {
         let mut cells = tables::place(design, line.cell, line.method);
         cells.extend([line.fits.to_string(), line.failed.to_string()]);
-        for figure in [line.fitted_deg, line.judged_deg, line.ratio] {
-            cells
-                .extend(Statistic::flat(figure).map(|value| value.map_or_else(String::new, |own| significant(own, 6))));
+        for figure in [line.fitted_deg, line.judged_deg, line.ratio, line.window_ratio] {
+            let ends = Statistic::flat(figure);
+            cells.extend(ends.map(|value| value.map_or_else(String::new, |value| significant(value, 6))));
         }
         cells.push(line.named.iter().map(|(id, count)| format!("{id}={count}")).collect::<Vec<_>>().join("+"));
         table.push(cells);
@@ -176,7 +178,7 @@ pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
 const READING: &str = "*own error*: median over fits of the heading error on the records that were fitted; *judged error*: median \
                        over trials on the record that judges, which chose nothing: its rudder is replayed, and the initial \
                        state alone is fitted; *over*: median over trials of this error over that of the first method on the \
-                       same trial; *named*: effects with the number of fits that named them. Intervals are those of a \
+                       same trial, and the same where both replays are restarted every 60 s; *named*: effects with the number of fits that named them. Intervals are those of a \
                        bootstrap over fits, or over judging records where there is one fit. `records.csv` has every trial \
                        with K and T, `rows` the same for programs.";
 
@@ -216,15 +218,16 @@ pub fn put(
     let made = Summary { records: record_summaries(&rows, design), ..tally.finish() };
     folder.write("summary.csv", summary(&made.records, design).to_csv())?;
     folder.write(RECORDS, trials(&rows, design).to_csv())?;
-    let judges = rows.iter().any(|row| row.validation_rmse_deg.is_some());
-    let mut figures: Vec<PageFigure> =
-        (judges && choice != FigureChoice::None).then(|| judged(&rows, &made.records, design)).into_iter().collect();
-    if let (Some(figure), Some(_)) = (figures.first_mut(), &design.words.output.figure) {
-        figure.stem = KEY_FIGURE.to_owned();
-        if design.words.output.title.is_some() {
-            figure.plot.title_mut().clone_from(&design.words.output.title);
-        }
+    if !made.predictions.is_empty() {
+        folder.write("predictions.csv", coverage_table::table(&made.predictions, design).to_csv())?;
     }
-    write_page(folder, page(stored, &made, figures), Some(theme))?;
+    let judges = rows.iter().any(|row| row.validation_rmse_deg.is_some());
+    let all = || {
+        let judged = judges.then(|| (FigurePlace::Traces, judged(&rows, &made.records, design)));
+        let held = study_figures::predictions(design, &made).map(|figure| (FigurePlace::AllTrials, figure));
+        judged.into_iter().chain(held).collect()
+    };
+    let figures = study_figures::chosen(all, design, choice).into_iter().map(|(_, figure)| figure);
+    write_page(folder, page(stored, &made, figures.collect()), Some(theme))?;
     Ok(made)
 }

@@ -40,11 +40,15 @@ pub type StudyFigure = (FigurePlace, PageFigure);
 /// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
 /// A name of a figure that there is not is warned of.
 pub fn of(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
+    chosen(|| all(stored, summary), &stored.design, choice)
+}
+
+/// Of all figures of a study those that are made: first the one that stands for it.
+pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: FigureChoice) -> Vec<StudyFigure> {
     if choice == FigureChoice::None {
         return Vec::new();
     }
-    let words = &stored.design.words.output;
-    let mut figures = all(stored, summary);
+    let (words, mut figures) = (&design.words.output, all());
     // Two titles may make one slug.
     let known = names(figures.iter().map(|(_, figure)| &figure.stem));
     figures.iter_mut().zip(&known).for_each(|((_, figure), stem)| figure.stem.clone_from(stem));
@@ -181,14 +185,17 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     figures
 }
 
+/// Whether intervals of predictions hold.
+pub fn predictions(design: &Design, summary: &Summary) -> Option<PageFigure> {
+    let caption = "Share of trials in which the 90 % interval of a manoeuvre that was not made holds what the ship does, and \
+                   how wide it is. Left of the line a method is too sure; a wide interval holds more and says less.";
+    pooled_charts::predictions(design, summary).map(|data| PageFigure::new("predictions", caption, data))
+}
+
 fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     let mut figures = Vec::new();
-    figures.extend(pooled_charts::predictions(design, summary).map(|data| {
-        let caption = "Share of trials in which the 90 % interval of a manoeuvre that was not made holds what the ship does, and \
-                       how wide it is. Left of the line a method is too sure; a wide interval holds more and says less.";
-        PageFigure::new("predictions", caption, data)
-    }));
+    figures.extend(predictions(design, summary));
     figures.extend(pooled_charts::indices(design, summary).map(|(data, method)| {
         let caption = format!(
             "Mean K and T that {method} finds, over those of the first row: where they change from row to row, K and T belong \

@@ -59,7 +59,7 @@ impl Desk {
         run
     }
 
-    fn command(&self, arguments: &[&str]) -> Command {
+    pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_study"));
         command.args(arguments).current_dir(self.folder.path());
         command
@@ -119,7 +119,7 @@ pub fn interrupted(run: Child) -> (Run, Duration) {
 }
 
 impl Run {
-    fn of(Output { status, stdout, stderr }: Output) -> Self {
+    pub fn of(Output { status, stdout, stderr }: Output) -> Self {
         let [out, err] = [stdout, stderr].map(|text| String::from_utf8(text).expect("UTF-8"));
         Self { code: status.code(), out, err }
     }
@@ -180,7 +180,7 @@ pub fn with_column(csv: &str, name: &str, change: impl Fn(usize, f64) -> String)
 
 /// The folder of measured records, or `None` after saying that the test is skipped.
 pub fn measured() -> Option<PathBuf> {
-    let folder = std::env::var_os("TRIAL_DATA")
+    let folder = std::env::var_os("KEMPF_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
     if folder.is_dir() {
         return folder.canonicalize().ok();

@@ -82,9 +82,39 @@ fn records_are_left_out_listed_or_fitted_alone() {
     assert!(left_out.contains("output-error,\"zz_1, zz_2\",zz_0,") && left_out.lines().count() == 7, "{left_out}");
     let listed = with("{ fit = [\"zz_2\"], judge = [\"zz_0\", \"zz_1\"] }");
     assert!(listed.contains("output-error,zz_2,zz_0,") && listed.lines().count() == 5, "{listed}");
+    let each = with("{ fit = [\"zz_2\", \"zz_0\"], judge = [\"zz_0\", \"zz_1\"], each = true }");
+    assert!(each.contains("output-error,zz_0,zz_1,") && each.lines().count() == 7, "{each}");
     let alone = with("\"none\"");
     assert!(alone.contains("output-error,zz_0,,") && alone.lines().count() == 7, "{alone}");
     assert!(!desk.path("out/judged.png").exists());
+}
+
+/// Sidecars of a folder, or one for each entry of the files, say the ship of each record. On a ship of another length
+/// nothing is replayed, and its figures are predicted at its scale: of twice the length and speed they are the same.
+#[test]
+fn a_record_of_another_scale_is_predicted_at_its_scale() {
+    let desk = desk();
+    for (number, size) in [(0, 1.0), (1, 1.0), (2, 2.0)] {
+        let sidecar = format!("[ship]\nlength-m = {}\nspeed-m-s = {}\n", 50.0 * size, 5.0 * size);
+        desk.file(&format!("ships/zz_{number}.trial.toml"), sidecar);
+    }
+    let with = |sidecar: &str| {
+        let predict = "[predict]\ndraws = 50\n[[identifier]]\nmethod.o";
+        desk.file("scales.toml", STUDY.replace("[[identifier]]\nmethod.o", &format!("sidecar = {sidecar}\n{predict}")));
+        desk.run(&["scales.toml", "--out", "out", "--restart", "--quiet"]).is_done();
+        [desk.text("out/records.csv"), desk.text("out/predictions.csv")]
+    };
+    let [records, predictions] = with("\"ships\"");
+    let judged = |fitted: &str, judge: &str| {
+        let pair = format!("output-error,{fitted},{judge},");
+        let line = records.lines().find(|line| line.starts_with(&pair)).expect("a trial");
+        !line.split(',').nth(6).expect("a column").is_empty()
+    };
+    assert!(judged("zz_0", "zz_1") && !judged("zz_0", "zz_2") && !judged("zz_2", "zz_0"), "{records}");
+    assert!(predictions.contains("output-error,first overshoot,deg,6,"), "{predictions}");
+    assert_eq!(with("[\"ships\"]")[1], predictions);
+    desk.file("wrong.toml", desk.text("scales.toml").replace("[\"ships\"]", "[\"ships\", \"ships\"]"));
+    desk.run(&["check", "wrong.toml"]).is_refused(2, &["2 sidecars", "expected one for each entry of `files`"]);
 }
 
 /// Answers of another program to measured records stand beside the methods.

@@ -401,9 +401,13 @@ fn every_scenario_of_the_repository_is_right() {
         .map(|path| path.display().to_string())
         .collect();
     files.sort();
-    assert!(!files.is_empty());
-    let arguments: Vec<&str> = ["check"].into_iter().chain(files.iter().map(String::as_str)).collect();
-    let run = desk.run(&arguments);
+    let data = crate::desk::measured();
+    let needs_records = |file: &String| std::fs::read_to_string(file).is_ok_and(|text| text.contains("\n[records]\n"));
+    files.retain(|file| data.is_some() || !needs_records(file));
+    assert!(files.len() > 20);
+    let mut command = desk.command(&[]);
+    command.arg("check").args(&files).envs(data.map(|data| ("KEMPF_DATA", data)));
+    let run = crate::desk::Run::of(command.output().expect("the program starts"));
     // Notes under a scenario are indented.
     assert_eq!(run.is_done().out.lines().filter(|line| !line.starts_with(' ')).count(), files.len());
 }

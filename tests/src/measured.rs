@@ -1,20 +1,13 @@
 //! Where measured records are looked for. They are not part of the project, because their licences do not allow it; a
-//! test that needs one says in one line that it was skipped. [`sets`] says which records belong together, [`tracing`]
-//! traces them, [`analysis`] sums up what was found, [`charts`] draws it.
+//! test that needs one says in one line that it was skipped.
 
-pub mod analysis;
-pub mod charts;
-pub mod sets;
-pub mod tracing;
-
-use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::path::PathBuf;
 
 use trial::channel::column;
 use trial::{Columns, Trial};
 
 /// The measured record `relative` ("kvlcc2_hsva/zigzag_20_10_s.csv"), from the folder named by the environment variable
-/// `TRIAL_DATA` or else from the shared folder beside the project; `None`, and one line on standard error, when it is
+/// `KEMPF_DATA` or else from the shared folder beside the project; `None`, and one line on standard error, when it is
 /// not there.
 ///
 /// # Panics
@@ -26,10 +19,10 @@ pub fn record(relative: &str) -> Option<Trial> {
 }
 
 /// Where a measured record is; `None` (and one line) where it is not there.
-fn place(relative: &str) -> Option<PathBuf> {
+pub fn place(relative: &str) -> Option<PathBuf> {
     let path = folder().join(relative);
     if !path.is_file() {
-        eprintln!("skipped: no measured record {relative}; set TRIAL_DATA to the folder that holds it");
+        eprintln!("skipped: no measured record {relative}; set KEMPF_DATA to the folder that holds it");
         return None;
     }
     Some(path)
@@ -60,25 +53,6 @@ pub fn columns(file: &str) -> Option<Columns> {
 
 /// The folder that holds the measured records, whether it is there or not.
 pub fn folder() -> PathBuf {
-    std::env::var_os("TRIAL_DATA")
+    std::env::var_os("KEMPF_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"), PathBuf::from)
-}
-
-/// Runs a program that works on the measured records and writes into the folder that is its only argument.
-pub fn into_results(usual: &str, run: fn(&Path) -> sets::Outcome<()>) -> ExitCode {
-    let Some(results) = std::env::args_os().nth(1).filter(|own| own != "--help").map(PathBuf::from) else {
-        eprintln!("give the folder of the results, for instance {usual}");
-        return ExitCode::from(2);
-    };
-    if !folder().is_dir() {
-        eprintln!("there are no measured records in {}; set TRIAL_DATA to their folder", folder().display());
-        return ExitCode::from(2);
-    }
-    match run(&results) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
 }
