@@ -10,7 +10,6 @@
 //! | measured records, which are not part of the project | [`measured`], [`autopilot`], [`wrapped`] |
 //! | manoeuvres of measured ships, predicted | [`predicted`] |
 //! | effects of one hull, record by record | [`stability`] |
-//! | ships that are on no list, traced | [`unlisted`] |
 
 pub mod autopilot;
 pub mod fuzz;
@@ -19,6 +18,5 @@ pub mod measured;
 pub mod predicted;
 pub mod records;
 pub mod stability;
-pub mod unlisted;
 pub mod validation;
 pub mod wrapped;

@@ -82,6 +82,24 @@ fn a_formula_of_a_scenario_is_marked_in_the_file() {
     desk.run(&["check", "bad.toml"]).is_refused(2, &[&place, "`foo` is no function"]);
 }
 
+#[test]
+fn what_is_right_to_say_of_a_formula_does_not_contradict_itself() {
+    let desk = Desk::new();
+    for (keys, said) in [
+        ("stands-for = ['speed_los']", "did you mean `speed_loss`"),
+        ("stands-for = []", "on the list and on none"),
+        ("depends-on = 'weather'", "use one of `time`, `heading`"),
+        ("depends-on = 'time'\nstands-for = ['speed_loss']", "on the list and on none"),
+        ("depends-on = 'heading'\nchanges-s = [9]", "does not depend on time"),
+        ("depends-on = 'time'\nperiod-s = [4, 7]\nchanges-s = [9]", "with a period"),
+        ("depends-on = 'time'\nperiod-s = [70, 40]", "the shorter first"),
+        ("depends-on = 'time'\n[[effect]]\nmoment_drift.rudder-deg-per-s = 0.1", "only effect"),
+    ] {
+        desk.file("bad.toml", format!("{GOOD}\n[[effect]]\nformula = 'x = c * t'\nc = 1.0\n{keys}\n"));
+        desk.run(&["check", "bad.toml"]).is_refused(2, &["bad.toml", said]);
+    }
+}
+
 /// Speed and sway of a response model are in its records, and formulas over them act.
 #[test]
 fn a_ship_with_speed_and_sway_has_moments_of_them() {
