@@ -29,13 +29,9 @@ fn damping(rate: f64, power: f64, share: f64) -> f64 {
     to_deg(-share * rate * (to_deg(rate).abs() / 0.5).powf(power - 1.0) / K)
 }
 
-fn after(t: f64, instant: f64) -> f64 {
-    if t < instant { 0.0 } else { 1.0 }
-}
-
+/// A squall of 30 s about an instant.
 fn squall(t: f64, centre: f64) -> f64 {
-    let phase = (t - centre) / 30.0;
-    if phase.abs() < 0.5 { (PI * phase).cos().powi(2) } else { 0.0 }
+    (PI * ((t - centre) / 30.0).clamp(-0.5, 0.5)).cos().powi(2)
 }
 
 /// The ships with a formula.
@@ -45,8 +41,7 @@ const SHIPS: [(&str, Moment); 22] = [
     ("damping of power 4", |_, [r, ..], _| damping(r, 4.0, 0.3)),
     ("stall as tanh, 10/10 and 20/20", |_, _, rudder| 25.0 * (to_deg(rudder) / 25.0).tanh() - to_deg(rudder)),
     ("wind with a second harmonic", |_, [_, heading, _], _| {
-        let off = heading - from_deg(60.0);
-        3.0 * (off.sin() + 0.4 * (2.0 * off).sin())
+        3.0 * ((heading - PI / 3.0).sin() + 0.4 * (2.0 * heading - TAU / 3.0).sin())
     }),
     ("damping by side", |_, [r, ..], _| if r > 0.0 { to_deg(-0.25 * r / K) } else { 0.0 }),
     ("bank, 1.5° per 100 m", |_, [.., way], _| 1.5 * 7.0 * way / 100.0),
@@ -55,20 +50,17 @@ const SHIPS: [(&str, Moment); 22] = [
     ("moment with ψ³", |_, [_, heading, _], _| -2.0 * (to_deg(heading) / 10.0).powi(3)),
     ("gradient of a current", |t, [_, heading, _], _| 0.08 * 7.0 * t / 1000.0 * to_deg(heading)),
     ("T that falls by 40 %", |t, [r, ..], rudder| {
-        to_deg(after(t, 150.0) * (1.0 / 0.6 - 1.0) * (rudder + BIAS - r / K))
+        to_deg(f64::from(t >= 150.0) * (1.0 / 0.6 - 1.0) * (rudder + BIAS - r / K))
     }),
-    ("K that grows by 30 %", |t, _, rudder| 0.3 * after(t, 150.0) * to_deg(rudder + BIAS)),
-    ("rudder recorded 10 % too small", |t, _, rudder| after(t, 150.0) * to_deg(rudder / 0.9 - rudder)),
-    ("two steps of the moment", |t, _, _| after(t, 100.0) - 2.0 * after(t, 200.0)),
+    ("K that grows by 30 %", |t, _, rudder| 0.3 * f64::from(t >= 150.0) * to_deg(rudder + BIAS)),
+    ("rudder recorded 10 % too small", |t, _, rudder| f64::from(t >= 150.0) * to_deg(rudder / 0.9 - rudder)),
+    ("two steps of the moment", |t, _, _| f64::from(t >= 100.0) - 2.0 * f64::from(t >= 200.0)),
     ("two squalls", |t, _, _| 3.0 * (squall(t, 90.0) - squall(t, 210.0))),
-    ("moment for a while", |t, _, _| if (100.0..140.0).contains(&t) { 1.3 } else { 0.0 }),
+    ("moment for a while", |t, _, _| 1.3 * f64::from((100.0..140.0).contains(&t))),
     ("ramp of the moment", |t, _, _| 0.6 * ((t - 100.0) / 60.0).clamp(0.0, 1.0)),
     ("periodic moment", |t, _, _| (TAU * t / 90.0).sin()),
     ("two swells", |t, _, _| 2.2 * ((TAU * t / 70.0).sin() + 0.7 * (TAU * t / 40.0).sin())),
-    ("chirp", |t, _, _| {
-        let turns = t / 120.0 + 0.5 * (1.0 / 40.0 - 1.0 / 120.0) * t * t / 300.0;
-        2.3 * (TAU * turns).sin()
-    }),
+    ("chirp", |t, _, _| 2.3 * (TAU * (t / 120.0 + 0.5 * (1.0 / 40.0 - 1.0 / 120.0) * t * t / 300.0)).sin()),
     ("sawtooth", |t, _, _| 6.0 * (t / 75.0).fract() - 3.0),
 ];
 

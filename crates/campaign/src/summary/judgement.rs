@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn another_formula_is_judged_by_the_effects_it_stands_for() {
+    fn another_formula_is_judged_by_the_effects_it_stands_for_and_nothing_by_silence() {
         let [physics, other] =
             ["speed_loss", "wind_moment"].map(|id| MissingPhysics::Listed { effects: vec![id.into()] });
         let shape = || Some(located(YawRate, "moment with r²", None, None));
@@ -191,6 +191,9 @@ mod tests {
         let silent = |verdict| Judgement::of(&TraceAnswer { verdict, ..TraceAnswer::default() }, &physics);
         let verdicts = [Verdict::Clean, Verdict::Unexplained, Verdict::Disturbed];
         assert_eq!(verdicts.map(silent), [Clean, Unexplained, Disturbed]);
+        let nothing = [true, false].map(|disturbed| MissingPhysics::Nothing { disturbed });
+        assert_eq!(judged(&[], shape(), &nothing[0]), Wrong);
+        assert_eq!(nothing.map(|nothing| Disturbed.is_right(&nothing)), [true, false]);
     }
 
     #[test]
@@ -230,12 +233,5 @@ mod tests {
         ] {
             assert_eq!(judged(&[], Some(located(Time, form, None, None)), physics), judgement, "{form}");
         }
-    }
-
-    #[test]
-    fn anything_is_wrong_where_nothing_is_missing() {
-        let nothing = |disturbed| MissingPhysics::Nothing { disturbed };
-        assert_eq!(judged(&[], Some(located(Way, "moment with y", None, None)), &nothing(true)), Wrong);
-        assert_eq!([true, false].map(|is_so| Disturbed.is_right(&nothing(is_so))), [true, false]);
     }
 }
