@@ -9,16 +9,16 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 66_710,
+    code: 66_108,
     tests: 29_333,
     long_functions: 0,
-    shared_types: 15,
+    shared_types: 9,
     packages: 298,
     tuple_parameters: 0,
     text_lists: 0,
     leaks: 3,
-    looked_up: 1,
-    largest_crate: 11_000,
+    looked_up: 0,
+    largest_crate: 10_226,
 };
 
 /// Endings of sources in Rust, Python and JavaScript.

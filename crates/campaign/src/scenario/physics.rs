@@ -93,8 +93,8 @@ impl PhysicsWire {
 }
 
 impl MissingPhysics {
-    /// The physics of trials whose ship states nothing: an effect of the list, or none; `None` where several are missing
-    /// or a name is on no list.
+    /// The physics of trials whose ship states nothing: an effect of the list, or none; `None` where several are
+    /// missing, or a name is on no list.
     pub fn of_effects(missing: &[String], disturbed: bool) -> Option<Self> {
         match missing {
             [] => Some(Self::Nothing { disturbed }),
