@@ -9,16 +9,16 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 66_710,
-    tests: 29_333,
+    code: 64_716,
+    tests: 29_304,
     long_functions: 0,
-    shared_types: 15,
+    shared_types: 8,
     packages: 298,
     tuple_parameters: 0,
     text_lists: 0,
     leaks: 3,
-    looked_up: 1,
-    largest_crate: 11_000,
+    looked_up: 0,
+    largest_crate: 10_308,
 };
 
 /// Endings of sources in Rust, Python and JavaScript.
@@ -28,7 +28,7 @@ const LANGUAGES: [&str; 3] = ["rs", "py", "js"];
 const FOLDERS: [&str; 5] = ["benches", "crates", "docs", "examples", "tests"];
 
 /// Programs of the tests package that make pages: code, wherever they lie.
-const PRODUCT: [&str; 2] = ["bin", "unlisted"];
+const PRODUCT: [&str; 1] = ["bin"];
 
 /// The size of the house: lines of code and tests, and what is counted outside of tests.
 #[derive(Debug, Default, PartialEq)]

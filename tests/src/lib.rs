@@ -8,11 +8,9 @@
 //! | logs in every format and with every trouble, of one known ship | [`logs`] |
 //! | damaged files for every reader | [`fuzz`] |
 //! | measured records, which are not part of the project | [`measured`] |
-//! | ships that are on no list, traced | [`unlisted`] |
 
 pub mod fuzz;
 pub mod logs;
 pub mod measured;
 pub mod records;
-pub mod unlisted;
 pub mod validation;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use crate::scenario::records::{RecordQuestion, RecordSet};
-use crate::scenario::{DesignCell, MethodName, Scenario, Words, name};
+use crate::scenario::{DesignCell, MethodName, MissingPhysics, Scenario, Words, name};
 
 /// What tables and figures need of a scenario.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -40,6 +40,9 @@ pub struct CellFacts {
     pub trials: Range<u64>,
     /// Identifiers of the effects that a first-order base lacks in its trials.
     pub missing: Vec<String>,
+    /// What a trace is right to say of them, in a study in which a ship states it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub physics: Option<MissingPhysics>,
     /// Whether the ship has a K and T of its own beside those of the first-order response nearest to it: a response
     /// ship with effects.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -83,10 +86,12 @@ impl Design {
     pub fn of(scenario: &Scenario) -> Self {
         let predicts = scenario.predictions.is_some();
         let has_limits = predicts && !scenario.draws.iter().any(|key| key.contains("length") || key.contains("speed"));
+        let is_stated = scenario.cells.iter().any(DesignCell::states_physics);
         let bare = |cell: &DesignCell| CellFacts {
             labels: cell.labels.clone(),
             values: cell.values.clone(),
             missing: cell.missing(),
+            physics: cell.physics().filter(|_| is_stated),
             has_own_indices: cell.has_own_indices(),
             is_nearest: cell.is_nearest(),
             records: cell.record_set().map_or_else(Vec::new, judged_records),

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use ::trace::comparison::ReplayResult;
 use ::trace::{Analysis, TraceError};
-use document::trace::EffectEntry;
+use document::names;
+use document::trace::{EffectEntry, LocatedEntry};
 use identify::replay::pooled;
 use identify::{Estimate, StopReason};
 use ship::FirstOrder;
@@ -19,7 +20,7 @@ use trial::{Quantity, Trial};
 use crate::known::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
-use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
+use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceAnswer};
 use crate::scenario::{Method, Procedure, Scenario, Specification, TrialSpecification};
 use crate::summary::effect_ids;
 use crate::task::Task;
@@ -234,10 +235,7 @@ impl TrialQuestion<'_> {
     /// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
     pub fn traced(&self, blank: &StudyRow, analysis: &Analysis, validation: Option<&ReplayResult>) -> StudyRow {
         let document = &analysis.document;
-        let named = |effect: &EffectEntry| {
-            let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
-            NamedEffect { id: effect.id.as_str().into(), aliases: aliases.map(|id| id.as_str().into()).collect() }
-        };
+        let end = self.trials.iter().filter_map(|trial| trial.time().last().copied()).fold(0.0, f64::max);
         let probability =
             |id: &str| document.candidates.iter().find(|one| one.id == id).map_or(0.0, |one| one.probability);
         let indices = &document.model.indices;
@@ -252,6 +250,7 @@ impl TrialQuestion<'_> {
             traced: Some(Box::new(TraceAnswer {
                 verdict: document.verdict,
                 named: document.effects.iter().map(named).collect(),
+                located: document.located.iter().map(|entry| located(entry, end)).collect(),
                 probabilities: effect_ids()
                     .map(|id| (Box::from(id), (DIGITS * probability(id)).round() / DIGITS))
                     .filter(|(_, probability)| *probability >= NEXT_TO_NOTHING)
@@ -263,6 +262,32 @@ impl TrialQuestion<'_> {
             })),
             ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
         }
+    }
+}
+
+fn named(effect: &EffectEntry) -> NamedEffect {
+    let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
+    let time = effect.parameters.values().find(|parameter| ["t_c", "t_0"].contains(&parameter.key.as_str()));
+    NamedEffect {
+        id: effect.id.as_str().into(),
+        aliases: aliases.map(|id| id.as_str().into()).collect(),
+        time_s: time.map(|parameter| parameter.quantity.value),
+    }
+}
+
+/// A moment that was located in records that end at a time, s.
+fn located(entry: &LocatedEntry, end: f64) -> LocatedMoment {
+    let is_named = |id: &&str| {
+        let name = names::effect(id);
+        let is_of_name = |words: &String| words.split(" (").next() == Some(&name);
+        entry.alternatives.iter().any(is_of_name)
+    };
+    LocatedMoment {
+        depends_on: entry.depends_on,
+        form: entry.form.as_str().into(),
+        from_s: entry.from_s,
+        until_s: entry.until_s.filter(|until| *until < end),
+        alternatives: effect_ids().filter(is_named).map(Box::from).collect(),
     }
 }
 

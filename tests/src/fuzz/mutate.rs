@@ -12,28 +12,8 @@ const LARGEST: usize = 32 * 1024;
 const MOST_DAMAGE: usize = 6;
 
 /// Numbers that readers stumble over.
-const NUMBERS: [&str; 20] = [
-    "0",
-    "-0",
-    "1",
-    "-1",
-    "2",
-    "7",
-    "360",
-    "-360.5",
-    "1e-12",
-    "1e-320",
-    "1e18",
-    "1e308",
-    "-1e308",
-    "1e999",
-    "nan",
-    "inf",
-    "-inf",
-    "4294967296",
-    "9223372036854775807",
-    "18446744073709551616",
-];
+const NUMBERS: &str = "0 -0 1 -1 2 7 360 -360.5 1e-12 1e-320 1e18 1e308 -1e308 \
+                       1e999 nan inf -inf 4294967296 9223372036854775807 18446744073709551616";
 
 /// A damaged copy of one of the files.
 pub fn damaged(files: &[Vec<u8>], words: &[Vec<u8>], generator: &mut ChaCha8Rng) -> Vec<u8> {
@@ -92,7 +72,7 @@ fn damage(file: &mut Vec<u8>, files: &[Vec<u8>], words: &[Vec<u8>], generator: &
             let numbers = numbers(file);
             if !numbers.is_empty() {
                 let range = one(&numbers, generator).clone();
-                file.splice(range, one(&NUMBERS, generator).bytes());
+                file.splice(range, one(&NUMBERS.split(' ').collect::<Vec<_>>(), generator).bytes());
             }
         }
         13 | 14 => {

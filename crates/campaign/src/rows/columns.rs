@@ -3,11 +3,12 @@
 use std::borrow::Cow;
 
 use ::trace::Verdict;
+use document::trace::Dependence;
 use identify::StopReason;
 use serde::Deserialize;
 use serde::de::value::{Error as UnknownWord, StrDeserializer};
 
-use super::row::{NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
+use super::row::{LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
 
 /// A column that every file of rows has.
 pub struct RowColumn {
@@ -125,6 +126,16 @@ pub const RECORD_COLUMNS: [RowColumn; 1] = columns! {
         => number(validation_windows_deg);
 };
 
+/// Columns that follow in a study whose ships state what is right to say of them.
+pub const LOCATED_COLUMNS: [RowColumn; 2] = columns! {
+    "trace_times", "when the effects named act, s, joined by +; – for one that is no matter of time"
+        => text(times, set_times);
+    "trace_located",
+    "moments located, joined by +: what it depends on; the moment in words; since when; until when, s; effects of the \
+     list that cannot be told from it, joined by |"
+        => text(located, set_located);
+};
+
 /// Columns that follow in a study that predicts manoeuvres.
 pub const PREDICT_COLUMNS: [RowColumn; 1] = columns! {
     "predicted",
@@ -174,7 +185,7 @@ fn named(row: &StudyRow) -> Option<Cow<'_, str>> {
 }
 
 fn set_named(row: &mut StudyRow, text: &str) -> Result<(), String> {
-    answer(row).named = list(text, "effects", |id| Some(NamedEffect { id: id.into(), aliases: Vec::new() }))?;
+    answer(row).named = list(text, "effects", |id| Some(NamedEffect { id: id.into(), ..NamedEffect::default() }))?;
     Ok(())
 }
 
@@ -188,7 +199,7 @@ fn groups(row: &StudyRow) -> Option<Cow<'_, str>> {
 fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let group = |part: &str| {
         let mut ids = part.split('|').filter(|id| !id.is_empty()).map(Box::from);
-        Some(NamedEffect { id: ids.next()?, aliases: ids.collect() })
+        Some(NamedEffect { id: ids.next()?, aliases: ids.collect(), time_s: None })
     };
     let groups = list(text, "groups of effects", group)?;
     let named = &mut answer(row).named;
@@ -196,6 +207,55 @@ fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
         return Err(format!("the groups {text:?} are not those of the effects named"));
     }
     *named = groups;
+    Ok(())
+}
+
+/// What stands for a time that there is not.
+const NEVER: &str = "–";
+
+fn time(time_s: Option<f64>) -> String {
+    time_s.map_or_else(|| NEVER.to_owned(), |time_s| time_s.to_string())
+}
+
+/// A time in a text, or that there is none; `None` for another text.
+fn read_time(text: &str) -> Option<Option<f64>> {
+    if text == NEVER { Some(None) } else { text.parse().ok().map(Some) }
+}
+
+fn times(row: &StudyRow) -> Option<Cow<'_, str>> {
+    Some(joined(&row.traced.as_ref()?.named, |effect| time(effect.time_s)))
+}
+
+/// The columns before have named the effects.
+fn set_times(row: &mut StudyRow, text: &str) -> Result<(), String> {
+    let times = list(text, "times of effects", read_time)?;
+    let named = &mut answer(row).named;
+    if named.len() != times.len() {
+        return Err(format!("the times {text:?} are not those of the effects named"));
+    }
+    named.iter_mut().zip(times).for_each(|(effect, time_s)| effect.time_s = time_s);
+    Ok(())
+}
+
+fn located(row: &StudyRow) -> Option<Cow<'_, str>> {
+    let moment = |LocatedMoment { depends_on, form, from_s, until_s, alternatives }: &LocatedMoment| {
+        format!("{depends_on};{form};{};{};{}", time(*from_s), time(*until_s), alternatives.join("|"))
+    };
+    Some(joined(&row.traced.as_ref()?.located, moment))
+}
+
+fn set_located(row: &mut StudyRow, text: &str) -> Result<(), String> {
+    let moment = |part: &str| {
+        let [depends_on, form, from_s, until_s, ids] = part.split(';').collect::<Vec<_>>().try_into().ok()?;
+        Some(LocatedMoment {
+            depends_on: Dependence::deserialize(StrDeserializer::<UnknownWord>::new(depends_on)).ok()?,
+            form: form.into(),
+            from_s: read_time(from_s)?,
+            until_s: read_time(until_s)?,
+            alternatives: ids.split('|').filter(|id| !id.is_empty()).map(Box::from).collect(),
+        })
+    };
+    answer(row).located = list(text, "located moments", moment)?;
     Ok(())
 }
 

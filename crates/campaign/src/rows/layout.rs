@@ -7,7 +7,9 @@ use std::sync::Arc;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::schema::types::Type;
 
-use super::columns::{Access, COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS};
+use super::columns::{
+    Access, COLUMNS, LOCATED_COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS,
+};
 use super::row::StudyRow;
 use crate::design::{Design, JudgedRecord};
 use crate::scenario::TRACE;
@@ -48,10 +50,12 @@ impl RowLayout {
             let is_number = numbers.iter().all(Option::is_some);
             (name.clone(), if is_number { Values::Numbers(numbers) } else { Values::Texts(labels()) })
         };
+        let is_traced = design.methods.iter().any(|method| method.id == TRACE);
         let groups = [
             (true, COLUMNS.as_slice()),
             (design.cells.iter().any(|cell| cell.has_own_indices), &OWN_COLUMNS),
-            (design.methods.iter().any(|method| method.id == TRACE), &TRACE_COLUMNS),
+            (is_traced, &TRACE_COLUMNS),
+            (is_traced && design.cells.iter().any(|cell| cell.physics.is_some()), &LOCATED_COLUMNS),
             (design.is_measured(), &RECORD_COLUMNS),
             (design.predicts, &PREDICT_COLUMNS),
         ];
@@ -119,6 +123,8 @@ impl RowLayout {
             "trace_verdict",
             "trace_named",
             "trace_groups",
+            "trace_times",
+            "trace_located",
             "trace_expected",
             "fitted",
             "judge",

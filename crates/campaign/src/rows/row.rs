@@ -3,14 +3,17 @@
 use std::sync::Arc;
 
 use ::trace::Verdict;
+use document::trace::Dependence;
 
 /// An effect that a trace named.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct NamedEffect {
     /// Identifier of the effect.
     pub id: Box<str>,
     /// Identifiers of those that the trial cannot tell it from.
     pub aliases: Vec<Box<str>>,
+    /// When an effect of time acts, s: the middle of a passing moment, the beginning of a lasting one.
+    pub time_s: Option<f64>,
 }
 
 impl NamedEffect {
@@ -18,6 +21,21 @@ impl NamedEffect {
     pub fn holds(&self, id: &str) -> bool {
         *self.id == *id || self.aliases.iter().any(|alias| **alias == *id)
     }
+}
+
+/// A moment that a trace located.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocatedMoment {
+    /// What it depends on.
+    pub depends_on: Dependence,
+    /// The moment in words.
+    pub form: Box<str>,
+    /// Since when, s, where it is a matter of instants.
+    pub from_s: Option<f64>,
+    /// Until when, s; `None` for one that lasts to the end of the record.
+    pub until_s: Option<f64>,
+    /// Identifiers of the effects of the list that the trial cannot tell from it.
+    pub alternatives: Vec<Box<str>>,
 }
 
 /// A figure of a manoeuvre that was predicted from an answer, beside what the same ship does.
@@ -47,6 +65,8 @@ pub struct TraceAnswer {
     pub verdict: Verdict,
     /// The effects named, in the order of discovery.
     pub named: Vec<NamedEffect>,
+    /// Moments that are no effects of the list, the clearest first.
+    pub located: Vec<LocatedMoment>,
     /// Probability of every effect that is not next to nothing, given the trial.
     pub probabilities: Vec<(Box<str>, f64)>,
     /// Gain in BIC of the one missing effect over the best other one.

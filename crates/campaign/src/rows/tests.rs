@@ -1,8 +1,9 @@
 use ::trace::Verdict;
+use document::trace::Dependence;
 
 use super::*;
 use crate::design::{CellFacts, Design};
-use crate::scenario::MethodName;
+use crate::scenario::{MethodName, MissingPhysics};
 
 fn design() -> Design {
     let cell = |noise: f64, trial: &str| CellFacts {
@@ -73,15 +74,21 @@ fn written(rows: &[StudyRow], layout: &RowLayout) -> Vec<u8> {
 fn traces_and_predictions_have_columns_of_their_own() {
     let mut design = Design { predicts: true, ..design() };
     design.methods[1].id = crate::scenario::TRACE.into();
+    design.cells[1].physics = Some(MissingPhysics::Nothing { disturbed: false });
     let layout = RowLayout::of(&design);
-    let effect = |id: &str, aliases: &[&str]| NamedEffect {
+    let effect = |id: &str, aliases: &[&str], time_s| NamedEffect {
         id: id.into(),
         aliases: aliases.iter().map(|&alias| alias.into()).collect(),
+        time_s,
     };
+    let (depends_on, form, alternatives) =
+        (Dependence::YawRate, "moment with r|r|".into(), vec!["a".into(), "b".into()]);
+    let moment = LocatedMoment { depends_on, form, from_s: Some(1.0 / 3.0), until_s: None, alternatives };
     let answer = |verdict: Verdict, named: Vec<NamedEffect>| {
         let answer = TraceAnswer {
             verdict,
             named,
+            located: vec![moment.clone(); 2],
             probabilities: vec![("speed_loss".into(), 0.25), ("wind_moment".into(), 1.0)],
             margin: Some(31.5),
             expected: None,
@@ -90,7 +97,7 @@ fn traces_and_predictions_have_columns_of_their_own() {
         };
         StudyRow { method: 1, traced: Some(Box::new(answer)), ..good(256) }
     };
-    let named = vec![effect("wind_moment", &["port_starboard_asymmetry"]), effect("speed_loss", &[])];
+    let named = vec![effect("wind_moment", &["port_starboard_asymmetry"], Some(-0.1)), effect("speed_loss", &[], None)];
     let name = "zig-zag 20/20 first_overshoot_deg";
     let figure = |truth| PredictedFigure { name: name.into(), truth, median: 1.0 / 3.0, ci90: [-0.1, 1e-17] };
     let predicts = StudyRow { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(256) };
@@ -98,6 +105,9 @@ fn traces_and_predictions_have_columns_of_their_own() {
     let rows = vec![predicts, answer(Verdict::Traced, named), good(257), none];
     assert_eq!(decode(written(&rows, &layout), &label(), &layout), Ok(rows));
     assert_eq!(layout.names().filter(|name| ["trace_margin", "predicted"].contains(&name.as_str())).count(), 2);
+    // Of a study that states nothing no column holds what was located.
+    design.cells[1].physics = None;
+    assert_eq!(RowLayout::of(&design).names().count(), layout.names().count() - LOCATED_COLUMNS.len());
 }
 
 #[test]

@@ -4,12 +4,13 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use ship::Particulars;
-use simulate::{Assumption, StreamKey};
+use simulate::{Assumption, Disturbances, StreamKey};
 use toml::{Table, Value};
 
 use crate::scenario::draw::DrawnKey;
 use crate::scenario::method::{IdentifierWire, Method, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
+use crate::scenario::physics::MissingPhysics;
 use crate::scenario::problem::{KeyFault, KeyPath};
 use crate::scenario::records::{RecordSet, RecordStudyWire};
 use crate::scenario::specification::Specification;
@@ -99,6 +100,18 @@ impl DesignCell {
     /// Effects a first-order base lacks in its trials, as far as they are known.
     pub fn missing(&self) -> Vec<String> {
         self.specification().map_or_else(Vec::new, |own| own.missing.clone())
+    }
+
+    /// Whether its ship states what is right to say of it.
+    pub(crate) fn states_physics(&self) -> bool {
+        self.specification().is_some_and(|own| own.stated.is_some())
+    }
+
+    /// The physics that a first-order base lacks in its trials: as the ship states it, or effects of the list.
+    pub(crate) fn physics(&self) -> Option<MissingPhysics> {
+        let Specification { stated, missing, simulation, .. } = self.specification()?;
+        let is_disturbed = simulation.sensors.rudder_noise != 0.0 || simulation.disturbances != Disturbances::default();
+        stated.clone().or_else(|| MissingPhysics::of_effects(missing, is_disturbed))
     }
 
     /// Whether the ship is a first-order base with effects, so that its own K and T are not those of the first-order

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
-use schemars::{Schema, SchemaGenerator, json_schema};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, json};
 use ship::Regressor;
@@ -14,6 +14,7 @@ use ship::{ResponseModel, Ship, ShortNumber};
 use toml::{Table, Value};
 
 use crate::scenario::number_table::{self, NamedNumbers, NumberKey, closed};
+use crate::scenario::physics::{self, MissingPhysics, PhysicsWire};
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 use crate::scenario::{limits, reader};
 
@@ -100,6 +101,7 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
         }
     };
     let formula = read(&line, key)?;
+    values.retain(|name, _| !physics::KEYS.contains(&name));
     let values: BTreeMap<String, f64> = reader::table(&values, place)?;
     let keys: Vec<NumberKey> =
         formula.parameters().iter().map(|own| NumberKey::required(own.key, "A constant of the formula.")).collect();
@@ -115,6 +117,24 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
     }
     let values = formula.parameters().iter().map(|own| values[own.key]).collect();
     Ok((formula, values))
+}
+
+/// What the one formula of a ship states to be right to say of it; `None` where it says nothing.
+///
+/// Fails where the keys contradict themselves, and beside another effect.
+pub fn stated(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, KeyFault> {
+    for (index, EffectWire(entry)) in entries.iter().enumerate() {
+        let of_physics = entry.iter().filter(|(name, _)| physics::KEYS.contains(&name.as_str()));
+        let keys: Table = of_physics.map(|(name, value)| (name.clone(), value.clone())).collect();
+        let place = KeyPath::dotted("effect").child(index);
+        let Some(first) = keys.keys().next() else { continue };
+        if entries.len() > 1 {
+            let found = format!("a ship of {} effects says what is right to say of one", entries.len());
+            return Err(KeyFault::name(place.child(first), found, "expected its only effect", "leave the key out"));
+        }
+        return reader::table::<PhysicsWire>(&keys, &place)?.checked(&place).map(Some);
+    }
+    Ok(None)
 }
 
 /// The effect of a line `name = formula` at a key.
@@ -233,7 +253,7 @@ fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f6
 }
 
 /// The effects: a list, each with one key, its id.
-pub fn schema(_: &mut SchemaGenerator) -> Schema {
+pub fn schema(generator: &mut SchemaGenerator) -> Schema {
     let effects = IDS.iter().map(|&id| {
         let forms: Vec<_> = forms_of(id).iter().map(|form| number_table::schema(&form.keys)).collect();
         let (below, end) = match forms.as_slice() {
@@ -244,13 +264,15 @@ pub fn schema(_: &mut SchemaGenerator) -> Schema {
         effect["description"] = (meaning(id).to_owned() + end).into();
         effect
     });
+    let mut properties = PhysicsWire::json_schema(generator).to_value()["properties"].take();
+    properties[FORMULA] = json!({
+        "type": "string",
+        "description": "`name = formula`, as in `bank = c * tanh(k * psi)`; the constants `c` and `k` are further keys.",
+    });
     let formula = json!({
         "type": "object",
         "description": "A moment as a formula, an angle of the rudder in rad, with the values of its constants beside it.",
-        "properties": { "formula": {
-            "type": "string",
-            "description": "`name = formula`, as in `bank = c * tanh(k * psi)`; the constants `c` and `k` are further keys.",
-        } },
+        "properties": properties,
         "required": ["formula"],
         "additionalProperties": { "type": "number" }
     });

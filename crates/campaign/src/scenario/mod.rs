@@ -5,6 +5,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | what a file says, and how it is read | `wire`, `ship`, `effect`, `number_table`, `reader`, [`part`], [`words`] |
+//! | what is right to say of a ship | `physics` |
 //! | what is wrong with it, and where | [`problem`], `locate`, [`crate::failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
 //! | measured records in the place of simulated ships | [`records`] |
@@ -29,6 +30,7 @@ pub mod method;
 pub mod name;
 mod number_table;
 pub mod part;
+mod physics;
 pub mod predictions;
 pub mod problem;
 mod reader;
@@ -48,6 +50,7 @@ pub use cell::{DesignCell, Refusal, TrialSpecification};
 pub use checked::Scenario;
 pub use identity::hex;
 pub use method::{Method, MethodName, Procedure, TRACE, identify};
+pub use physics::MissingPhysics;
 pub use predictions::Predictions;
 
 pub use specification::{HULL, Specification};

@@ -49,7 +49,8 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
         Model::Response(response) => Some(response.first_order()),
         Model::Hull(_) => None,
     };
-    Ok(Specification { also, validation, truth: ship.first_order(), base, missing: missing(&ship, wire), simulation })
+    let (truth, missing, stated) = (ship.first_order(), missing(&ship, wire), effect::stated(&wire.effect)?);
+    Ok(Specification { also, validation, truth, base, missing, stated, simulation })
 }
 
 /// Channels that no trial of the scenario has.

@@ -3,6 +3,8 @@
 use ship::FirstOrder;
 use simulate::{Simulation, StreamKey};
 
+use crate::scenario::physics::MissingPhysics;
+
 /// Everything about a trial but its chance.
 #[derive(Debug, Clone)]
 pub struct Specification {
@@ -19,6 +21,8 @@ pub struct Specification {
     /// Identifiers of the effects that a first-order base lacks in a trial; [`HULL`] for a ship with equations of its
     /// own.
     pub missing: Vec<String>,
+    /// What its formula states to be right to say of it.
+    pub stated: Option<MissingPhysics>,
 }
 
 /// What a hull has that no list of effects names.

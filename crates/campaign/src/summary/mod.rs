@@ -6,6 +6,7 @@
 
 mod blind_spots;
 mod detail;
+mod judgement;
 mod predictions;
 mod record;
 mod records;
@@ -14,6 +15,7 @@ mod tracing;
 
 pub use blind_spots::{BlindSpot, axis_of_sizes, blind_spots};
 pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
+pub use judgement::{Judgement, NEAR_PERIOD, NEAR_S};
 pub use predictions::{CriterionTally, PredictionSummary};
 pub use record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 pub use records::{RecordSummary, record_summaries};

@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn methods_are_compared_on_the_same_trial() {
-        let named = NamedEffect { id: "speed_loss".into(), aliases: Vec::new() };
+        let named = NamedEffect { id: "speed_loss".into(), ..NamedEffect::default() };
         let rows = (0..42).flat_map(|replicate| {
             let fit = replicate / 6;
             let error = 1.0 + replicate as f64;

@@ -231,7 +231,7 @@ impl Running {
     /// What is not summed over all cells.
     fn add_details(&mut self, row: &StudyRow, cell: &CellFacts, detailed: bool) {
         if let Some(answer) = &row.traced {
-            self.trace.get_or_insert_with(|| TraceTally::new(row, &cell.missing)).add(answer);
+            self.trace.get_or_insert_with(|| TraceTally::new(row, cell)).add(answer);
         }
         add_predictions(&mut self.predictions, row, cell.length_over_speed_s);
         if let [Some(k), Some(t)] = self.latest

@@ -7,8 +7,10 @@ use std::sync::LazyLock;
 use ::trace::Verdict;
 use serde::{Deserialize, Serialize};
 
+use super::judgement::Judgement;
+use crate::design::CellFacts;
 use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
-use crate::scenario::HULL;
+use crate::scenario::{HULL, MissingPhysics};
 use crate::statistics::{Statistic, share};
 
 /// Margin in log evidence beyond which the right effect has to be named: below, a rival explains the trial nearly as
@@ -24,6 +26,9 @@ pub struct TraceSummary {
     pub method: usize,
     /// Identifiers of what was missing.
     pub missing: Vec<String>,
+    /// Trials by what their answer is worth, in a study that states what is right to say.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub judged: BTreeMap<Judgement, u64>,
     /// Trials traced.
     pub trials: u64,
     /// Trials with every verdict.
@@ -122,6 +127,7 @@ impl TraceSummary {
 #[derive(Debug, Clone)]
 pub(super) struct TraceTally {
     summary: TraceSummary,
+    physics: Option<MissingPhysics>,
     /// Means of the expected likelihood ratio, and of the coverage of the two bands.
     means: [RunningMean; 3],
 }
@@ -140,28 +146,38 @@ impl RunningMean {
 
 impl TraceTally {
     /// Before any trace, for the cell and the method of a row.
-    pub(super) fn new(row: &StudyRow, missing: &[String]) -> Self {
-        let (cell, method, missing) = (row.cell as usize, row.method, missing.to_owned());
+    pub(super) fn new(row: &StudyRow, facts: &CellFacts) -> Self {
+        let (cell, method, missing) = (row.cell as usize, row.method, facts.missing.clone());
         let summary = TraceSummary { cell, method, missing, ..TraceSummary::default() };
-        Self { summary, means: Default::default() }
+        Self { summary, physics: facts.physics.clone(), means: Default::default() }
     }
 
     /// Takes note of an answer.
     pub(super) fn add(&mut self, answer: &TraceAnswer) {
-        let Self { summary, means: [expected, fitted, held_out] } = self;
+        let Self { summary, physics, means: [expected, fitted, held_out] } = self;
         summary.trials += 1;
+        let judgement = physics.as_ref().map(|physics| Judgement::of(answer, physics));
+        judgement.into_iter().for_each(|judgement| *summary.judged.entry(judgement).or_default() += 1);
         let verdict = Verdict::ALL.iter().position(|verdict| *verdict == answer.verdict);
         verdict.into_iter().for_each(|place| summary.verdicts[place] += 1);
         summary.silent += u64::from(answer.named.is_empty());
         let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
         ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
         let missing = &summary.missing;
+        // Another formula of an effect is that effect.
+        let accepted = match physics {
+            Some(MissingPhysics::Listed { effects }) => effects,
+            _ => missing,
+        };
         let (right, wrong): (Vec<_>, Vec<_>) =
-            answer.named.iter().partition(|effect| missing.iter().any(|id| effect.holds(id)));
+            answer.named.iter().partition(|effect| accepted.iter().any(|id| effect.holds(id)));
         let aliases = right.iter().filter(|effect| missing.iter().all(|id| **id != *effect.id));
         let aliases: BTreeSet<&str> = aliases.map(|effect| &*effect.id).collect();
         aliases.into_iter().for_each(|id| *summary.aliases.entry(id.to_owned()).or_default() += 1);
-        let complete = missing.iter().all(|id| right.iter().any(|effect| effect.holds(id)));
+        let complete = match physics {
+            Some(MissingPhysics::Listed { .. }) => !right.is_empty(),
+            _ => missing.iter().all(|id| right.iter().any(|effect| effect.holds(id))),
+        };
         let is_weather = |effect: &&NamedEffect| {
             let ids = std::iter::once(&effect.id).chain(&effect.aliases);
             ids.into_iter().all(|id| WEATHER_IDS.contains(&**id))
@@ -198,10 +214,11 @@ mod tests {
     /// The summary of traces that name effects, each with its aliases, where some are missing.
     fn summary(missing: &[&str], trials: &[&[&[&str]]]) -> TraceSummary {
         let missing: Vec<String> = missing.iter().map(|&id| id.to_owned()).collect();
-        let mut tally = TraceTally::new(&StudyRow::default(), &missing);
+        let mut tally = TraceTally::new(&StudyRow::default(), &CellFacts { missing, ..CellFacts::default() });
         let effect = |ids: &&[&str]| NamedEffect {
             id: ids[0].into(),
             aliases: ids[1..].iter().map(|&alias| alias.into()).collect(),
+            time_s: None,
         };
         for groups in trials {
             tally.add(&TraceAnswer {
@@ -211,7 +228,7 @@ mod tests {
                 margin: Some(30.0),
                 expected: Some(4.0),
                 band_fitted: Some(0.9),
-                band_held_out: None,
+                ..TraceAnswer::default()
             });
         }
         tally.summary()

@@ -13,6 +13,7 @@ pub mod innovation_figure;
 pub mod key_figure;
 pub mod method_table;
 pub mod missing_moment;
+pub mod outcomes;
 pub mod page_files;
 pub mod pooled_charts;
 pub mod predict_curves;

@@ -15,7 +15,7 @@ use super::page_files::{KEY_FIGURE, REPORT, write_page};
 use super::record_study;
 use super::study_figures::{self, FigurePlace};
 use super::study_page::{on_screen, page};
-use super::{blind_spots_table, coverage_table, curve_tables, tables, tracing_table};
+use super::{blind_spots_table, coverage_table, curve_tables, outcomes, tables, tracing_table};
 use crate::documents::{self, answers::StudyAnswer};
 use crate::options::{Common, FigureChoice, Format};
 use crate::screen;
@@ -100,6 +100,9 @@ pub fn put(
             "reliability.csv",
             tracing_table::reliability(&study_figures::one_trace(design, &summary)).to_csv(),
         )?;
+        if let Some(outcomes) = outcomes::table(design, &summary) {
+            folder.write("outcomes.csv", outcomes.to_csv())?;
+        }
         let spots = blind_spots(&summary.tracing, design);
         if !spots.is_empty() {
             folder.write("blind-spots.csv", blind_spots_table::table(&spots, design, str::to_owned).to_csv())?;

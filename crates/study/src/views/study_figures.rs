@@ -6,6 +6,7 @@ use report::figures::Plot;
 
 use super::charts::{self, ErrorMeasure};
 use super::key_figure;
+use super::outcomes;
 use super::page_files::KEY_FIGURE;
 use super::pooled_charts;
 use super::trace_charts as traces;
@@ -164,8 +165,13 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
                        invents an effect at most.";
         PageFigure::new("false-names", caption, plot)
     });
+    let outcomes = outcomes::figure(design, &lines).map(|map| {
+        let caption =
+            "What was said of every ship, in per cent of its trials, with 95 % intervals (Wilson). Outlined: right.";
+        PageFigure::new("outcomes", format!("{caption}{whose}"), Plot::Cells(map))
+    });
     let confusions = traces::confusions(design, &lines).into_iter().enumerate().map(confusion);
-    rules.into_iter().chain(false_names).chain(confusions).chain(power).chain(reliability).collect()
+    rules.into_iter().chain(false_names).chain(outcomes).chain(confusions).chain(power).chain(reliability).collect()
 }
 
 /// Errors over the axes. What a trace finds has its own figures; of many cells the errors would be a figure each.

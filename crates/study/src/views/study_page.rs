@@ -9,7 +9,7 @@ use report::markdown::text;
 use report::{Page, Table, number};
 
 use super::study_figures::{FigurePlace, StudyFigure};
-use super::{blind_spots_table, coverage_table, tables, tracing_table};
+use super::{blind_spots_table, coverage_table, outcomes, tables, tracing_table};
 
 /// Cells whose lines go on the screen; more are in the files.
 const SHOWN_CELLS: usize = 12;
@@ -102,6 +102,10 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
             page.table(blind_spots_table::table(&spots, design, names::effect));
         }
         page.figures(at(&|place| place == FigurePlace::Traces));
+        if let Some(table) = outcomes::table(design, summary) {
+            page.say(outcomes::reading());
+            page.table(table);
+        }
         page.table(tracing_table::table(&summary.tracing, summary, design, false));
     }
     if !summary.predictions.is_empty() {

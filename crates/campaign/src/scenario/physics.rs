@@ -1,0 +1,138 @@
+//! The physics that a first-order base lacks in the trials of a cell, as far as a study says what is right to say of
+//! it.
+
+use document::trace::Dependence;
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
+
+/// Keys of [`PhysicsWire`], which stand beside the constants of a formula.
+pub const KEYS: [&str; 4] = ["stands-for", "depends-on", "changes-s", "period-s"];
+
+/// What is right to say of a formula, as it is written in its entry.
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+pub struct PhysicsWire {
+    /// Effects of the list that are the same physics: a trace that names one of them is right.
+    stands_for: Vec<String>,
+    /// What the moment depends on, where no effect of the list is the same physics: a trace that locates it is right.
+    depends_on: Option<Dependence>,
+    /// Instants at which a moment of time changes, or about which it passes.
+    changes_s: Vec<f64>,
+    /// Shortest and longest period of a moment of time.
+    period_s: Option<[f64; 2]>,
+}
+
+/// Physics that a first-order base lacks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub enum MissingPhysics {
+    /// Effects of the list, or the same physics in another formula.
+    Listed {
+        /// The effects: to name any of them is right.
+        effects: Vec<String>,
+    },
+    /// A moment on no list.
+    Unlisted {
+        /// What it depends on.
+        depends_on: Dependence,
+        /// Instants at which it changes, or about which it passes.
+        changes_s: Vec<f64>,
+        /// Its shortest and longest period.
+        period_s: Option<[f64; 2]>,
+    },
+    /// Nothing.
+    Nothing {
+        /// Whether chance turns the ship or her recorded rudder, so that a random moment is right as well.
+        disturbed: bool,
+    },
+}
+
+impl PhysicsWire {
+    /// The physics that the entry of a formula at a place states.
+    ///
+    /// Fails for a name that is on no list, and for keys that do not go together.
+    pub fn checked(self, place: &KeyPath) -> Result<MissingPhysics, KeyFault> {
+        let Self { stands_for: effects, depends_on, changes_s, period_s } = self;
+        let ids = effect_ids();
+        if let Some(index) = effects.iter().position(|id| !ids.contains(&id.as_str())) {
+            let (id, key) = (&effects[index], place.child("stands-for").child(index));
+            let found = format!("no effect is called `{id}`");
+            return Err(KeyFault::value(key, found, "expected an effect of the list", suggestion(id, &ids)));
+        }
+        let is_timed = !changes_s.is_empty() || period_s.is_some();
+        let is_backwards = period_s.is_some_and(|[from, to]| !(from > 0.0 && from <= to));
+        let when = if changes_s.is_empty() { "period-s" } else { "changes-s" };
+        let faults = [
+            (
+                is_timed && depends_on != Some(Dependence::Time),
+                (
+                    when,
+                    "times of a moment that does not depend on time",
+                    "expected `depends-on = \"time\"` beside them",
+                ),
+            ),
+            (
+                !changes_s.is_empty() && period_s.is_some(),
+                (when, "a moment with changes and with a period", "expected `changes-s` or `period-s`"),
+            ),
+            (is_backwards, (when, "no range of periods", "expected two periods above zero, the shorter first")),
+            (
+                effects.is_empty() != depends_on.is_some(),
+                ("depends-on", "a moment on the list and on none", "expected a name in `stands-for`, or `depends-on`"),
+            ),
+        ];
+        if let Some((_, (key, found, expected))) = faults.into_iter().find(|(is_wrong, _)| *is_wrong) {
+            return Err(KeyFault::name(place.child(key), found, expected, "keep one of the keys, or leave all out"));
+        }
+        Ok(match depends_on {
+            None => MissingPhysics::Listed { effects },
+            Some(depends_on) => MissingPhysics::Unlisted { depends_on, changes_s, period_s },
+        })
+    }
+}
+
+impl MissingPhysics {
+    /// The physics of trials whose ship states nothing: an effect of the list, or none; `None` where several are
+    /// missing, or a name is on no list.
+    pub fn of_effects(missing: &[String], disturbed: bool) -> Option<Self> {
+        match missing {
+            [] => Some(Self::Nothing { disturbed }),
+            [id] if effect_ids().contains(&id.as_str()) => Some(Self::Listed { effects: missing.to_vec() }),
+            _ => None,
+        }
+    }
+}
+
+/// Identifiers of the effects of the list.
+fn effect_ids() -> Vec<&'static str> {
+    let mut ids: Vec<&str> = ship::effects::all().iter().map(|effect| effect.id()).collect();
+    ids.dedup();
+    ids
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::zig_zag;
+
+    #[test]
+    fn what_is_right_is_stated_or_is_what_the_list_has() {
+        let formula = "[[effect]]\nformula = 'x = c * psi'\nc = 0.1\n";
+        let listed = |id: &str| Some(MissingPhysics::Listed { effects: vec![id.to_owned()] });
+        let timed = |changes_s: &[f64], period_s| {
+            Some(MissingPhysics::Unlisted { depends_on: Dependence::Time, changes_s: changes_s.to_vec(), period_s })
+        };
+        for (keys, physics) in [
+            (format!("{formula}stands-for = ['speed_loss']"), listed("speed_loss")),
+            (format!("{formula}depends-on = 'time'\nchanges-s = [100, 200]"), timed(&[100.0, 200.0], None)),
+            (format!("{formula}depends-on = 'time'\nperiod-s = [40, 70]"), timed(&[], Some([40.0, 70.0]))),
+            (formula.to_owned(), None),
+            ("[sensor]\nheading-lag-s = 1.5".to_owned(), listed("steering_lag")),
+            (String::new(), Some(MissingPhysics::Nothing { disturbed: false })),
+            ("[sensor]\nrudder-noise-deg = 0.2".to_owned(), Some(MissingPhysics::Nothing { disturbed: true })),
+        ] {
+            assert_eq!(zig_zag(1, &keys).cells[0].physics(), physics, "{keys}");
+        }
+    }
+}

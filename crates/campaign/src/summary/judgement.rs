@@ -1,0 +1,237 @@
+//! Whether what a trace said of a ship is right, where a study states what is.
+
+use std::fmt;
+
+use ::trace::Verdict;
+use serde::{Deserialize, Serialize};
+
+use crate::rows::{LocatedMoment, NamedEffect, TraceAnswer};
+use crate::scenario::MissingPhysics;
+
+/// How far, s, the time of an effect or of a located moment may be from a change to be right.
+pub const NEAR_S: f64 = 20.0;
+
+/// By which share a located period may miss those of the ship.
+pub const NEAR_PERIOD: f64 = 0.15;
+
+/// Effects that are a matter of time and not of the ship.
+const OF_TIME: [&str; 2] = ["moment_drift", "transient_disturbance"];
+
+/// The worth of what a trace said.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Judgement {
+    /// Effects that are right were named, and no other.
+    Right,
+    /// A moment with the right dependence was located, at the right time where there is one; or nothing but effects of
+    /// time was named, all near a change.
+    Located,
+    /// Called unexplained, and nothing named or located.
+    Unexplained,
+    /// Nothing but a random moment.
+    Disturbed,
+    /// Called clean.
+    Clean,
+    /// What was named or located is not right, but the trace says that it cannot tell it from what is.
+    Alias,
+    /// A moment was located, or an effect of time named, that is not right.
+    Elsewhere,
+    /// Something else was named, or anything said to be missing where nothing is.
+    Wrong,
+}
+
+impl Judgement {
+    /// All of them: first those that may be right.
+    pub const ALL: [Self; 8] = [
+        Self::Right,
+        Self::Located,
+        Self::Unexplained,
+        Self::Disturbed,
+        Self::Clean,
+        Self::Alias,
+        Self::Elsewhere,
+        Self::Wrong,
+    ];
+
+    /// The judgement of an answer about a ship that lacks this.
+    pub fn of(answer: &TraceAnswer, physics: &MissingPhysics) -> Self {
+        if answer.named.is_empty() && answer.located.is_empty() {
+            return match answer.verdict {
+                Verdict::Unexplained => Self::Unexplained,
+                Verdict::Disturbed => Self::Disturbed,
+                _ => Self::Clean,
+            };
+        }
+        match physics {
+            MissingPhysics::Nothing { .. } => Self::Wrong,
+            MissingPhysics::Listed { effects } => Self::of_names(answer, effects),
+            MissingPhysics::Unlisted { .. } => Self::of_shapes(answer, physics),
+        }
+    }
+
+    /// Whether that is right to say of a ship that lacks this.
+    pub fn is_right(self, physics: &MissingPhysics) -> bool {
+        match physics {
+            MissingPhysics::Listed { .. } => self == Self::Right,
+            MissingPhysics::Unlisted { .. } => matches!(self, Self::Located | Self::Unexplained),
+            MissingPhysics::Nothing { disturbed } => self == Self::Clean || (*disturbed && self == Self::Disturbed),
+        }
+    }
+
+    /// The judgement where effects of the list are right.
+    fn of_names(answer: &TraceAnswer, right: &[String]) -> Self {
+        let is_right = |id: &str| right.iter().any(|known| known == id);
+        let is_alias = |effect: &NamedEffect| right.iter().any(|id| effect.holds(id));
+        let TraceAnswer { named, located, .. } = answer;
+        let is_alternative = || located.iter().flat_map(|moment| &moment.alternatives).any(|id| is_right(id));
+        match named.is_empty() {
+            true if is_alternative() => Self::Alias,
+            true => Self::Elsewhere,
+            false if named.iter().all(|effect| is_right(&effect.id)) => Self::Right,
+            false if named.iter().all(is_alias) => Self::Alias,
+            false => Self::Wrong,
+        }
+    }
+
+    /// The judgement where a dependence is right, and times where there are any.
+    fn of_shapes(answer: &TraceAnswer, physics: &MissingPhysics) -> Self {
+        let mut of_ship = answer.named.iter().filter(|effect| !is_of_time(&effect.id)).peekable();
+        if of_ship.peek().is_some() {
+            let is_alias = of_ship.all(|effect| effect.aliases.iter().any(|id| is_of_time(id)));
+            return if is_alias { Self::Alias } else { Self::Wrong };
+        }
+        let is_placed = match answer.located.is_empty() {
+            true => answer.named.iter().all(|effect| effect.time_s.is_some_and(|time| is_near(time, physics))),
+            false => answer.located.iter().any(|moment| is_of(moment, physics)),
+        };
+        if is_placed { Self::Located } else { Self::Elsewhere }
+    }
+}
+
+impl fmt::Display for Judgement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Right => "named right",
+            Self::Located => "located right",
+            Self::Unexplained => "unexplained",
+            Self::Disturbed => "disturbed",
+            Self::Clean => "clean",
+            Self::Alias => "alias",
+            Self::Elsewhere => "located elsewhere",
+            Self::Wrong => "wrong",
+        })
+    }
+}
+
+fn is_of_time(id: &str) -> bool {
+    OF_TIME.contains(&id)
+}
+
+/// Whether a time, s, is near a change.
+fn is_near(time: f64, physics: &MissingPhysics) -> bool {
+    let MissingPhysics::Unlisted { changes_s, .. } = physics else { return false };
+    changes_s.iter().any(|change| (change - time).abs() <= NEAR_S)
+}
+
+/// Whether a located moment has the dependence and the times of the ship.
+fn is_of(moment: &LocatedMoment, physics: &MissingPhysics) -> bool {
+    let MissingPhysics::Unlisted { depends_on, changes_s, period_s } = physics else { return false };
+    let is_timed = match period_s {
+        Some([from, to]) => {
+            let is_of_ship = |period: f64| (from * (1.0 - NEAR_PERIOD)..=to * (1.0 + NEAR_PERIOD)).contains(&period);
+            let harmonics = if moment.form.contains("harmonics") { 3 } else { 1 };
+            let mut periods = moment.form.split(' ').filter_map(|word| word.parse::<f64>().ok());
+            let is_near = |period: f64| (1..=harmonics).any(|harmonic| is_of_ship(period / f64::from(harmonic)));
+            moment.form.contains("period") && periods.all(is_near)
+        }
+        None if changes_s.is_empty() => true,
+        None => {
+            let middle = moment.from_s.zip(moment.until_s).map(|(from, until)| 0.5 * (from + until));
+            [moment.from_s, moment.until_s, middle].into_iter().flatten().any(|time| is_near(time, physics))
+        }
+    };
+    moment.depends_on == *depends_on && is_timed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Judgement::{Alias, Clean, Disturbed, Elsewhere, Located, Right, Unexplained, Wrong};
+    use document::trace::Dependence::{self, Time, Way, YawRate};
+
+    fn located(depends_on: Dependence, form: &str, from_s: Option<f64>, until_s: Option<f64>) -> LocatedMoment {
+        LocatedMoment { depends_on, form: form.into(), from_s, until_s, alternatives: vec!["speed_loss".into()] }
+    }
+
+    /// The judgement of names, each with an alias and a time, and of a located moment.
+    fn judged(names: &[(&str, &str, f64)], located: Option<LocatedMoment>, physics: &MissingPhysics) -> Judgement {
+        let effect = |&(id, alias, time_s): &(&str, &str, f64)| NamedEffect {
+            id: id.into(),
+            aliases: vec![alias.into()],
+            time_s: Some(time_s),
+        };
+        let (named, located) = (names.iter().map(effect).collect(), located.into_iter().collect());
+        Judgement::of(&TraceAnswer { verdict: Verdict::Traced, named, located, ..TraceAnswer::default() }, physics)
+    }
+
+    fn of_time(changes_s: &[f64], period_s: Option<[f64; 2]>) -> MissingPhysics {
+        MissingPhysics::Unlisted { depends_on: Time, changes_s: changes_s.to_vec(), period_s }
+    }
+
+    #[test]
+    fn another_formula_is_judged_by_the_effects_it_stands_for_and_nothing_by_silence() {
+        let [physics, other] =
+            ["speed_loss", "wind_moment"].map(|id| MissingPhysics::Listed { effects: vec![id.into()] });
+        let shape = || Some(located(YawRate, "moment with r²", None, None));
+        let [right, alias, wrong] = [("speed_loss", ""), ("second_order", "speed_loss"), ("second_order", "")]
+            .map(|(id, alias)| (id, alias, 0.0));
+        assert_eq!(judged(&[right], shape(), &physics), Right);
+        assert_eq!(judged(&[right, alias], None, &physics), Alias);
+        assert_eq!(judged(&[right, wrong], None, &physics), Wrong);
+        assert_eq!([&physics, &other].map(|physics| judged(&[], shape(), physics)), [Alias, Elsewhere]);
+        let silent = |verdict| Judgement::of(&TraceAnswer { verdict, ..TraceAnswer::default() }, &physics);
+        let verdicts = [Verdict::Clean, Verdict::Unexplained, Verdict::Disturbed];
+        assert_eq!(verdicts.map(silent), [Clean, Unexplained, Disturbed]);
+        let nothing = [true, false].map(|disturbed| MissingPhysics::Nothing { disturbed });
+        assert_eq!(judged(&[], shape(), &nothing[0]), Wrong);
+        assert_eq!(nothing.map(|nothing| Disturbed.is_right(&nothing)), [true, false]);
+    }
+
+    #[test]
+    fn what_changes_is_located_by_an_instant_near_it() {
+        let physics = of_time(&[100.0, 200.0], None);
+        let [squall, wind] = ["transient_disturbance", "wind_moment"];
+        let from = |from, until| Some(located(Time, "moment", Some(from), until));
+        // A moment that stays has no middle.
+        for (names, moment, judgement) in [
+            (&[(squall, "", 119.0), (squall, "", 181.0)][..], None, Located),
+            (&[(squall, "", 119.0), (squall, "", 150.0)], None, Elsewhere),
+            (&[(wind, "", 100.0)], None, Wrong),
+            (&[(wind, "", 100.0)], from(110.0, None), Wrong),
+            (&[(wind, squall, 100.0)], None, Alias),
+            (&[(wind, squall, 100.0), (wind, "", 100.0)], None, Wrong),
+            (&[], from(110.0, None), Located),
+            (&[], from(140.0, None), Elsewhere),
+            (&[], from(60.0, Some(130.0)), Located),
+            (&[], from(60.0, Some(250.0)), Elsewhere),
+            (&[], Some(located(Way, "moment with y", None, None)), Elsewhere),
+        ] {
+            assert_eq!(judged(names, moment.clone(), &physics), judgement, "{names:?}, {moment:?}");
+        }
+    }
+
+    #[test]
+    fn a_dependence_or_a_period_is_enough_where_nothing_changes() {
+        let (period, always) = (of_time(&[], Some([90.0; 2])), of_time(&[], None));
+        for (form, physics, judgement) in [
+            ("moment with a period of 100 s", &period, Located),
+            ("moment with a period of 45 s", &period, Elsewhere),
+            ("moment with a period of 180 s and its harmonics", &period, Located),
+            ("moment whose period runs from 80 s to 100 s", &period, Located),
+            ("moment whose period runs from 90 s to 30 s", &period, Elsewhere),
+            ("moment that grows with time", &period, Elsewhere),
+            ("anything", &always, Located),
+        ] {
+            assert_eq!(judged(&[], Some(located(Time, form, None, None)), physics), judgement, "{form}");
+        }
+    }
+}

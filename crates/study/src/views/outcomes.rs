@@ -1,0 +1,110 @@
+//! What traces said of ships whose scenario states what is right to say of them.
+
+use campaign::design::Design;
+use campaign::scenario::MissingPhysics;
+use campaign::statistics::{Statistic, grouped, share};
+use campaign::summary::{Judgement, NEAR_PERIOD, NEAR_S, Summary, TraceSummary};
+use report::Table;
+use report::figures::{CellMap, MapCell, Outline, Shades};
+use report::number;
+
+use super::tables::head_of_cells;
+use super::tracing_table::has_several;
+
+/// A kind of ship, for figures and files.
+fn kind(physics: &MissingPhysics) -> &'static str {
+    match physics {
+        MissingPhysics::Listed { .. } => "known",
+        MissingPhysics::Unlisted { .. } => "unknown",
+        MissingPhysics::Nothing { .. } => "nothing missing",
+    }
+}
+
+/// The answers in a cell, and what its ship lacks.
+type JudgedLine<'a> = (&'a TraceSummary, &'a MissingPhysics);
+
+fn judged<'a>(design: &'a Design, lines: &'a [TraceSummary]) -> Vec<JudgedLine<'a>> {
+    lines.iter().filter_map(|line| Some((line, design.cells[line.cell].physics.as_ref()?))).collect()
+}
+
+fn count(lines: &[JudgedLine], is_counted: impl Fn(Judgement, &MissingPhysics) -> bool) -> u64 {
+    let of_line = |(line, physics): &JudgedLine| {
+        line.judged
+            .iter()
+            .filter(|(judgement, _)| is_counted(**judgement, physics))
+            .map(|(_, count)| count)
+            .sum::<u64>()
+    };
+    lines.iter().map(of_line).sum()
+}
+
+/// A row for every ship, a column for every judgement; cells that differ in further axes are one row. Nothing for a
+/// study that states nothing.
+pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<CellMap> {
+    let judged = judged(design, lines);
+    let ships = grouped(judged.iter().copied(), |(line, physics): &JudgedLine| {
+        let label = design.cells[line.cell].labels.first().map_or("", String::as_str);
+        format!("{}: {label}", kind(physics)).replace(" %", "\u{a0}%")
+    });
+    let trials = |lines: &[JudgedLine]| count(lines, |_, _| true);
+    let cell = |lines: &[JudgedLine], judgement: Judgement| {
+        let share = share(count(lines, |other, _| other == judgement), trials(lines)).map(|share| share.times(100.0));
+        MapCell {
+            value: share.map(|share| share.value),
+            interval: share.and_then(|share| share.ci95),
+            outline: judgement.is_right(lines[0].1).then_some(Outline::Right),
+        }
+    };
+    let right = |name: &str| {
+        let lines: Vec<JudgedLine> = judged.iter().copied().filter(|(_, physics)| kind(physics) == name).collect();
+        format!("{} of {}", count(&lines, Judgement::is_right), trials(&lines))
+    };
+    let cells = ships.iter().map(|(_, lines)| Judgement::ALL.map(|judgement| cell(lines, judgement)).to_vec());
+    let cells: Vec<Vec<MapCell>> = cells.collect();
+    (!ships.is_empty()).then(|| CellMap {
+        title: Some(format!("Right: known effects {}, unknown effects {}", right("known"), right("unknown"))),
+        titles: [String::from("said by the trace"), String::from("ship")],
+        columns: Judgement::ALL.map(|judgement| judgement.to_string()).to_vec(),
+        rows: ships.into_iter().map(|(name, _)| name).collect(),
+        shades: Shades::Shares,
+        panels: vec![(None, cells)],
+        note: Some(String::from(
+            "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on \
+             no list. Alias: not to be told from the truth. Elsewhere: by another dependence, or at another time.",
+        )),
+    })
+}
+
+/// What the judgements mean.
+pub fn reading() -> String {
+    format!(
+        "*named right*: an effect that the ship has or stands for, and no other; *located right*: a moment with the \
+         dependence of the truth and, where this has times, within {NEAR_S:.0} s of a change (its beginning, end or \
+         middle) or {:.0} % of a period, or effects of time named there; *alias*: what the trace cannot tell from the \
+         truth; *located elsewhere*: with another dependence or time; *wrong*: any other name, and of a ship that lacks \
+         nothing a located moment. *Right* of a moment on no list is *unexplained*, too, and of a ship that chance \
+         turns *disturbed*.",
+        100.0 * NEAR_PERIOD
+    )
+}
+
+/// The counts of every cell: `outcomes.csv`; `None` for a study that states nothing.
+pub fn table(design: &Design, summary: &Summary) -> Option<Table> {
+    let several = has_several(design);
+    let head = head_of_cells(design).texts(several.then_some("method")).texts(["kind"]).counts(["trials", "failed"]);
+    let head = head.numbers(["right", "right lower 95", "right upper 95"]).unit("%");
+    let mut table = Table::new(head.counts(Judgement::ALL.map(|judgement| judgement.to_string())));
+    let judged = judged(design, &summary.tracing);
+    for (line, physics) in &judged {
+        let one = [(*line, *physics)];
+        let failed = summary.record(line.cell, line.method).map_or(0, |record| record.failed());
+        let right = Statistic::flat(share(count(&one, Judgement::is_right), line.trials));
+        let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
+        cells.extend(several.then(|| design.methods[line.method].label.clone()));
+        cells.extend([kind(physics).to_owned(), line.trials.to_string(), failed.to_string()]);
+        cells.extend(right.map(|share| number::optional(share.map(|share| 100.0 * share), 1)));
+        cells.extend(Judgement::ALL.map(|judgement| count(&one, |other, _| other == judgement).to_string()));
+        table.push(cells);
+    }
+    (!judged.is_empty()).then_some(table)
+}
