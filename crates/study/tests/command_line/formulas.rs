@@ -70,7 +70,7 @@ fn a_formula_of_a_scenario_is_marked_in_the_file() {
         ("formula='x=c*t'\nc=1\ndepends-on='heading'\nchanges-s=[9]", "does not depend on time", 0),
         ("formula='x=c*t'\nc=1\ndepends-on='time'\nchanges-s=[9]\nperiod-s=[4,7]", "with a period", 0),
         ("formula='x=c*t'\nc=1\ndepends-on='time'\nperiod-s=[70,40]", "the shorter first", 0),
-        ("formula='x=c*t'\nc=1\ndepends-on='time'\n[[effect]]\nspeed_loss={}", "only effect", 0),
+        ("formula='x=c*t'\nc=1\ndepends-on='time'\n[[effect]]\nsteering_lag.dead-time-s=1", "only effect", 0),
     ] {
         desk.file("bad.toml", format!("{GOOD}\n[[effect]]\n{text}\n"));
         let run = desk.run(&["check", "bad.toml"]);
