@@ -132,8 +132,9 @@ impl Number {
 /// Some rows and columns of a stored table in Markdown, numbers with three digits.
 pub fn in_markdown(table: &str, kept: &BTreeMap<String, String>, columns: &[[String; 2]]) -> Result<String, String> {
     let text = read(table)?;
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let rows: Result<Vec<BTreeMap<String, String>>, _> = reader.deserialize().collect();
+    let rows = csv::Reader::from_reader(text.as_bytes())
+        .into_deserialize()
+        .collect::<Result<Vec<BTreeMap<String, String>>, _>>();
     let mut rows = rows.map_err(|error| format!("{table}: {error}"))?;
     rows.retain(|row| kept.iter().all(|(name, value)| row.get(name) == Some(value)));
     let cells = |name: &String| -> Option<Vec<&str>> { rows.iter().map(|row| Some(row.get(name)?.as_str())).collect() };
@@ -143,11 +144,13 @@ pub fn in_markdown(table: &str, kept: &BTreeMap<String, String>, columns: &[[Str
         let is_number = cells.iter().all(|cell| parsed(cell).is_some());
         let shown = |cell: &&str| match parsed(cell).filter(|_| cell.contains('.')) {
             Some(value) => significant(value, 3),
-            None => cell.replace('|', "\\|").replace('+', ", "),
+            // Counts of names, `one=2+other=1`.
+            None if cell.contains('=') => format!("{})", cell.replace('=', " (").replace('+', "), ")),
+            None => cell.replace('|', "\\|"),
         };
-        let column = [heading.clone(), if is_number { "---:" } else { "---" }.to_owned()];
-        let column = column.into_iter().chain(cells.iter().map(shown));
-        lines.iter_mut().zip(column).for_each(|(line, cell)| *line += &format!("| {cell} "));
+        let head = [heading.clone(), if is_number { "---:" } else { "---" }.to_owned()].into_iter();
+        let column = lines.iter_mut().zip(head.chain(cells.iter().map(shown)));
+        column.for_each(|(line, cell)| *line += &format!("| {cell} "));
     }
     Ok(lines.into_iter().map(|line| line.replace("| --- ", "|---").replace("| ---: ", "|---:") + "|\n").collect())
 }
