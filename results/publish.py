@@ -59,8 +59,9 @@ def read_plan():
     for own in plan["program"]:
         if missing := {"name", "question", "page", "commands"} - own.keys():
             raise Failed(f"{PLAN}: program {own.get('name', '')}: give its {' and '.join(sorted(missing))}")
-    files = (RESULTS / plan.get("scenarios", "?")).glob("*.toml")
-    scenarios = {file.stem: Path(os.path.relpath(file, ROOT)) for file in files}
+    folder = RESULTS / plan.get("scenarios", "?")
+    files = [file for part in ("*.toml", "measured/*.toml") for file in folder.glob(part)]
+    scenarios = {file.stem: Path(os.path.relpath(file, ROOT)) for file in files if "." not in file.stem}
     if not scenarios:
         raise Failed(f"{PLAN}: `scenarios` has to be the folder of the scenarios, as seen from {RESULTS}")
     return plan, dict(sorted(scenarios.items()))

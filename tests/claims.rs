@@ -242,8 +242,11 @@ fn claims_follow_from_the_stored_results() {
 fn numbers_of_findings_are_held() {
     let claims = claims();
     let mut faults: Vec<String> = Vec::new();
-    for entry in std::fs::read_dir(root().join("scenarios")).expect("the folder is there").flatten() {
-        let page = format!("scenarios/{}", entry.file_name().display());
+    let folders = ["scenarios", "scenarios/measured"].map(|folder| {
+        let entries = std::fs::read_dir(root().join(folder)).expect("the folder is there").flatten();
+        entries.map(move |entry| format!("{folder}/{}", entry.file_name().display()))
+    });
+    for page in folders.into_iter().flatten() {
         let Some(scenario) = read(&page).ok().and_then(|text| text.parse::<toml::Table>().ok()) else { continue };
         let finding = scenario.get("finding").and_then(|finding| finding.as_str()).unwrap_or_default();
         faults.extend(unheld(&page, finding, &claims));

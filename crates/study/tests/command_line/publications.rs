@@ -12,9 +12,11 @@ use crate::desk::{Desk, of_repository};
 #[test]
 fn published_results_belong_to_the_scenarios() {
     let results = of_repository("results");
-    for entry in fs::read_dir(of_repository("scenarios")).expect("the folder is there") {
+    let folders = ["scenarios", "scenarios/measured"].map(of_repository);
+    for entry in folders.iter().flat_map(|folder| fs::read_dir(folder).expect("the folder is there")) {
         let path = entry.expect("readable").path();
-        let Some(name) = path.file_name().and_then(|name| name.to_str()?.strip_suffix(".toml")) else { continue };
+        let name = path.file_name().and_then(|name| name.to_str()?.strip_suffix(".toml"));
+        let Some(name) = name.filter(|name| !name.ends_with(".trial")) else { continue };
         let manifest = results.join("published").join(name).join("manifest.toml");
         let manifest = fs::read_to_string(&manifest).unwrap_or_else(|error| panic!("{name}: {error}"));
         let manifest: Table = manifest.parse().expect("it is TOML");

@@ -31,21 +31,14 @@ const SCENARIO: &str = r#"
 question = "?"
 seed = 3
 replicates = 2
-[ship.first-order]
-K-per-s = 0.1
-T-s = 20.0
-[manoeuvre.zig-zag]
-rudder-deg = 20.0
-heading-deg = 20.0
-executes = 5
+ship.first-order = { K-per-s = 0.1, T-s = 20.0 }
+manoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0, executes = 5 }
+steering-gear.rate-deg-s = 2.5
+recording.sampling-s = 1.0
 [[also]]
 manoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0, executes = 5, first = "port" }
 [[also]]
 manoeuvre.turning-circle = { rudder-deg = 35.0, heading-change-deg = 360.0 }
-[steering-gear]
-rate-deg-s = 2.5
-[recording]
-sampling-s = 1.0
 [[identifier]]
 method.output-error = {}
 "#;
