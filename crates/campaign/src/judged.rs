@@ -132,10 +132,8 @@ impl SharedTrials<'_> {
     fn replayed(&self, trials: usize) -> impl Iterator<Item = &Trial> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
         let fitted = self.fitted.iter().find_map(length);
-        let is_of_scale = move |judge: &&Trial| {
-            let ratio = length(judge).zip(fitted).map(|(one, other)| one / other);
-            ratio.is_none_or(|ratio| (ratio - 1.0).abs() < SCALE)
-        };
+        let are_alike = |(one, other): (f64, f64)| (one / other - 1.0).abs() < SCALE;
+        let is_of_scale = move |judge: &&Trial| length(judge).zip(fitted).is_none_or(are_alike);
         self.judges[..trials].iter().copied().flatten().filter(is_of_scale)
     }
 

@@ -122,7 +122,8 @@ pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
 
 /// Columns that follow in a study of measured records.
 pub const RECORD_COLUMNS: [RowColumn; 1] = columns! {
-    "validation_60_s_rmse_deg", "rms error of the heading on the record that judges, its replay restarted every 60 s"
+    "validation_60_s_rmse_deg",
+    "in a study of measured records: rms error of the heading on the record that judges, its replay restarted every 60 s"
         => number(validation_windows_deg);
 };
 

@@ -11,7 +11,7 @@ mod row;
 #[cfg(test)]
 mod tests;
 
-pub use columns::{COLUMNS, LOCATED_COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RowColumn, TRACE_COLUMNS};
+pub use columns::{COLUMNS, LOCATED_COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS};
 pub use file::{BlockLabel, Damage, decode, encode};
 pub use layout::RowLayout;
 pub use row::{LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};

@@ -195,7 +195,7 @@ fn every_column_is_documented() {
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/src/reference/results.md"))
         .expect("the page is there");
     for RowColumn { name, meaning, .. } in
-        COLUMNS.iter().chain(&OWN_COLUMNS).chain(&TRACE_COLUMNS).chain(&PREDICT_COLUMNS)
+        COLUMNS.iter().chain(&OWN_COLUMNS).chain(&TRACE_COLUMNS).chain(&RECORD_COLUMNS).chain(&PREDICT_COLUMNS)
     {
         let meaning = meaning.replace('|', "\\|");
         assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");

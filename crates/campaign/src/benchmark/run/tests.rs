@@ -35,12 +35,11 @@ ship.first-order = { K-per-s = 0.1, T-s = 20.0 }
 manoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0, executes = 5 }
 steering-gear.rate-deg-s = 2.5
 recording.sampling-s = 1.0
+identifier = [{ method.output-error = {} }]
 [[also]]
 manoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0, executes = 5, first = "port" }
 [[also]]
 manoeuvre.turning-circle = { rudder-deg = 35.0, heading-change-deg = 360.0 }
-[[identifier]]
-method.output-error = {}
 "#;
 
 const DAMPING: &str = "[[effect]]\nnonlinear_damping.n3-s2-per-deg2 = 0.4\n[sensor]\nheading-noise-deg = 0.05\n";
