@@ -34,7 +34,8 @@ method.integral-least-squares = {{}}
 /// The blocks of a folder with their bytes.
 pub fn blocks(desk: &Desk, folder: &str) -> BTreeMap<String, Vec<u8>> {
     let files = std::fs::read_dir(desk.path(folder).join("rows")).into_iter().flatten().flatten();
-    let blocks = files.filter(|entry| entry.path().extension().is_some_and(|extension| extension == "parquet"));
+    // What a killed program had under way has a name that begins with a dot.
+    let blocks = files.filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'));
     let file =
         |entry: std::fs::DirEntry| (entry.file_name().to_string_lossy().into_owned(), std::fs::read(entry.path()));
     blocks.map(file).filter_map(|(name, bytes)| Some((name, bytes.ok()?))).collect()
