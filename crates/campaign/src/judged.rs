@@ -105,7 +105,8 @@ impl SharedTrials<'_> {
         let key = |task: &Task| engine::key(self.scenario, *task);
         let shared = match procedure {
             Procedure::Trace(settings) => {
-                let held_out: Vec<Trial> = self.replayed(self.judges.len()).cloned().collect();
+                let held_out: Vec<Trial> =
+                    (0..self.judges.len()).filter_map(|trial| self.replayed(trial)).cloned().collect();
                 let settings = ::trace::Settings { hulls: true, ..settings.clone() };
                 let analysis = ::trace::trace(&self.fitted, &held_out, &settings);
                 let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)), Some(&settings));
@@ -127,14 +128,13 @@ impl SharedTrials<'_> {
         self.tasks.iter().enumerate().map(row).collect()
     }
 
-    /// The judging records of the first trials that are of the length of the fitted ones: a response of another scale
-    /// is not replayed on them.
-    fn replayed(&self, trials: usize) -> impl Iterator<Item = &Trial> {
+    /// The judge of a trial, where it is of the length of the fitted records: a response of another scale is not
+    /// replayed.
+    fn replayed(&self, trial: usize) -> Option<&Trial> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
         let fitted = self.fitted.iter().find_map(length);
         let are_alike = |(one, other): (f64, f64)| (one / other - 1.0).abs() < SCALE;
-        let is_of_scale = move |judge: &&Trial| length(judge).zip(fitted).is_none_or(are_alike);
-        self.judges[..trials].iter().copied().flatten().filter(is_of_scale)
+        self.judges[trial].filter(|judge| length(judge).zip(fitted).is_none_or(are_alike))
     }
 
     /// The first-order response of the records; `None` for a trace.
@@ -152,8 +152,7 @@ impl SharedTrials<'_> {
 
     /// The row of a fit on a trial.
     fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
-        let before = self.replayed(trial).count();
-        let judge = self.replayed(trial + 1).nth(before);
+        let judge = self.replayed(trial);
         let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };
         let asked = TrialQuestion { trials: &self.fitted, key, reference: &reference, missing: &[], check: None };
         let (row, errors) = match &fit.answer {
@@ -162,6 +161,7 @@ impl SharedTrials<'_> {
                 (asked.estimated(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
             }
             FitAnswer::Trace(analysis) => {
+                let before = (0..trial).filter_map(|earlier| self.replayed(earlier)).count();
                 let validation = judge.and(analysis.validation.get(before)).map(|compared| &compared.after);
                 (asked.traced(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }

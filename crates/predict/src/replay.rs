@@ -152,10 +152,9 @@ impl ShipMixture {
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let square: f64 = measured.iter().zip(&heading.most_probable).map(|(one, other)| (one - other).powi(2)).sum();
-        let zigzag = Measured::of(trial).ok().filter(|zigzag| zigzag.executes.len() > 1);
-        let figures = match &zigzag {
-            Some(zigzag) => ships.zig_zag(trial, zigzag, draws)?,
-            None => turns(trial, &made, self.timescale(), current),
+        let (figures, tracks) = match Measured::of(trial) {
+            Ok(zigzag) if zigzag.executes.len() > 1 => (ships.zig_zag(trial, &zigzag, draws)?, None),
+            _ => turns(trial, &most_probable, &made, self.timescale(), current),
         };
         Ok(Some(RecordReplay {
             file: file_of(trial).to_owned(),
@@ -164,7 +163,7 @@ impl ShipMixture {
             band_coverage_90: held as f64 / rows.len() as f64,
             heading_rmse_deg: to_deg((square / rows.len() as f64).sqrt()),
             figures,
-            tracks: TurnTracks::of(trial, &most_probable, &made, self.timescale()).filter(|_| zigzag.is_none()),
+            tracks,
             current,
             heading,
             measured,
@@ -238,20 +237,27 @@ fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<Quantity>) -> ByNa
     drawn.first().into_iter().flat_map(|first| first.keys().enumerate()).filter_map(figure).collect()
 }
 
-/// Figures of a record that is a turn.
+/// Figures of a record that is a turn, and its tracks.
 ///
 /// The doubt about a current that was taken out of its track is one of the prediction.
-fn turns(trial: &Trial, made: &[SimulatedManoeuvre], timescale: f64, current: Option<Current>) -> ByName {
+fn turns(
+    trial: &Trial,
+    most_probable: &SimulatedManoeuvre,
+    made: &[SimulatedManoeuvre],
+    timescale: f64,
+    current: Option<Current>,
+) -> (ByName, Option<TurnTracks>) {
     let length = made.first().and_then(|first| Some(first.way.as_ref()?.length));
     let turn = HeldTurn::of(trial).zip(turn::recorded(trial, timescale, length));
-    let Some((turn, record)) = turn.filter(|_| trial.duration() > timescale) else { return ByName::new() };
+    let Some((turn, record)) = turn.filter(|_| trial.duration() > timescale) else { return (ByName::new(), None) };
     let measured = turn.figures(&record);
     let doubtful = |(number, passage): (usize, &SimulatedManoeuvre)| match current {
         None => turn.figures(passage),
         Some(current) => turn.figures(&turn::in_doubt(passage, &current, number as u64)),
     };
     let drawn: Vec<Figures> = made.iter().enumerate().map(doubtful).collect();
-    compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::bare))
+    let figures = compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::bare));
+    (figures, TurnTracks::of(&turn, &record, most_probable, made))
 }
 
 #[cfg(test)]

@@ -156,17 +156,15 @@ pub struct TurnTracks {
 }
 
 impl TurnTracks {
-    /// Those of a record that is a turn; `None` without positions, and where no drift is predicted.
+    /// Those of a recorded turn; `None` without positions, and where no drift is predicted.
     pub(crate) fn of(
-        trial: &Trial,
+        turn: &HeldTurn,
+        record: &SimulatedManoeuvre,
         most_probable: &SimulatedManoeuvre,
         made: &[SimulatedManoeuvre],
-        timescale: f64,
     ) -> Option<Self> {
-        let turn = HeldTurn::of(trial)?;
-        let record = recorded(trial, timescale, Some(most_probable.way.as_ref()?.length))?;
         Some(Self {
-            measured: turn.track(&record)?,
+            measured: turn.track(record)?,
             most_probable: turn.track(most_probable)?,
             drawn: made.iter().take(DRAWN_TRACKS).filter_map(|passage| turn.track(passage)).collect(),
         })

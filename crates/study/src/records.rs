@@ -74,16 +74,9 @@ pub fn open(path: &Path, columns: Option<&Path>, others: &[PathBuf], warnings: &
             path.display()
         )));
     }
-    // A folder holds a description for each record, under the name of the record.
-    let own = columns.filter(|columns| columns.is_dir()).and_then(|folder| {
-        let stem = path.file_stem()?.to_string_lossy().into_owned();
-        Some(folder.join(format!("{stem}.trial.toml"))).filter(|own| own.is_file())
-    });
     // Folders and figures are named after the record.
     name::of_file(called(path))?;
-    let sidecar = own
-        .or_else(|| columns.filter(|columns| !columns.is_dir()).map(Path::to_path_buf))
-        .or_else(|| Sidecar::found_beside(path));
+    let sidecar = Sidecar::describing(path, columns);
     let mut log = Log::open(path, sidecar.as_deref(), others).map_err(refused)?;
     warnings.extend(source(called(path)).of(std::mem::take(&mut log.warnings)));
     Ok(log)

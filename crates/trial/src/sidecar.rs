@@ -70,6 +70,16 @@ impl Sidecar {
         Some(Self::beside(table)).filter(|beside| beside.is_file())
     }
 
+    /// The sidecar that describes a table: the one that is given, or of a folder of them the one under its name; else
+    /// the one beside it.
+    pub fn describing(table: &Path, given: Option<&Path>) -> Option<PathBuf> {
+        let given = given.and_then(|given| match given.is_dir() {
+            true => Self::found_beside(&given.join(table.file_name()?)),
+            false => Some(given.to_path_buf()),
+        });
+        given.or_else(|| Self::found_beside(table))
+    }
+
     /// Reads and checks a sidecar.
     ///
     /// Fails when the file cannot be read or is larger than [`SIDECAR`], and as [`parse`](Self::parse) does.

@@ -208,15 +208,10 @@ fn files(wire: &RecordsWire, folder: &Path, key: &KeyPath) -> Result<Vec<(PathBu
             let found = format!("`records.files` holds {pattern:?}, and there is no such file");
             return Err(KeyFault::value(key.child("files").child(index), found, "expected records", advice));
         }
-        let described = |path: PathBuf| {
-            let sidecar = match &sidecar {
-                Some(folder) if folder.is_dir() => Sidecar::found_beside(&folder.join(path.file_name()?)),
-                Some(file) => Some(file.clone()),
-                None => Sidecar::found_beside(&path),
-            };
-            Some((path, sidecar))
-        };
-        paths.extend(found.into_iter().filter_map(described));
+        paths.extend(found.into_iter().map(|path| {
+            let sidecar = Sidecar::describing(&path, sidecar.as_deref());
+            (path, sidecar)
+        }));
     }
     Ok(paths)
 }
