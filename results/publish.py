@@ -8,6 +8,7 @@ the run that made the rest, and no change.
 
 import argparse
 import csv
+import fnmatch
 import functools
 import json
 import os
@@ -174,7 +175,8 @@ def make_program(own, program, data, restart):
 def keep_only(folder, kept):
     """Removes all other files, and what pages say of figures among them: each a line with its caption below."""
     for file in [file for file in folder.rglob("*") if file.is_file()]:
-        if file.relative_to(folder).as_posix() not in kept:
+        path = file.relative_to(folder).as_posix()
+        if not any(fnmatch.fnmatch(path, pattern) for pattern in kept):
             file.unlink()
     for page in folder.rglob("*.md"):
         figure = re.compile(r"!\[[^]\n]*\]\(([^)\n]+)\)\n\n(?:\*[^\n]+\*\n\n)?")

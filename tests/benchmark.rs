@@ -1,11 +1,12 @@
-//! The published benchmark: its definition is the one of the program, and its leaderboards follow from its answers.
+//! The published benchmark: its scenarios are those of the program, and its leaderboards follow from its answers.
 
 use std::path::{Path, PathBuf};
 
 use campaign::benchmark::board::boards;
 use campaign::benchmark::cases::BenchCase;
 use campaign::benchmark::overall::overall;
-use campaign::benchmark::{BenchDocument, BenchTask, Definition, naming};
+use campaign::benchmark::{BenchDocument, BenchTask, naming};
+use campaign::scenario::{STRAIGHT_ON, Scenario};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -18,20 +19,16 @@ fn published() -> BenchDocument {
 }
 
 #[test]
-fn the_published_benchmark_is_that_of_the_program() {
-    let definition = Definition::published(None).unwrap_or_else(|failure| panic!("{failure}"));
+fn the_published_benchmark_has_all_records_and_the_questions_of_its_scenarios() {
     let results = published();
-    assert_eq!(results.definition.sha256, definition.identity.sha256, "run `study bench` again");
+    let names: Vec<&str> = results.studies.iter().map(|study| study.name.as_str()).collect();
+    assert_eq!(names, ["measured", "first-order", "hulls", "missing"]);
     assert_eq!(results.skipped, [], "a published result has all records");
-    let asked: usize = definition
-        .sets
-        .iter()
-        .map(|set| {
-            let trials = results.sets.iter().find(|own| own.name == set.name).map_or(0, |own| own.trials);
-            set.questions.len() * trials
-        })
-        .sum();
-    assert_eq!(results.cases.len(), asked);
+    for study in results.studies.iter().filter(|study| study.name != "measured") {
+        let path = root().join(format!("scenarios/bench/{}.toml", study.name));
+        let scenario = Scenario::read(&path, None).unwrap_or_else(|failure| panic!("{failure}"));
+        assert_eq!(study.design_sha256, scenario.design_sha256, "run `study bench` again");
+    }
 }
 
 #[test]
@@ -62,16 +59,6 @@ fn the_floor_is_on_every_board_of_headings() {
     for board in results.boards.iter().filter(|board| board.task != BenchTask::Indices) {
         let labels: Vec<&str> = board.standings.iter().map(|standing| standing.method.as_str()).collect();
         assert_eq!(labels.len(), results.methods.len(), "{labels:?}");
-        assert!(labels.contains(&campaign::benchmark::method::STRAIGHT_ON), "{labels:?}");
-    }
-}
-
-/// What is published holds no place of a machine.
-#[test]
-fn the_published_benchmark_names_files_and_no_folders() {
-    for set in published().sets {
-        for file in set.records.iter().filter_map(|record| record.file.as_ref()) {
-            assert!(!file.name.contains(['/', '\\']), "{}", file.name);
-        }
+        assert!(labels.contains(&STRAIGHT_ON), "{labels:?}");
     }
 }

@@ -21,6 +21,7 @@ use crate::manifest::{Machine, Manifest};
 use crate::observer::Observer;
 use crate::plan::{TrialPlan, blocks_of, trials_of};
 use crate::rows::StudyRow;
+use crate::scenario::records::DATA;
 use crate::scenario::{DesignCell, Scenario};
 use crate::showcase;
 use crate::store::{self, StoredStudy};
@@ -117,6 +118,9 @@ fn run(
     let store = BlockStore::new(folder.path(), &manifest, &design);
     let part = blocks_of(scenario, shard);
     let most = trials_of(scenario, &part);
+    if scenario.trials() == 0 {
+        return Err(no_records(scenario));
+    }
     let stored = store.survey(|block| part.contains(&block.place(scenario)), "its trials are run again", observer)?;
     let before: u64 = stored.values().sum();
     let read = |block: Block| store.reread(block);
@@ -140,11 +144,22 @@ fn run(
     Ok(StudyRun { manifest, trials: plan.trials, computed: computed? })
 }
 
-/// Tells what reading measured records had to decide, of every record once.
+/// There is nothing to run: no record is there.
+fn no_records(scenario: &Scenario) -> Failure {
+    let absent = scenario.cells.iter().filter_map(DesignCell::record_set).flat_map(|set| &set.absent);
+    let lines: Vec<String> = absent.map(|(file, reason)| format!("  {file}: {reason}")).collect();
+    let advice = format!("put them beside the scenario, or name their folder in {DATA}");
+    Failure::input(format!("{}: none of its records can be used:\n{}\n{advice}", scenario.name, lines.join("\n")))
+}
+
+/// Tells what reading measured records had to decide, of every record once, and which are not there.
 fn told_of_records(scenario: &Scenario, observer: &dyn Observer) {
     let mut known = HashSet::new();
-    let warnings = scenario.cells.iter().filter_map(DesignCell::record_set).flat_map(|set| &set.warnings);
-    warnings.filter(|warning| known.insert(*warning)).for_each(|warning| observer.warn(warning));
+    for set in scenario.cells.iter().filter_map(DesignCell::record_set) {
+        let absent = set.absent.iter().map(|(file, reason)| format!("{file} is left out: {reason}"));
+        let warnings = absent.chain(set.warnings.iter().cloned());
+        warnings.filter(|warning| known.insert(warning.clone())).for_each(|warning| observer.warn(&warning));
+    }
 }
 
 /// The manifest of a folder in which a study is about to run; written where there is none of its rows.

@@ -22,6 +22,7 @@ use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
 use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceAnswer};
 use crate::scenario::{Method, Procedure, Scenario, Specification, TrialSpecification};
+use crate::statistics::Moments;
 use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::TrialTiming;
@@ -32,6 +33,14 @@ pub struct TrialOutcome {
     pub rows: Vec<StudyRow>,
     /// Time to simulate, and of every method.
     pub timing: TrialTiming,
+}
+
+/// How the failure of rows begins whose trial could not be made.
+const NOT_MADE: [&str; 2] = ["specification:", "simulation:"];
+
+/// Whether a failure is of a method, on a trial that was made.
+pub fn is_made(failure: &str) -> bool {
+    !NOT_MADE.iter().any(|begin| failure.starts_with(begin))
 }
 
 /// Key of all that is random in one trial.
@@ -116,10 +125,10 @@ impl<'a> TrialRunner<'a> {
         let key = key(self.scenario, task);
         let start = Instant::now();
         let mut blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, ..StudyRow::default() };
-        let made = cell.specimen(&key).map_err(|refusal| format!("specification: {refusal}")).and_then(|specimen| {
+        let made = cell.specimen(&key).map_err(|refusal| format!("{} {refusal}", NOT_MADE[0])).and_then(|specimen| {
             blank.drawn = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
             let simulated = self.simulate(task.cell, &specimen, &key);
-            Ok((simulated.map_err(|error| format!("simulation: {error}"))?, specimen))
+            Ok((simulated.map_err(|error| format!("{} {error}", NOT_MADE[1]))?, specimen))
         });
         let simulation = start.elapsed();
         let (rows, methods) = match made {
@@ -202,6 +211,10 @@ impl TrialQuestion<'_> {
                     time,
                 )
             }
+            Procedure::StraightOn => {
+                let row = self.straight_on(&blank);
+                (Ok(row), start.elapsed())
+            }
             first_order => {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
                 let time = start.elapsed();
@@ -222,6 +235,25 @@ impl TrialQuestion<'_> {
             stop: Some(estimate.stop.as_str()),
             predicted: self.check.as_ref().map(|check| check.figures(|facts| known::of_estimate(estimate, facts))),
             ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
+        }
+    }
+
+    /// The row of a ship that keeps her heading, of which as of all others the initial heading is the best.
+    pub fn straight_on(&self, blank: &StudyRow) -> StudyRow {
+        let error = |trials: &[Trial]| {
+            let (mut square, mut rows) = (0.0, 0.0);
+            for trial in trials {
+                let mut headings = Moments::default();
+                trial.observed_rows().for_each(|row| headings.add(trial.heading()[row]));
+                (square, rows) = (square + headings.second, rows + headings.count);
+            }
+            finite(to_deg((square / rows).sqrt()))
+        };
+        let validation = self.reference.validation.as_ref();
+        StudyRow {
+            heading_rmse_deg: error(self.trials),
+            validation_rmse_deg: validation.and_then(|trial| error(std::slice::from_ref(trial))),
+            ..blank.clone()
         }
     }
 

@@ -1,11 +1,13 @@
 //! Trials of measured records that share a fit: every method is fitted once, and each trial is judged by its record.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use ::trace::Analysis;
 use ::trace::comparison::before as of_base;
 use ::trace::record::PreparedRecord;
+use ::trace::without_spikes;
 use document::IdentifiedShip;
 use identify::Estimate;
 use predict::ShipMixture;
@@ -62,26 +64,30 @@ struct RecordFit {
 enum FitAnswer {
     Response(Box<Estimate>),
     Trace(Box<Analysis>),
+    StraightOn,
 }
 
 /// Trials that share a fit.
 struct SharedTrials<'a> {
     scenario: &'a Scenario,
     tasks: &'a [Task],
-    fitted: Vec<Trial>,
-    /// The record that judges each of them.
-    judges: Vec<Option<&'a Trial>>,
+    fitted: &'a [Trial],
+    /// The fitted records without readings of their compass that belong to no ship: these count for no method.
+    shown: Cow<'a, [Trial]>,
+    /// The record that judges each of them, as it is and without such readings.
+    judges: Vec<Option<[Trial; 2]>>,
 }
 
 /// Runs trials that share a fit, in their order.
 fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome> {
     let question = |task: &Task| &set.questions[task.replicate as usize];
-    let trials = SharedTrials {
-        scenario,
-        tasks,
-        fitted: question(&tasks[0]).fitted.iter().map(|&one| set.trials[one].clone()).collect(),
-        judges: tasks.iter().map(|task| question(task).judge.map(|one| &set.trials[one])).collect(),
+    let fitted: Vec<Trial> = question(&tasks[0]).fitted.iter().map(|&place| set.trials[place].clone()).collect();
+    let judge = |task: &Task| {
+        let judge = &set.trials[question(task).judge?];
+        Some([judge.clone(), without_spikes(std::slice::from_ref(judge)).0[0].clone()])
     };
+    let judges = tasks.iter().map(judge).collect();
+    let trials = SharedTrials { scenario, tasks, shown: without_spikes(&fitted).0, judges, fitted: &fitted };
     let blank = |task: &Task| TrialOutcome {
         rows: Vec::new(),
         timing: TrialTiming { cell: task.cell as u64, simulation: Duration::ZERO, methods: Vec::new() },
@@ -105,13 +111,16 @@ impl SharedTrials<'_> {
         let key = |task: &Task| engine::key(self.scenario, *task);
         let shared = match procedure {
             Procedure::Trace(settings) => {
-                let held_out: Vec<Trial> =
-                    (0..self.judges.len()).filter_map(|trial| self.replayed(trial)).cloned().collect();
+                let held_out: Vec<Trial> = (0..self.judges.len())
+                    .filter_map(|trial| self.replayed(trial))
+                    .map(|[judge, _]| judge.clone())
+                    .collect();
                 let settings = ::trace::Settings { hulls: true, ..settings.clone() };
-                let analysis = ::trace::trace(&self.fitted, &held_out, &settings);
+                let analysis = ::trace::trace(self.fitted, &held_out, &settings);
                 let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)), Some(&settings));
                 Some(analysis.map(fit).map_err(|error| engine::failure(&error).into()))
             }
+            Procedure::StraightOn => Some(Ok(self.fit(FitAnswer::StraightOn, None))),
             Procedure::Identify { .. } => self.response(procedure, &key(&self.tasks[0])),
             // Answers from elsewhere are looked up by their trial.
             Procedure::Answers(_) => None,
@@ -130,16 +139,16 @@ impl SharedTrials<'_> {
 
     /// The judge of a trial, where it is of the length of the fitted records: a response of another scale is not
     /// replayed.
-    fn replayed(&self, trial: usize) -> Option<&Trial> {
+    fn replayed(&self, trial: usize) -> Option<&[Trial; 2]> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
         let fitted = self.fitted.iter().find_map(length);
         let are_alike = |(one, other): (f64, f64)| (one / other - 1.0).abs() < SCALE;
-        self.judges[trial].filter(|judge| length(judge).zip(fitted).is_none_or(are_alike))
+        self.judges[trial].as_ref().filter(|[judge, _]| length(judge).zip(fitted).is_none_or(are_alike))
     }
 
     /// The first-order response of the records; `None` for a trace.
     fn response(&self, procedure: &Procedure, key: &StreamKey) -> Option<Result<RecordFit, String>> {
-        let answer = procedure.identify(&self.fitted, key)?;
+        let answer = procedure.identify(self.fitted, key)?;
         let fit = |estimate| self.fit(FitAnswer::Response(Box::new(estimate)), None);
         Some(answer.map(fit).map_err(|error| error.in_a_row().into_owned()))
     }
@@ -147,19 +156,20 @@ impl SharedTrials<'_> {
     /// An answer, with the settings of a trace, and the ship that predicts, where anything is predicted.
     fn fit(&self, answer: FitAnswer, settings: Option<&::trace::Settings>) -> RecordFit {
         let is_asked = self.scenario.predictions.is_some() && self.judges.iter().any(Option::is_some);
-        RecordFit { ship: if is_asked { ship(&answer, &self.fitted, settings) } else { None }, answer }
+        RecordFit { ship: if is_asked { ship(&answer, self.fitted, settings) } else { None }, answer }
     }
 
     /// The row of a fit on a trial.
     fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
-        let judge = self.replayed(trial);
+        let judge = self.replayed(trial).map(|[_, shown]| shown);
         let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };
-        let asked = TrialQuestion { trials: &self.fitted, key, reference: &reference, missing: &[], check: None };
+        let asked = TrialQuestion { trials: &self.shown, key, reference: &reference, missing: &[], check: None };
         let (row, errors) = match &fit.answer {
             FitAnswer::Response(estimate) => {
                 let replayed = |judge| of_base(judge, &PreparedRecord::whole(judge), &estimate.response, true).ok();
                 (asked.estimated(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
             }
+            FitAnswer::StraightOn => (asked.straight_on(blank), None),
             FitAnswer::Trace(analysis) => {
                 let before = (0..trial).filter_map(|earlier| self.replayed(earlier)).count();
                 let validation = judge.and(analysis.validation.get(before)).map(|compared| &compared.after);
@@ -167,8 +177,8 @@ impl SharedTrials<'_> {
             }
         };
         let [_, windows] = errors.map_or([None; 2], |errors| errors.horizon);
-        let predicted = self.scenario.predictions.as_ref().map(|asked| match (self.judges[trial], &fit.ship) {
-            (Some(judge), Some(ship)) => predicted(ship, judge, asked),
+        let predicted = self.scenario.predictions.as_ref().map(|asked| match (&self.judges[trial], &fit.ship) {
+            (Some([judge, _]), Some(ship)) => predicted(ship, judge, asked),
             _ => Box::default(),
         });
         StudyRow { predicted, validation_windows_deg: windows.map(to_deg), ..row }
@@ -185,6 +195,7 @@ fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Setting
         known::of_analysis(analysis, &RecordFacts::of(trials).with_motion(Some(analysis), &[]))
     };
     match answer {
+        FitAnswer::StraightOn => None,
         FitAnswer::Response(estimate) => known::of_estimate(estimate, &RecordFacts::of(fitted)).filter(sound),
         FitAnswer::Trace(analysis) => Some(traced(analysis, fitted)).filter(sound).or_else(|| {
             let withheld = [Channel::Speed, Channel::Surge, Channel::Sway];

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use campaign::benchmark::BenchMethod;
 use campaign::failure::OnPath;
 use pyo3::prelude::*;
 use study::commands::bench::{BenchRequest, measure, skipped};
@@ -16,7 +15,7 @@ use crate::run::{Watch, watched};
 #[pyfunction]
 pub fn bench(
     py: Python<'_>,
-    definition: Option<String>,
+    scenarios: Vec<String>,
     words: Vec<String>,
     own: OwnMethods,
     seed: Option<u64>,
@@ -25,11 +24,11 @@ pub fn bench(
     let watch = Arc::new(Watch::default());
     let observer = Arc::clone(&watch);
     let work = move || {
-        let words = words.into_iter().chain([String::from("--")]).chain(definition);
+        let words = words.into_iter().chain([String::from("--")]).chain(scenarios);
         let asked: BenchRequest = request(words.collect())?;
-        let method = |(label, function): (String, _)| BenchMethod::new(label, Arc::new(PyIdentifier(function)));
-        let own = own.into_iter().map(method).collect();
-        let results = measure(&asked, seed, own, observer.as_ref(), |_| Ok(()))?;
+        let entrant = |(label, function): (String, _)| (label, Arc::new(PyIdentifier(function)) as _);
+        let entrants = own.into_iter().map(entrant).collect();
+        let results = measure(&asked, seed, &entrants, None, observer.as_ref())?;
         let text = results.json().on("describe", "bench.json".as_ref())?;
         Ok((text, results.skipped.iter().map(skipped).collect::<Vec<String>>()))
     };

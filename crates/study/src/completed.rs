@@ -1,7 +1,8 @@
 //! Words that a shell completes: parsers of options that know what they take, beside reading it.
 
 use ::trace::EffectId;
-use campaign::benchmark::{BenchMethod, BenchTask};
+use campaign::benchmark::BenchTask;
+use campaign::scenario::{STRAIGHT_ON, TRACE};
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command, Error};
 use identify::registry;
@@ -45,9 +46,9 @@ pub fn methods_or_all() -> Vec<String> {
     methods().into_iter().chain([String::from(ALL)]).collect()
 }
 
-/// Methods of the benchmark.
-pub fn competitors() -> Vec<String> {
-    BenchMethod::ours().iter().map(|method| method.label().to_owned()).collect()
+/// Methods of a scenario.
+pub fn entrants() -> Vec<String> {
+    methods().into_iter().chain([TRACE, STRAIGHT_ON].map(str::to_owned)).collect()
 }
 
 /// Tasks of the benchmark.

@@ -398,8 +398,6 @@ pub enum Described {
     Manifest,
     /// bench.json
     Bench,
-    /// Definition of a benchmark
-    BenchDefinition,
     /// curves.json of a fit
     FitCurves,
     /// cells.json of a study

@@ -12,7 +12,7 @@ use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use ship::{Regressor, Response};
-use trial::Trial;
+use trial::{Channel, Trial};
 
 use crate::average::{Average, AveragedModel};
 use crate::base::Base;
@@ -63,8 +63,20 @@ pub struct Analysis {
     pub(crate) candidates: Vec<Arc<Term>>,
 }
 
+/// Channels of a trace of heading and rudder alone.
+const COMMON: [Channel; 3] = [Channel::Heading, Channel::Rudder, Channel::YawRate];
+
+/// Records without channels that some methods do not read.
+fn of_heading(trials: &[Trial]) -> Vec<Trial> {
+    let is_more = |channel: &Channel| !COMMON.contains(channel);
+    let of = |trial: &Trial| {
+        trial.clone().without(&trial.channels().map(|(channel, _)| channel).filter(is_more).collect::<Vec<Channel>>())
+    };
+    trials.iter().map(of).collect()
+}
+
 /// Records without the readings of their compass that belong to no ship, and the times, s, of these.
-fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
+pub fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
     let of = |trial: &Trial| {
         maximum_likelihood::spikes(std::slice::from_ref(trial)).map_or_else(|_| Vec::new(), |mut all| all.remove(0))
     };
@@ -128,6 +140,10 @@ pub fn watched(
     watcher: &dyn Watcher,
 ) -> Result<Analysis, TraceError> {
     settings.check()?;
+    if settings.heading_alone {
+        let settings = Settings { heading_alone: false, ..settings.clone() };
+        return watched(&of_heading(trials), &of_heading(validation), &settings, watcher);
+    }
     let (trials, rudder_errors) = rudder::without_noise(trials);
     let (trials, outliers) = without_spikes(&trials);
     let validation = without_spikes(&rudder::without_noise(validation).0).0.into_owned();

@@ -37,7 +37,7 @@ pub mod waves;
 pub mod weights;
 mod words;
 
-pub use analysis::{Analysis, trace, watched};
+pub use analysis::{Analysis, trace, watched, without_spikes};
 pub use document::trace::{Document, Verdict};
 pub use remainder::{IMPROBABLE, Innovations};
 pub use selection::{EffectId, Selection};

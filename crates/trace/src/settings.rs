@@ -46,6 +46,8 @@ pub struct Settings {
     /// Whether errors of restarted replays, bands and records left out in turn are computed; a benchmark may do
     /// without.
     pub thorough: bool,
+    /// Whether heading, yaw rate and rudder are all that is read, as by a method that knows no other channel.
+    pub heading_alone: bool,
     /// Whether hulls of three degrees of freedom are fitted where the structures leave more than noise.
     pub hulls: bool,
     /// Hulls that earlier trials of the ship, or of one like her, left: what is expected of hers.
@@ -60,6 +62,7 @@ impl Default for Settings {
             monomials: 0,
             selection: Selection::default(),
             thorough: true,
+            heading_alone: false,
             hulls: false,
             earlier: Vec::new(),
         }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// A task.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BenchTask {
     /// Fit a record and replay its rudder on it.
@@ -59,16 +59,13 @@ impl BenchTask {
     }
 }
 
-/// The field of all measured records.
-pub const MEASURED: &str = "measured";
-
 /// One question with all answers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BenchCase {
     /// What was asked.
     pub task: BenchTask,
-    /// What the case is counted with: [`MEASURED`], or what the definition calls the simulated set.
+    /// What the case is counted with: the study.
     pub field: String,
     /// Name of the set.
     pub set: String,
@@ -109,12 +106,9 @@ pub struct CaseAnswer {
     /// Effects that were named, each followed by those the records cannot tell from it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub named: Vec<Vec<String>>,
-    /// Why there is no answer, in a word.
+    /// Why there is no answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
-    /// The same in a sentence.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
 }
 
 /// What a method that names effects said.

@@ -3,17 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::{Board, boards};
-use crate::benchmark::cases::BenchCase;
-use crate::benchmark::definition::{Definition, Identity, RecordSet, SetRecord, SetSource};
-use crate::benchmark::method::BenchMethod;
+use crate::benchmark::cases::{BenchCase, BenchTask};
 use crate::benchmark::naming::{self, NamingLine};
 use crate::benchmark::overall::{OverallRanking, overall};
-use crate::benchmark::record_store::UsedFile;
-use crate::benchmark::wire::words;
+use crate::benchmark::questions;
+use crate::rows::StudyRow;
+use crate::scenario::Scenario;
 use crate::statistics::distinct;
 
 /// Version of the file.
-pub const SCHEMA: &str = "bench/1";
+pub const SCHEMA: &str = "bench/2";
 
 /// The whole result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -21,11 +20,11 @@ pub const SCHEMA: &str = "bench/1";
 pub struct BenchDocument {
     /// Version of the file.
     pub schema: String,
-    /// What was run.
-    pub definition: Identity,
+    /// The studies it is made of.
+    pub studies: Vec<StudyFacts>,
     /// Version of the program.
     pub program: String,
-    /// The method that others are compared with.
+    /// The method that others are compared with: the first one.
     pub reference: String,
     /// All methods, in order.
     pub methods: Vec<String>,
@@ -33,7 +32,7 @@ pub struct BenchDocument {
     pub summaries: Vec<String>,
     /// The sets.
     pub sets: Vec<Present>,
-    /// Records that were not there or could not be used.
+    /// Records that were not there, and trials that could not be made.
     pub skipped: Vec<Skipped>,
     /// Leaderboards.
     pub boards: Vec<Board>,
@@ -45,18 +44,30 @@ pub struct BenchDocument {
     pub cases: Vec<BenchCase>,
 }
 
+/// A study of the benchmark.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StudyFacts {
+    /// Name of its scenario.
+    pub name: String,
+    /// What it asks.
+    pub question: String,
+    /// What it says about its records.
+    pub analysis: String,
+    /// SHA-256 of its design and of the measured records that were there.
+    pub design_sha256: String,
+    /// Key of every random draw.
+    pub seed: u64,
+}
+
 /// A set.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Present {
     /// What it is called.
     pub name: String,
-    /// What it is.
-    pub title: String,
-    /// Where to download it, its licence, and what to cite; none of a simulated set.
-    pub source: Option<[String; 3]>,
-    /// Number of simulated trials, or 1 of a measured set that is there.
-    pub trials: usize,
+    /// Number of its trials.
+    pub trials: u64,
     /// Its records.
     pub records: Vec<PresentRecord>,
 }
@@ -67,10 +78,10 @@ pub struct Present {
 pub struct PresentRecord {
     /// What it is called.
     pub name: String,
-    /// What the ship was asked to do.
+    /// What the ship did.
     pub manoeuvre: String,
-    /// The file that was used; none of a simulated record, and of one that was skipped.
-    pub file: Option<UsedFile>,
+    /// SHA-256 of its file; none of a simulated record.
+    pub sha256: Option<String>,
 }
 
 /// A record that was not used.
@@ -85,45 +96,41 @@ pub struct Skipped {
     pub reason: String,
 }
 
-impl Present {
-    /// A set with the files of its records that were found, in order, or no files where it is simulated.
-    pub(super) fn of(set: &RecordSet, files: Vec<Option<UsedFile>>, trials: usize) -> Self {
-        let source = match &set.source {
-            SetSource::Measured { origin, .. } => Some(origin.clone()),
-            SetSource::Simulated { .. } => None,
-        };
-        let files = files.into_iter().chain(std::iter::repeat(None));
-        let record = |(SetRecord { name, manoeuvre }, file): (&SetRecord, Option<UsedFile>)| PresentRecord {
-            name: name.clone(),
-            manoeuvre: words(manoeuvre),
-            file,
-        };
-        let records = set.records.iter().zip(files).map(record).collect();
-        Self { name: set.name.clone(), title: set.title.clone(), source, trials, records }
-    }
-}
-
 impl BenchDocument {
-    /// The result of some cases.
-    pub(super) fn of(
-        definition: &Definition,
-        methods: &[BenchMethod],
-        sets: Vec<Present>,
-        skipped: Vec<Skipped>,
-        cases: Vec<BenchCase>,
-    ) -> Self {
-        let Definition { identity, reference, .. } = definition;
-        let labels: Vec<String> = methods.iter().map(|method| method.label().to_owned()).collect();
+    /// The result of some studies with all their rows, which are in their order; `tasks` are those that are asked, all
+    /// of none.
+    pub fn of(studies: &[(Scenario, Vec<StudyRow>)], tasks: &[BenchTask]) -> Self {
+        let facts = |(scenario, _): &(Scenario, Vec<StudyRow>)| StudyFacts {
+            name: scenario.name.clone(),
+            question: scenario.words.question.clone(),
+            analysis: scenario.words.analysis.clone(),
+            design_sha256: scenario.design_sha256.clone(),
+            seed: scenario.seed,
+        };
+        let methods = distinct(studies.iter().flat_map(|(scenario, _)| {
+            let methods = &scenario.cells[0].methods;
+            methods.iter().map(|method| (method.label.clone(), method.procedure.summary().to_owned()))
+        }));
+        let (labels, summaries): (Vec<String>, Vec<String>) = methods.into_iter().unzip();
+        let (mut cases, mut sets, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
+        for own in studies.iter().map(|(scenario, rows)| questions::cases(scenario, rows)) {
+            cases.extend(own.cases.into_iter().filter(|case| tasks.is_empty() || tasks.contains(&case.task)));
+            sets.extend(own.sets);
+            skipped.extend(own.skipped);
+        }
+        // By task, as they are read; within a task in the order of the studies.
+        cases.sort_by_key(|case| case.task);
+        let reference = labels.first().cloned().unwrap_or_default();
         Self {
             schema: SCHEMA.to_owned(),
-            definition: identity.clone(),
+            studies: studies.iter().map(facts).collect(),
             program: env!("CARGO_PKG_VERSION").to_owned(),
-            reference: reference.clone(),
-            boards: boards(&cases, &labels, reference),
+            boards: boards(&cases, &labels, &reference),
             naming: naming::lines(&cases, &labels),
             overall: overall(&cases, &labels),
+            reference,
             methods: labels,
-            summaries: methods.iter().map(|method| method.summary().to_owned()).collect(),
+            summaries,
             sets,
             skipped,
             cases,

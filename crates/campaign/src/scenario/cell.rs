@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use ship::Particulars;
-use simulate::{Assumption, Disturbances, StreamKey};
+use simulate::{Assumption, Disturbances, Manoeuvre, StreamKey};
 use toml::{Table, Value};
 
 use crate::scenario::draw::DrawnKey;
@@ -95,6 +95,12 @@ impl DesignCell {
     /// Simulated records of each of its trials.
     pub fn records(&self) -> usize {
         self.specification().map_or(0, |own| 1 + own.also.len())
+    }
+
+    /// Manoeuvres of a simulated trial: that of its record, those of further ones, and the one that judges.
+    pub fn manoeuvres(&self) -> Vec<&Manoeuvre> {
+        let Some(Specification { simulation, also, validation, .. }) = self.specification() else { return Vec::new() };
+        std::iter::once(simulation).chain(also).chain(validation).map(|made| &made.manoeuvre).collect()
     }
 
     /// Effects a first-order base lacks in its trials, as far as they are known.

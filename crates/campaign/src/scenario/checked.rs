@@ -163,7 +163,8 @@ impl Scenario {
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         let counts = cells.iter().filter_map(DesignCell::record_set).map(|set| set.questions.len() as u64);
         let replicates = counts.max().unwrap_or(0);
-        checks::size(replicates, cells.len(), methods.len())?;
+        // Where all records are absent there is no trial; who runs the study says so.
+        checks::size(replicates.max(1), cells.len(), methods.len())?;
         let design = Self::of_design(name, words, axes, cells, &methods)?;
         Ok(Self { seed, replicates, predictions, ..design })
     }
@@ -202,6 +203,22 @@ impl Scenario {
     /// Trials of a cell, at most: those of a study of measured records are as many as its records make.
     pub fn trials_of(&self, cell: usize) -> u64 {
         self.cells[cell].record_set().map_or(self.replicates, |set| set.questions.len() as u64)
+    }
+
+    /// Trials of all cells, at most.
+    pub fn trials(&self) -> u64 {
+        (0..self.cells.len()).map(|cell| self.trials_of(cell)).sum()
+    }
+
+    /// The same scenario with those of its methods that have one of these labels; all of none, `None` where none is left.
+    pub fn with_methods(mut self, labels: &[String]) -> Option<Self> {
+        if !labels.is_empty() {
+            for cell in &mut self.cells {
+                cell.methods.retain(|method| labels.contains(&method.label));
+            }
+            self.design_sha256 = hex(&Sha256::digest(format!("{} of {}", self.design_sha256, labels.join(", "))));
+        }
+        (!self.cells[0].methods.is_empty()).then_some(self)
     }
 
     /// The same scenario with a method of the caller's own behind its methods, on the same trials.

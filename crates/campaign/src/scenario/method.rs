@@ -38,6 +38,8 @@ pub enum Procedure {
     Trace(::trace::Settings),
     /// Looks up what somebody found elsewhere.
     Answers(Arc<Answers>),
+    /// Takes the ship to keep her heading, the best constant one: the floor of an error.
+    StraightOn,
 }
 
 impl Procedure {
@@ -47,15 +49,32 @@ impl Procedure {
             Self::Identify { identifier, .. } => identifier.id(),
             Self::Trace(_) => TRACE,
             Self::Answers(_) => answers::ID,
+            Self::StraightOn => STRAIGHT_ON,
         }
     }
 
-    /// The first-order response of all records of one trial together; `None` for a trace. A method that draws at random
+    /// One line on what it does.
+    pub fn summary(&self) -> &str {
+        match self {
+            Self::Identify { identifier, .. } => identifier.summary(),
+            Self::Trace(settings) if settings.heading_alone => {
+                "a trace of heading, yaw rate and rudder alone, which is what all others read"
+            }
+            Self::Trace(_) => {
+                "a first-order response with every effect that is found missing; it reads speed, sway and wind too, those of \
+                 a measured record that judges among them"
+            }
+            Self::Answers(_) => "answers from elsewhere",
+            Self::StraightOn => "a ship that keeps her heading: the floor",
+        }
+    }
+
+    /// The first-order response of all records of one trial together; `None` for what makes none. A method that draws at random
     /// draws from the stream of this trial.
     pub fn identify(&self, trials: &[Trial], key: &StreamKey) -> Option<Result<Estimate, IdentifyError>> {
         match self {
             Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),
-            Self::Trace(_) => None,
+            Self::Trace(_) | Self::StraightOn => None,
             Self::Answers(answers) => Some(answers.to((key.cell, key.replicate))),
         }
     }
@@ -70,6 +89,9 @@ pub fn identify(identifier: &dyn Identifier, trials: &[Trial], key: &StreamKey) 
 /// Id of a trace among the methods.
 pub const TRACE: &str = "trace";
 
+/// Id of the ship that keeps her heading among the methods.
+pub const STRAIGHT_ON: &str = "straight-on";
+
 /// What a method is called, and which it is.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodName {
@@ -79,7 +101,8 @@ pub struct MethodName {
     pub id: String,
 }
 
-/// A method with its settings: one key beside the label, the id of the method; or a trace of what the base lacks.
+/// A method with its settings: one key beside the label, the id of the method; or a trace of what the base lacks; or
+/// the floor of all errors.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct IdentifierWire {
@@ -89,7 +112,14 @@ pub(crate) struct IdentifierWire {
     pub method: Option<IdentifierSettings>,
     /// In place of a method: a trace of what the first-order response lacks.
     pub trace: Option<TraceWire>,
+    /// In place of a method: a ship that keeps her heading, the floor of all errors.
+    pub straight_on: Option<StraightOnWire>,
 }
+
+/// Settings of a ship that keeps her heading: none.
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StraightOnWire {}
 
 /// Settings of a trace.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -103,6 +133,8 @@ pub(crate) struct TraceWire {
     menu: Option<Vec<String>>,
     /// Monomials that stand among the candidates.
     monomials: usize,
+    /// Whether speed, sway, propeller and wind are left unread.
+    heading_alone: bool,
     /// Effects as lines of text, `bank = c * tanh(k * psi)`, candidates like those of the list.
     formulas: Vec<String>,
 }
@@ -110,7 +142,7 @@ pub(crate) struct TraceWire {
 impl Default for TraceWire {
     fn default() -> Self {
         let ::trace::Settings { probability, monomials, .. } = ::trace::Settings::default();
-        Self { rule: Rule::default(), probability, menu: None, monomials, formulas: Vec::new() }
+        Self { rule: Rule::default(), probability, menu: None, monomials, heading_alone: false, formulas: Vec::new() }
     }
 }
 
@@ -147,24 +179,31 @@ pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> 
 
 /// What one entry asks for.
 fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFault> {
-    match (&entry.method, &entry.trace) {
-        (Some(settings), None) => {
+    match (&entry.method, &entry.trace, &entry.straight_on) {
+        (Some(settings), None, None) => {
             let table = key.child("method").child(registry_id(settings));
             let identifier = settings.build().map_err(|error| refused(&table, &error))?;
             Ok(Procedure::Identify { settings: Some(settings.clone()), identifier: identifier.into() })
         }
-        (None, Some(wire)) => {
+        (None, None, Some(StraightOnWire {})) => Ok(Procedure::StraightOn),
+        (None, Some(wire), None) => {
             let table = key.child("trace");
             let lines = wire.formulas.iter().enumerate();
             let read = lines.map(|(index, line)| effect::read(line, table.child("formulas").child(index)));
             let formulas = read.collect::<Result<_, _>>()?;
             tracing(wire, formulas).map(Procedure::Trace).map_err(|error| refused(&table, &error))
         }
-        (method, _) => Err(KeyFault::name(
+        (None, None, None) => Err(KeyFault::name(
             key.clone(),
-            format!("`{key}` names {}", if method.is_some() { "a method and a trace" } else { "no method" }),
-            "expected one of the two",
+            format!("`{key}` names no method"),
+            "expected one of `method`, `trace` and `straight-on`",
             "write `method.output-error = {}` for a method, or `trace = {}` to trace what the base lacks",
+        )),
+        _ => Err(KeyFault::name(
+            key.clone(),
+            format!("`{key}` names several methods"),
+            "expected one of `method`, `trace` and `straight-on`",
+            "give each an [[identifier]] of its own",
         )),
     }
 }
@@ -177,14 +216,14 @@ fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
 
 /// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.
 fn tracing(wire: &TraceWire, formulas: Vec<Arc<Formula>>) -> Result<::trace::Settings, SettingsError> {
-    let TraceWire { rule, probability, ref menu, monomials, .. } = *wire;
+    let TraceWire { rule, probability, ref menu, monomials, heading_alone, .. } = *wire;
     let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), among)?;
     let selection = Selection { formulas, ..selection };
     if monomials > empirical::all().len() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }
     let usual = ::trace::Settings { thorough: false, ..::trace::Settings::default() };
-    let settings = ::trace::Settings { probability, rule, monomials, selection, ..usual };
+    let settings = ::trace::Settings { probability, rule, monomials, selection, heading_alone, ..usual };
     settings.check()?;
     Ok(settings)
 }

@@ -49,7 +49,7 @@ pub use answers::Answers;
 pub use cell::{DesignCell, Refusal, TrialSpecification};
 pub use checked::Scenario;
 pub use identity::hex;
-pub use method::{Method, MethodName, Procedure, TRACE, identify};
+pub use method::{Method, MethodName, Procedure, STRAIGHT_ON, TRACE};
 pub use physics::MissingPhysics;
 pub use predictions::Predictions;
 

@@ -1,7 +1,7 @@
 //! Studies of measured records: `[records]` stands in the place of ship, manoeuvre and instruments. Methods are fitted
 //! to some records of a ship and judged on others, which have chosen nothing.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -10,9 +10,11 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml::Table;
 use trial::file;
+use trial::reader::RECORD;
 use trial::sidecar::SIDECAR;
 use trial::{Origin, Sidecar, Trial};
 
+use crate::disk;
 use crate::scenario::identity;
 use crate::scenario::method::IdentifierWire;
 use crate::scenario::predictions::RecordPredictWire;
@@ -59,14 +61,25 @@ pub struct RecordStudyWire {
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RecordsWire {
-    /// Files, `*` standing for anything in a name; from the folder of the scenario, or else from that of KEMPF_DATA.
-    pub files: Vec<String>,
+    /// Files, `*` standing for anything in a name; from the folder of the scenario, or else from that of KEMPF_DATA. Or
+    /// a table of files and their SHA-256: of these the ones that are not there are left out, and said.
+    pub files: FilesWire,
     /// Sidecar that describes the columns of all of them, or a list with one for each entry of `files`; a folder stands
     /// for the NAME.trial.toml of each record in it. Left out, each has its own beside it, if any.
     pub sidecar: Option<SidecarWire>,
     /// Which records are fitted, and which judge.
     #[serde(default)]
     pub judge: JudgeWire,
+}
+
+/// Files of records.
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(untagged, expecting = "a list of files, or a table with the SHA-256 of each")]
+pub enum FilesWire {
+    /// All of them have to be there.
+    Patterns(Vec<String>),
+    /// Files and their SHA-256, hexadecimal.
+    Known(BTreeMap<String, String>),
 }
 
 /// What describes the columns of records.
@@ -130,6 +143,8 @@ pub struct RecordSet {
     pub trials: Vec<Trial>,
     /// The trials of the cell: those with the same fit follow each other.
     pub questions: Vec<RecordQuestion>,
+    /// Files that are known by their SHA-256 and are not there, with the reason.
+    pub absent: Vec<(String, String)>,
     /// What reading them had to decide, a line each.
     pub warnings: Vec<String>,
     /// SHA-256 of every file and of the sidecar that describes it.
@@ -147,7 +162,7 @@ impl RecordSet {
     /// Fails when a file is missing or is no record, and when nothing is left to be asked.
     pub(crate) fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
         let key = KeyPath::dotted("records");
-        let paths = files(wire, folder, &key)?;
+        let RecordFiles { paths, absent } = files(wire, folder, &key)?;
         let mut digest = Sha256::new();
         let (mut trials, mut warnings) = (Vec::new(), Vec::new());
         for (path, sidecar) in &paths {
@@ -181,43 +196,97 @@ impl RecordSet {
                 "leave records out, or call one otherwise",
             ));
         }
-        let questions = questions(&wire.judge, &names, &key.child("judge"))?;
-        Ok(Self { trials, questions, warnings, sha256: identity::hex(&digest.finalize()) })
+        let stem = |(file, _): &(String, String)| {
+            Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+        };
+        let absent_names: Vec<String> = absent.iter().map(stem).collect();
+        let questions = questions(&wire.judge, &names, &absent_names, &key.child("judge"))?;
+        Ok(Self { trials, questions, absent, warnings, sha256: identity::hex(&digest.finalize()) })
     }
 }
 
-/// The files of a table, each with the sidecar that describes it.
-fn files(wire: &RecordsWire, folder: &Path, key: &KeyPath) -> Result<Vec<(PathBuf, Option<PathBuf>)>, KeyFault> {
+/// Files of records.
+#[derive(Default)]
+struct RecordFiles {
+    /// Those that are there, each with the sidecar that describes it.
+    paths: Vec<(PathBuf, Option<PathBuf>)>,
+    /// Those that are not, with the reason.
+    absent: Vec<(String, String)>,
+}
+
+/// The files of a table.
+fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<RecordFiles, KeyFault> {
+    let key = &records.child("files");
+    let entries: Vec<(KeyPath, &String, Option<&String>)> = match &wire.files {
+        FilesWire::Patterns(list) => {
+            (0..).zip(list).map(|(at, file): (usize, _)| (key.child(at), file, None)).collect()
+        }
+        FilesWire::Known(table) => table.iter().map(|(file, hash)| (key.child(file), file, Some(hash))).collect(),
+    };
     let sidecars: Vec<Option<PathBuf>> = match &wire.sidecar {
-        None => vec![None; wire.files.len()],
-        Some(SidecarWire::All(path)) => vec![Some(folder.join(path)); wire.files.len()],
-        Some(SidecarWire::Each(paths)) if paths.len() == wire.files.len() => {
+        None => vec![None; entries.len()],
+        Some(SidecarWire::All(path)) => vec![Some(folder.join(path)); entries.len()],
+        Some(SidecarWire::Each(paths)) if paths.len() == entries.len() => {
             paths.iter().map(|path| Some(folder.join(path))).collect()
         }
         Some(SidecarWire::Each(paths)) => {
             let found = counted(paths.len() as u64, "sidecar");
-            let expected = format!("expected one for each entry of `files`, which has {}", wire.files.len());
-            return Err(KeyFault::value(key.child("sidecar"), found, expected, "give one path for all, or as many"));
+            let expected = format!("expected one for each entry of `files`, which has {}", entries.len());
+            return Err(KeyFault::value(
+                records.child("sidecar"),
+                found,
+                expected,
+                "give one path for all, or as many",
+            ));
         }
     };
-    let mut paths: Vec<(PathBuf, Option<PathBuf>)> = Vec::new();
-    for (index, (pattern, sidecar)) in wire.files.iter().zip(sidecars).enumerate() {
-        let found = matching(folder, pattern);
-        if found.is_empty() {
+    let mut files = RecordFiles::default();
+    for ((place, file, sha256), sidecar) in entries.into_iter().zip(sidecars) {
+        let paths = match sha256 {
+            Some(sha256) if sha256.len() != 64 || !sha256.bytes().all(|digit| digit.is_ascii_hexdigit()) => {
+                let found = format!("the SHA-256 of {file} is {sha256:?}");
+                return Err(KeyFault::value(place, found, "expected 64 hexadecimal digits", "see sha256sum"));
+            }
+            Some(sha256) => match known(folder, file, &sha256.to_ascii_lowercase()) {
+                Ok(path) => vec![path],
+                Err(reason) => {
+                    files.absent.push((file.clone(), reason));
+                    continue;
+                }
+            },
+            None => matching(folder, file),
+        };
+        if paths.is_empty() {
             let advice = format!("give files beside the scenario, or name their folder in {DATA}");
-            let found = format!("`records.files` holds {pattern:?}, and there is no such file");
-            return Err(KeyFault::value(key.child("files").child(index), found, "expected records", advice));
+            let found = format!("`records.files` holds {file:?}, and there is no such file");
+            return Err(KeyFault::value(place, found, "expected records", advice));
         }
-        paths.extend(found.into_iter().map(|path| {
+        files.paths.extend(paths.into_iter().map(|path| {
             let sidecar = Sidecar::describing(&path, sidecar.as_deref());
             (path, sidecar)
         }));
     }
-    Ok(paths)
+    Ok(files)
 }
 
-/// The trials of a cell.
-fn questions(judge: &JudgeWire, names: &[&str], key: &KeyPath) -> Result<Vec<RecordQuestion>, KeyFault> {
+/// Where a file with this SHA-256 is; fails with the reason in words, without its place.
+fn known(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, String> {
+    let path = matching(folder, file).into_iter().next().ok_or("there is no such file")?;
+    let bytes = disk::read(&path, RECORD.largest).map_err(|error| format!("it cannot be read: {error}"))?;
+    let hash = identity::hex(&Sha256::digest(bytes.unwrap_or_default()));
+    if hash == sha256 {
+        return Ok(path);
+    }
+    Err(format!("it is another file: its SHA-256 begins with {}, expected {}", &hash[..12], &sha256[..12]))
+}
+
+/// The trials of a cell. One that would need a record that is absent is left out.
+fn questions(
+    judge: &JudgeWire,
+    names: &[&str],
+    absent: &[String],
+    key: &KeyPath,
+) -> Result<Vec<RecordQuestion>, KeyFault> {
     let all = 0..names.len();
     let without = |one: usize| all.clone().filter(|other| *other != one).collect::<Vec<usize>>();
     let question = |fitted: Vec<usize>, judge| RecordQuestion { fitted, judge };
@@ -238,9 +307,11 @@ fn questions(judge: &JudgeWire, names: &[&str], key: &KeyPath) -> Result<Vec<Rec
                     let key = key.child(part);
                     place_among(name, names, key, words)
                 };
-                list.iter().map(place).collect()
+                list.iter().filter(|name| !absent.contains(name)).map(place).collect()
             };
+            let is_whole = *each || !fit.iter().any(|name| absent.contains(name));
             let (fit, judge) = (places(fit, "fit")?, places(judge, "judge")?);
+            let fit = if is_whole { fit } else { Vec::new() };
             if let Some(both) = fit.iter().find(|one| !each && judge.contains(one)) {
                 let found = format!("{} is fitted and judges", names[*both]);
                 return Err(KeyFault::value(
@@ -261,7 +332,7 @@ fn questions(judge: &JudgeWire, names: &[&str], key: &KeyPath) -> Result<Vec<Rec
             fits.into_iter().flat_map(judged).collect()
         }
     };
-    if questions.is_empty() {
+    if questions.is_empty() && absent.is_empty() {
         let advice = "give more records, or `judge = \"none\"` to fit each alone";
         let found = format!("{}, none of which judges another", counted(names.len() as u64, "record"));
         return Err(KeyFault::value(key.clone(), found, "expected one to fit and one to judge at least", advice));
@@ -333,7 +404,7 @@ mod tests {
         let names = ["a", "b", "c"];
         let key = KeyPath::dotted("records.judge");
         let of = |judge: &JudgeWire| -> Vec<(Vec<usize>, Option<usize>)> {
-            let all = questions(judge, &names, &key).unwrap_or_else(|fault| panic!("{}", fault.found));
+            let all = questions(judge, &names, &[], &key).unwrap_or_else(|fault| panic!("{}", fault.found));
             all.into_iter().map(|own| (own.fitted, own.judge)).collect()
         };
         let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)].map(|(fit, judge)| (vec![fit], Some(judge)));
@@ -355,9 +426,9 @@ mod tests {
             (lists(&["a"], &["d"]), "no record is called"),
             (lists(&[], &["a"]), "none of which judges another"),
         ] {
-            let fault = questions(&wrong, &names, &key).expect_err("wrong");
+            let fault = questions(&wrong, &names, &[], &key).expect_err("wrong");
             assert!(fault.found.contains(part), "{}", fault.found);
         }
-        assert!(questions(&JudgeWire::default(), &["a"], &key).is_err());
+        assert!(questions(&JudgeWire::default(), &["a"], &[], &key).is_err());
     }
 }

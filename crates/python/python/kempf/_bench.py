@@ -23,7 +23,7 @@ class Standing:
 
     #: Such as ``"circle"``; what is scored depends on it.
     task: str
-    #: ``"measured"``, or what the definition calls the simulated records.
+    #: The scenario of its records.
     field: str
     method: str
     #: Number of questions.
@@ -55,7 +55,7 @@ class BenchResult(Result):
             + [number(one.rank, 1.0)]
             for one in self.standings
         ]
-        return f"Benchmark {self.document['definition']['name']}", header, rows, self.warnings
+        return "Benchmark", header, rows, self.warnings
 
     def to_frame(self, kind: str = "pandas") -> Any:
         """One row for every task and method, as a table of ``"pandas"`` or ``"polars"``."""
@@ -63,9 +63,7 @@ class BenchResult(Result):
 
 
 def bench(
-    definition: Optional[PathLike] = None,
-    *,
-    data: Union[PathLike, Iterable[PathLike]] = (),
+    *scenarios: PathLike,
     methods: Union[str, Iterable[str], None] = None,
     own: Optional[Mapping[str, Estimator]] = None,
     tasks: Union[str, Iterable[str], None] = None,
@@ -75,20 +73,20 @@ def bench(
 ) -> BenchResult:
     """Runs a benchmark, as ``study bench`` does, and writes nothing.
 
-    :param definition: a definition of your own; that of the program where it is left out
-    :param data: folders with measured records; a set whose records are not there is left out, with a warning
+    :param scenarios: scenarios of your own; those of the program where they are left out. The environment variable
+        ``KEMPF_DATA`` names the folder of measured records; what is not there is left out, with a warning
     :param methods: methods that take part; all where it is left out
     :param own: functions that take part, as in :func:`kempf.fit`
     :param tasks: tasks that are set, such as ``"circle"``; all where it is left out
-    :param sets: sets of records that are used; all where it is left out
+    :param sets: names of the scenarios that are run; all where it is left out
     :param seed: seed in place of those of the scenarios
     :param progress: as in :func:`kempf.run`
 
-    Raises :class:`kempf.KempfError` for a definition that cannot be read, and where there is nothing to ask.
+    Raises :class:`kempf.KempfError` for a scenario that cannot be read, and where there is nothing to ask.
     """
-    asked = words(data=data, method=strings(methods), task=strings(tasks), set=strings(sets))
-    show = shown("fits") if progress is True else progress or None
-    named = None if definition is None else os.fspath(definition)
+    asked = words(method=strings(methods), task=strings(tasks), set=strings(sets))
+    show = shown("trials") if progress is True else progress or None
+    named = [os.fspath(scenario) for scenario in scenarios]
     text, warnings = _kempf.bench(named, asked, natives_of(own), whole("seed", seed), show)
     if progress is True:
         sys.stderr.write("\n")

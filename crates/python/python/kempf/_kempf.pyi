@@ -89,7 +89,7 @@ def fit(
     priors: list[tuple[str, Optional[str]]],
 ) -> Fit: ...
 def bench(
-    definition: Optional[str],
+    scenarios: list[str],
     words: list[str],
     own: _Own,
     seed: Optional[int],

@@ -1,18 +1,22 @@
-//! `study bench`: the benchmark on measured and simulated trials. The numbers are made in `campaign::benchmark`; here
-//! its tables, figures and files.
+//! `study bench`: the benchmark on measured and simulated trials. Its studies are run as any others, its numbers are made
+//! in `campaign::benchmark`; here its tables, figures and files.
 
-use std::env;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use campaign::Observer;
-use campaign::benchmark::run::STOPPED;
-use campaign::benchmark::{BenchDocument, BenchMethod, BenchTask, Definition, RecordStore};
+use campaign::benchmark::results::Skipped;
+use campaign::benchmark::{BenchDocument, BenchTask, shipped};
+use campaign::collect::collect;
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
+use campaign::rows::StudyRow;
+use campaign::scenario::Scenario;
+use campaign::scenario::name::slug;
 use campaign::scenario::problem::suggestion;
-use campaign::scenario::records::DATA;
 use clap::Args;
 use clap::builder::StringValueParser;
+use identify::Identifier;
 use report::Theme;
 use report::number::counted;
 
@@ -25,7 +29,7 @@ use crate::views::page_files::{REPORT, write_page};
 use crate::views::{bench_page, bench_tables};
 
 /// One row for every answer.
-const ROWS: &str = "rows.csv";
+const ROWS: &str = "answers.csv";
 
 /// The leaderboards as one table.
 const LEADERBOARD: &str = "leaderboard.csv";
@@ -33,29 +37,26 @@ const LEADERBOARD: &str = "leaderboard.csv";
 /// Folder with a page for every method.
 const METHODS: &str = "methods";
 
-/// Folder inside that of the results for those of a run that was stopped.
-const UNFINISHED: &str = "unfinished";
-
 /// What `study bench` is asked to do.
 #[derive(Debug, Clone, Args)]
 pub struct BenchRequest {
-    /// Definition of a benchmark of your own [default: zigzag-bench, which is part of the program]
-    #[arg(value_name = "BENCH.toml")]
-    pub definition: Option<PathBuf>,
-    /// Folder with measured records, at any depth [default: $KEMPF_DATA, or ./data]
-    #[arg(long, value_name = "DIR")]
-    pub data: Vec<PathBuf>,
+    /// Scenarios of a benchmark of your own [default: those of scenarios/bench, which are part of the program]
+    #[arg(value_name = "SCENARIO.toml")]
+    pub scenarios: Vec<PathBuf>,
     /// Methods that take part [default: all]
-    #[arg(long = "method", value_name = "ID", hide_possible_values = true,
-        value_parser = completed(StringValueParser::new(), completed::competitors))]
+    #[arg(long = "method", value_name = "LABEL", hide_possible_values = true,
+        value_parser = completed(StringValueParser::new(), completed::entrants))]
     pub methods: Vec<String>,
     /// Tasks that are set [default: all]
     #[arg(long = "task", value_name = "ID", hide_possible_values = true,
         value_parser = completed(task, completed::tasks))]
     pub tasks: Vec<BenchTask>,
-    /// Sets of records that are used [default: all]
+    /// Names of the scenarios that are run [default: all]
     #[arg(long = "set", value_name = "NAME")]
     pub sets: Vec<String>,
+    /// Discard rows of an earlier run in the folder instead of going on with them
+    #[arg(long)]
+    pub restart: bool,
     /// How figures are drawn
     #[command(flatten)]
     pub style: FigureOptions,
@@ -68,35 +69,73 @@ fn task(name: &str) -> Result<BenchTask, String> {
     })
 }
 
-/// Has all methods of a request answer, and those of the caller's `own`. `begin` gets the name of the definition before
-/// the first answer.
+/// Methods of the caller, by their labels.
+pub type Entrants = Vec<(String, Arc<dyn Identifier>)>;
+
+/// Runs the studies of a benchmark, or what is missing of them, below a folder, or in a temporary one; with those of the
+/// program also what `entrants` answer.
 ///
-/// Fails when the definition is at fault, when a folder of records cannot be listed, and when nothing can be asked.
+/// Fails when a scenario is at fault, and when nothing can be asked.
 pub fn measure(
     request: &BenchRequest,
     seed: Option<u64>,
-    own: Vec<BenchMethod>,
+    entrants: &Entrants,
+    folder: Option<&ResultFolder>,
     observer: &dyn Observer,
-    begin: impl FnOnce(&str) -> Result<(), Failure>,
 ) -> Result<BenchDocument, Failure> {
-    let definition = match &request.definition {
-        Some(path) => Definition::read(path, seed)?,
-        None => Definition::published(seed)?,
+    let desk = tempfile::tempdir().map_err(|error| Failure::work(format!("failed to make a folder: {error}")))?;
+    let paths = match &request.scenarios[..] {
+        [] => shipped::unpack(desk.path())?,
+        paths => paths.to_vec(),
     };
-    let definition = definition.only(&request.sets, &request.tasks)?;
-    let mut methods = methods(request)?;
-    methods.extend(own);
-    let store = RecordStore::search(&folders(&request.data), &definition)?;
-    let begin = || begin(&definition.identity.name);
-    let results = campaign::benchmark::run(&definition, &store, &methods, observer, begin)?;
+    let scenarios = paths.iter().map(|path| Scenario::read(path, seed)).collect::<Result<Vec<Scenario>, _>>()?;
+    are_known(&request.sets, scenarios.iter().map(|scenario| scenario.name.as_str()), "--set", "scenario")?;
+    are_known(&request.methods, scenarios.iter().flat_map(Scenario::labels), "--method", "method")?;
+    let (mut studies, mut absent) = (Vec::new(), Vec::new());
+    for scenario in scenarios.into_iter().filter(|own| request.sets.is_empty() || request.sets.contains(&own.name)) {
+        let Some(mut scenario) = scenario.with_methods(&request.methods) else { continue };
+        for (label, identifier) in entrants {
+            scenario = scenario.with_identifier(label, Arc::clone(identifier))?;
+        }
+        if scenario.trials() == 0 {
+            absent.push((scenario, Vec::new()));
+            continue;
+        }
+        let folder = match folder {
+            Some(folder) => folder.inside(&scenario.name)?,
+            None => ResultFolder::make(&desk.path().join("rows").join(&scenario.name))?,
+        };
+        let mut rows: Vec<StudyRow> = Vec::new();
+        collect(&scenario, &folder, request.restart, observer)?.rows(|row| {
+            rows.push(row);
+            Ok(())
+        })?;
+        studies.push((scenario, rows));
+    }
+    studies.extend(absent);
+    let results = BenchDocument::of(&studies, &request.tasks);
     if results.cases.is_empty() {
         let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
         return Err(Failure::input(format!(
-            "there is no question to ask:\n  {}\n--data names the folder with the measured records",
+            "there is no question to ask:\n  {}\nKEMPF_DATA names the folder with the measured records",
             reasons.join("\n  ")
         )));
     }
     Ok(results)
+}
+
+/// Refuses a word of an option that names nothing.
+fn are_known<'a>(
+    words: &[String],
+    known: impl Iterator<Item = &'a str>,
+    option: &str,
+    what: &str,
+) -> Result<(), Failure> {
+    let known: Vec<&str> = known.collect();
+    match words.iter().find(|word| !known.contains(&word.as_str())) {
+        Some(word) => Err(Failure::input(format!("{option} {word}: no such {what}; {}", suggestion(word, &known)))),
+        None => Ok(()),
+    }
 }
 
 /// Runs a benchmark, prints the leaderboards, writes `bench.json`, tables, pages and figures.
@@ -104,23 +143,10 @@ pub fn measure(
 /// Fails as [`measure`] does, and when the results cannot be written.
 pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.theme()?;
-    let mut held = None;
-    let begin = |name: &str| {
-        let default = || PathBuf::from("results").join(if request.definition.is_none() { "bench" } else { name });
-        held = Some(ResultFolder::make(&folder_for(BENCH, &common.out.clone().unwrap_or_else(default))?)?);
-        Ok(())
-    };
-    let results = measure(request, common.seed, Vec::new(), &Terminal::new("fits", common.quiet), begin)?;
-    let folder = held.expect("its place was seen to before the first answer");
-    // What a person did not wait for must not take the place of a whole result.
-    let is_stopped = results.skipped.iter().any(|one| one.reason == STOPPED);
-    let aside = is_stopped.then(|| folder.inside(UNFINISHED)).transpose()?;
-    let folder = aside.as_ref().unwrap_or(&folder);
-    show(&results, folder, &theme, common)?;
-    match is_stopped {
-        true => Err(Failure::work(format!("{STOPPED}; what they all have is in {}", folder.path().display()))),
-        false => Ok(()),
-    }
+    let place = common.out.clone().unwrap_or_else(|| PathBuf::from("results/bench"));
+    let folder = ResultFolder::make(&folder_for(BENCH, &place)?)?;
+    let results = measure(request, common.seed, &Vec::new(), Some(&folder), &Terminal::new("trials", common.quiet))?;
+    show(&results, &folder, &theme, common)
 }
 
 /// Writes the tables, pages and figures of a benchmark and prints the leaderboards.
@@ -128,42 +154,21 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
 /// Fails when they cannot be written.
 pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, common: &Common) -> Result<(), Failure> {
     let text = publish(results, folder, theme)?;
-    let notes: String = results.skipped.iter().map(|one| format!("skipped: {}\n", skipped(one))).collect();
+    let notes: String = results.skipped.iter().map(|own| format!("skipped: {}\n", skipped(own))).collect();
     let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
     let naming = match results.naming.is_empty() {
         true => String::new(),
         false => format!("\n{}", bench_tables::naming_totals(results).to_text()),
     };
-    let head = format!("{}: {}\n", results.definition.name, counted(results.cases.len() as u64, "question"));
+    let head = format!("{}\n", counted(results.cases.len() as u64, "question"));
     let table = bench_tables::leaderboard(results);
     let output = CommandOutput { words: [&head, &naming], table: &table, notes: &notes, document: &text };
     screen::tell(common, &output, &[] as &[&str])
 }
 
-/// Who takes part: the methods of the project, or those of them that are named.
-fn methods(request: &BenchRequest) -> Result<Vec<BenchMethod>, Failure> {
-    let names = &request.methods;
-    let mut methods = BenchMethod::ours();
-    let known: Vec<String> = methods.iter().map(|method| method.label().to_owned()).collect();
-    if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
-        return Err(Failure::input(format!("--method {unknown}: no such method; {}", suggestion(unknown, &known))));
-    }
-    methods.retain(|method| names.is_empty() || names.iter().any(|name| name == method.label()));
-    Ok(methods)
-}
-
-/// Where measured records are looked for.
-fn folders(named: &[PathBuf]) -> Vec<PathBuf> {
-    match (named, env::var_os(DATA)) {
-        ([_, ..], _) => named.to_vec(),
-        ([], Some(folder)) if !folder.is_empty() => vec![PathBuf::from(folder)],
-        _ => Some(PathBuf::from("data")).filter(|folder| folder.is_dir()).into_iter().collect(),
-    }
-}
-
 /// A record that was not used, in a line.
-pub fn skipped(one: &campaign::benchmark::results::Skipped) -> String {
-    format!("{}, {}: {}", one.set, one.record, one.reason)
+pub fn skipped(own: &Skipped) -> String {
+    format!("{}, {}: {}", own.set, own.record, own.reason)
 }
 
 /// Writes everything; what an earlier run left and this one does not make goes away. The text of the document.
@@ -175,7 +180,7 @@ fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Res
     let pages = folder.inside(METHODS)?;
     pages.remove_all(|name| name.ends_with(".md"))?;
     for method in &results.methods {
-        pages.write(&format!("{method}.md"), bench_page::of_method(results, method).to_markdown())?;
+        pages.write(&format!("{}.md", slug(method)), bench_page::of_method(results, method).to_markdown())?;
     }
     write_page(folder, bench_page::page(results), Some(theme)).map(|()| text)
 }

@@ -1,7 +1,7 @@
 //! `study schema`: the JSON schema of a file that people or programs write or read.
 
 use campaign::answers::Trials;
-use campaign::benchmark::{BenchDocument, DefinitionWire};
+use campaign::benchmark::BenchDocument;
 use campaign::design::Design;
 use campaign::failure::{Failure, OnPath};
 use campaign::manifest::Manifest;
@@ -50,7 +50,6 @@ pub fn schema(what: Described) -> Schema {
         Described::Predict => of::<PredictDocument>(),
         Described::Manifest => of::<Manifest>(),
         Described::Bench => of::<BenchDocument>(),
-        Described::BenchDefinition => read::<DefinitionWire>(),
         Described::FitCurves => of::<FitCurves>(),
         Described::Cells => of::<Design>(),
         Described::Showcase => of::<Vec<Showcase>>(),

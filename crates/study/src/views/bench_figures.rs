@@ -3,6 +3,7 @@
 use campaign::benchmark::board::{Board, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
+use campaign::scenario::{STRAIGHT_ON, TRACE};
 use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
 use report::{CurveOrigin, PageFigure};
 
@@ -41,9 +42,9 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
 fn origin(method: &str) -> CurveOrigin {
     match method {
         // The floor is no method: grey.
-        campaign::benchmark::method::STRAIGHT_ON => CurveOrigin::Series { label: method.to_owned(), number: 2 },
-        campaign::benchmark::method::TRACE_OF_HEADING => {
-            CurveOrigin::Variant { label: method.to_owned(), method: campaign::scenario::TRACE.to_owned(), number: 0 }
+        STRAIGHT_ON => CurveOrigin::Series { label: method.to_owned(), number: 2 },
+        method if method != TRACE && method.starts_with(TRACE) => {
+            CurveOrigin::Variant { label: method.to_owned(), method: TRACE.to_owned(), number: 0 }
         }
         method => CurveOrigin::Method(method.to_owned()),
     }

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use campaign::benchmark::BenchDocument;
-use campaign::benchmark::cases::{BenchCase, CaseAnswer};
+use campaign::benchmark::cases::BenchCase;
+use campaign::benchmark::results::StudyFacts;
+use campaign::scenario::name::slug;
 use campaign::statistics::FEWEST;
 use report::Page;
 use report::markdown::text;
@@ -23,21 +25,18 @@ const NAMING: &str = "*right*: the effect that is missing and nothing else, or n
      aliases*: a group that the record cannot tell apart and that holds it; *and more*: it or such a group, and another one; \
      *named*: right or among aliases, with Wilson's 95 % interval.";
 
-const FILES: &str = "Made by `study bench`. `bench.json` has every answer and every number of this page, `rows.csv` a row for \
+const FILES: &str = "Made by `study bench`. `bench.json` has every answer and every number of this page, `answers.csv` a row for \
      every answer, `leaderboard.csv` the tables with all their intervals.";
 
 /// `report.md`.
 pub fn page(results: &BenchDocument) -> Page {
-    let definition = &results.definition;
-    let mut page = Page::titled(definition.name.as_str());
-    page.say(&definition.about);
-    let seed = definition.seed.map_or_else(String::new, |seed| format!(", with seed {seed}"));
+    let mut page = Page::titled("Benchmark");
     page.say(format!(
-        "Definition {}…{seed}, program {}. Others are compared with `{}`. Our bias is in METHODOLOGY.md: the methods, the \
-         simulator and the choice of records are by the same hands.",
-        &definition.sha256[..12],
-        results.program,
-        results.reference
+        "Every method fits the same records. It is asked to replay what it was fitted to, to find K and T, to predict the \
+         other side, another amplitude and a turning circle, and to name an effect that a first-order response lacks. \
+         Others are compared with `{}`. Program {}. Our bias is in METHODOLOGY.md: the methods, the simulator and the \
+         choice of records are by the same hands.",
+        results.reference, results.program
     ));
     page.say(format!("{READING} What each method is and reads is said [below](#methods)."));
     boards(&mut page, results);
@@ -45,10 +44,10 @@ pub fn page(results: &BenchDocument) -> Page {
     page.say("Medians of the score.");
     page.table(tables::sets(results));
     page.part("Records");
-    page.list(results.sets.iter().filter_map(|set| {
-        let [download, licence, cite] = set.source.as_ref()?;
-        Some(format!("**{}**: {}. From {download}. Licence: {licence}. Cite: {cite}.", set.name, set.title))
-    }));
+    for StudyFacts { name, question, analysis, design_sha256, seed } in &results.studies {
+        page.say(format!("**{name}**: {question} Design {}…, seed {seed}.", &design_sha256[..12]));
+        page.say(analysis);
+    }
     page.table(tables::present(results));
     if !results.skipped.is_empty() {
         page.say("Skipped:");
@@ -56,7 +55,7 @@ pub fn page(results: &BenchDocument) -> Page {
     }
     page.part("Methods");
     let methods = results.methods.iter().zip(&results.summaries);
-    page.list(methods.map(|(method, summary)| format!("[{method}](methods/{method}.md): {summary}")));
+    page.list(methods.map(|(method, summary)| format!("[{method}](methods/{}.md): {summary}", slug(method))));
     page.say(FILES);
     page
 }
@@ -106,7 +105,7 @@ fn counted(cases: usize, clusters: usize) -> String {
 /// `methods/ID.md`.
 pub fn of_method(results: &BenchDocument, method: &str) -> Page {
     let mut page = Page::titled(method);
-    page.say(format!("In [{}](../report.md). {READING}", results.definition.name));
+    page.say(format!("In [the benchmark](../report.md). {READING}"));
     page.part("Every task");
     page.table(tables::standings_of(results, method));
     page.part("Every set");
@@ -120,27 +119,26 @@ pub fn of_method(results: &BenchDocument, method: &str) -> Page {
     if failures.is_empty() {
         page.say("None.");
     }
-    let line = |((kind, task, set), (count, first)): ((&str, &str, &str), (usize, String))| {
-        text(&format!("{set}, {task}: {count} × {kind}; the first: {first}"))
+    let line = |((reason, task, set), (count, first)): ((&str, &str, &str), (usize, String))| {
+        text(&format!("{set}, {task}: {count} × {reason}; the first: {first}"))
     };
     page.list(failures.into_iter().map(line));
     page
 }
 
-/// Failures of a method by kind, task and set: how many, and the first reason.
+/// Failures of a method by reason, task and set: how many, and the first.
 fn failures<'a>(results: &'a BenchDocument, method: &str) -> BTreeMap<(&'a str, &'a str, &'a str), (usize, String)> {
     let mut found = BTreeMap::new();
     for case in &results.cases {
         for answer in case.answers.iter().filter(|answer| answer.method == method) {
-            let Some(kind) = &answer.failure else { continue };
-            let place = (kind.as_str(), case.task.id(), case.set.as_str());
-            found.entry(place).or_insert_with(|| (0, example(case, answer))).0 += 1;
+            let Some(reason) = &answer.failure else { continue };
+            let place = (reason.as_str(), case.task.id(), case.set.as_str());
+            found.entry(place).or_insert_with(|| (0, example(case))).0 += 1;
         }
     }
     found
 }
 
-fn example(case: &BenchCase, answer: &CaseAnswer) -> String {
-    let on = case.trial.map_or_else(|| case.fitted.join(" + "), |trial| format!("trial {trial}"));
-    format!("{on}, {}", answer.reason.as_deref().unwrap_or("no reason was given"))
+fn example(case: &BenchCase) -> String {
+    case.trial.map_or_else(|| case.fitted.join(" + "), |trial| format!("trial {trial}"))
 }

@@ -199,21 +199,14 @@ pub fn overall(results: &BenchDocument) -> Table {
 
 /// The sets and their records.
 pub fn present(results: &BenchDocument) -> Table {
-    let mut table = Table::new(TableHead::default().texts(["set"]).counts(["trials"]).texts([
-        "record",
-        "manoeuvre",
-        "file",
-        "SHA-256",
-    ]));
+    let mut table =
+        Table::new(TableHead::default().texts(["set"]).counts(["trials"]).texts(["record", "manoeuvre", "SHA-256"]));
     for set in &results.sets {
         for (place, record) in set.records.iter().enumerate() {
             let first = |text: String| if place == 0 { text } else { String::new() };
-            let trials = if set.source.is_none() { set.trials.to_string() } else { String::new() };
-            let file = record.file.as_ref();
-            let hash = file.map_or(MISSING.to_owned(), |file| format!("{}…", &file.sha256[..12]));
-            let name = file.map_or(MISSING.to_owned(), |file| file.name.clone());
-            let head = [first(set.name.clone()), first(trials), record.name.clone(), record.manoeuvre.clone()];
-            table.push(head.into_iter().chain([name, hash]));
+            let hash = record.sha256.as_ref().map_or(MISSING.to_owned(), |sha256| format!("{}…", &sha256[..12]));
+            let trials = set.trials.to_string();
+            table.push([first(set.name.clone()), first(trials), record.name.clone(), record.manoeuvre.clone(), hash]);
         }
     }
     table

@@ -3,41 +3,19 @@
 use crate::desk::{Desk, sha256, zig_zag_csv};
 use crate::scenarios::GOOD;
 
-/// A definition of a measured record and a simulated set beside it, on a desk.
+/// A scenario of measured records, one of them lost, and a simulated one beside it, on a desk.
 fn lay_out(desk: &Desk) {
-    desk.file("records/far/away.csv", zig_zag_csv());
-    let sha256 = sha256(&desk.bytes("records/far/away.csv"));
+    desk.file("far/away.csv", zig_zag_csv());
+    let sha256 = sha256(&desk.bytes("far/away.csv"));
+    let methods = "{ method.output-error = {} }, { method.srivc = {} }, { trace = {} }, { straight-on = {} }";
     // Enough trials for an interval.
-    desk.file("small.toml", GOOD.replace("replicates = 2", "replicates = 6"));
-    let definition = format!(
-        r#"
-name = "small-bench"
-reference = "output-error"
-[[measured]]
-name = "ship"
-title = "A ship"
-download = "nowhere"
-licence = "none"
-cite = "nobody"
-tasks.identify = ["here", "lost"]
-[[measured.record]]
-name = "here"
-manoeuvre = {{ zig-zag = {{ rudder-deg = 10.0, heading-deg = 10.0, first = "starboard" }} }}
-copies = [{{ file = "away.csv", sha256 = "{sha256}" }}]
-[[measured.record]]
-name = "lost"
-manoeuvre = {{ zig-zag = {{ rudder-deg = 10.0, heading-deg = 10.0, first = "port" }} }}
-copies = [{{ file = "lost.csv", sha256 = "{sha256}" }}]
-[[simulated]]
-name = "made"
-title = "Trials that are made"
-scenario = "small.toml"
-records = ["zigzag"]
-tasks.identify = ["zigzag"]
-tasks.indices = ["zigzag"]
-"#
+    let made = GOOD.replace("replicates = 2", &format!("replicates = 6\nidentifier = [{methods}]"));
+    desk.file("made.toml", made.split("[[identifier]]").next().expect("a text"));
+    let measured = format!(
+        "question = \"?\"\nidentifier = [{methods}]\n[records]\njudge = \"none\"\n\
+         [records.files]\n\"far/away.csv\" = \"{sha256}\"\n\"far/lost.csv\" = \"{sha256}\"\n"
     );
-    desk.file("own.toml", definition);
+    desk.file("found.toml", measured);
 }
 
 fn medians(desk: &Desk, file: &str) -> Vec<(String, String, f64)> {
@@ -54,49 +32,51 @@ fn medians(desk: &Desk, file: &str) -> Vec<(String, String, f64)> {
     boards.iter().flat_map(of_board).collect()
 }
 
-/// It is the same with any number of threads, and nothing stale is left.
+/// It is the same with any number of threads, goes on where it was, and nothing stale is left.
 #[test]
 fn a_benchmark_of_ones_own_runs_and_skips_what_is_not_there() {
     let desk = Desk::new();
     lay_out(&desk);
-    let own = ["bench", "own.toml", "--data", "records", "--paper", "80", "--dpi", "72"];
+    let own = ["bench", "found.toml", "made.toml", "--paper", "80", "--dpi", "72"];
     let run = desk.run(&own);
     run.is_done();
-    assert!(run.out.contains("skipped: ship, lost: no file lost.csv"), "{}", run.out);
-    let json = desk.json("results/small-bench/bench.json");
-    assert_eq!((&json["schema"], &json["reference"]), (&"bench/1".into(), &"output-error".into()));
-    assert_eq!(json["skipped"][0]["record"], "lost");
-    let medians = medians(&desk, "results/small-bench/bench.json");
+    assert!(run.out.contains("skipped: found, far/lost.csv: there is no such file"), "{}", run.out);
+    let json = desk.json("results/bench/bench.json");
+    assert_eq!((&json["schema"], &json["reference"]), (&"bench/2".into(), &"output-error".into()));
+    assert_eq!(json["skipped"][0]["record"], "far/lost.csv");
+    let medians = medians(&desk, "results/bench/bench.json");
     let of = |board: &str, method: &str| {
         let found = medians.iter().find(|(own, label, _)| own == board && label == method);
         found.unwrap_or_else(|| panic!("{board}: {method}: {medians:?}")).2
     };
     // Perfectly recorded, read from a table: what output error leaves is the rounding of the table.
-    assert!(of("identify, measured", "output-error") < 1e-3, "{medians:?}");
-    for board in ["identify, measured", "identify, made"] {
+    assert!(of("identify, found", "output-error") < 1e-3, "{medians:?}");
+    for board in ["identify, found", "identify, made"] {
         assert!(of(board, "straight-on") > 10.0 * of(board, "output-error"), "{medians:?}");
     }
     assert!(of("indices, made", "output-error") < 2.0, "{medians:?}");
-    for file in ["report.md", "rows.csv", "leaderboard.csv", "ratios-made.png", "methods/trace.md"] {
-        assert!(desk.path("results/small-bench").join(file).is_file(), "{file}");
+    for file in ["report.md", "answers.csv", "leaderboard.csv", "ratios-made.png", "methods/trace.md"] {
+        assert!(desk.path("results/bench").join(file).is_file(), "{file}");
     }
-    let page = desk.text("results/small-bench/report.md");
-    assert!(page.contains("- ship, lost: no file lost.csv"), "{page}");
+    let page = desk.text("results/bench/report.md");
+    assert!(page.contains("- found, far/lost.csv: there is no such file"), "{page}");
     let here = desk.path("").to_string_lossy().trim_end_matches('/').to_owned();
-    for file in ["bench.json", "rows.csv", "report.md", "leaderboard.csv"] {
-        let text = desk.text(&format!("results/small-bench/{file}"));
+    for file in ["bench.json", "answers.csv", "report.md", "leaderboard.csv"] {
+        let text = desk.text(&format!("results/bench/{file}"));
         assert!(!text.contains(&here), "{file} says where the records lie");
     }
 
     let again = |more: &[&str]| assert_eq!(desk.run(&[&own[..], more].concat()).is_done().out, "");
     again(&["--quiet", "--threads", "1", "--out", "one"]);
-    for file in ["bench.json", "rows.csv", "report.md", "leaderboard.csv", "ratios-made.svg", "methods/srivc.md"] {
-        let bytes = desk.bytes(&format!("results/small-bench/{file}"));
+    for file in ["bench.json", "answers.csv", "report.md", "leaderboard.csv", "ratios-made.svg", "methods/srivc.md"] {
+        let bytes = desk.bytes(&format!("results/bench/{file}"));
         assert_eq!(bytes, desk.bytes(&format!("one/{file}")), "{file}");
     }
     let one_task = ["--task", "identify", "--set", "made", "--method", "output-error", "--method", "straight-on"];
-    again(&[&["--quiet", "--out", "one"], &one_task[..]].concat());
-    assert!(!desk.path("one/ratios-measured.svg").exists() && !desk.path("one/methods/srivc.md").exists());
+    let other = [&own[..], &["--out", "one"], &one_task].concat();
+    desk.run(&other).is_refused(2, &["rows of another study", "--restart"]);
+    again(&[&["--quiet", "--out", "one", "--restart"], &one_task[..]].concat());
+    assert!(!desk.path("one/ratios-found.svg").exists() && !desk.path("one/methods/srivc.md").exists());
     let json = desk.json("one/bench.json");
     assert_eq!(json["methods"], serde_json::json!(["output-error", "straight-on"]));
     assert_eq!(json["boards"].as_array().map(Vec::len), Some(1));
@@ -106,18 +86,20 @@ fn a_benchmark_of_ones_own_runs_and_skips_what_is_not_there() {
 fn what_cannot_be_run_is_refused_in_one_message() {
     let desk = Desk::new();
     lay_out(&desk);
-    desk.run(&["bench", "own.toml", "--data", "nowhere"]).is_refused(2, &["nowhere", "--data", "KEMPF_DATA"]);
     desk.run(&["bench", "none.toml"]).is_refused(2, &["none.toml", "no such file"]);
     desk.run(&["bench", "--task", "circel"]).is_refused(2, &["circel", "did you mean `circle`"]);
     desk.run(&["bench", "--method", "srivk"]).is_refused(2, &["--method srivk", "did you mean `srivc`"]);
     desk.run(&["bench", "--set", "hull"]).is_refused(2, &["--set hull", "did you mean `hulls`"]);
-    let wrong = desk.text("own.toml").replace("licence =", "license =");
-    desk.file("wrong.toml", wrong);
-    desk.run(&["bench", "wrong.toml"]).is_refused(2, &["wrong.toml:8:1", "unknown field `license`", "`licence`"]);
-    // Without any folder the measured set of the benchmark is not there, and nothing else was asked for.
-    let lone = desk.run(&["bench", "own.toml", "--set", "ship"]);
-    lone.is_refused(2, &["no question to ask", "ship, here: no file away.csv", "--data names the folder"]);
-    assert!(!desk.path("results").exists(), "nothing is written before there is something to write");
+    let changed = desk.text("found.toml").replace("far/lost.csv", "far/gone.csv");
+    desk.file("short.toml", changed.replacen(char::is_numeric, "x", 1));
+    desk.run(&["check", "short.toml"])
+        .is_refused(2, &["short.toml:", "far/away.csv", "expected 64 hexadecimal digits"]);
+    // Another file under the name of a record, and one that is not there: nothing is left to be asked.
+    desk.file("far/away.csv", format!("{}\n", zig_zag_csv()));
+    let said = ["far/away.csv: it is another file: its SHA-256 begins with ", "far/lost.csv: there is no such file"];
+    desk.run(&["bench", "found.toml", "--out", "o"])
+        .is_refused(2, &[&["no question to ask", "KEMPF_DATA"], &said[..]].concat());
+    desk.run(&["found.toml"]).is_refused(2, &[&["none of its records can be used", "KEMPF_DATA"], &said[..]].concat());
 }
 
 /// The program holds its benchmark: it runs where no file of the project is.
@@ -126,7 +108,9 @@ fn the_benchmark_of_the_project_runs_from_anywhere() {
     let desk = Desk::new();
     let run = desk.run(&["bench", "--task", "circle", "--method", "output-error", "--format", "csv", "--out", "o"]);
     assert!(run.is_done().out.starts_with("task,records,n,method,median"), "{}", run.out);
-    assert!(run.err.contains("skipped: kvlcc2-marin, circle-35: no file turning_35.csv"), "{}", run.err);
+    let skipped =
+        "skipped: measured, KVLCC2 at full scale, circle from all, kvlcc2_marin/turning_35.csv: there is no such file";
+    assert!(run.err.contains(skipped), "{}", run.err);
 }
 
 /// Hours of work are not begun for a folder that cannot be written.
@@ -136,6 +120,6 @@ fn the_folder_of_results_is_held_before_the_work() {
     let desk = Desk::new();
     lay_out(&desk);
     desk.file("taken", "");
-    let asked = ["bench", "own.toml", "--data", "records", "--method", "straight-on", "--out", "taken/x"];
+    let asked = ["bench", "found.toml", "--method", "straight-on", "--out", "taken/x"];
     desk.run(&asked).is_refused(1, &["taken/x", "--out"]);
 }

@@ -190,11 +190,6 @@ fn files_of_the_repository_hold_to_their_schemas() {
             }
             let name = entry.file_name().to_string_lossy().into_owned();
             let which = match () {
-                () if name == "zigzag-bench.toml" => {
-                    let text = std::fs::read_to_string(&path).expect("a file");
-                    hold("bench-definition", &path, &of_toml(&text).expect("TOML"));
-                    continue;
-                }
                 () if name.ends_with(".trial.toml") => "sidecar",
                 () if name.ends_with(".toml") => "scenario",
                 () => continue,

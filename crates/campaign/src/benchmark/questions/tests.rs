@@ -2,31 +2,15 @@ use std::sync::{Arc, LazyLock};
 
 use identify::estimate::{Estimate, StopReason, Uncertainty};
 use identify::{Identifier, IdentifyError};
+use ship::FirstOrder;
 
 use super::*;
-use crate::NoObserver;
+use crate::benchmark::BenchDocument;
+use crate::collect::in_memory;
+use crate::scenario::STRAIGHT_ON;
+use crate::testing::scenario;
 
-const DEFINITION: &str = r#"
-name = "own"
-reference = "output-error"
-[[simulated]]
-name = "one"
-title = "One ship"
-scenario = "one.toml"
-records = ["zigzag", "zigzag-port", "circle"]
-tasks.identify = ["zigzag"]
-tasks.indices = ["zigzag"]
-tasks.other-side = [{ fit = ["zigzag"], score = ["zigzag-port"] }]
-tasks.circle = [{ fit = ["zigzag"], score = ["circle"] }]
-[[simulated]]
-name = "damped"
-title = "The same ship with damping"
-scenario = "damped.toml"
-records = ["zigzag", "zigzag-port", "circle"]
-tasks.name = ["zigzag"]
-"#;
-
-/// A first-order ship, recorded without an error.
+/// A first-order ship, recorded without an error, judged on the other side and on a circle.
 const SCENARIO: &str = r#"
 question = "?"
 seed = 3
@@ -35,23 +19,21 @@ ship.first-order = { K-per-s = 0.1, T-s = 20.0 }
 manoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0, executes = 5 }
 steering-gear.rate-deg-s = 2.5
 recording.sampling-s = 1.0
-identifier = [{ method.output-error = {} }]
-[[also]]
-manoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0, executes = 5, first = "port" }
-[[also]]
-manoeuvre.turning-circle = { rudder-deg = 35.0, heading-change-deg = 360.0 }
+identifier = [{ method.output-error = {} }, { trace = {} }, { straight-on = {} }]
+[[sweep]]
+name = "ship"
+points = [{ label = "hers", set = {} }]
+[[sweep]]
+name = "what judges"
+[[sweep.points]]
+label = "other side"
+set."validation.manoeuvre".zig-zag = { rudder-deg = 20.0, heading-deg = 20.0, executes = 5, first = "port" }
+[[sweep.points]]
+label = "circle"
+set."validation.manoeuvre".turning-circle = { rudder-deg = 35.0, heading-change-deg = 360.0 }
 "#;
 
 const DAMPING: &str = "[[effect]]\nnonlinear_damping.n3-s2-per-deg2 = 0.4\n[sensor]\nheading-noise-deg = 0.05\n";
-
-fn definition() -> Definition {
-    let desk = tempfile::tempdir().expect("a folder");
-    let path = desk.path().join("own.toml");
-    std::fs::write(&path, DEFINITION).expect("written");
-    std::fs::write(desk.path().join("one.toml"), SCENARIO).expect("written");
-    std::fs::write(desk.path().join("damped.toml"), format!("{SCENARIO}{DAMPING}")).expect("written");
-    Definition::read(&path, None).unwrap_or_else(|failure| panic!("{failure}"))
-}
 
 /// Knows K (1/s) and T (s) beforehand; without them it fails.
 struct KnownIndices(Option<[f64; 2]>);
@@ -83,19 +65,22 @@ impl Identifier for KnownIndices {
 
 /// Asked once for the tests of this file.
 static RESULTS: LazyLock<BenchDocument> = LazyLock::new(|| {
-    let mut methods = BenchMethod::ours();
-    methods.retain(|method| ["output-error", "trace", method::STRAIGHT_ON].contains(&method.label()));
-    for (label, known) in [("perfect", Some([0.1, 20.0])), ("slow", Some([0.1, 24.0])), ("silent", None)] {
-        methods.push(BenchMethod::new(label, Arc::new(KnownIndices(known))));
-    }
-    run(&definition(), &RecordStore::default(), &methods, &NoObserver, || Ok(()))
-        .unwrap_or_else(|failure| panic!("{failure}"))
+    let studies = [SCENARIO.to_owned(), format!("{SCENARIO}{DAMPING}")].map(|text| {
+        let mut study = scenario(text);
+        for (label, known) in [("perfect", Some([0.1, 20.0])), ("slow", Some([0.1, 24.0])), ("silent", None)] {
+            study = study.with_identifier(label, Arc::new(KnownIndices(known))).unwrap_or_else(|one| panic!("{one}"));
+        }
+        let (_, rows) = in_memory(&study);
+        (study, rows)
+    });
+    BenchDocument::of(&studies, &[])
 });
 
 #[test]
 fn scores_are_what_the_models_are_worth() {
     let results = &*RESULTS;
-    assert_eq!(results.boards.len(), 4);
+    let tasks: Vec<BenchTask> = results.boards.iter().map(|board| board.task).collect();
+    assert_eq!(tasks, [BenchTask::Identify, BenchTask::Indices, BenchTask::OtherSide, BenchTask::Circle]);
     for board in &results.boards {
         let of = |method: &str| board.standings.iter().find(|standing| standing.method == method);
         let median = |method: &str| of(method).and_then(|standing| standing.median.value).expect("an answer");
@@ -104,14 +89,15 @@ fn scores_are_what_the_models_are_worth() {
         assert!(median("slow") > 0.1, "{:?}: {}", board.task, median("slow"));
         match board.task {
             BenchTask::Indices => {
-                assert!(of(method::STRAIGHT_ON).is_none(), "it has no K and no T");
+                assert!(of(STRAIGHT_ON).is_none(), "it has no K and no T");
                 let slow = of("slow").expect("it answers");
                 assert!((median("slow") - 20.0).abs() < 1e-9, "T is 24 s where it is 20 s");
                 let holds = slow.holds.expect("intervals").map(|share| (share.count, share.of));
                 assert_eq!(holds, [(2, 2), (0, 2)], "K is inside, 20 s is not within 24 s ± 10 %");
             }
-            _ => assert!(median(method::STRAIGHT_ON) > 2.0 * median("slow"), "{:?}", board.task),
+            _ => assert!(median(STRAIGHT_ON) > 2.0 * median("slow"), "{:?}", board.task),
         }
+        assert_eq!((board.cases, board.clusters), (2, 2), "a trial is asked once, whatever judges it");
         let silent = board.standings.last().expect("a standing");
         assert_eq!((silent.method.as_str(), silent.failed, silent.median.value), ("silent", 2, None), "worse than any");
     }
@@ -124,7 +110,6 @@ fn only_who_names_effects_is_asked_for_one() {
     let results = &*RESULTS;
     let [line] = &results.naming[..] else { panic!("{:?}", results.naming) };
     assert_eq!((line.method.as_str(), line.missing.as_deref(), line.named.of), ("trace", Some("nonlinear_damping"), 2));
-    assert_eq!(line.counts.iter().sum::<usize>(), 2);
     assert!(results.cases.iter().filter(|case| case.task == BenchTask::Name).all(|case| case.answers.len() == 1));
 }
 
@@ -136,14 +121,22 @@ fn what_is_stored_is_read_back() {
     assert_eq!(json.lines().filter(|line| line.contains("\"answers\"")).count(), results.cases.len());
 }
 
+/// Which task a prediction is follows from the zig-zags alone.
 #[test]
-fn labels_are_names_of_files_and_different() {
-    let definition = definition();
-    for (labels, said) in [(["a", "A"], "two methods are called"), (["a", "b/c"], "the name of a file")] {
-        let methods = labels.map(|label| BenchMethod::new(label, Arc::new(KnownIndices(None))));
-        let error = run(&definition, &RecordStore::default(), &methods, &NoObserver, || Ok(()))
-            .expect_err("refused")
-            .to_string();
-        assert!(error.contains(said), "{error}");
+fn a_prediction_is_of_another_side_another_amplitude_or_a_turn() {
+    let zig_zag = |angles: [f64; 2], side| SteeredRecord::new(None, Some((Some(angles), side)), String::new(), None);
+    let [one, port, ten] = [([20.0, 20.0], Side::Starboard), ([20.0, 20.0], Side::Port), ([10.0, 10.0], Side::Port)]
+        .map(|(angles, side)| zig_zag(angles, side));
+    let turn = SteeredRecord::new(None, None, "turn".to_owned(), None);
+    for (fitted, judge, task) in [
+        (vec![&one], &port, Some(BenchTask::OtherSide)),
+        (vec![&one], &ten, Some(BenchTask::OtherAmplitude)),
+        (vec![&one, &port], &ten, Some(BenchTask::OtherAmplitude)),
+        (vec![&one, &port], &turn, Some(BenchTask::Circle)),
+        (vec![&one], &one, None),
+        (vec![&one, &ten], &port, None),
+        (vec![&turn], &one, None),
+    ] {
+        assert_eq!(prediction(&fitted, judge), task, "{}", judge.record.name);
     }
 }
