@@ -43,7 +43,7 @@ fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
 fn drawing() -> Drawing {
     let trial = record(&first_order_zig_zag(ROWS));
     let zigzag = ZigZag::of(&trial).expect("a zig-zag");
-    report::figures::Plot::from(zigzag_figure(&trial, &zigzag)).draw(&Theme::screen())
+    report::figures::Plot::from(zigzag_figure(&trial, &zigzag)).draw("A zig-zag", &Theme::screen())
 }
 
 /// Trials, scenarios and figures.

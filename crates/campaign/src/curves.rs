@@ -6,7 +6,6 @@ use identify::replay::replay;
 use report::figures::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
 use report::{CurveOrigin, PlotCurve};
 use ship::angle::to_deg;
-use trial::zigzag::PhasePlane;
 use trial::zigzag::{Execute, Overshoot};
 use trial::{Quantity, Trial, ZigZag};
 
@@ -35,18 +34,6 @@ pub fn curve(time: &[f64], angle: &[f64]) -> PlotCurve {
     PlotCurve::new(time, degrees(angle))
 }
 
-/// Yaw rate over heading of a record, and whether the rate is the slope of its smoothed heading.
-pub fn phase_of(trial: &Trial) -> (Option<PlotCurve>, bool) {
-    let phase = PhasePlane::of(trial);
-    let smoothed = phase.as_ref().is_some_and(|phase| phase.smoothed);
-    (phase.map(|phase| phase_curve(&phase.heading, &phase.yaw_rate)), smoothed)
-}
-
-/// Yaw rate over heading, degrees.
-pub fn phase_curve(heading: &[f64], yaw_rate: &[f64]) -> PlotCurve {
-    PlotCurve::new(degrees(heading), degrees(yaw_rate))
-}
-
 /// The trial with its characteristic points marked.
 pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     let mark = |time: Quantity, heading: Quantity| ZigZagMark { t_s: time.value, heading_deg: to_deg(heading.value) };
@@ -68,7 +55,6 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
         false => zigzag.executes.get(1),
     };
     ZigzagTrial {
-        title: None,
         heading: curve(trial.time(), trial.heading()),
         // What is left of a thinned record are its extremes: as points they would be taken for the record.
         heading_as_points: trial.len() <= PlotCurve::MOST_PAIRS

@@ -65,10 +65,6 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
         Some(entry(&method.label, answer, &trials))
     };
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell.methods.iter().filter_map(answer).collect();
-    let title = |what: &str| match cell.labels.is_empty() {
-        true => Some(what.to_owned()),
-        false => Some(format!("{}: {what}", cell.title())),
-    };
     let shown = |(entry, estimate): (MethodEntry, Option<Estimate>)| {
         let warnings = estimate.into_iter().flat_map(|estimate| estimate.warnings).map(|warning| warning.text);
         ShownAnswer { entry, warnings: warnings.collect() }
@@ -78,28 +74,24 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     Some(Showcase {
         title: cell.title(),
         trial: ZigZag::of(trial).ok().map(|zigzag| ZigzagTrial {
-            title: title("zig-zag trial"),
             truth: Some(curve(&truth.time, &truth.heading)),
             ..zigzag_figure(trial, &zigzag)
         }),
-        fourier_fit: fits.first().map(|fit| fit.curve_fit(title("Fourier fit"))),
+        fourier_fit: fits.first().map(|fit| fit.curve_fit()),
         derivatives: (!fits.is_empty()).then(|| DerivativeCurves {
-            title: title("heading and its derivatives"),
             curves: std::iter::once(truth_curves(truth)).chain(fits.iter().map(FourierCurve::motion)).collect(),
         }),
         replays: Replays {
-            title: title("replay of every K and T"),
             record: curve(trial.time(), trial.heading()),
             truth: None,
             replays: replay_curves(trial, &answers, |label| origin(&names, label)),
         },
-        intervals: intervals(title("K and T"), &answers, &names, truth_of_ship.as_ref(), &scenario.published),
+        intervals: intervals(&answers, &names, truth_of_ship.as_ref(), &scenario.published),
         methods: answers.into_iter().map(shown).collect(),
     })
 }
 
 fn intervals(
-    title: Option<String>,
     answers: &[(MethodEntry, Option<Estimate>)],
     names: &[MethodName],
     truth: Option<&FirstOrder>,
@@ -114,7 +106,6 @@ fn intervals(
         t_s: entry.parameters.and_then(|parameters| point(parameters.t_s)),
     };
     Intervals {
-        title,
         estimates: answers.iter().map(estimate).collect(),
         truth: truth.map(|truth| Reference { k_per_s: truth.K(), t_s: truth.T() }),
         published: published.K_per_s.zip(published.T_s).map(|(k_per_s, t_s)| Reference { k_per_s, t_s }),
@@ -187,12 +178,11 @@ impl<'a> FourierCurve<'a> {
         }
     }
 
-    fn curve_fit(&self, title: Option<String>) -> CurveFit {
+    fn curve_fit(&self) -> CurveFit {
         let (time, heading) = (self.trial.time(), self.trial.heading());
         let rows = time.iter().zip(heading);
         let residual: Vec<f64> = rows.map(|(t, psi)| psi - self.curve.heading(t - self.start())).collect();
         CurveFit {
-            title,
             measured: curve(time, heading),
             fitted: self.sampled(|t| self.curve.heading(t)),
             origin: Some(self.origin.clone()),

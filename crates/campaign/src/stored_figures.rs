@@ -12,8 +12,6 @@ use serde::{Deserialize, Serialize};
 /// A curve fitted to a heading: how well a Fourier series (or any other) carries the record.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CurveFit {
-    /// Title above the figure.
-    pub title: Option<String>,
     /// Measured heading, degrees over seconds.
     pub measured: PlotCurve,
     /// Fitted heading, degrees over seconds, dense enough to look smooth.
@@ -51,7 +49,7 @@ impl CurveFit {
         let fundamental = finite(self.fundamental_rad_s)
             .map(|own| format!("fundamental {} = {} rad/s", symbol("ω"), number::significant(own, 4)));
         let said = r_squared.into_iter().chain(fundamental).collect();
-        Panels { title: self.title.clone(), said, ..Panels::over_time(rows) }
+        Panels { said, ..Panels::over_time(rows) }
     }
 }
 
@@ -73,8 +71,6 @@ pub struct MotionCurves {
 /// Headings and their derivatives.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct DerivativeCurves {
-    /// Title above the figure.
-    pub title: Option<String>,
     /// The sources, drawn in this order.
     pub curves: Vec<MotionCurves>,
 }
@@ -95,7 +91,7 @@ impl DerivativeCurves {
             row(Ruler::yaw_rate(), |own| &own.yaw_rate),
             row(Ruler::decimal(format!("yaw accel. {} [°/s²]", symbol("ṙ"))), |own| &own.yaw_acceleration),
         ];
-        Panels { title: self.title.clone(), ..Panels::over_time(rows) }
+        Panels::over_time(rows)
     }
 }
 
@@ -115,8 +111,6 @@ pub struct ReplayCurves {
 /// A record and its replays.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Replays {
-    /// Title above the figure.
-    pub title: Option<String>,
     /// Recorded heading, degrees over seconds.
     pub record: PlotCurve,
     /// Noise-free heading, degrees over seconds.
@@ -165,7 +159,7 @@ impl Replays {
         }
         stacks.insert(0, Stack::over(time, vec![(PanelRow::new(Ruler::heading(), 0.28), upper)]));
         let note = (!self.replays.is_empty()).then(|| String::from("What leaves its panel is cut."));
-        Panels { title: self.title.clone(), stacks, note, ..Panels::default() }
+        Panels { stacks, note, ..Panels::default() }
     }
 }
 
@@ -201,8 +195,6 @@ pub struct Reference {
 /// Estimates of K and T with their 95 % intervals, against the truth and the published value.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Intervals {
-    /// Title above the figure.
-    pub title: Option<String>,
     /// The estimates, from top to bottom.
     pub estimates: Vec<MethodEstimate>,
     /// The parameters the trial was simulated with.
@@ -245,7 +237,6 @@ impl Intervals {
         let lacks = (!lacks.is_empty()).then(|| format!("No interval from {}.", lacks.join(", ")));
         let note: Vec<String> = [has_bars, lacks].into_iter().flatten().collect();
         NamedRows {
-            title: self.title.clone(),
             names: self.estimates.iter().map(|own| own.origin.label().to_owned()).collect(),
             columns: vec![
                 column(format!("{} [1/s]", symbol("K")), |own| own.k_per_s, |own| own.k_per_s),
@@ -266,7 +257,7 @@ mod tests {
     use super::*;
 
     fn svg(plot: impl Into<Plot>) -> String {
-        plot.into().draw(&Theme::screen()).svg().to_owned()
+        plot.into().draw("", &Theme::screen()).svg().to_owned()
     }
 
     fn wave(size: f64) -> PlotCurve {
@@ -290,7 +281,7 @@ mod tests {
         let origin = CurveOrigin::Truth;
         let [heading, yaw_rate, yaw_acceleration] = [25.0, 1.0, 0.1].map(wave);
         let motion = MotionCurves { origin, name: None, heading, yaw_rate, yaw_acceleration };
-        assert!(svg(DerivativeCurves { title: None, curves: vec![motion] }.panels()).contains(" [°/s²]"));
+        assert!(svg(DerivativeCurves { curves: vec![motion] }.panels()).contains(" [°/s²]"));
     }
 
     #[test]

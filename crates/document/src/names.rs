@@ -10,6 +10,22 @@ const EFFECTS: [(&str, &str); 5] = [
     ("wave_yaw", "yaw in waves"),
 ];
 
+/// What happens where a first-order response lacks an effect of the list.
+const PHYSICS: [(&str, &str); 12] = [
+    ("second_order", "her sway answers the rudder with a time of its own, and turns her with it"),
+    ("sway_coupling_measured", "she drifts as she turns, and the drift turns her"),
+    ("nonlinear_damping", "the faster she turns, the harder the water holds her back"),
+    ("wind_moment", "the wind turns her, by her heading to it"),
+    ("speed_loss", "as she turns she loses speed, and with it rudder force"),
+    ("steering_lag", "the rudder acts later than it was recorded"),
+    ("rudder_saturation", "the farther the rudder is laid, the less each degree of it gives"),
+    ("rudder_deadband", "the gear has play: small movements do not reach the rudder"),
+    ("port_starboard_asymmetry", "she answers more readily to one side"),
+    ("moment_drift", "a moment grows slowly through the record"),
+    ("transient_disturbance", "a moment acts for a part of the record"),
+    ("wave_yaw", "waves yaw her at their own frequency"),
+];
+
 /// Ends of identifiers that are units; of two that fit the longer is first.
 const UNITS: [(&str, &str); 7] = [
     ("_deg_s", "deg/s"),
@@ -25,6 +41,11 @@ const UNITS: [(&str, &str); 7] = [
 pub fn effect(id: &str) -> String {
     let listed = EFFECTS.iter().find(|(key, _)| *key == id);
     listed.map_or_else(|| plain(id), |(_, name)| (*name).to_owned())
+}
+
+/// The physics of an effect of the list in a sentence, without its full stop.
+pub fn physics(id: &str) -> Option<&'static str> {
+    PHYSICS.iter().find(|(key, _)| *key == id).map(|(_, sentence)| *sentence)
 }
 
 /// Names of several effects, joined.
@@ -86,6 +107,7 @@ mod tests {
             assert!(!effect_form(listed.id(), listed.form()).contains('_'), "{}", listed.id());
         }
         assert!(EFFECTS.iter().all(|(id, _)| ship::effects::all().iter().any(|listed| listed.id() == *id)));
+        assert!(ship::effects::all().iter().all(|listed| physics(listed.id()).is_some()));
     }
 
     #[test]

@@ -18,7 +18,7 @@ mod errors;
 
 pub use entries::{
     Dependence, DisturbanceEntry, Indices, LocatedEntry, MissingMomentEntry, PanelEntry, ParameterEntry, PrimeEntry,
-    PrimeIndices, RecordEntry, RecordErrors, UnexplainedEntry,
+    PrimeIndices, RecordEntry, RecordErrors, StairEntry, UnexplainedEntry,
 };
 pub use errors::{BeforeAfter, ErrorEntry, ErrorsEntry};
 
@@ -309,6 +309,9 @@ pub struct TraceDocument {
     pub records: Vec<RecordEntry>,
     /// The yaw moment that the base lacks on every fitted record.
     pub missing_moment: Vec<MissingMomentEntry>,
+    /// The base, and behind it the effects of the most probable structure one by one; nothing where it has none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub staircase: Vec<StairEntry>,
     /// What is known of the ship, for `study predict`; SI units and radians.
     pub ship: IdentifiedShip,
     /// What earlier trials of `--prior` say of the hull, and whether the records contradict them.

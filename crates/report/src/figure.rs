@@ -112,7 +112,7 @@ mod tests {
     use crate::theme::Theme;
 
     fn sample() -> Drawing {
-        let sheet = Sheet::new(&Theme::screen(), None).unwrap();
+        let sheet = Sheet::new(&Theme::screen(), "").unwrap();
         sheet.canvas.text((10.0, 22.0), &TextLine::new("ψ", 24.0, HPos::Left)).unwrap();
         let svg = sheet.canvas.svg.finish(36.0).replace("width=\"675.000pt\"", "width=\"72.000pt\"");
         Drawing::new(svg.replace("0 0 13500 720", "0 0 1440 720"), 72.0, 36.0, 300.0)

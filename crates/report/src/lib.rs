@@ -23,7 +23,7 @@
 //! let heading = PlotCurve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]);
 //! let layers = vec![Layer::new("recorded heading", heading, LayerKind::Record)];
 //! let figure = Plot::from(Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.3), layers)]));
-//! let figure = figure.draw(&Theme::screen());
+//! let figure = figure.draw("The heading grows by 2° in 2 s", &Theme::screen());
 //! assert!(figure.svg().contains("heading"));
 //! ```
 //!

@@ -10,7 +10,9 @@ use crate::table::Table;
 pub struct PageFigure {
     /// Stem of its files.
     pub stem: String,
-    /// What is to be seen.
+    /// What it shows, one sentence with its numbers and without its full stop: the line above it.
+    pub finding: String,
+    /// What is drawn and how it is read.
     pub caption: String,
     /// What is drawn.
     pub plot: Plot,
@@ -18,8 +20,13 @@ pub struct PageFigure {
 
 impl PageFigure {
     /// A figure.
-    pub fn new(stem: impl Into<String>, caption: impl Into<String>, plot: impl Into<Plot>) -> Self {
-        Self { stem: stem.into(), caption: caption.into(), plot: plot.into() }
+    pub fn new(
+        stem: impl Into<String>,
+        finding: impl Into<String>,
+        caption: impl Into<String>,
+        plot: impl Into<Plot>,
+    ) -> Self {
+        Self { stem: stem.into(), finding: finding.into(), caption: caption.into(), plot: plot.into() }
     }
 }
 
@@ -151,9 +158,9 @@ impl Page {
             PageBlock::List(entries) => entries.iter().map(|entry| format!("- {entry}\n")).collect(),
             PageBlock::Table(table) => table.to_markdown(),
             PageBlock::Figure(figure) => {
-                let PageFigure { stem, caption, .. } = figure.as_ref();
+                let PageFigure { stem, finding, caption, .. } = figure.as_ref();
                 number += 1;
-                format!("![Figure {number}]({stem}.png)\n\n*Figure {number}. {}*\n", text(caption))
+                format!("![Figure {number}]({stem}.png)\n\n*Figure {number}. {}. {}*\n", text(finding), text(caption))
             }
         };
         prose(&self.blocks.iter().map(block).collect::<Vec<String>>().join("\n"))
@@ -195,10 +202,10 @@ mod tests {
         let mut table = Table::new(TableHead::default().texts(["K"]));
         table.push(["0.1"]);
         page.table(table);
-        page.figures([PageFigure::new("fit", "a*b", Panels::default())]);
+        page.figures([PageFigure::new("fit", "K is 0.1", "a*b", Panels::default())]);
         page.list(["one".to_owned(), "two".to_owned()]);
         let markdown = "# Trial [1]\\(x) a\\_b\n\na\\*b\n\n\\<b>c\n\n## Numbers\n\n| K   |\n| --- |\n| 0.1 |\n\n![Figure 1](fit.png)\n\n\
-                        *Figure 1. a\\*b*\n\n- one\n- two\n";
+                        *Figure 1. K is 0.1. a\\*b*\n\n- one\n- two\n";
         assert_eq!(page.to_markdown(), markdown);
         assert!(page.to_text().ends_with("Numbers\n\nK\n───\n0.1\n\none\ntwo\n"), "{}", page.to_text());
         assert!(page.to_latex().contains("toprule") && page.drawings().count() == 1);
@@ -206,7 +213,7 @@ mod tests {
 
     #[test]
     fn without_figures_no_headline_stands_over_nothing() {
-        let figure = || [PageFigure::new("fit", "one", Panels::default())];
+        let figure = || [PageFigure::new("fit", "K is 0.1", "one", Panels::default())];
         let mut page = Page::titled("Trial");
         page.figures(figure());
         page.part("Seen");

@@ -88,13 +88,13 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    pub(crate) fn new(theme: &Theme, title: Option<&str>) -> Plotted<Self> {
+    pub(crate) fn new(theme: &Theme, finding: &str) -> Plotted<Self> {
         let svg = Svg::new(theme.width, Arc::clone(&theme.changes));
         let canvas = Canvas { area: svg.clone().into_drawing_area(), svg };
         let mut sheet = Self { theme: theme.clone(), canvas, y: 0.5 * theme.small_font, edge: 0.0 };
-        if let Some(title) = title {
+        if !finding.is_empty() {
             let text = TextLine { bold: true, ..TextLine::new("", theme.title_font, HPos::Center) };
-            let lines = balanced(title, theme.title_font, true, theme.width - 2.0 * theme.small_font);
+            let lines = balanced(finding, theme.title_font, true, theme.width - 2.0 * theme.small_font);
             sheet.lines(lines, theme.width / 2.0, text, 1.2)?;
             sheet.y += 0.7 * theme.title_font;
         }
@@ -312,7 +312,7 @@ mod tests {
     #[test]
     fn panels_share_edges_and_stay_on_the_page() {
         let theme = Theme::paper(85.0, 300.0).unwrap();
-        let mut sheet = Sheet::new(&theme, Some("title")).unwrap();
+        let mut sheet = Sheet::new(&theme, "title").unwrap();
         let side = |hi: f64| AxisSide::new(Axis::linear(0.0, hi, Division::Decimal), "quantity [unit]");
         let rows = vec![(side(1e5), 60.0), (side(0.001), 40.0)];
         let charts =
@@ -336,7 +336,7 @@ mod tests {
         let side = AxisSide::new(Axis::linear(0.0, 1.0, Division::Decimal), "x");
         let head = |text: &str| Some(KeyEntry::new(KeySample::Nothing, text));
         let drawn = |text: &str| {
-            let mut sheet = Sheet::new(&theme, None).unwrap();
+            let mut sheet = Sheet::new(&theme, "").unwrap();
             sheet.legend(&[KeyEntry::new(KeySample::Nothing, text.repeat(4))]).unwrap();
             let heads = vec![head(text), head("b"), head("c")];
             let grid =

@@ -175,8 +175,8 @@ mod tests {
             (PanelRow::new(Ruler::heading(), 0.28), vec![line([0.0, 3.0, -2.0], HEADING)]),
             (PanelRow::new(Ruler::rudder(), 0.13), vec![line([0.0, 10.0, -10.0], RUDDER)]),
         ];
-        let data = Panels { title: Some(String::from("\"#D55E00\"")), ..Panels::over_time(rows) };
-        Plot::from(data).draw(&style.on(Theme::screen()).unwrap()).svg().to_owned()
+        let theme = style.on(Theme::screen()).unwrap();
+        Plot::from(Panels::over_time(rows)).draw("\"#D55E00\"", &theme).svg().to_owned()
     }
 
     #[test]

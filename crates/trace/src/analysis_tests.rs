@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use document::trace::Dependence;
+use ship::angle::to_deg;
 use ship::effects::{Effect, Formula, listed};
 use trial::{Conditions, DeclaredWeather, Trial};
 
@@ -31,6 +32,25 @@ fn a_random_moment_is_no_effect_of_the_ship() {
         let ship = ["second_order", "nonlinear_damping", "speed_loss", "rudder_saturation", "port_starboard_asymmetry"];
         assert!(named(&analysis).iter().all(|id| !ship.contains(id)), "seed {seed}: {:?}", named(&analysis));
     }
+}
+
+/// A step carries what its effect is worth: behind the damping the noise is left, of every record.
+#[test]
+fn a_staircase_leads_from_the_base_to_the_noise() {
+    let plan = TrialPlan { noise_deg: 0.1, ..TrialPlan::default() };
+    let analysis = traced(&[damped(plan)]);
+    let staircase = analysis.staircase().expect("something is missing");
+    let ids: Vec<Option<&str>> = staircase.steps.iter().map(|step| step.term.map(|(id, ..)| id)).collect();
+    assert_eq!(ids, [None, Some("nonlinear_damping")]);
+    let [base, last] = [0, 1].map(|step: usize| to_deg(staircase.steps[step].rmse));
+    assert!((0.08..0.12).contains(&last) && base > 1.3 * last, "{base} {last}");
+    let before = &analysis.identification[0].before.errors.heading;
+    assert!(
+        (base / to_deg(*before) - 1.0).abs() < 0.05,
+        "the base is the nearest response: {base} {}",
+        to_deg(*before)
+    );
+    assert!(staircase.steps.iter().all(|step| step.residual.len() == staircase.time.len()));
 }
 
 #[test]

@@ -315,6 +315,14 @@ pub struct StructureFit {
 }
 
 impl StructureFit {
+    /// The fit without one of its terms.
+    pub fn without(&self, out: usize, problem: &FittedRecords, weights: &Weights, effort: Effort) -> Self {
+        let (mut terms, mut theta) = (self.structure.terms.clone(), self.theta.clone());
+        theta.drain(self.structure.ranges()[out].clone());
+        terms.remove(out);
+        problem.fit(&self.structure.of(terms), theta, self.initial.clone(), weights, effort)
+    }
+
     /// Covariance of all entries of θ; zero for those that are not fitted. `None` when they cannot be told apart.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = self.precision.clone().cholesky()?.inverse();

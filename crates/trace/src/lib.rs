@@ -30,6 +30,7 @@ pub mod selection;
 pub mod settings;
 pub mod shape;
 mod signature;
+pub mod staircase;
 pub mod structures;
 pub mod transient;
 mod watcher;

@@ -127,7 +127,7 @@ fn weigh(
         seen.push(names(&top.structure));
         // What may stand in the place of a term shows when it is taken away.
         for out in 0..top.structure.terms.len() {
-            let less = search.without(&top, out);
+            let less = top.without(out, problem, &search.weights, Effort::COARSE);
             search.look(&search.unfold(&less), &less.initial, &search.terms_of(&less));
             search.keep(vec![less]);
         }
@@ -214,14 +214,6 @@ impl StructureSearch<'_> {
     fn terms_of(&self, fit: &StructureFit) -> Vec<bool> {
         let own = names(&fit.structure);
         self.full.fit.structure.terms.iter().map(|term| own.contains(&term.name())).collect()
-    }
-
-    /// A fit without one of its terms.
-    fn without(&self, top: &StructureFit, out: usize) -> StructureFit {
-        let (mut terms, mut theta) = (top.structure.terms.clone(), top.theta.clone());
-        theta.drain(top.structure.ranges()[out].clone());
-        terms.remove(out);
-        self.problem.fit(&top.structure.of(terms), theta, top.initial.clone(), &self.weights, Effort::COARSE)
     }
 
     /// Log odds that count for a term; `required` are those of one that was asked for.

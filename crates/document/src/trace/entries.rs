@@ -174,6 +174,17 @@ pub struct RecordErrors<'a> {
     pub errors: &'a BeforeAfter,
 }
 
+/// A step from the base to the most probable structure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct StairEntry {
+    /// Identifier of the effect that is added; none of the base.
+    pub id: Option<String>,
+    /// Its form.
+    pub form: Option<String>,
+    /// Root mean square heading error on the fitted records, every step fitted anew for the nearest replay.
+    pub heading_rmse_deg: f64,
+}
+
 /// The moment of one record in `trace.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MissingMomentEntry {

@@ -53,8 +53,6 @@ pub enum Shades {
 /// What [`super::Plot::Cells`] draws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellMap {
-    /// Title above the figure.
-    pub title: Option<String>,
     /// Titles of the horizontal and of the vertical axis.
     pub titles: [String; 2],
     /// Names of the columns.
@@ -123,8 +121,8 @@ impl CellMap {
 }
 
 /// Draws the panels in rows of as many as fit.
-pub(super) fn cells(data: &CellMap, theme: &Theme) -> Plotted<Drawing> {
-    let mut sheet = Sheet::new(theme, data.title.as_deref())?;
+pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> Plotted<Drawing> {
+    let mut sheet = Sheet::new(theme, finding)?;
     let outlines = [(Outline::Right, SOLID, "right"), (Outline::Alias, DOTTED, "mostly cannot be told from it")];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
     sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(KeySample::Outline(dash), *name)).collect::<Vec<_>>())?;

@@ -73,18 +73,19 @@ fn side_by_side<'a>(data: &'a Panels, theme: &Theme) -> impl Iterator<Item = &'a
 }
 
 /// Draws the stacks below each other.
-pub(super) fn panels(data: &Panels, theme: &Theme) -> Plotted<Drawing> {
-    annotated(data, theme, &|_| Ok(None))
+pub(super) fn panels(data: &Panels, finding: &str, theme: &Theme) -> Plotted<Drawing> {
+    annotated(data, finding, theme, &|_| Ok(None))
 }
 
 /// The same with what is drawn over the first panel, and a remark on it.
 pub(super) fn annotated(
     data: &Panels,
+    finding: &str,
     theme: &Theme,
     annotate: &dyn Fn(&Chart) -> Plotted<Option<String>>,
 ) -> Plotted<Drawing> {
     let data = &fitted(data, theme);
-    let mut sheet = Sheet::new(theme, data.title.as_deref())?;
+    let mut sheet = Sheet::new(theme, finding)?;
     sheet.legend(&entries(data, theme))?;
     let mut outside = Unshown::default();
     let mut charts = Vec::new();

@@ -35,13 +35,13 @@ pub enum Plot {
 }
 
 impl Plot {
-    /// Draws it.
-    pub fn draw(&self, theme: &Theme) -> Drawing {
+    /// Draws it under what it shows, one sentence without its full stop; without a line for it where that is empty.
+    pub fn draw(&self, finding: &str, theme: &Theme) -> Drawing {
         let drawn = match self {
-            Self::Panels(data) => layers::panels(data, theme),
-            Self::Rows(data) => rows::rows(data, theme),
-            Self::Cells(data) => cells::cells(data, theme),
-            Self::ZigZag(data) => zigzag_trial::zigzag_trial(data, theme),
+            Self::Panels(data) => layers::panels(data, finding, theme),
+            Self::Rows(data) => rows::rows(data, finding, theme),
+            Self::Cells(data) => cells::cells(data, finding, theme),
+            Self::ZigZag(data) => zigzag_trial::zigzag_trial(data, finding, theme),
         };
         drawn.expect("the backend writes into memory, which does not fail")
     }
@@ -60,16 +60,6 @@ impl Plot {
         };
         let titles = rulers.iter().map(|ruler| ruler.title.replace(is_markup, ""));
         titles.filter(|title| !title.is_empty()).collect()
-    }
-
-    /// The title above it.
-    pub fn title_mut(&mut self) -> &mut Option<String> {
-        match self {
-            Self::Panels(data) => &mut data.title,
-            Self::Rows(data) => &mut data.title,
-            Self::Cells(data) => &mut data.title,
-            Self::ZigZag(data) => &mut data.title,
-        }
     }
 }
 

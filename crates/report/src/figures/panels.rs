@@ -334,8 +334,6 @@ impl Stack {
 /// What [`super::Plot::Panels`] draws.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Panels {
-    /// Title above the figure.
-    pub title: Option<String>,
     /// The stacks, in reading order.
     pub stacks: Vec<Stack>,
     /// Whether names stand right of the frame, in place of a key; on a narrow page they are in the key all the same.

@@ -157,8 +157,6 @@ pub struct RowsColumn {
 /// What [`super::Plot::Rows`] draws.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NamedRows {
-    /// Title above the figure.
-    pub title: Option<String>,
     /// What the names are, beside them; nothing where they say it themselves.
     pub of: String,
     /// Names from top to bottom.
@@ -194,8 +192,8 @@ const SPREAD: f64 = 1.8;
 
 /// Draws the columns side by side, in a narrow figure above each other, or two by two where they have many rows. What
 /// reaches beyond an axis is cut and marked.
-pub(super) fn rows(data: &NamedRows, theme: &Theme) -> Plotted<Drawing> {
-    let mut sheet = Sheet::new(theme, data.title.as_deref())?;
+pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> Plotted<Drawing> {
+    let mut sheet = Sheet::new(theme, finding)?;
     sheet.legend(&entries(data, theme))?;
     let pitch = pitch(data, theme);
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;

@@ -55,8 +55,6 @@ pub struct OvershootMark {
 /// What [`super::Plot::ZigZag`] draws.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ZigzagTrial {
-    /// Title above the figure.
-    pub title: Option<String>,
     /// Heading, degrees over seconds.
     pub heading: PlotCurve,
     /// Whether the heading is drawn as separate points (noisy or widely spaced) and not as a line.
@@ -88,10 +86,10 @@ const HEIGHT: f64 = 0.36;
 
 /// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn
 /// without its characteristic quantities, and a note says so.
-pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Plotted<Drawing> {
+pub(super) fn zigzag_trial(data: &ZigzagTrial, finding: &str, theme: &Theme) -> Plotted<Drawing> {
     let count = data.executes.len();
     if count <= MOST_MARKED {
-        return layers::annotated(&data.panels(theme), theme, &|chart| data.annotate(chart, theme));
+        return layers::annotated(&data.panels(theme), finding, theme, &|chart| data.annotate(chart, theme));
     }
     let curves = ZigzagTrial {
         executes: Vec::new(),
@@ -102,7 +100,7 @@ pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Plotted<Drawing
         ..data.clone()
     };
     let note = Some(format!("{count} executes: too many to be marked."));
-    layers::panels(&Panels { note, ..curves.panels(theme) }, theme)
+    layers::panels(&Panels { note, ..curves.panels(theme) }, finding, theme)
 }
 
 impl ZigzagTrial {
@@ -134,7 +132,7 @@ impl ZigzagTrial {
         ];
         let at = |mark: &ZigZagMark| AxisLine { at: mark.t_s, label: String::new() };
         let marks = self.executes.iter().filter(|mark| mark.t_s.is_finite()).map(at).collect();
-        Panels { title: self.title.clone(), ..Panels::of(Stack { marks, ..Stack::over(Ruler::time(), rows) }) }
+        Panels::of(Stack { marks, ..Stack::over(Ruler::time(), rows) })
     }
 
     /// Draws overshoots, times and period; returns what they mean, with the times where they do not fit at their lines.

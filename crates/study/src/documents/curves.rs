@@ -6,12 +6,13 @@ use std::path::Path;
 
 use ::trace::Innovations;
 use ::trace::comparison::RecordComparison;
+use ::trace::staircase::{StairStep, Staircase};
 use campaign::curves::degrees;
 use campaign::failure::Failure;
 use campaign::scenario::name::slug;
-use document::trace::{RecordEntry, TraceDocument};
+use document::trace::{RecordEntry, StairEntry, TraceDocument};
 use identify::replay::Replay;
-use ship::angle::from_deg;
+use ship::angle::{from_deg, to_deg};
 use trial::{Channel, Columns as Channels, Origin, Trial};
 
 use super::columns::CurveTable;
@@ -36,6 +37,8 @@ pub struct TraceCurves {
     pub records: Vec<TracedRecord>,
     /// Tables of the missing moments: over time, and over the channels.
     pub moments: Vec<[BTreeMap<String, Vec<f64>>; 2]>,
+    /// Times, s, and what every step of the staircase leaves of the heading of the first record, deg.
+    pub staircase: [Vec<Vec<f64>>; 2],
 }
 
 /// Names as parts of names of files: two names may make one slug.
@@ -74,6 +77,29 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
         columns.push("after_half_width95_deg", rows(band));
     }
     columns.text()
+}
+
+/// Name of the table of the staircase.
+pub const STAIRCASE: &str = "staircase.csv";
+
+/// The column of a step.
+fn column_of(step: usize) -> String {
+    format!("step_{step}_residual_deg")
+}
+
+/// The entries of a staircase, and the table of what its steps leave of the first record.
+pub fn staircase(own: &Staircase) -> (Vec<StairEntry>, String) {
+    let mut columns = CurveTable::default();
+    columns.push("t_s", own.time.clone());
+    for (number, step) in own.steps.iter().enumerate() {
+        columns.push(column_of(number), degrees(&step.residual));
+    }
+    let entry = |step: &StairStep| StairEntry {
+        id: step.term.map(|(id, ..)| id.to_owned()),
+        form: step.term.map(|(_, form, _)| form.to_owned()),
+        heading_rmse_deg: to_deg(step.rmse),
+    };
+    (own.steps.iter().map(entry).collect(), columns.text())
 }
 
 /// Columns of [`innovations`].
@@ -153,7 +179,16 @@ impl TraceCurves {
         });
         let moments =
             document.missing_moment.iter().map(|entry| Ok([columns(&entry.moment)?, columns(&entry.curves)?]));
+        let staircase = match document.staircase.len() {
+            0 => Default::default(),
+            steps => {
+                let table = columns(STAIRCASE)?;
+                let of = |name: &str| table.get(name).cloned().unwrap_or_default();
+                [vec![of("t_s")], (0..steps).map(|step| of(&column_of(step))).collect()]
+            }
+        };
         Ok(Self {
+            staircase,
             records: records.collect::<Result<_, Failure>>()?,
             moments: moments.collect::<Result<_, Failure>>()?,
         })

@@ -35,10 +35,4 @@ pub struct FitRecord {
     pub rudder: PlotCurve,
     /// Headings and rudder angles that are left out or doubtful, where there are some.
     pub rejected: Option<[PlotCurve; 2]>,
-    /// Yaw rate over heading of the record, where it shows one.
-    pub phase: Option<PlotCurve>,
-    /// Whether that yaw rate is the slope of the smoothed heading.
-    pub smoothed: bool,
-    /// Yaw rate over heading of the replay of the method that is drawn on its own.
-    pub phase_replay: Option<PlotCurve>,
 }

@@ -34,7 +34,9 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
             capital(field),
             results.reference
         );
-        Some(PageFigure::new(format!("{RATIOS}-{}", slug(field)), caption, ratios(results, field)?))
+        let boards: Vec<&Board> = results.boards.iter().filter(|board| board.field == field).collect();
+        let finding = format!("{}: {}", capital(field), finding(&boards, &results.reference));
+        Some(PageFigure::new(format!("{RATIOS}-{}", slug(field)), finding, caption, ratios(results, field)?))
     };
     results.fields().into_iter().filter_map(figure).collect()
 }
@@ -103,7 +105,6 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         }
     };
     Some(NamedRows {
-        title: Some(format!("{}: {}", capital(field), finding(&boards, &results.reference))),
         names: others.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
         note: Some(format!(

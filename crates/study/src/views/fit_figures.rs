@@ -1,33 +1,39 @@
 //! Figures of a fit, from its document and its curves: every record with its characteristic points, with the replays of
-//! all methods and with the one that is shown alone, over time and in the phase plane; K and T of all methods, and of
-//! every record alone.
+//! all methods and with the one that is shown alone over time; K and T of all methods, and of every record alone.
 
 use document::fit::{FitDocument, SingleRecord, SingleRecords};
 use document::method::MethodEntry;
 use document::names;
-use report::figures::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Reference95, Ruler, Stack};
+use report::figures::{
+    Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Plot, Reference95, Ruler, Stack,
+};
+use report::number::{counted, fixed, significant};
 use report::palette::{BEFORE, Look, Marker, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve, symbol};
 use ship::Particulars;
 use trial::Quantity;
 
-use super::record_figures::{ModelOverTime, over_time, phase_plane, rudder};
+use super::bench_figures::capital;
+use super::record_figures::{ModelOverTime, over_time, rudder};
+use super::{findings, study_figures};
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 
 /// All figures, in the order of the page.
 pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
     let fitted: Vec<&FitRecord> = curves.records.iter().filter(|record| !record.validation).collect();
-    let title = match fitted[..] {
+    let name = match fitted[..] {
         [only] => names::record(&only.name),
         _ => format!("{} records together", fitted.len()),
     };
-    let caption = format!("{title}: K and T of every method with the intervals and regions it quotes.");
-    let mut figures = vec![PageFigure::new("indices", caption, index_plane(title.clone(), document, curves))];
+    let caption = format!("{name}: K and T of every method with the intervals and regions it quotes.");
+    let mut figures = vec![PageFigure::new("indices", agreement(document), caption, index_plane(document, curves))];
     figures.extend(document.single_records.as_ref().map(|all| {
         let caption = format!(
-            "{title}: K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag."
+            "{name}: K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag."
         );
-        PageFigure::new("amplitude", caption, single_records(title.clone(), all, document))
+        let of = |own: &SingleRecord| (format!("rudder {}°", fixed(own.rudder_deg, 0)), own.k_per_s.value);
+        let finding = format!("Record by record {}", findings::range("K [1/s]", all.records.iter().map(of)));
+        PageFigure::new("amplitude", finding, caption, single_records(all, document))
     }));
     let shown = document.shown_method();
     for (number, record) in curves.records.iter().enumerate() {
@@ -36,45 +42,77 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
     figures
 }
 
+/// By how much two answers may differ that agree, as a share.
+const AGREE: f64 = 0.1;
+
+/// K and T of the method that is shown, and how many others find the same.
+fn agreement(document: &FitDocument) -> String {
+    let answer = |entry: &MethodEntry| Some([entry.parameters?.k_per_s.value, entry.parameters?.t_s.value]);
+    let shown = document.shown_method();
+    let (of_shown, others): (Vec<_>, Vec<_>) =
+        document.methods.iter().partition(|entry| Some(entry.method.as_str()) == shown);
+    let Some([k, t]) = of_shown.first().and_then(|entry| answer(entry)) else {
+        return String::from("No method answers");
+    };
+    let is_near =
+        |[other_k, other_t]: &[f64; 2]| (other_k / k - 1.0).abs() < AGREE && (other_t / t - 1.0).abs() < AGREE;
+    let agreeing = others.iter().filter_map(|entry| answer(entry)).filter(is_near).count();
+    format!(
+        "{}: K = {} 1/s, T = {} s; {agreeing} of {} find the same within {:.0} %",
+        capital(shown.unwrap_or_default()),
+        significant(k, 3),
+        significant(t, 3),
+        counted(others.len() as u64, "other method"),
+        100.0 * AGREE
+    )
+}
+
 /// The figures of a record; `suffix` ends their names, `shown` is the method whose fit is drawn on its own.
 fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageFigure> {
-    let FitRecord { replays, rejected, phase_replay, .. } = record;
-    let name = names::record(&record.name);
-    let title = replays.title.clone().unwrap_or_default();
-    let figure = |kind: &str, what: &str, plot: report::figures::Plot| {
+    let FitRecord { replays, rejected, .. } = record;
+    let name = names::record(&record.name) + if record.validation { " (validation)" } else { "" };
+    let figure = |kind: &str, finding: String, what: &str, plot: Plot| {
         let stem = if suffix.is_empty() { kind.to_owned() } else { format!("{kind}-{suffix}") };
-        PageFigure::new(stem, format!("{name}: {what}"), plot)
+        PageFigure::new(stem, finding, format!("{name}: {what}"), plot)
     };
     let mut figures = Vec::new();
     figures.extend(record.zigzag.as_ref().map(|data| {
-        figure("trial", "heading and rudder, with the characteristics of the zig-zag.", data.clone().into())
+        let what = "heading and rudder, with the characteristics of the zig-zag.";
+        figure("trial", findings::of_trial(data), what, data.clone().into())
     }));
     figures.extend(rejected.as_ref().map(|marks| {
         let what = "the record as it was read, with marks at the readings that are left out or doubtful.";
-        figure("raw", what, raw(record, title.clone(), marks).into())
+        let count = marks.iter().map(|curve| curve.x.len() as u64).sum();
+        let finding = format!("{} left out or doubtful", counted(count, "reading"));
+        figure("raw", finding, what, raw(record, marks).into())
     }));
     let what = "the recorded rudder replayed with the answer of every method, and what is left of the heading.";
-    figures.push(figure("replays", what, replays.panels().into()));
-    figures.extend(phase_replay.as_ref().zip(shown).map(|(own, method)| {
-        let what = "yaw rate against heading, of the record and of the replay of one method.";
-        let way = (method.to_owned(), CurveOrigin::Method(method.to_owned()), own.clone());
-        figure("phase", what, phase_plane(title.clone(), record.phase.clone(), record.smoothed, vec![way]).into())
-    }));
+    figures.push(figure("replays", study_figures::left(replays), what, replays.panels().into()));
     let own = replays.replays.iter().find(|own| shown == Some(own.origin.label()));
-    let own = own.or_else(|| replays.replays.first()).map(|own| ModelOverTime {
+    let own = own.or_else(|| replays.replays.first());
+    let extent = replays
+        .record
+        .finite()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, y)| [low.min(y), high.max(y)]);
+    let finding = own.and_then(|own| {
+        let (rms, swing) = (significant(own.rms_deg?, 2), significant(extent[1] - extent[0], 2));
+        Some(format!("{} leaves {rms}° (rms) of a heading that swings by {swing}°", capital(own.origin.label())))
+    });
+    let model = own.map(|own| ModelOverTime {
         origin: own.origin.clone(),
         heading: own.heading.clone(),
         residual: own.residual.clone(),
         rms_deg: own.rms_deg,
         band: None,
     });
-    let data = over_time(title.clone(), replays.record.clone(), record.rudder.clone(), own.into_iter().collect());
-    figures.push(figure("fit", "heading, residual and rudder with the replay of one method.", data.into()));
+    let data = over_time(replays.record.clone(), record.rudder.clone(), model.into_iter().collect());
+    let finding = finding.unwrap_or_else(|| String::from("No method answers"));
+    figures.push(figure("fit", finding, "heading, residual and rudder with the replay of one method.", data.into()));
     figures
 }
 
 /// The record with marks at the readings that are left out or doubtful.
-fn raw(record: &FitRecord, title: String, marks: &[PlotCurve; 2]) -> Panels {
+fn raw(record: &FitRecord, marks: &[PlotCurve; 2]) -> Panels {
     let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let marks = marks.each_ref().map(|curve| {
         Layer::marks("left out or doubtful", look, curve.pairs().map(|(time, value)| (time, value, None)).collect())
@@ -84,7 +122,7 @@ fn raw(record: &FitRecord, title: String, marks: &[PlotCurve; 2]) -> Panels {
     let mut lower = rudder("recorded rudder", record.rudder.clone(), 0.16);
     lower.1.push(of_rudder);
     let rows = vec![(PanelRow::new(Ruler::heading(), 0.3), vec![heading, of_heading]), lower];
-    Panels { title: Some(title), ..Panels::over_time(rows) }
+    Panels::over_time(rows)
 }
 
 /// What K and T are multiplied with in a figure.
@@ -104,7 +142,7 @@ fn titles(ship: Option<Particulars>) -> [String; 2] {
 const REACH: f64 = 4.0;
 
 /// K and T of all methods that have an answer, with the regions that hold both with 95 %.
-fn index_plane(title: String, document: &FitDocument, curves: &FitCurves) -> Panels {
+fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
     let ship = document.particulars();
     let [by_k, by_t] = factors(ship);
     let scaled = |x: f64, y: f64| (by_k * x, by_t * y);
@@ -123,7 +161,6 @@ fn index_plane(title: String, document: &FitDocument, curves: &FitCurves) -> Pan
     let layers = document.methods.iter().filter_map(layers).flatten().flatten().collect();
     let note = format!("Outlines hold {} and {} together with 95 %.", symbol("K"), symbol("T"));
     Panels {
-        title: Some(title),
         names_aside: true,
         note: (!curves.regions.is_empty()).then_some(note),
         ..Panels::of(Stack::over(k, vec![(PanelRow::new(t, 0.5), layers)]))
@@ -134,7 +171,7 @@ fn index_plane(title: String, document: &FitDocument, curves: &FitCurves) -> Pan
 const FAR: f64 = 3.0;
 
 /// K and T of every record alone over the amplitudes of its zig-zag, with those of all together.
-fn single_records(title: String, all: &SingleRecords, document: &FitDocument) -> Panels {
+fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     type Of = fn(&SingleRecord) -> Quantity;
     let ship = document.particulars();
     let joint = document.methods.iter().find(|entry| entry.method == all.method).and_then(|entry| entry.parameters);
@@ -164,5 +201,5 @@ fn single_records(title: String, all: &SingleRecords, document: &FitDocument) ->
     let rows = vec![row(k, joint.map(|own| own.k_per_s), by_k), row(t, joint.map(|own| own.t_s), by_t)];
     let stack = Stack { x: x.map(|title| Ruler::new(title, Division::Angle)).into(), rows, panels, ..Stack::default() };
     let note = joint.map(|_| String::from("Line and grey band: all records together, 95 %."));
-    Panels { title: Some(title), note, ..Panels::of(stack) }
+    Panels { note, ..Panels::of(stack) }
 }

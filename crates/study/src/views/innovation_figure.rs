@@ -60,7 +60,7 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
          Right: their autocorrelation; of white innovations 95 % lies between the dashed lines.",
     );
     let stacks = vec![quantiles(&sorted), correlation(&series)];
-    Some(PageFigure::new(stem, caption, Panels { title: Some(title), stacks, ..Panels::default() }))
+    Some(PageFigure::new(stem, title, caption, Panels { stacks, ..Panels::default() }))
 }
 
 /// Sorted numbers over where normal ones are expected.
@@ -121,7 +121,7 @@ mod tests {
         let time = (0..values.len()).map(|row| 0.5 * row as f64).collect();
         let figure = figure("innovations".into(), "run", &[time, values.to_vec()]).expect("many");
         let report::figures::Plot::Panels(panels) = figure.plot else { panic!("panels") };
-        (panels.title.expect("a title"), panels.stacks)
+        (figure.finding, panels.stacks)
     }
 
     #[test]

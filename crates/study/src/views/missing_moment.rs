@@ -82,22 +82,27 @@ pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panel
         false => format!(" Not drawn, because zero lies inside the band: {}.", others.join(", ")),
     };
     let note = Some(format!("Moments beyond {} times the usual size are cut.{others}", REACHES[1]));
-    let title = Some(format!("{}: yaw moment that the base lacks", names::record(&entry.record)));
-    Panels { title, stacks, note, ..Panels::default() }
+    Panels { stacks, note, ..Panels::default() }
 }
 
-/// What is said of the moment of one record.
-pub fn sentence(entry: &MissingMomentEntry) -> String {
+/// How large the moment of one record is, and what explains it.
+pub fn finding(entry: &MissingMomentEntry) -> String {
     let (name, size) = (names::record(&entry.record), significant(entry.rms_rudder_deg, 2));
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");
+    let telling = entry.over.iter().find(|panel| panel.shows && panel.variance_share.is_some());
+    match telling {
+        None => format!("{begin}; it depends on no recorded channel"),
+        Some(best) => format!("{begin}; its curve over the {} {}", best.channel, percent(best.variance_share)),
+    }
+}
+
+/// What has the shape of the moment of one record.
+pub fn sentence(entry: &MissingMomentEntry) -> String {
     let telling = || entry.over.iter().filter(|panel| panel.shows && panel.variance_share.is_some());
-    let Some(best) = telling().next() else {
-        return format!("{begin}; it depends on no recorded channel.");
-    };
+    let Some(best) = telling().next() else { return String::from("Over time alone.") };
     let list =
         |ids: &[String]| if ids.is_empty() { "no effect on the list".to_owned() } else { names::effects(ids, ", ") };
-    let (over, share) = (&best.channel, percent(best.variance_share));
-    let mut text = format!("{begin}; its curve over the {over} {share}, and inside the band: {}", list(&best.inside));
+    let mut text = format!("Inside the band over the {}: {}", best.channel, list(&best.inside));
     let count = telling().count();
     if count > 1 {
         let _ =

@@ -40,7 +40,7 @@ fn count(lines: &[JudgedLine], is_counted: impl Fn(Judgement, &MissingPhysics) -
 
 /// A row for every ship, a column for every judgement; cells that differ in further axes are one row. Nothing for a
 /// study that states nothing.
-pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<CellMap> {
+pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMap)> {
     let judged = judged(design, lines);
     let ships = grouped(judged.iter().copied(), |(line, physics): &JudgedLine| {
         let label = design.cells[line.cell].labels.first().map_or("", String::as_str);
@@ -61,8 +61,8 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<CellMap> {
     };
     let cells = ships.iter().map(|(_, lines)| Judgement::ALL.map(|judgement| cell(lines, judgement)).to_vec());
     let cells: Vec<Vec<MapCell>> = cells.collect();
-    (!ships.is_empty()).then(|| CellMap {
-        title: Some(format!("Right: known effects {}, unknown effects {}", right("known"), right("unknown"))),
+    let finding = format!("Right: known effects {}, unknown effects {}", right("known"), right("unknown"));
+    let map = CellMap {
         titles: [String::from("said by the trace"), String::from("ship")],
         columns: Judgement::ALL.map(|judgement| judgement.to_string()).to_vec(),
         rows: ships.into_iter().map(|(name, _)| name).collect(),
@@ -72,7 +72,8 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<CellMap> {
             "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on \
              no list. Alias: not to be told from the truth. Elsewhere: by another dependence, or at another time.",
         )),
-    })
+    };
+    (!judged.is_empty()).then_some((finding, map))
 }
 
 /// What the judgements mean.

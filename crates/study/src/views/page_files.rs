@@ -62,8 +62,8 @@ fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure
              or a style of its own for this page"
         )));
     }
-    first_failure(figures.par_iter().map(|PageFigure { stem, plot, .. }| {
-        let figure = plot.draw(theme);
+    first_failure(figures.par_iter().map(|PageFigure { stem, finding, plot, .. }| {
+        let figure = plot.draw(finding, theme);
         folder.write(&format!("{stem}.svg"), figure.svg())?;
         folder.write(&format!("{stem}.png"), figure.png().on("draw the figure", &folder.path().join(stem))?)
     }))

@@ -44,7 +44,6 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
             (Some(design.methods[method].label.clone()), (0..rows.len()).map(row).collect())
         };
         let map = CellMap {
-            title: None,
             titles: [design.axes[1].clone(), design.axes[0].clone()],
             columns: columns.clone(),
             rows: rows.clone(),

@@ -1,26 +1,26 @@
 //! Figures of a prediction: headings with bands, tracks, the diagram of steady turns, and figures of merit against the
 //! limits of IMO.
 
-use campaign::curves::{degrees, phase_curve};
+use campaign::curves::degrees;
 use document::names;
 use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
-use predict::prediction::Bands;
+use predict::prediction::{Bands, Predicted};
 use predict::replay::RecordReplay;
 use predict::turn::TurnTracks;
 use predict::{PredictDocument, Prediction};
 use report::figures::{
     Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn, Ruler, Stack,
 };
-use report::number::significant;
+use report::number::{counted, fixed, significant};
 use report::palette::{BEFORE, DASHED, HEADING, INK, Look, Marker, SOLID};
-use report::{CurveOrigin, PageFigure, PlotCurve};
+use report::{PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 use trial::imo::Unit;
 
 use super::predict_curves::stems;
-use super::record_figures::{phase_plane, rudder, steady_turns};
+use super::record_figures::{rudder, stability, steady_turns};
 
 /// Headings drawn along a track.
 const HEADINGS: usize = 12;
@@ -35,7 +35,7 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
     for (replayed, stem) in document.replays.iter().zip(&stems[document.manoeuvres.len()..]) {
         let caption =
             format!("{}: the record and its rudder replayed, nothing fitted to it.", names::record(&replayed.name));
-        figures.push(PageFigure::new(stem.as_str(), caption, replay(replayed)));
+        figures.push(PageFigure::new(stem.as_str(), inside(replayed), caption, replay(replayed)));
         figures.extend(replayed.tracks.as_ref().map(|tracks| {
             let caption = format!(
                 "{}: the recorded turn from above, from the execute on, and what was predicted of it; nothing is fitted \
@@ -43,23 +43,33 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
                 names::record(&replayed.name),
                 tracks.drawn.len()
             );
-            PageFigure::new(format!("{stem}-track"), caption, turn(replayed, tracks))
+            PageFigure::new(format!("{stem}-track"), diameter(replayed), caption, turn(tracks))
         }));
     }
     for (unit, stem) in [(Unit::Degrees, "imo-overshoots"), (Unit::ShipLengths, "imo-lengths")] {
         let criteria = document.imo.iter().filter(|criterion| criterion.unit == unit.symbol());
-        let rows: Vec<_> = criteria.map(limit).collect();
+        let criteria: Vec<&PredictedCriterion> = criteria.collect();
+        let rows: Vec<_> = criteria.iter().map(|criterion| limit(criterion)).collect();
         if !rows.is_empty() {
+            let kept = criteria.iter().filter(|own| own.probability_of_passing >= SURE).count();
+            let finding = format!(
+                "{kept} of {} are kept with {:.0} % or more",
+                counted(rows.len() as u64, "criterion"),
+                100.0 * SURE
+            );
             let caption = "Criteria of IMO MSC.137(76): what is predicted and what is allowed.";
             let unit = if unit == Unit::Degrees { "°" } else { unit.symbol() };
-            figures.push(PageFigure::new(stem, caption, intervals("IMO MSC.137(76)", unit, rows)));
+            figures.push(PageFigure::new(stem, finding, caption, intervals(unit, rows)));
         }
     }
     let measured = measured(document);
     if !measured.is_empty() {
         let caption = "Overshoots of the records and what was predicted of them.";
-        let data = intervals("Overshoots, measured and predicted", "°", measured);
-        figures.push(PageFigure::new("overshoots", caption, data));
+        let shown = || document.replays.iter().flat_map(|own| &own.figures).filter(|(name, _)| is_overshoot(name));
+        let inside = shown().filter(|(_, own)| (own.interval.ci90[0]..=own.interval.ci90[1]).contains(&own.measured));
+        let finding =
+            format!("{} of {} measured overshoots lie inside their 90 % interval", inside.count(), shown().count());
+        figures.push(PageFigure::new("overshoots", finding, caption, intervals("°", measured)));
     }
     figures
 }
@@ -68,7 +78,8 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
     let kind = prediction.kind.to_string();
     if matches!(prediction.kind, Manoeuvre::Spiral { .. }) {
         let caption = format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
-        return vec![PageFigure::new(stem, caption, steady_turns(&prediction.curves.steady, document.seen))];
+        let steady = &prediction.curves.steady;
+        return vec![PageFigure::new(stem, stability(steady), caption, steady_turns(steady, document.seen))];
     }
     let passage = prediction.curves.most_probable.as_ref();
     let steered = passage.map_or_else(PlotCurve::default, |passage| {
@@ -76,27 +87,59 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
         PlotCurve::new(time, degrees(&passage.rudder))
     });
     let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", document.draws);
-    let mut figures =
-        vec![PageFigure::new(stem, caption, bands(kind.clone(), &prediction.curves.heading, None, steered))];
-    if let (Manoeuvre::ZigZag { .. }, Some(passage)) = (&prediction.kind, passage) {
-        let caption = format!("{kind}: yaw rate against heading of the most probable ship.");
-        let way = phase_curve(&passage.heading, &passage.yaw_rate);
-        let ways = vec![(String::from("most probable ship"), CurveOrigin::After, way)];
-        figures.push(PageFigure::new(format!("{stem}-phase"), caption, phase_plane(kind.clone(), None, false, ways)));
-    }
+    let mut figures = vec![PageFigure::new(
+        stem,
+        first_figures(prediction),
+        caption,
+        bands(&prediction.curves.heading, None, steered),
+    )];
     if passage.is_some_and(|passage| passage.track().is_some()) {
         let caption =
             format!("{kind}: track of the most probable ship; thin: {} drawn ships.", prediction.curves.tracks.len());
-        figures.push(PageFigure::new(format!("{stem}-track"), caption, track(prediction)));
+        figures.push(PageFigure::new(format!("{stem}-track"), first_figures(prediction), caption, track(prediction)));
     }
     figures
+}
+
+/// Probability from which a criterion counts as kept.
+const SURE: f64 = 0.95;
+
+/// Figures that a finding says.
+const SAID: usize = 2;
+
+/// The first figures of a manoeuvre, with what 90 % of the drawn ships do.
+fn first_figures(prediction: &Prediction) -> String {
+    let of = |(name, own): (&String, &Predicted)| {
+        let [low, high] = own.interval.ci90.map(|end| significant(end, 3));
+        let (words, unit) = names::figure(name);
+        format!("{words} {}{unit} [{low}, {high}]", significant(own.interval.median, 3))
+    };
+    let said: Vec<String> = prediction.figures.iter().take(SAID).map(of).collect();
+    match said.is_empty() {
+        true => format!("{}: no ship comes to its end", prediction.kind),
+        false => format!("{}: {}", prediction.kind, said.join(", ")),
+    }
+}
+
+/// How near a replayed record is.
+fn inside(replayed: &RecordReplay) -> String {
+    let [share, rmse] = [fixed(100.0 * replayed.band_coverage_90, 0), significant(replayed.heading_rmse_deg, 2)];
+    format!("The band of 90 % holds {share} % of the headings; the most probable ship is {rmse}° (rms) off")
+}
+
+/// The tactical diameter of a recorded turn and of its prediction; else how near its heading is.
+fn diameter(replayed: &RecordReplay) -> String {
+    let Some(diameter) = replayed.figures.get("tactical_diameter_lengths") else { return inside(replayed) };
+    let [low, high] = diameter.interval.ci90.map(|end| significant(end, 3));
+    let [measured, median] = [diameter.measured, diameter.interval.median].map(|value| significant(value, 3));
+    format!("Tactical diameter {median} L [{low}, {high}] predicted, {measured} L measured")
 }
 
 /// How dense the outer band is, and the inner one, which lies on it.
 const BANDS: [f64; 2] = [0.2, 0.38];
 
 /// Heading with bands and rudder over one time axis; the outer band as far as there is room.
-fn bands(title: String, of: &Bands, recorded: Option<PlotCurve>, rudder_deg: PlotCurve) -> Panels {
+fn bands(of: &Bands, recorded: Option<PlotCurve>, rudder_deg: PlotCurve) -> Panels {
     let curve = |values: Vec<f64>| PlotCurve::new(of.time.as_slice(), values);
     let quantile = |place: usize| curve(of.quantiles.iter().map(|row| to_deg(row[place])).collect());
     let band = |name: &str, ends: [usize; 2], opacity| Layer::band(name, ends.map(quantile), HEADING, opacity);
@@ -107,13 +150,13 @@ fn bands(title: String, of: &Bands, recorded: Option<PlotCurve>, rudder_deg: Plo
     layers.push(Layer::line("most probable ship", curve(degrees(&of.most_probable)), pen));
     let rows = vec![(PanelRow::new(Ruler::heading(), 0.32), layers), rudder("rudder", rudder_deg, 0.13)];
     let cut = Some(String::from("The band of 90 % is cut at the frame."));
-    Panels { title: Some(title), cut, ..Panels::over_time(rows) }
+    Panels { cut, ..Panels::over_time(rows) }
 }
 
 fn replay(replayed: &RecordReplay) -> Panels {
     let recorded = PlotCurve::new(replayed.heading.time.as_slice(), degrees(&replayed.measured));
     let rudder = PlotCurve::new(replayed.rudder[0].as_slice(), degrees(&replayed.rudder[1]));
-    bands(format!("{}, predicted", names::record(&replayed.name)), &replayed.heading, Some(recorded), rudder)
+    bands(&replayed.heading, Some(recorded), rudder)
 }
 
 /// A track, north over east.
@@ -123,7 +166,7 @@ fn from_above(track: &[[f64; 2]]) -> PlotCurve {
 }
 
 /// A recorded turn beside its prediction.
-fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
+fn turn(tracks: &TurnTracks) -> Panels {
     let line = |name: &str, track: &[[f64; 2]], pen| Layer::line(name, from_above(track), pen);
     let mut layers: Vec<Layer> =
         tracks.drawn.iter().map(|track| line("drawn ships", track, Pen::pale()).within(0.15)).collect();
@@ -132,14 +175,8 @@ fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
     layers.push(line("most probable ship", &tracks.most_probable, dashed));
     let row = PanelRow::new(Ruler::decimal("north [L]"), 0.62);
     let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [L]"), vec![(row, layers)]) };
-    let diameter = replayed.figures.get("tactical_diameter_lengths").map(|diameter| {
-        let [low, high] = diameter.interval.ci90.map(|end| significant(end, 3));
-        let [measured, median] = [diameter.measured, diameter.interval.median].map(|value| significant(value, 3));
-        format!(": tactical diameter {median} L [{low}, {high}] predicted, {measured} L measured")
-    });
-    let title = format!("{}{}", names::record(&replayed.name), diameter.unwrap_or_default());
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { title: Some(title), cut, ..Panels::of(stack) }
+    Panels { cut, ..Panels::of(stack) }
 }
 
 fn track(prediction: &Prediction) -> Panels {
@@ -164,16 +201,14 @@ fn track(prediction: &Prediction) -> Panels {
     let row = PanelRow::new(Ruler::decimal("north [m]"), 0.7);
     let stack = Stack::over(Ruler::decimal("east [m]"), vec![(row, layers.collect())]);
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    let title = Some(prediction.kind.to_string());
-    Panels { title, cut, ..Panels::of(Stack { equal: true, ..stack }) }
+    Panels { cut, ..Panels::of(Stack { equal: true, ..stack }) }
 }
 
 /// Predicted quantities as intervals, against what was measured and what is allowed.
-fn intervals(title: &str, unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> NamedRows {
+fn intervals(unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> NamedRows {
     let (names, rows) = rows.into_iter().unzip();
     let x = Ruler::decimal(format!("predicted value [{unit}]"));
     NamedRows {
-        title: Some(title.to_owned()),
         names,
         columns: vec![RowsColumn { x, rows, zero: true, ..RowsColumn::default() }],
         ..NamedRows::default()
@@ -196,12 +231,16 @@ fn limit(criterion: &PredictedCriterion) -> (String, Vec<RowItem>) {
     (criterion.criterion.clone(), items)
 }
 
+fn is_overshoot(name: &str) -> bool {
+    name.ends_with("overshoot_deg")
+}
+
 /// Overshoots of replayed records.
 fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
     let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let mut rows = Vec::new();
     for replayed in &document.replays {
-        for (name, figure) in replayed.figures.iter().filter(|(name, _)| name.ends_with("overshoot_deg")) {
+        for (name, figure) in replayed.figures.iter().filter(|(name, _)| is_overshoot(name)) {
             let mut items = interval(&figure.interval, false);
             // Under the bar, so that it does not hide a median nearby.
             let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));

@@ -1,5 +1,5 @@
 //! Figures of records that `study fit`, `study trace` and `study predict` have in common: a record with models of it
-//! over time, the phase plane, and the diagram of steady turns.
+//! over time, and the diagram of steady turns.
 
 use document::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
@@ -56,7 +56,7 @@ pub fn heading_and_residual(heading: PlotCurve, models: Vec<ModelOverTime>) -> [
 }
 
 /// Heading with models, residuals and rudder over one time axis.
-pub fn over_time(title: String, heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOverTime>) -> Panels {
+pub fn over_time(heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOverTime>) -> Panels {
     let [upper, middle] = heading_and_residual(heading, models);
     let residual = PanelRow::zeroed(Ruler::new("residual [°]", Division::Angle), 0.14);
     let rows = vec![
@@ -64,31 +64,22 @@ pub fn over_time(title: String, heading: PlotCurve, rudder_deg: PlotCurve, model
         (residual, middle),
         rudder("recorded rudder", rudder_deg, 0.13),
     ];
-    Panels { title: Some(title), ..Panels::over_time(rows) }
-}
-
-/// One panel with lines through zero.
-fn plane(title: String, x: Ruler, height: f64, layers: Vec<Layer>) -> Panels {
-    let stack = Stack::over(x, vec![(PanelRow::zeroed(Ruler::yaw_rate(), height), layers)]);
-    let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { title: Some(title), cut, ..Panels::of(Stack { zero: true, ..stack }) }
-}
-
-/// Yaw rate against heading: a record, and the ways of models by their names.
-pub fn phase_plane(
-    title: String,
-    record: Option<PlotCurve>,
-    smoothed: bool,
-    ways: Vec<(String, CurveOrigin, PlotCurve)>,
-) -> Panels {
-    let name = if smoothed { "record, slope of its smoothed heading" } else { "record" };
-    let record = record.map(|curve| Layer::new(name, curve, LayerKind::Record));
-    let ways = ways.into_iter().map(|(name, origin, curve)| Layer::line(name, curve, Pen::of(&origin)));
-    plane(title, Ruler::heading(), 0.5, record.into_iter().chain(ways).collect())
+    Panels::over_time(rows)
 }
 
 /// Drawn ships whose steady curves are shown.
 const CURVES: usize = 40;
+
+/// Whether the most probable of some ships is stable on a straight course.
+pub fn stability(curves: &[SteadyCurve]) -> String {
+    match curves.first().and_then(SteadyCurve::instability) {
+        Some(own) => {
+            let width = significant(to_deg(own.width), 2);
+            format!("Unstable on a straight course: a loop {width}° of rudder wide has two steady turns")
+        }
+        None => String::from("Stable on a straight course: one steady turn for every rudder"),
+    }
+}
 
 /// Steady turns of some ships, the most probable one first, as in the diagram of a spiral test: the branch on which a
 /// ship that is unstable on a straight course cannot stay dashed, the ships that may be meant just as well pale, over
@@ -123,7 +114,9 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
         }
     }
     let note = Some(String::from("Outside the grey field the curves are extrapolated."));
-    Panels { note, ..plane(String::from("Steady turns"), Ruler::rudder(), 0.42, layers) }
+    let cut = Some(String::from("Some drawn ships are cut at the frame."));
+    let stack = Stack::over(Ruler::rudder(), vec![(PanelRow::zeroed(Ruler::yaw_rate(), 0.42), layers)]);
+    Panels { note, cut, ..Panels::of(Stack { zero: true, ..stack }) }
 }
 
 #[cfg(test)]

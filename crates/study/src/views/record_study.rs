@@ -117,7 +117,6 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
                    replayed, and the initial state alone is fitted. Hollow marks: trials; full ones: medians, with 95 % intervals over \
                    fits where there are six or more.";
     let plot = NamedRows {
-        title: Some(finding(lines, design)),
         names,
         columns: vec![column],
         note: Some(String::from(
@@ -125,7 +124,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         )),
         ..NamedRows::default()
     };
-    PageFigure::new(JUDGED, caption, Plot::from(plot))
+    PageFigure::new(JUDGED, finding(lines, design), caption, Plot::from(plot))
 }
 
 /// Cells that a finding names one by one.

@@ -1,10 +1,16 @@
 //! The figures of a finished study: which there are, what they say, and where they stand.
 
 use campaign::scenario::name::slug;
-use report::PageFigure;
+use campaign::stored_figures::{
+    CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, ReplayCurves, Replays,
+};
 use report::figures::Plot;
+use report::number::significant;
+use report::{PageFigure, PlotCurve};
 
+use super::bench_figures::capital;
 use super::charts::{self, ErrorMeasure};
+use super::findings;
 use super::key_figure;
 use super::outcomes;
 use super::page_files::KEY_FIGURE;
@@ -66,10 +72,8 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
             if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials) {
                 plot = key_figure::of_chart(plot, &words.methods);
             }
-            if words.title.is_some() {
-                plot.title_mut().clone_from(&words.title);
-            }
-            (FigurePlace::Key, PageFigure { stem: KEY_FIGURE.to_owned(), caption: figure.caption.clone(), plot })
+            let finding = words.title.clone().unwrap_or_else(|| figure.finding.clone());
+            (FigurePlace::Key, PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot))
         })
     });
     let named = words.figures.as_deref().filter(|_| choice == FigureChoice::Named);
@@ -107,6 +111,12 @@ pub fn one_trace(design: &Design, summary: &Summary) -> Vec<TraceSummary> {
     summary.tracing.iter().filter(|line| line.method == one).cloned().collect()
 }
 
+/// A figure under what its data show.
+fn told(stem: impl Into<String>, caption: impl Into<String>, plot: impl Into<Plot>) -> PageFigure {
+    let plot = plot.into();
+    PageFigure::new(stem, capital(&findings::of_chart(&plot)), caption, plot)
+}
+
 /// The words that say of which of several things a figure is.
 fn here(of: &str) -> String {
     if of.is_empty() { String::new() } else { format!(" Here: {of}.") }
@@ -141,34 +151,36 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         let caption = format!(
             "How often each effect was named, in per cent of the trials, with 95 % intervals. {rows}{of}{whose}"
         );
-        PageFigure::new(stem, caption, Plot::Cells(map))
+        told(stem, caption, Plot::Cells(map))
     };
     let power = traces::power(&lines).map(|data| {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood-ratio \
                        statistic 2 ln Λ against the best first-order response that it has on average, with 95 % intervals; of many kinds of trial those in a \
                        third of a decade together. Curves: power of a test by 2 ln Λ with one to three parameters at the \
                        threshold of the usual rule, a probability of 0.95, under white noise.";
-        PageFigure::new("power", format!("{caption}{whose}"), data)
+        let [named, trials] = traces::single(&lines);
+        let finding = format!("The one missing effect is named in {named} of {trials} trials");
+        PageFigure::new("power", finding, format!("{caption}{whose}"), data)
     });
     let reliability = traces::reliability(&lines).map(|data| {
         let caption = "How often an effect was there, over the probability that the trace gave it, with 95 % intervals: every \
                        effect on the list counts once in every trial of a ship whose effects are known.";
-        PageFigure::new("reliability", format!("{caption}{whose}"), data)
+        PageFigure::new("reliability", traces::kept(&lines), format!("{caption}{whose}"), data)
     });
     let rules = traces::rules(design, &summary.tracing).map(|plot| {
         let caption = "Rules against each other: trials with a false name, of all trials, and trials that name what is missing \
                        and nothing else, of those whose ship lacks something, with Wilson's 95 % intervals.";
-        PageFigure::new("rules", caption, plot)
+        told("rules", caption, plot)
     });
     let false_names = traces::false_names(design, &summary.tracing).map(|plot| {
         let caption = "Trials with a false name where nothing is missing, with Wilson's 95 % intervals: how often every rule \
                        invents an effect at most.";
-        PageFigure::new("false-names", caption, plot)
+        told("false-names", caption, plot)
     });
-    let outcomes = outcomes::figure(design, &lines).map(|map| {
+    let outcomes = outcomes::figure(design, &lines).map(|(finding, map)| {
         let caption =
             "What was said of every ship, in per cent of its trials, with 95 % intervals (Wilson). Outlined: right.";
-        PageFigure::new("outcomes", format!("{caption}{whose}"), Plot::Cells(map))
+        PageFigure::new("outcomes", finding, format!("{caption}{whose}"), Plot::Cells(map))
     });
     let confusions = traces::confusions(design, &lines).into_iter().enumerate().map(confusion);
     rules.into_iter().chain(false_names).chain(outcomes).chain(confusions).chain(power).chain(reliability).collect()
@@ -185,7 +197,7 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         for (group, reading, plot) in charts::over_axes(design, summary, measure) {
             let stem = group.as_ref().map_or_else(|| measure.stem().to_owned(), |own| stem_of(measure.stem(), own));
             let place = group.map_or_else(String::new, |group| format!(" Here: {group}."));
-            figures.push(PageFigure::new(stem, format!("{reading}{place}"), plot));
+            figures.push(told(stem, format!("{reading}{place}"), plot));
         }
     }
     figures
@@ -195,7 +207,7 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
 pub fn predictions(design: &Design, summary: &Summary) -> Option<PageFigure> {
     let caption = "Share of trials in which the 90 % interval of a manoeuvre that was not made holds what the ship does, and \
                    how wide it is. Left of the line a method is too sure; a wide interval holds more and says less.";
-    pooled_charts::predictions(design, summary).map(|data| PageFigure::new("predictions", caption, data))
+    pooled_charts::predictions(design, summary).map(|data| told("predictions", caption, data))
 }
 
 fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
@@ -207,17 +219,17 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
             "Mean K and T that {method} finds, over those of the first row: where they change from row to row, K and T belong \
              to the trial and not to the ship."
         );
-        PageFigure::new("indices", caption, data)
+        told("indices", caption, data)
     }));
     for (stem, title, data) in pooled_charts::heat_maps(design, summary) {
-        figures.push(PageFigure::new(stem, format!("{title} of every method over both axes: dark is good."), data));
+        figures.push(told(stem, format!("{title} of every method over both axes: dark is good."), data));
     }
     // A single cell needs no name.
     let name = |cell: usize| if design.cells.len() > 1 { design.cells[cell].labels.join(", ") } else { String::new() };
     for (cell, data) in pooled_charts::violins(design, summary) {
         let caption = "Distribution of the errors. A violin beside zero is bias, a long one is scatter.";
         let (stem, place) = (stem_of("violins", &name(cell)), here(&name(cell)));
-        figures.push(PageFigure::new(stem, format!("{caption}{place}"), data));
+        figures.push(told(stem, format!("{caption}{place}"), data));
     }
     for (cell, is_bounded, data) in pooled_charts::scatters(design, summary) {
         let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four robust \
@@ -225,40 +237,73 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         // Trials with a bound each have none in common.
         let bound = if is_bounded { " beside that of the Cramér–Rao bound" } else { "" };
         let (stem, place) = (stem_of("scatter", &name(cell)), here(&name(cell)));
-        figures.push(PageFigure::new(stem, format!("{caption}{bound}.{place}"), data));
+        figures.push(told(stem, format!("{caption}{bound}.{place}"), data));
     }
     figures
 }
 
 fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Item = PageFigure> + use<'a> {
-    let figures: [(&str, &str, Option<Plot>); 5] = [
+    let fourier = |data: &CurveFit| format!("The series leaves {} of the heading", rms(&data.residual));
+    let figures: [(&str, &str, Option<(String, Plot)>); 5] = [
         (
             "trial",
             "The trial with its characteristic points (ITTC): executes, overshoots, times to check yaw, period.",
-            showcase.trial.clone().map(Plot::from),
+            showcase.trial.clone().map(|data| (findings::of_trial(&data), data.into())),
         ),
         (
             "fourier-fit",
             "The Fourier series fitted to the heading, and what it leaves.",
-            showcase.fourier_fit.as_ref().map(|data| data.panels().into()),
+            showcase.fourier_fit.as_ref().map(|data| (fourier(data), data.panels().into())),
         ),
         (
             "derivatives",
             "Heading, yaw rate and yaw acceleration of the fitted series against the truth: a good heading does not make a \
              good acceleration.",
-            showcase.derivatives.as_ref().map(|data| data.panels().into()),
+            showcase.derivatives.as_ref().map(|data| (accelerations(data), data.panels().into())),
         ),
         (
             "replays",
             "The recorded rudder replayed through every method's K, T and δ_r; only the initial state is fitted.",
-            Some(showcase.replays.panels().into()),
+            Some((left(&showcase.replays), showcase.replays.panels().into())),
         ),
         (
             "intervals",
             "K and T of every method with 95 % intervals, beside the truth and the published values.",
-            Some(showcase.intervals.rows().into()),
+            Some((time_constants(&showcase.intervals), showcase.intervals.rows().into())),
         ),
     ];
     let stem = move |name: &str| if prefix.is_empty() { name.to_owned() } else { format!("{prefix}-{name}") };
-    figures.into_iter().filter_map(move |(name, caption, plot)| Some(PageFigure::new(stem(name), caption, plot?)))
+    figures.into_iter().filter_map(move |(name, caption, shown)| {
+        let (finding, plot) = shown?;
+        Some(PageFigure::new(stem(name), finding, caption, plot))
+    })
+}
+
+/// Root mean square of a curve of angles, degrees.
+fn rms(curve: &PlotCurve) -> String {
+    let (square, rows) = curve.finite().fold((0.0, 0.0), |(square, rows), (_, y)| (square + y * y, rows + 1.0));
+    format!("{}° (rms)", significant(f64::sqrt(square / rows), 2))
+}
+
+/// How large yaw accelerations are.
+fn accelerations(data: &DerivativeCurves) -> String {
+    let largest = |own: &MotionCurves| {
+        let name = own.name.clone().unwrap_or_else(|| own.origin.label().to_owned());
+        Some((name, own.yaw_acceleration.finite().map(|(_, y)| y.abs()).reduce(f64::max)?))
+    };
+    capital(&findings::range("largest yaw acceleration [°/s²]", data.curves.iter().filter_map(largest)))
+}
+
+/// What replays leave of the heading.
+pub fn left(data: &Replays) -> String {
+    let of = |own: &ReplayCurves| Some((own.origin.label().to_owned(), own.rms_deg?));
+    capital(&findings::range("rms of what replays leave [°]", data.replays.iter().filter_map(of)))
+}
+
+/// What methods find of T.
+fn time_constants(data: &Intervals) -> String {
+    let of = |own: &MethodEstimate| Some((own.origin.label().to_owned(), own.t_s?.value));
+    let truth =
+        data.truth.as_ref().map_or_else(String::new, |truth| format!("; the truth is {} s", significant(truth.t_s, 3)));
+    format!("{}{truth}", findings::range("T [s]", data.estimates.iter().filter_map(of)))
 }

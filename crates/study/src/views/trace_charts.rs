@@ -74,7 +74,6 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     let trials = |lines: &[&TraceSummary]| lines.iter().map(|line| line.trials).sum::<u64>();
     let cells = rows.iter().map(|(_, lines)| columns.iter().map(|id| cell(lines, id)).collect());
     CellMap {
-        title: None,
         titles: [String::from("named by the trace"), String::from("missing")],
         columns: columns.iter().map(|id| names::effect(id)).collect(),
         // No line ends within the count.
@@ -275,6 +274,22 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
     let x = Ruler::new("size of the effect: expected 2 ln Λ", Division::Factors);
     let note = Some(String::from("Bars: 95 % intervals."));
     Some(Panels { note, ..shares(x, "trials in which it is named [%]", series, theory.into()) })
+}
+
+/// Trials with one missing effect in which it was named, and all of these.
+pub fn single(lines: &[TraceSummary]) -> [u64; 2] {
+    let single = || lines.iter().filter(|line| line.missing.len() == 1 && !line.is_hull());
+    [single().map(|line| line.complete).sum(), single().map(|line| line.trials).sum()]
+}
+
+/// How often what was given the highest probabilities was there.
+pub fn kept(lines: &[TraceSummary]) -> String {
+    let ranges = calibration(lines);
+    let Some((place, surest)) = ranges.iter().enumerate().rfind(|(_, own)| own.effects > 0) else {
+        return String::from("No effect has a probability");
+    };
+    let CalibrationBin { present, effects, .. } = surest;
+    format!("Of {effects} effects with a probability above {} %, {present} were there", 100.0 * CALIBRATION[place])
 }
 
 /// Effects from which a share is drawn as one of many.

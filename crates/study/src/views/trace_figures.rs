@@ -3,10 +3,13 @@
 //! several sides.
 
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
-use campaign::curves::{curve, degrees, phase_curve, phase_of};
+use campaign::curves::{curve, degrees};
 use document::names;
-use document::trace::{BeforeAfter, ErrorsEntry, MissingMomentEntry, Outcome, RecordEntry, TraceDocument};
+use document::trace::{
+    BeforeAfter, Document, EffectEntry, ErrorsEntry, MissingMomentEntry, Outcome, RecordEntry, TraceDocument,
+};
 use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
+use estimation::statistics::median;
 use identify::replay::Replay;
 use report::figures::{
     AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn,
@@ -18,7 +21,7 @@ use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
-use super::record_figures::{ModelOverTime, over_time, phase_plane};
+use super::record_figures::{ModelOverTime, over_time};
 use super::trace_tables::{horizon, term};
 use super::{innovation_figure, missing_moment};
 use crate::documents::curves::{TraceCurves, TracedRecord, slugs, suffix};
@@ -37,10 +40,10 @@ pub fn records(document: &TraceDocument, curves: &TraceCurves) -> [Vec<PageFigur
         let name = names::record(&entry.name);
         let ratio = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
         let held = if entry.held_out { ", held out" } else { "" };
-        let data =
-            record_fit(record, errors, format!("{name}{held}: error of the heading × {ratio} over the whole replay"));
+        let finding = format!("{name}{held}: error of the heading × {ratio} over the whole replay");
         let caption = format!("{name}{held}: heading, residual and rudder, with the 95 % band of the model after.");
-        let figure = PageFigure::new(format!("record{}", suffix(&stems, number)), caption, data);
+        let data = record_fit(record, errors);
+        let figure = PageFigure::new(format!("record{}", suffix(&stems, number)), finding, caption, data);
         figures[usize::from(entry.held_out)].push(figure);
     }
     figures
@@ -66,12 +69,17 @@ pub fn moments(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
         let number = stems.iter().position(|name| *name == entry.record).unwrap_or(0);
         let stem = format!("missing-moment-{}", slugs(&stems)[number]);
         let curves = MissingMomentCurves::read(entry, tables);
-        PageFigure::new(stem, missing_moment::sentence(entry), missing_moment::figure(entry, &curves))
+        PageFigure::new(
+            stem,
+            missing_moment::finding(entry),
+            missing_moment::sentence(entry),
+            missing_moment::figure(entry, &curves),
+        )
     };
     document.missing_moment.iter().zip(&curves.moments).map(figure).collect()
 }
 
-/// The replays in the phase plane, and the residuals of fitted records: held-out ones are judged, not studied.
+/// The residuals of fitted records: held-out ones are judged, not studied.
 pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let mut figures = Vec::new();
@@ -79,18 +87,13 @@ pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
         document.records.iter().zip(&curves.records).enumerate()
     {
         let (suffix, name) = (suffix(&stems, number), names::record(name));
-        let caption = format!("{name}: yaw rate against heading, with the replays of the model before and after.");
-        let way = |(origin, own): (CurveOrigin, &Replay)| {
-            (origin.label().to_owned(), origin, phase_curve(&own.heading, &own.yaw_rate))
-        };
-        let (own, smoothed) = phase_of(&record.trial);
-        let data = phase_plane(name.clone(), own, smoothed, models(record).map(way).into());
-        figures.push(PageFigure::new(format!("phase{suffix}"), caption, data));
         if !held_out {
             let caption = format!(
                 "{name}: the residual of the whole replay against heading, yaw rate and rudder, and its spectrum."
             );
-            figures.push(PageFigure::new(format!("residual{suffix}"), caption, residual(record, &name)));
+            let [before, after] = models(record).map(|(_, own)| significant(to_deg(own.rms()), 2));
+            let finding = format!("{name}: {before}° (rms) are left before, {after}° after");
+            figures.push(PageFigure::new(format!("residual{suffix}"), finding, caption, residual(record)));
         }
     }
     figures
@@ -124,11 +127,11 @@ pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<Mod
 }
 
 /// A record with the models before and after.
-fn record_fit(record: &TracedRecord, errors: &BeforeAfter, title: String) -> Panels {
+fn record_fit(record: &TracedRecord, errors: &BeforeAfter) -> Panels {
     let trial = &record.trial;
     let rms = [errors.before.heading_rmse_deg, errors.after.heading_rmse_deg];
     let (heading, rudder) = (curve(trial.time(), trial.heading()), curve(trial.time(), trial.rudder()));
-    over_time(title, heading, rudder, models_over_time(record, Some(rms)))
+    over_time(heading, rudder, models_over_time(record, Some(rms)))
 }
 
 /// The ratio of the heading errors of some records, after over before.
@@ -158,14 +161,13 @@ pub fn held_out(document: &TraceDocument) -> Option<PageFigure> {
     let title =
         format!("Heading error × {:.2} on {count} {records} not fitted", ratio(judged.iter().map(|one| one.errors)));
     let data = NamedRows {
-        title: Some(title),
         names: judged.iter().map(|one| format!("{}, {}", names::record(one.name), one.used)).collect(),
         columns,
         ..NamedRows::default()
     };
     let caption = "Error of the heading on records that were not fitted, before and after: of the whole replay, and of \
                    replays that begin anew every 20 and 60 s.";
-    (!judged.is_empty()).then(|| PageFigure::new("held-out", caption, data))
+    (!judged.is_empty()).then(|| PageFigure::new("held-out", title, caption, data))
 }
 
 /// Support beyond which a bar is cut, as many times the median of all.
@@ -180,6 +182,17 @@ fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
     };
     let hollow = outcome == Outcome::NotObservable;
     (name, Look { colour, marker: Marker::Square, dash: SOLID, hollow })
+}
+
+/// The effects that are named with their probabilities.
+fn named_effects(trace: &Document) -> String {
+    let of = |own: &EffectEntry| format!("{} (p = {})", names::effect(&own.id), fixed(own.probability, 3));
+    let named: Vec<String> = trace.effects.iter().map(of).collect();
+    match &named[..] {
+        [] => format!("None of {} effects is named", trace.candidates.len()),
+        [only] => format!("Named of {} effects: {only}", trace.candidates.len()),
+        [first @ .., last] => format!("Named of {} effects: {} and {last}", trace.candidates.len(), first.join(", ")),
+    }
 }
 
 /// Every effect with its probability and the support that the records give it: the named ones first, then the others
@@ -221,19 +234,19 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
     let columns =
         vec![column(Ruler::decimal("probability"), room, probability.collect()), column(cut, 0.3, support.collect())];
     let names = rows.iter().map(|row| row.0.clone()).collect();
-    let data = NamedRows { title: Some(document.title()), names, columns, ..NamedRows::default() };
+    let data = NamedRows { names, columns, ..NamedRows::default() };
     let group =
         if has_group { " In brackets: that it, or one that the records cannot tell from it, is there." } else { "" };
     let caption = format!(
         "Probability of every effect with its most probable form, and the support −ΔBIC that it has beside all others.{group}"
     );
-    PageFigure::new("evidence", caption, data)
+    PageFigure::new("evidence", named_effects(trace), caption, data)
 }
 
 /// The first two overshoots of every zig-zag, which are those that have a limit, with those of both replays; `None`
 /// where no record is a zig-zag.
 pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
-    let (mut names, mut rows) = (Vec::new(), Vec::new());
+    let (mut names, mut rows, mut off) = (Vec::new(), Vec::new(), [const { Vec::new() }; 2]);
     for (entry, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
         let Ok(zigzag) = ZigZag::of(trial) else { continue };
         let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
@@ -243,6 +256,9 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
         for (number, word) in [(0, "first"), (1, "second")] {
             let of = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
             let Some(angle) = of(&zigzag) else { continue };
+            for (off, replay) in off.iter_mut().zip(&replays) {
+                off.extend(replay.as_ref().and_then(of).map(|own| (own - angle).abs()));
+            }
             let limit = criteria.iter().find(|limit| {
                 limit.unit == imo::Unit::Degrees && limit.measured.is_some() && limit.name.contains(word)
             });
@@ -267,16 +283,18 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
         return None;
     }
     let column = RowsColumn { x: Ruler::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
-    let title = Some(String::from("Overshoots of the records and of their replays"));
     let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of IMO \
                    MSC.137(76) where one is for this zig-zag and for a ship of this length. Without a mark: that \
                    replay has no such overshoot.";
-    let data = NamedRows { title, names, columns: vec![column], ..NamedRows::default() };
-    Some(PageFigure::new("overshoots", caption, data))
+    let data = NamedRows { names, columns: vec![column], ..NamedRows::default() };
+    let [before, after] =
+        off.map(|mut off| median(&mut off).map_or_else(|| MISSING.to_owned(), |off| significant(off, 2)));
+    let finding = format!("Overshoots are {before}° off before and {after}° after (median of {})", data.names.len());
+    Some(PageFigure::new("overshoots", finding, caption, data))
 }
 
 /// The residual before and after from several sides.
-fn residual(record: &TracedRecord, name: &str) -> Panels {
+fn residual(record: &TracedRecord) -> Panels {
     let trial: &Trial = &record.trial;
     let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);
     let stack = |x: Ruler, y: Ruler, joined: bool, of: &dyn Fn(&Replay) -> PlotCurve| {
@@ -304,8 +322,7 @@ fn residual(record: &TracedRecord, name: &str) -> Panels {
         against("rudder [°]", &|replay| degrees(&trial.rudder()[first..first + replay.time.len()])),
         Stack { marks: mark.into_iter().collect(), ..spectrum },
     ];
-    let title = format!("{name}: residual of the whole replay");
-    Panels { title: Some(title), stacks, ..Panels::default() }
+    Panels { stacks, ..Panels::default() }
 }
 
 /// Points of a cloud, not more than a figure can show.

@@ -16,7 +16,7 @@ use crate::documents::curves::{TraceCurves, TracedRecord};
 const NAMES: usize = 3;
 
 /// The finding: what is missing, and both ratios.
-fn title(document: &TraceDocument) -> String {
+fn finding(document: &TraceDocument) -> String {
     let mut ids: Vec<String> = document.trace.effects.iter().map(|one| names::effect(&one.id)).collect();
     ids.dedup();
     let more = ids.len().saturating_sub(NAMES);
@@ -86,5 +86,5 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
     let caption = "(a), (b): a record that was fitted. (c), (d): one of which nothing but the initial state was fitted, with the \
                    ratio nearest to that of all that were held out. (a), (c): the heading with the best first-order response, and \
                    with the effects that were found and the 95 % band. (b), (d): the residuals of both.";
-    Some(PageFigure::new("hero", caption, Panels { title: Some(title(document)), stacks, ..Panels::default() }))
+    Some(PageFigure::new("hero", finding(document), caption, Panels { stacks, ..Panels::default() }))
 }

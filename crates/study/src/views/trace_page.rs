@@ -1,5 +1,6 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
+use campaign::statistics::distinct;
 use document::identified_ship::ValidityRange;
 use document::names;
 use document::trace::{Outcome, ParameterEntry, TraceDocument};
@@ -10,7 +11,8 @@ use report::{Page, PageFigure, Table, TableHead};
 use ship::ShortNumber;
 use ship::vessel::prime::meaning;
 
-use super::record_figures::steady_turns;
+use super::record_figures::{stability, steady_turns};
+use super::staircase;
 use super::trace_figures as figures;
 use super::trace_hero;
 use super::trace_tables as tables;
@@ -152,6 +154,11 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     let mut records = of_fitted.into_iter().chain(of_held_out);
     let first = trace_hero::figure(document, curves).or_else(|| records.next());
     page.figures(first);
+    if let Some(figure) = staircase::figure(document, curves) {
+        page.part("What each effect carries");
+        page.list(physics(document));
+        page.figures([figure]);
+    }
     if let Some(figure) = figures::held_out(document) {
         page.part("Records that were not fitted");
         page.figures([figure]);
@@ -176,11 +183,17 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     page.figures(turns.map(|(curves, seen)| {
         let caption = "Steady yaw rate against rudder of the model, an unstable branch dashed; thin: ships that the records \
                        cannot tell from it; grey: the range of the records.";
-        PageFigure::new("steady", caption, steady_turns(curves, *seen))
+        PageFigure::new("steady", stability(curves), caption, steady_turns(curves, *seen))
     }));
     page.figures(figures::further(document, curves));
     settings(&mut page, document);
     page
+}
+
+/// The physics of the effects of the staircase, a sentence each.
+fn physics(document: &TraceDocument) -> impl Iterator<Item = String> {
+    let ids = document.staircase.iter().filter_map(|step| step.id.as_deref());
+    distinct(ids).into_iter().filter_map(|id| Some(format!("**{}**: {}.", names::effect(id), names::physics(id)?)))
 }
 
 /// What speaks for and against every effect, and whether what is left is noise.

@@ -6,14 +6,13 @@ use campaign::stored_figures::Replays;
 use document::fit::{CriterionEntry, FitDocument, SCHEMA, TrialEntry, ZigZagEntry};
 use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
-use document::{Code, Source, Warning, Warnings, names};
+use document::{Code, Source, Warning, Warnings};
 use identify::estimate::Uncertainty;
 use identify::replay::replay;
 use identify::suspicion::suspicion;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
-use report::figures::ZigzagTrial;
 use report::{CurveOrigin, PlotCurve};
 use ship::angle::to_deg;
 use trial::{Channel, Trial, ZigZag, ZigZagError, imo};
@@ -29,7 +28,7 @@ use crate::progress;
 use crate::records::{self, file_of, no_track, source_of};
 use crate::scales::{self, RescaledRecords};
 use campaign::answer::entry;
-use campaign::curves::{curve, phase_curve, phase_of, replay_curves, zigzag_figure};
+use campaign::curves::{curve, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
 use campaign::statistics::grouped;
 
@@ -61,33 +60,24 @@ impl FitResult {
     }
 
     fn record(&self, trial: &Trial, name: String, validation: bool) -> FitRecord {
-        let (phase, smoothed) = phase_of(trial);
-        let title = names::record(&name) + if validation { " (validation)" } else { "" };
         let zigzag = ZigZag::of(trial).ok().filter(|_| !validation);
         let rejected = |channel: Channel| {
             let marks = trial.rejected().iter().filter(|mark| mark.channel == channel);
             let (time, values): (Vec<f64>, Vec<f64>) = marks.map(|mark| (mark.time, mark.value)).unzip();
             curve(&time, &values)
         };
-        let shown = self.document.shown_method();
-        let shown = self.answers.iter().find(|(entry, _)| Some(entry.method.as_str()) == shown);
-        let shown = shown.and_then(|(_, estimate)| replay(trial, &estimate.as_ref()?.response));
         FitRecord {
             file: file_of(trial).0.to_owned(),
             is_renamed: name != trial.name(),
             validation,
-            zigzag: zigzag.map(|own| ZigzagTrial { title: Some(names::record(&name)), ..zigzag_figure(trial, &own) }),
+            zigzag: zigzag.map(|own| zigzag_figure(trial, &own)),
             replays: Replays {
-                title: Some(title),
                 record: curve(trial.time(), trial.heading()),
                 truth: None,
                 replays: replay_curves(trial, &self.answers, |method| CurveOrigin::Method(method.to_owned())),
             },
             rudder: curve(trial.time(), trial.rudder()),
             rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
-            smoothed,
-            phase,
-            phase_replay: shown.map(|own| phase_curve(&own.heading, &own.yaw_rate)),
             name,
         }
     }

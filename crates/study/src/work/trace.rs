@@ -124,6 +124,10 @@ pub fn trace(
     tables.extend(innovations.filter_map(|(entry, own)| Some((entry.innovations.clone()?, curves::innovations(own)))));
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
     tables.extend(curves_of_moments);
+    let (staircase, table) = analysis.staircase().map(|own| curves::staircase(&own)).unwrap_or_default();
+    if !staircase.is_empty() {
+        tables.push((curves::STAIRCASE.to_owned(), table));
+    }
     let ship = known::of_analysis(&analysis, &shown);
     warnings.extend(ship.rudder_logged_late().map(|late| Code::LateRudder.warning(rudder_logged_late(late))));
     let earlier_trials = earlier::entry(priors, &trials, &shown);
@@ -133,6 +137,7 @@ pub fn trace(
         ship,
         records: entries,
         missing_moment: moments,
+        staircase,
         scales,
         next_trial: next_trial(&analysis, &trials),
         trace: analysis.document,

@@ -1,5 +1,7 @@
 //! Pages for a browser: beside every report.md, in one file that needs no other, with all of its figures.
 
+use report::number::MISSING;
+
 use crate::desk::{Desk, zig_zag_csv, zig_zag_csv_of};
 use crate::scenarios::GOOD;
 use crate::traces::second_order;
@@ -88,6 +90,18 @@ fn no_page_and_no_figure_holds_an_identifier() {
     for folder in ["f", "t", "p", "s"] {
         let markdown = desk.text(&format!("{folder}/report.md")).replace('\\', "");
         let prose: String = outside(&markdown, ["](", ")"]).collect();
+        // Under every figure stands what it shows, with its numbers.
+        for caption in markdown.lines().filter(|line| line.starts_with("*Figure ")) {
+            let finding = caption.split_once(". ").expect("its number").1;
+            let is_found = |word: &str| finding.starts_with(word);
+            let is_said = ["No", "None", "Stable"].into_iter().any(is_found) || finding.contains(char::is_numeric);
+            assert!(
+                is_said
+                    && finding.split_whitespace().all(|word| !word.starts_with(MISSING))
+                    && !finding.contains("NaN"),
+                "{folder}: {caption}"
+            );
+        }
         // Every second part stands in code.
         let prose: Vec<&str> = prose.split('`').step_by(2).collect();
         assert_eq!(identifiers(&prose.concat()), Vec::<&str>::new(), "{folder}/report.md");

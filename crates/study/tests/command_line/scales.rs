@@ -34,7 +34,7 @@ fn one_record_has_prime_indices_where_its_ship_is_known() {
     assert!((value(&method["prime"]["K"]) - 0.1 * 105.0 / 8.59).abs() < 1e-3, "{method}");
     assert!((value(&method["prime"]["T"]) - 16.3 * 8.59 / 105.0).abs() < 1e-3, "{method}");
     assert!(method["prime"]["K"]["sd"].is_f64() && method["prime"]["T"]["ci95"].is_array());
-    for figure in ["indices.png", "phase.svg", "trial.png"] {
+    for figure in ["indices.png", "trial.png"] {
         assert!(desk.path(&format!("known/{figure}")).is_file(), "{figure}");
     }
     assert!(!desk.path("known/amplitude.png").exists(), "one record has one amplitude");
@@ -105,7 +105,7 @@ fn a_trace_is_told_without_dimension() {
         trace["scales"]
     );
     let page = desk.text("traced/report.md");
-    for part in ["one analysis in prime time", "Prime values are without dimension", "steady.png", "phase.png"] {
+    for part in ["one analysis in prime time", "Prime values are without dimension", "steady.png"] {
         assert!(page.contains(part), "{part}");
     }
     assert!(desk.path("traced/overshoots.png").is_file());

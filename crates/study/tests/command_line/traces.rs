@@ -85,7 +85,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     for part in ["Effects", "Candidates", "Noise"] {
         assert!(report.contains(&format!("\n### {part}\n")), "{part}");
     }
-    let figures = ["hero", "record", "residual", "evidence", "innovations", "record-other", "held-out", "phase"];
+    let figures = ["hero", "record", "residual", "evidence", "innovations", "record-other", "held-out", "staircase"];
     for figure in figures {
         assert!(desk.path(&format!("run-trace/{figure}.png")).exists(), "{figure}");
         assert!(report.contains(&format!("({figure}.png)")), "{figure}");
@@ -95,6 +95,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
         ("replay", 100),
         ("replay-other", 100),
         ("innovations", 100),
+        ("staircase", 100),
         ("missing-moment-run", 100),
         ("missing-moment-run-curves", 20),
     ];
@@ -105,7 +106,8 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
             let listed = column.replace("before_", "MODEL_").replace("after_", "MODEL_");
             let of_channel = column.find("_moment").or(column.find("_half")).or(column.find("_explained"));
             let of_channel = of_channel.map_or_else(String::new, |at| format!("CHANNEL{}", &column[at..]));
-            let names = [column, &listed, &of_channel];
+            let of_step = column.replace(|letter: char| letter.is_numeric(), "N");
+            let names = [column, &listed, &of_channel, &of_step];
             assert!(names.iter().any(|name| page.contains(&format!("`{name}`"))), "{file}.csv: {column}");
         }
         assert!(table.lines().count() > rows, "{file}.csv: {head}");
@@ -134,7 +136,11 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     assert!(caption < held_out && held_out < table && caption.is_some(), "{caption:?} {held_out:?} {table:?}");
     let page = desk.text("t/report.html");
     let (shown, folded) = page.split_once("<main").and_then(|(_, main)| main.split_once("<details>")).expect("parts");
-    assert_eq!(shown.matches("<figure>").count(), 2, "the finding, and the records that were held out");
+    assert_eq!(
+        shown.matches("<figure>").count(),
+        3,
+        "the finding, what each effect carries, and the records that were held out"
+    );
     assert!(!shown.contains("<table") && folded.contains(">Evidence</h2></summary>"));
     let caption = "(a), (b): a record that was fitted.";
     assert_eq!((report.matches(caption).count(), page.matches(caption).count()), (1, 1));

@@ -13,7 +13,6 @@ mod findings;
 mod heading;
 pub mod holds;
 mod local;
-mod phase_plane;
 pub mod points;
 #[cfg(test)]
 mod tests;
@@ -22,4 +21,3 @@ pub use findings::{
     BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, STRAIGHT_APPROACH, Side, ZigZag, ZigZagError,
 };
 pub use heading::noise_sd;
-pub use phase_plane::PhasePlane;

@@ -1,0 +1,72 @@
+//! The way from the base to the most probable structure, an effect a step: what each of them carries of the heading.
+//!
+//! Every step is fitted anew for the nearest replay, under white noise, so that a step is what its effect adds and not
+//! what others give way to. Effects stand in the order in which they are missed: the last is that without which the
+//! replay loses least.
+
+use rayon::prelude::*;
+
+use crate::analysis::Analysis;
+use crate::fit::{Effort, StructureFit};
+use crate::model::TermName;
+use crate::noise::NoiseColour;
+use crate::weights::NoiseLaw;
+
+/// The base, and behind it a step for every term.
+#[derive(Debug, Clone)]
+pub struct Staircase {
+    /// Times of the observed rows of the first record, s.
+    pub time: Vec<f64>,
+    /// The steps.
+    pub steps: Vec<StairStep>,
+}
+
+/// A model on the way.
+#[derive(Debug, Clone)]
+pub struct StairStep {
+    /// The term that is added to the step before; none of the base.
+    pub term: Option<TermName>,
+    /// Root mean square heading error over the rows of all fitted records, rad.
+    pub rmse: f64,
+    /// Measured less replayed heading of the first record, rad.
+    pub residual: Vec<f64>,
+}
+
+impl StairStep {
+    fn new(term: Option<TermName>, fit: &StructureFit) -> Self {
+        Self { term, rmse: root_mean_square(fit), residual: fit.residual[0].clone() }
+    }
+}
+
+fn root_mean_square(fit: &StructureFit) -> f64 {
+    let rows = fit.residual.iter().map(Vec::len).sum::<usize>() as f64;
+    (fit.residual.iter().flatten().map(|e| e * e).sum::<f64>() / rows).sqrt()
+}
+
+impl Analysis {
+    /// The staircase of the most probable structure; `None` where it adds nothing to the base.
+    pub fn staircase(&self) -> Option<Staircase> {
+        let problem = &self.problem;
+        let best = &self.structures.all.first().filter(|best| !best.fit.structure.terms.is_empty())?.fit;
+        let law = NoiseLaw { colour: NoiseColour::WHITE, ..self.full.law.clone() };
+        let weights = problem.weights(&law);
+        let mut fit = problem.fit(&best.structure, best.theta.clone(), best.initial.clone(), &weights, Effort::FINE);
+        let mut steps = Vec::new();
+        while !fit.structure.terms.is_empty() {
+            let places = 0..fit.structure.terms.len();
+            let without = |out: usize| (out, fit.without(out, problem, &weights, Effort::FINE));
+            let fewer: Vec<(usize, StructureFit)> = places.into_par_iter().map(without).collect();
+            let nearest = |(_, one): &(usize, StructureFit), (_, other): &(usize, StructureFit)| {
+                root_mean_square(one).total_cmp(&root_mean_square(other))
+            };
+            let (out, next) = fewer.into_iter().min_by(nearest)?;
+            steps.push(StairStep::new(Some(fit.structure.terms[out].name()), &fit));
+            fit = next;
+        }
+        steps.push(StairStep::new(None, &fit));
+        steps.reverse();
+        let record = &problem.records[0];
+        let time = record.observed.iter().map(|&row| record.time[row]).collect();
+        steps.iter().all(|step| step.rmse.is_finite()).then_some(Staircase { time, steps })
+    }
+}
