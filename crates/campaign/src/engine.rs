@@ -211,10 +211,7 @@ impl TrialQuestion<'_> {
                     time,
                 )
             }
-            Procedure::StraightOn => {
-                let row = self.straight_on(&blank);
-                (Ok(row), start.elapsed())
-            }
+            Procedure::StraightOn => (Ok(self.straight_on(&blank)), start.elapsed()),
             first_order => {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
                 let time = start.elapsed();
@@ -241,12 +238,9 @@ impl TrialQuestion<'_> {
     /// The row of a ship that keeps her heading, of which as of all others the initial heading is the best.
     pub fn straight_on(&self, blank: &StudyRow) -> StudyRow {
         let error = |trials: &[Trial]| {
-            let (mut square, mut rows) = (0.0, 0.0);
-            for trial in trials {
-                let mut headings = Moments::default();
-                trial.observed_rows().for_each(|row| headings.add(trial.heading()[row]));
-                (square, rows) = (square + headings.second, rows + headings.count);
-            }
+            let headings = |trial: &Trial| trial.observed_rows().map(|row| trial.heading()[row]).collect::<Moments>();
+            let sums = |sums: [f64; 2], own: Moments| [sums[0] + own.second, sums[1] + own.count];
+            let [square, rows] = trials.iter().map(headings).fold([0.0; 2], sums);
             finite(to_deg((square / rows).sqrt()))
         };
         let validation = self.reference.validation.as_ref();

@@ -141,9 +141,17 @@ pub fn watched(
 ) -> Result<Analysis, TraceError> {
     settings.check()?;
     if settings.heading_alone {
-        let settings = Settings { heading_alone: false, ..settings.clone() };
-        return watched(&of_heading(trials), &of_heading(validation), &settings, watcher);
+        return analysed(&of_heading(trials), &of_heading(validation), settings, watcher);
     }
+    analysed(trials, validation, settings, watcher)
+}
+
+fn analysed(
+    trials: &[Trial],
+    validation: &[Trial],
+    settings: &Settings,
+    watcher: &dyn Watcher,
+) -> Result<Analysis, TraceError> {
     let (trials, rudder_errors) = rudder::without_noise(trials);
     let (trials, outliers) = without_spikes(&trials);
     let validation = without_spikes(&rudder::without_noise(validation).0).0.into_owned();

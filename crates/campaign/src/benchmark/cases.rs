@@ -111,6 +111,42 @@ pub struct CaseAnswer {
     pub failure: Option<String>,
 }
 
+/// A set.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Present {
+    /// What it is called.
+    pub name: String,
+    /// Number of its trials.
+    pub trials: u64,
+    /// Its records.
+    pub records: Vec<PresentRecord>,
+}
+
+/// A record of a set.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PresentRecord {
+    /// What it is called.
+    pub name: String,
+    /// What the ship did.
+    pub manoeuvre: String,
+    /// SHA-256 of its file; none of a simulated record.
+    pub sha256: Option<String>,
+}
+
+/// A record that was not used.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Skipped {
+    /// Name of the set.
+    pub set: String,
+    /// Name of the record.
+    pub record: String,
+    /// Why.
+    pub reason: String,
+}
+
 /// What a method that names effects said.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -10,8 +10,7 @@ use simulate::Manoeuvre;
 use trial::manoeuvre::whole_deg;
 use trial::{Origin, Side, Trial, ZigZag};
 
-use crate::benchmark::cases::{BenchCase, BenchTask, CaseAnswer, Naming, stored};
-use crate::benchmark::results::{Present, PresentRecord, Skipped};
+use crate::benchmark::cases::{BenchCase, BenchTask, CaseAnswer, Naming, Present, PresentRecord, Skipped, stored};
 use crate::engine::is_made;
 use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::scenario::records::RecordSet;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::{Board, boards};
-use crate::benchmark::cases::{BenchCase, BenchTask};
+use crate::benchmark::cases::{BenchCase, BenchTask, Present, Skipped};
 use crate::benchmark::naming::{self, NamingLine};
 use crate::benchmark::overall::{OverallRanking, overall};
 use crate::benchmark::questions;
@@ -58,42 +58,6 @@ pub struct StudyFacts {
     pub design_sha256: String,
     /// Key of every random draw.
     pub seed: u64,
-}
-
-/// A set.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Present {
-    /// What it is called.
-    pub name: String,
-    /// Number of its trials.
-    pub trials: u64,
-    /// Its records.
-    pub records: Vec<PresentRecord>,
-}
-
-/// A record of a set.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PresentRecord {
-    /// What it is called.
-    pub name: String,
-    /// What the ship did.
-    pub manoeuvre: String,
-    /// SHA-256 of its file; none of a simulated record.
-    pub sha256: Option<String>,
-}
-
-/// A record that was not used.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Skipped {
-    /// Name of the set.
-    pub set: String,
-    /// Name of the record.
-    pub record: String,
-    /// Why.
-    pub reason: String,
 }
 
 impl BenchDocument {

@@ -61,16 +61,16 @@ impl Procedure {
                 "a trace of heading, yaw rate and rudder alone, which is what all others read"
             }
             Self::Trace(_) => {
-                "a first-order response with every effect that is found missing; it reads speed, sway and wind too, those of \
-                 a measured record that judges among them"
+                "a first-order response with every effect that is found missing; it reads speed, sway and wind, too, those \
+                 of a measured record that judges among them"
             }
             Self::Answers(_) => "answers from elsewhere",
             Self::StraightOn => "a ship that keeps her heading: the floor",
         }
     }
 
-    /// The first-order response of all records of one trial together; `None` for what makes none. A method that draws at random
-    /// draws from the stream of this trial.
+    /// The first-order response of all records of one trial together; `None` for what makes none. A method that draws at
+    /// random draws from the stream of this trial.
     pub fn identify(&self, trials: &[Trial], key: &StreamKey) -> Option<Result<Estimate, IdentifyError>> {
         match self {
             Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),

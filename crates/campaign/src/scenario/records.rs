@@ -162,7 +162,7 @@ impl RecordSet {
     /// Fails when a file is missing or is no record, and when nothing is left to be asked.
     pub(crate) fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
         let key = KeyPath::dotted("records");
-        let RecordFiles { paths, absent } = files(wire, folder, &key)?;
+        let ListedFiles { paths, absent } = files(wire, folder, &key)?;
         let mut digest = Sha256::new();
         let (mut trials, mut warnings) = (Vec::new(), Vec::new());
         for (path, sidecar) in &paths {
@@ -207,7 +207,7 @@ impl RecordSet {
 
 /// Files of records.
 #[derive(Default)]
-struct RecordFiles {
+struct ListedFiles {
     /// Those that are there, each with the sidecar that describes it.
     paths: Vec<(PathBuf, Option<PathBuf>)>,
     /// Those that are not, with the reason.
@@ -215,7 +215,7 @@ struct RecordFiles {
 }
 
 /// The files of a table.
-fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<RecordFiles, KeyFault> {
+fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedFiles, KeyFault> {
     let key = &records.child("files");
     let entries: Vec<(KeyPath, &String, Option<&String>)> = match &wire.files {
         FilesWire::Patterns(list) => {
@@ -240,7 +240,7 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<RecordF
             ));
         }
     };
-    let mut files = RecordFiles::default();
+    let mut files = ListedFiles::default();
     for ((place, file, sha256), sidecar) in entries.into_iter().zip(sidecars) {
         let paths = match sha256 {
             Some(sha256) if sha256.len() != 64 || !sha256.bytes().all(|digit| digit.is_ascii_hexdigit()) => {

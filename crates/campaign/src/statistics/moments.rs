@@ -23,6 +23,14 @@ impl Default for Moments {
     }
 }
 
+impl FromIterator<f64> for Moments {
+    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+        let mut moments = Self::default();
+        values.into_iter().for_each(|value| moments.add(value));
+        moments
+    }
+}
+
 impl Moments {
     /// Takes note of a value.
     pub fn add(&mut self, x: f64) {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use campaign::Observer;
-use campaign::benchmark::results::Skipped;
+use campaign::benchmark::cases::Skipped;
 use campaign::benchmark::{BenchDocument, BenchTask, shipped};
 use campaign::collect::collect;
 use campaign::failure::{Failure, OnPath};

@@ -80,17 +80,18 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
 }
 
 /// Name of the table of the staircase.
-pub const STAIRCASE: &str = "staircase.csv";
+const STAIRCASE: &str = "staircase.csv";
 
 /// The column of a step.
 fn column_of(step: usize) -> String {
     format!("step_{step}_residual_deg")
 }
 
-/// The entries of a staircase, and the table of what its steps leave of the first record.
-pub fn staircase(own: &Staircase) -> (Vec<StairEntry>, String) {
+/// The entries of a staircase, and the table under its name of what its steps leave of the first record.
+pub fn staircase(own: Option<Staircase>) -> (Vec<StairEntry>, Option<(String, String)>) {
+    let Some(own) = own else { return (Vec::new(), None) };
     let mut columns = CurveTable::default();
-    columns.push("t_s", own.time.clone());
+    columns.push("t_s", own.time);
     for (number, step) in own.steps.iter().enumerate() {
         columns.push(column_of(number), degrees(&step.residual));
     }
@@ -99,7 +100,7 @@ pub fn staircase(own: &Staircase) -> (Vec<StairEntry>, String) {
         form: step.term.map(|(_, form, _)| form.to_owned()),
         heading_rmse_deg: to_deg(step.rmse),
     };
-    (own.steps.iter().map(entry).collect(), columns.text())
+    (own.steps.iter().map(entry).collect(), Some((STAIRCASE.to_owned(), columns.text())))
 }
 
 /// Columns of [`innovations`].

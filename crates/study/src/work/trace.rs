@@ -116,18 +116,14 @@ pub fn trace(
         speed_m_s: own.particulars().map(|ship| ship.speed),
     };
     let entries: Vec<RecordEntry> = all.enumerate().zip(&names).map(entry).collect();
-    let comparisons = analysis.identification.iter().chain(&analysis.validation);
-    let compared = trials.iter().chain(&held_out).zip(comparisons);
+    let compared = trials.iter().chain(&held_out).zip(analysis.identification.iter().chain(&analysis.validation));
     let tables = compared.map(|(trial, comparison)| curves::table(trial, comparison));
     let mut tables: Vec<(String, String)> = entries.iter().map(|entry| entry.curves.clone()).zip(tables).collect();
     let innovations = entries.iter().zip(&innovations);
     tables.extend(innovations.filter_map(|(entry, own)| Some((entry.innovations.clone()?, curves::innovations(own)))));
+    let (staircase, table) = curves::staircase(analysis.staircase());
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
-    tables.extend(curves_of_moments);
-    let (staircase, table) = analysis.staircase().map(|own| curves::staircase(&own)).unwrap_or_default();
-    if !staircase.is_empty() {
-        tables.push((curves::STAIRCASE.to_owned(), table));
-    }
+    tables.extend(curves_of_moments.into_iter().chain(table));
     let ship = known::of_analysis(&analysis, &shown);
     warnings.extend(ship.rudder_logged_late().map(|late| Code::LateRudder.warning(rudder_logged_late(late))));
     let earlier_trials = earlier::entry(priors, &trials, &shown);
