@@ -6,6 +6,7 @@
 //! is a warning. A sidecar with `plausibility = false` under `[check]` turns errors into warnings.
 
 mod alternation;
+pub(crate) mod readings;
 mod regression;
 mod rudder;
 
@@ -58,6 +59,13 @@ pub enum Implausible {
          NAME.trial.toml; if it is named so already, its numbers are of another scale"
     )]
     HeadingInDegrees { heading_deg: f64, rudder_deg: f64 },
+    /// A yaw rate in another unit than its name says, where it stands for the heading.
+    #[error(
+        "the yaw rate adds up to a turn of {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks like deg/min under \
+         a name that says deg/s (a factor of 60), or degrees under one that says radians (57.3); name the column yaw_rate_deg_min \
+         (yaw_rate_deg_s), or write `is = \"yaw_rate_deg_min\"` for it in a sidecar NAME.trial.toml"
+    )]
+    YawRateInMinutes { heading_deg: f64, rudder_deg: f64 },
     /// Radians under a name that says degrees.
     #[error(
         "the heading moves through {heading_deg:.2}° only while the rudder moves through {rudder_deg:.1}°: it looks like \
@@ -227,7 +235,10 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     }
     let reversals = reversals(trial.rudder());
     if ratio > if reversals >= 2 { 40.0 } else { 500.0 } {
-        return Err(Implausible::HeadingInDegrees { heading_deg, rudder_deg });
+        return Err(match trial.heading_from_yaw_rate() {
+            true => Implausible::YawRateInMinutes { heading_deg, rudder_deg },
+            false => Implausible::HeadingInDegrees { heading_deg, rudder_deg },
+        });
     }
     let in_radians = Implausible::HeadingInRadians { heading_deg, rudder_deg };
     if rudder_deg >= MOVED_DEG && heading_deg <= 13.0 && wraps_at_two_pi_degrees(trial.heading()) {

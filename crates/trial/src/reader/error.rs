@@ -40,6 +40,11 @@ impl ReadError {
     }
 }
 
+/// What a sidecar says of an angle in degrees.
+fn is_angle(quantity: &str) -> String {
+    format!(" is = \"{}_deg\"", quantity.split(' ').next().unwrap_or_default())
+}
+
 /// What is wrong with a table. Lines count from 1 as editors do.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
@@ -127,6 +132,35 @@ pub enum Problem {
         channel.accepted_names(), channel.column_name()
     )]
     OpenUnit { line: usize, column: String, quantity: &'static str, largest: f64, channel: Channel },
+    /// Tenths or hundredths of a degree.
+    #[error(
+        "line {line}: the {quantity} `{column}` has whole numbers up to {high}, which are no degrees: they look like {} of a degree; \
+         write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = {scale}{}",
+        if *parts == 10.0 { "tenths" } else { "hundredths" },
+        is_angle(quantity)
+    )]
+    Parts { line: usize, column: String, quantity: &'static str, high: f64, parts: f64, scale: f64 },
+    /// Counts of a converter.
+    #[error(
+        "line {line}: the {quantity} `{column}` has whole numbers from {low} to {high}, which are not degrees: they look like counts of \
+         a converter about {zero}; write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" zero = {zero} scale = 0.1{}, with \
+         the count at rudder amidships and the degrees of one count, from the two stops",
+        is_angle(quantity)
+    )]
+    Counts { line: usize, column: String, quantity: &'static str, low: f64, high: f64, zero: f64 },
+    /// Neither degrees nor parts of them.
+    #[error(
+        "line {line}: the {quantity} `{column}` has numbers up to {high}, which are no degrees of a rudder; if they are on another scale, \
+         write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = 0.1{}, with the degrees of one of them",
+        is_angle(quantity)
+    )]
+    NoAngle { line: usize, column: String, quantity: &'static str, high: f64 },
+    /// Milliseconds under a name that says seconds.
+    #[error(
+        "line {line}: the time `{column}` begins at {first}, which as seconds is after the year 2100, and as {unit} a date of these \
+         days; name it t_{unit}, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_{unit}\""
+    )]
+    EpochUnit { line: usize, column: String, first: f64, unit: &'static str },
     /// A time without a unit that cannot be seconds.
     #[error(
         "line {line}: the time `{column}` has no unit, and no ship answers its rudder like that in seconds; name it t_s, t_ms or t_min, \

@@ -132,6 +132,7 @@ impl Log {
             of_file(Code::Instrument.warning(text))
         }));
         self.columns = columns(all);
+        self.names.extend(joined.names);
         self.sha256 = joined_hash(&self.sha256, &joined.sha256);
         self.rows += joined.rows;
         Ok(())
@@ -142,6 +143,7 @@ impl Log {
     /// Fails where the rudder is moved by more than the length of the log.
     fn complete(&mut self) -> Result<(), ReadError> {
         let RudderKeys { late_s, order_rate_deg_s } = self.sidecar.rudder;
+        self.warnings.extend(rudder::hold(&mut self.columns));
         if let Some(late) = late_s {
             self.columns = rudder::earlier(std::mem::take(&mut self.columns), late);
             if check(&self.columns).is_err() {
@@ -206,7 +208,7 @@ impl Log {
     ///
     /// Fails when it has too few rows, or contradicts itself ([`plausibility`]).
     pub fn into_trial(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
-        let Self { path, columns, sha256, rows, sidecar, mut warnings, part, mut rejected, .. } = self;
+        let Self { path, columns, sha256, rows, sidecar, mut warnings, part, mut rejected, names, .. } = self;
         let (first, last) = (columns.time.first().copied(), columns.time.last().copied());
         rejected.retain(|reading| first <= Some(reading.time) && Some(reading.time) <= last);
         let fault = |problem| ReadError::table(&path, problem);
@@ -229,6 +231,9 @@ impl Log {
             trial = trial.with_particulars(particulars);
         }
         let trial = trial.with_noise(sidecar.noise).with_rejected(rejected).with_conditions(sidecar.conditions);
+        if checked {
+            warnings.extend(plausibility::readings::check(&trial, &names));
+        }
         match plausibility::check(&trial) {
             Ok(found) => warnings.extend(found),
             Err(implausible) if !checked => warnings.push(Code::Implausible.warning(implausible.to_string())),

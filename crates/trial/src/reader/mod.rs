@@ -12,6 +12,7 @@
 
 mod assemble;
 mod columnar;
+mod counts;
 mod description;
 mod error;
 mod head;

@@ -1,10 +1,69 @@
-//! What a sidecar says of the rudder: that it is read late, or that its column is the order.
+//! What is done with the rudder before it is that of a record: one that was written on change holds its value, and what
+//! a sidecar says of it: that it is read late, or that its column is the order.
 
+use document::{Code, Warning};
+use estimation::statistics::median;
 use ship::angle::from_deg;
 
 use super::assemble;
 use crate::channel::Channel;
 use crate::record::Columns;
+
+/// Fewest readings, fewest long rests between them, and how many usual intervals a long rest has, where a rudder is
+/// written on change.
+const ON_CHANGE: (usize, usize, f64) = (20, 2, 5.0);
+
+/// The smallest change of a rudder that is written on change, of its usual one: noise has nearly none.
+const LEAST_CHANGE: f64 = 0.3;
+
+/// Holds a rudder that was written on change: in the rows between two readings it has the value before, up to one usual
+/// interval before the next. `None` where it is written otherwise.
+///
+/// Written on change, no reading repeats the one before, and over a long rest the rudder goes no further than between
+/// two rows of a movement.
+pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
+    let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(|own| columns.channels.contains_key(own))?;
+    let values = &columns.channels[&channel];
+    let read: Vec<usize> = (0..values.len()).filter(|&row| values[row].is_finite()).collect();
+    if read.len() < ON_CHANGE.0 || read.len() == values.len() {
+        return None;
+    }
+    let steps = read.windows(2).map(|rows| (columns.time[rows[1]] - columns.time[rows[0]], rows));
+    let steps: Vec<(f64, f64)> = steps.map(|(step, rows)| (step, (values[rows[1]] - values[rows[0]]).abs())).collect();
+    let usual = median(&mut steps.iter().map(|(step, _)| *step).collect::<Vec<_>>())?;
+    let is_rest = |(step, _): &&(f64, f64)| *step > ON_CHANGE.2 * usual;
+    let largest = steps.iter().filter(|step| !is_rest(step)).map(|(_, change)| *change).fold(0.0, f64::max);
+    let mut changes: Vec<f64> = steps.iter().map(|(_, change)| *change).collect();
+    let typical = median(&mut changes)?;
+    let small = changes.iter().filter(|change| **change < LEAST_CHANGE * typical).count();
+    let rests: Vec<f64> = steps.iter().filter(is_rest).map(|(_, change)| *change).collect();
+    let is_held = rests.len() >= ON_CHANGE.1 && rests.iter().all(|change| *change <= 1.5 * largest);
+    if changes.contains(&0.0) || 20 * small > changes.len() || !is_held {
+        return None;
+    }
+    let mut all = assemble::series(std::mem::take(columns), 0.0);
+    for own in all.iter_mut().filter(|own| own.channel == channel) {
+        for place in (1..own.time.len()).rev() {
+            let before = own.time[place] - usual;
+            if before > own.time[place - 1] + 0.5 * usual {
+                own.time.insert(place, before);
+                own.values.insert(place, own.values[place - 1]);
+            }
+        }
+    }
+    *columns = assemble::columns(all);
+    let mut last = f64::NAN;
+    for value in columns.channels.get_mut(&channel)? {
+        last = if value.is_finite() { *value } else { last };
+        *value = last;
+    }
+    Some(Code::FaultyReadings.warning(format!(
+        "the {} is written on change: its empty cells hold the last value until the next one, and so it is read; a change that is too \
+         small to be written (here below {:.2}°) is missing from it",
+        channel.spoken(),
+        changes.iter().copied().fold(f64::INFINITY, f64::min).to_degrees(),
+    )))
+}
 
 /// The columns if every reading of the rudder was made `late` seconds before: rows are the instants of all readings.
 pub(super) fn earlier(columns: Columns, late: f64) -> Columns {

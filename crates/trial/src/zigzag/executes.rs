@@ -203,7 +203,7 @@ pub(crate) fn row_before(time: &[f64], row: usize, by: f64) -> usize {
 }
 
 /// Step of a rounded channel: the smallest distance between two of its values. Next to nothing for one not rounded.
-fn quantum(angle: &[f64]) -> f64 {
+pub(crate) fn quantum(angle: &[f64]) -> f64 {
     let mut values = angle.to_vec();
     values.sort_unstable_by(f64::total_cmp);
     // Values that differ by rounding of the arithmetic are the same.
