@@ -135,9 +135,9 @@ impl FitDocument {
         answered().find(|method| *method == SHOWN).or_else(|| answered().next()).map(String::as_str)
     }
 
-    /// Whether a channel of a record is not what its instrument read.
+    /// Whether a channel of a record is not what its instrument read, or not what its name says.
     pub fn has_faulty_readings(&self) -> bool {
-        self.warnings.iter().any(|warning| warning.code == Code::FaultyReadings)
+        self.warnings.iter().any(|warning| matches!(warning.code, Code::FaultyReadings | Code::RudderOrder))
     }
 
     /// Everything that a reader should know of the answer to take, what costs most first.
@@ -190,6 +190,8 @@ pub enum Reason {
     RandomMoment,
     /// The recorded rudder is noisy, and maximum likelihood counts it.
     RudderNoise,
+    /// The heading jumps and stays off, and maximum likelihood estimates that.
+    HeadingJumps,
 }
 
 /// What the residual of the answer looks like.

@@ -1,7 +1,8 @@
 //! Which answer to take: one rule, made from the record alone.
 //!
-//! Output error is the answer, because no other first-order response is nearer to the headings, with two exceptions.
-//! Where the recorded rudder has declared noise, maximum likelihood counts it. Where maximum likelihood finds a random
+//! Output error is the answer, because no other first-order response is nearer to the headings, with three exceptions.
+//! Where the recorded rudder has declared noise, maximum likelihood counts it. Where the heading jumps and stays off,
+//! and no random moment is needed beside that, maximum likelihood estimates the jumps. Where maximum likelihood finds a random
 //! yaw moment that the terms of a ship cannot explain ([`LackOfFit`]), it is the answer, too: output error takes the
 //! work of gusts for that of the rudder. Where terms of a ship explain the residual, the model lacks one of them. A
 //! random moment then stands for it, and K, T of maximum likelihood are those of small and fast motions. An answer of
@@ -44,6 +45,9 @@ impl Recommendation {
         let has_noise = trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0));
         let reason = match maximum_likelihood.filter(|own| own.K().ci95.is_some()) {
             Some(_) if has_noise => Reason::RudderNoise,
+            Some(own) if !has_moment(own) && own.diagnostic("jumps").is_some_and(|jumps| jumps > 0.0) => {
+                Reason::HeadingJumps
+            }
             Some(own) if output_error.is_none() || (is_random && has_moment(own)) => Reason::RandomMoment,
             _ => Reason::NearestReplay,
         };
@@ -54,7 +58,7 @@ impl Recommendation {
     pub fn method(&self) -> &'static str {
         match self.reason {
             Reason::NearestReplay => "output-error",
-            Reason::RandomMoment | Reason::RudderNoise => "maximum-likelihood",
+            Reason::RandomMoment | Reason::RudderNoise | Reason::HeadingJumps => "maximum-likelihood",
         }
     }
 
@@ -102,7 +106,7 @@ impl Identifier for Recommended {
         let likely = self.maximum_likelihood.identify(trials);
         match Recommendation::of(trials, nearest.as_ref().ok(), likely.as_ref().ok()).reason {
             Reason::NearestReplay => nearest,
-            Reason::RandomMoment | Reason::RudderNoise => likely,
+            Reason::RandomMoment | Reason::RudderNoise | Reason::HeadingJumps => likely,
         }
     }
 }

@@ -183,6 +183,11 @@ impl Channel {
         CHANNELS[self as usize].2.0
     }
 
+    /// Whether it is an angle or its rate.
+    pub(crate) fn is_angle(self) -> bool {
+        self.units().iter().any(|unit| matches!(unit, Unit::Radian | Unit::RadianPerSecond))
+    }
+
     /// The unit this channel is written in.
     pub fn written_unit(self) -> Unit {
         self.units()[0]

@@ -6,6 +6,7 @@
 //! is a warning. A sidecar with `plausibility = false` under `[check]` turns errors into warnings.
 
 mod alternation;
+pub(crate) mod derivative;
 pub(crate) mod readings;
 mod regression;
 mod rudder;

@@ -55,7 +55,7 @@ pub enum SidecarProblem {
     #[error("no column is called `{name}`; the header of {} has {}", table.display(), crate::words::listed(found))]
     NameNotFound { name: String, table: PathBuf, found: Vec<String> },
     /// Columns described in a log of sentences.
-    #[error("the file holds sentences (NMEA 0183), which have no columns; remove every [[column]]")]
+    #[error("the file holds sentences or messages (NMEA), which have no columns; remove every [[column]]")]
     NoTable,
     /// The index is larger than the number of columns.
     #[error("there is no column {index}; {} has {columns} columns", table.display())]

@@ -111,6 +111,7 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
         Reason::NearestReplay => "its replay is the nearest to the headings",
         Reason::RandomMoment => "a random moment acts on the ship that no term of a ship explains",
         Reason::RudderNoise => "the recorded rudder is noisy",
+        Reason::HeadingJumps => "the heading jumps and stays off, which it estimates",
     };
     let mut words = format!("Take K = {k} 1/s, T = {t} s, δ_r = {bias}° from {}, because {because}.", verdict.method);
     let [residual, rest] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
@@ -159,6 +160,7 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
         Reason::NearestReplay => "look at both replays",
         Reason::RandomMoment => "it takes what the random moment does for the work of the rudder",
         Reason::RudderNoise => "it knows no noise of the rudder",
+        Reason::HeadingJumps => "it takes jumps of the heading for turns of the ship",
     };
     format!("\n{name} contradicts this answer: {why}.")
 }

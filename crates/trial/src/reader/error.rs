@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use ship::ShortNumber;
 use thiserror::Error;
 
 use crate::channel::Channel;
@@ -114,7 +115,7 @@ pub enum Problem {
     )]
     TwoClocks { other: PathBuf, stamped: bool },
     /// A file that speaks for itself.
-    #[error("this file holds sentences (NMEA 0183), which say themselves what they hold; it needs no sidecar")]
+    #[error("this file holds sentences or messages (NMEA), which say themselves what they hold; it needs no sidecar")]
     NeedsNoSidecar,
     /// A format that is recognised and not read.
     #[error("this is {format}; {cure}")]
@@ -150,8 +151,9 @@ pub enum Problem {
     Counts { line: usize, column: String, quantity: &'static str, low: f64, high: f64, zero: f64 },
     /// Neither degrees nor parts of them.
     #[error(
-        "line {line}: the {quantity} `{column}` has numbers up to {high}, which are no degrees of a rudder; if they are on another scale, \
+        "line {line}: the {quantity} `{column}` reaches {}, which no rudder does in degrees; if its numbers are on another scale, \
          write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = 0.1{}, with the degrees of one of them",
+        ShortNumber::rounded(*high, 6),
         is_angle(quantity)
     )]
     NoAngle { line: usize, column: String, quantity: &'static str, high: f64 },

@@ -22,6 +22,7 @@ mod layout;
 mod limits;
 mod lines;
 mod log;
+mod messages;
 mod nmea;
 mod position;
 mod rows;
