@@ -126,6 +126,38 @@ mod tests {
 
     use super::*;
 
+    /// What explains too little of the headings, is of no usual method or below zero is no answer; a ship that is not
+    /// course-stable, and shows it, is.
+    #[test]
+    fn an_answer_that_cannot_be_taken_says_why() {
+        let entry = |method: &str, k_and_t: Option<[Quantity; 2]>| MethodEntry {
+            method: method.into(),
+            status: Status::Ok,
+            parameters: k_and_t.map(|[k_per_s, t_s]| IndexEstimates { k_per_s, t_s, delta_r_deg: Quantity::bare(0.0) }),
+            heading_rmse_deg: k_and_t.map(|_| 2.0),
+            ..MethodEntry::default()
+        };
+        let usual = |k: f64, t: f64, ci95: Option<[f64; 2]>| {
+            let t = Quantity { ci95, ..Quantity::bare(t) };
+            [entry("output-error", Some([Quantity::bare(k), t])), entry("maximum-likelihood", None)]
+        };
+        let nearest = Recommendation { reason: Reason::NearestReplay, lack: None };
+        let told = |entries: &[MethodEntry], scatter: f64| {
+            let verdict = taken(&nearest, entries, Some(scatter)).expect("an answer");
+            disbelief(&verdict, entries, Some(scatter)).unwrap_or_default()
+        };
+        assert_eq!(told(&usual(0.1, 40.0, None), 20.0), "");
+        assert_eq!(told(&usual(-0.1, -40.0, Some([-60.0, -30.0])), 20.0), "");
+        assert!(told(&usual(0.1, 40.0, None), 5.0).contains("explains 84 % of the variance"));
+        assert!(told(&usual(-0.1, -40.0, Some([-90.0, 20.0])), 20.0).contains("below zero"));
+        let mut others = usual(0.1, 40.0, None).to_vec();
+        others[0] = entry("output-error", None);
+        others.push(entry("least-squares", Some([Quantity::bare(0.1), Quantity::bare(40.0)])));
+        assert!(told(&others, 20.0).contains("found no answer"));
+        assert!(told(&usual(0.1, 40.0, None), 1.9).contains("a straight line"));
+        assert_eq!(told(&others[2..], 20.0), "");
+    }
+
     /// A method without an interval contradicts by its replay.
     #[test]
     fn a_replay_far_off_contradicts_the_answer() {

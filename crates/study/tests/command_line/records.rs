@@ -37,6 +37,34 @@ fn a_record_that_contradicts_itself_is_refused_with_the_cure() {
     refused(with_column(&good, "rudder_deg", |_, delta| (1e300 * delta).to_string()), &["`rudder_deg` reaches 1e301"]);
 }
 
+/// A result is made anew of the same file or the same content, and of nothing else.
+#[test]
+fn the_result_of_another_record_is_kept() {
+    let desk = Desk::new();
+    let (own, other) = (zig_zag_csv(), with_column(&zig_zag_csv(), "heading_deg", |_, psi| (psi + 0.1).to_string()));
+    desk.file("a/trial.csv", &own);
+    desk.file("b/trial.csv", &other);
+    let fit = |record: &str| desk.run(&["fit", record, "--method", "output-error", "--figures", "none", "--out", "f"]);
+    fit("a/trial.csv").is_done();
+    fit("b/trial.csv").is_refused(2, &["f/fit.json is the result of a/trial.csv, not of b/trial.csv", "--out"]);
+    desk.file("b/trial.csv", &own);
+    fit("b/trial.csv").is_done();
+    desk.file("b/trial.csv", &other);
+    fit("b/trial.csv").is_done();
+}
+
+/// A heading that the rudder does not explain: there is a verdict, which is that there are no K and T.
+#[test]
+fn no_answer_is_taken_from_a_heading_that_the_rudder_does_not_explain() {
+    let desk = Desk::new();
+    let swung = |row: usize, psi: f64| (psi + 30.0 * (row as f64 / 17.0).sin()).to_string();
+    desk.file("run.csv", with_column(&zig_zag_csv(), "heading_deg", swung));
+    let run = desk.run(&["fit", "run.csv", "--method", "output-error", "--figures", "none"]);
+    assert!(run.is_done().out.starts_with("No K and T can be taken from this "), "{}", run.out);
+    let verdict = &desk.json("run-fit/fit.json")["verdict"];
+    assert!(verdict["believe"] == "no" && verdict["because"].is_string(), "{verdict}");
+}
+
 #[test]
 fn a_ship_that_was_not_steered_cannot_be_identified() {
     let good = zig_zag_csv();

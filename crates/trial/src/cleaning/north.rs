@@ -1,5 +1,5 @@
-//! A heading that sweeps through the compass at north: it was interpolated or filtered as a number that goes from 360 to
-//! 0, through all headings that the ship never had.
+//! A heading that sweeps through the compass at north: it was interpolated or filtered as a number that goes from 360
+//! to 0, through all headings that the ship never had.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -20,11 +20,14 @@ const AT_NORTH: f64 = 0.6;
 /// Least way of a sweep from where it began, rad: 30°.
 const FAR: f64 = 0.52;
 
-/// How near a heading has to be to where the sweep began, beside what the ship turns, rad: 3°.
+/// How near a heading has to be at the end to where the sweep began, beside what the ship turns, rad: 3°.
 const BACK: f64 = 0.05;
 
 /// Rate at which it gets there, over the usual one.
 const THERE: f64 = 3.0;
+
+/// The same as a share of the way of the sweep.
+const NEAR: f64 = 0.3;
 
 /// Longest sweep, s and rows: filters of a compass take seconds.
 const LONGEST: (f64, usize) = (60.0, 600);
@@ -33,7 +36,7 @@ const LONGEST: (f64, usize) = (60.0, 600);
 const TAIL: usize = 2;
 
 /// Largest share of the headings that sweeps may take.
-const MOST: f64 = 0.3;
+const MOST: f64 = 0.6;
 
 /// Leaves out headings of sweeps through the compass.
 pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
@@ -41,8 +44,8 @@ pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedRead
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     let read: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
     let rate = |at: usize| {
-        let [one, other] = [read[at], read[at + 1]];
-        ((heading[other] - heading[one]) / (time[other] - time[one])).abs()
+        let [from, to] = [read[at], read[at + 1]];
+        ((heading[to] - heading[from]) / (time[to] - time[from])).abs()
     };
     let mut rates: Vec<f64> = (0..read.len().saturating_sub(1)).map(rate).collect();
     let most = rates.len() * 9 / 10;
@@ -50,22 +53,22 @@ pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedRead
     let mut sweeps: Vec<Range<usize>> = Vec::new();
     let mut at = 0;
     while at + 1 < read.len() {
-        let own = (rate(at) > FAST * usual).then(|| sweep(time, heading, &read, at, usual)).flatten();
-        at = own.as_ref().map_or(at + 1, |own| own.end);
-        sweeps.extend(own);
+        let swept = (rate(at) > FAST * usual).then(|| sweep(time, heading, &read, at, usual)).flatten();
+        at = swept.as_ref().map_or(at + 1, |swept| swept.end);
+        sweeps.extend(swept);
     }
-    let places = sweeps.iter().flat_map(|own| own.start + 1..(own.end + TAIL * own.len()).min(read.len()));
+    let places = sweeps.iter().flat_map(|swept| swept.start + 1..(swept.end + TAIL * swept.len()).min(read.len()));
     let mut rows: Vec<usize> = places.map(|place| read[place]).collect();
     rows.dedup();
     if rows.is_empty() || rows.len() as f64 > MOST * read.len() as f64 {
         return None;
     }
-    let begins: Vec<usize> = sweeps.iter().map(|own| read[own.start + 1]).collect();
+    let begins: Vec<usize> = sweeps.iter().map(|swept| read[swept.start + 1]).collect();
     let times = reject(Channel::Heading, time, heading, &begins, rejected);
     // Every sweep may have left the heading a turn away.
-    for own in &sweeps {
-        let turns = ((heading[read[own.end]] - heading[read[own.start]]) / TAU).round() * TAU;
-        heading[read[own.start] + 1..].iter_mut().for_each(|psi| *psi -= turns);
+    for swept in &sweeps {
+        let turns = ((heading[read[swept.end]] - heading[read[swept.start]]) / TAU).round() * TAU;
+        heading[read[swept.start] + 1..].iter_mut().for_each(|psi| *psi -= turns);
     }
     rows.iter().for_each(|&row| heading[row] = f64::NAN);
     Some(Code::RejectedReadings.warning(format!(
@@ -87,7 +90,7 @@ fn sweep(time: &[f64], heading: &[f64], read: &[usize], at: usize, usual: f64) -
         if elapsed > LONGEST.0 || (farthest <= FAR && elapsed * THERE * usual > FAR) {
             return None;
         }
-        if farthest > FAR && apart < BACK + (2.0 * usual * elapsed).min(0.5 * FAR) {
+        if farthest > FAR && apart < (BACK + 2.0 * usual * elapsed).min(NEAR * farthest) {
             let behind = heading[read[end]];
             // One reading alone is a spike, unless the heading passes north with it.
             let passes = from_north(begin) * from_north(behind) < 0.0 || (behind - begin).abs() > PI;
@@ -123,8 +126,8 @@ mod tests {
         };
         for (read, late) in [(written(resampled), 0), (written(filtered), 4)] {
             let mut columns = with(Channel::Heading, |row, _| read[row]);
-            let told = clean(&mut columns).join("; ");
-            assert!(told.contains("sweeps through the compass at north at t = "), "{told}");
+            let text = clean(&mut columns).join("; ");
+            assert!(text.contains("sweeps through the compass at north at t = "), "{text}");
             let heading = &columns.channels[&Channel::Heading];
             let turns = ((heading[0] - truth[0]) / TAU).round() * TAU;
             let far = (300..2990).map(|row| (heading[row] - turns - truth[row - late]).abs());

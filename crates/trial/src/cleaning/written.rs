@@ -73,8 +73,8 @@ mod tests {
     #[test]
     fn a_rudder_up_to_360_is_read_with_its_side() {
         let mut written = with(Channel::Rudder, |row, values| values[row].rem_euclid(std::f64::consts::TAU));
-        let [told] = clean(&mut written).try_into().expect("one sentence");
-        assert!(told.contains("written from 0 to 360°"), "{told}");
+        let [text] = clean(&mut written).try_into().expect("one sentence");
+        assert!(text.contains("written from 0 to 360°"), "{text}");
         let sound = columns();
         let mut pairs = written.channels[&Channel::Rudder].iter().zip(&sound.channels[&Channel::Rudder]);
         assert!(pairs.all(|(read, truth)| (read - truth).abs() < 1e-9));
@@ -92,8 +92,8 @@ mod tests {
             of.collect::<Vec<f64>>()
         };
         let of_band = held(1.0);
-        let told = clean(&mut with(Channel::Heading, |row, _| of_band[row])).remove(0);
-        assert!(told.contains("holds a value until it has changed by 1.0°"), "{told}");
+        let text = clean(&mut with(Channel::Heading, |row, _| of_band[row])).remove(0);
+        assert!(text.contains("holds a value until it has changed by 1.0°"), "{text}");
         let fine = held(0.2);
         assert_eq!(clean(&mut with(Channel::Heading, |row, _| fine[row])), [] as [String; 0]);
     }

@@ -12,8 +12,8 @@ const LEAST: f64 = 0.006;
 /// Fewest readings in which a rhythm is seen.
 const FEWEST: usize = 40;
 
-/// Share of the deviations that stand beside a reading which was repeated, from which on a channel is a staircase: it is
-/// written on change, or in coarse steps.
+/// Share of the deviations beside a repeated reading from which on a channel is a staircase: written on change, or in
+/// coarse steps.
 const STAIRCASE: f64 = 0.5;
 
 /// How far the two sensors of a channel are apart (rms), in the unit of the values; `None` where there is one.

@@ -8,8 +8,8 @@ const FEWEST: usize = 60;
 /// Correlation of changes of the yaw rate and of the derivative of the heading that two instruments do not have.
 const SAME: f64 = 0.95;
 
-/// Correlation of neighbouring changes of a derivative below which it is noise and jumps of the heading: turns of a ship
-/// go on, and there two instruments agree.
+/// Correlation of neighbouring changes of a derivative below which it is noise and jumps of the heading. Turns of a
+/// ship go on, and there two instruments agree.
 const NOISY: f64 = -0.2;
 
 /// Whether the yaw rate repeats the noise and the jumps of the heading, as the derivative of it does.
@@ -34,9 +34,9 @@ fn repeats(slopes: &[f64], rates: &[f64], rows: usize) -> bool {
     let [slopes, rates] = [slopes, rates].map(changes);
     let later = slopes.iter().skip(rows);
     let both: Vec<[f64; 3]> =
-        slopes.iter().zip(&rates).zip(later).map(|((one, rate), next)| [*one, *rate, *next]).collect();
-    let read: Vec<[f64; 3]> = both.into_iter().filter(|own| own.iter().all(|value| value.is_finite())).collect();
-    let sum = |one: usize, other: usize| read.iter().map(|own| own[one] * own[other]).sum::<f64>();
+        slopes.iter().zip(&rates).zip(later).map(|((slope, rate), next)| [*slope, *rate, *next]).collect();
+    let read: Vec<[f64; 3]> = both.into_iter().filter(|triple| triple.iter().all(|value| value.is_finite())).collect();
+    let sum = |first: usize, second: usize| read.iter().map(|triple| triple[first] * triple[second]).sum::<f64>();
     read.len() >= FEWEST && sum(0, 1) > SAME * (sum(0, 0) * sum(1, 1)).sqrt() && sum(0, 2) < NOISY * sum(0, 0)
 }
 

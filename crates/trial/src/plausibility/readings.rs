@@ -33,15 +33,16 @@ const TO_THE_NEXT: (usize, f64) = (8, 0.6);
 /// Fewest values of a coarse scale: an order has three.
 const FEWEST_VALUES: usize = 5;
 
-/// Share of the steps that follow a repeated value: a rudder of one rate, read evenly, goes on at every row.
-const AFTER_REST: f64 = 0.3;
+/// Fewest pauses within a movement, and their share of its steps: a rudder of one rate, read evenly, goes on at every
+/// row.
+const PAUSES: (usize, f64) = (3, 0.06);
 
 /// Warnings of channels that are clipped, frozen or coarse; `columns` are their names in the file.
 pub(crate) fn check(trial: &Trial, columns: &[(Channel, String)]) -> Vec<Warning> {
     let angles = [Channel::Rudder, Channel::Heading];
     let warnings = angles.into_iter().flat_map(|channel| {
         let values = if channel == Channel::Rudder { trial.rudder() } else { trial.heading() };
-        let name = columns.iter().find(|(own, _)| *own == channel);
+        let name = columns.iter().find(|(named, _)| *named == channel);
         let name = name.map_or_else(String::new, |(_, name)| format!(" (column `{}`)", shortened(name)));
         let spoken = format!("the {}{name}", channel.spoken());
         let texts = [still(trial.time(), values, &spoken), coarse(values, &spoken)];
@@ -53,28 +54,34 @@ pub(crate) fn check(trial: &Trial, columns: &[(Channel, String)]) -> Vec<Warning
 /// Runs of at least [`FEWEST_ROWS`] rows with one value.
 fn runs(values: &[f64]) -> Vec<Range<usize>> {
     let mut first = 0;
-    let runs = values.chunk_by(|one, next| one == next).map(|run| {
-        let own = first..first + run.len();
-        first = own.end;
-        own
+    let runs = values.chunk_by(|before, next| before == next).map(|run| {
+        let rows = first..first + run.len();
+        first = rows.end;
+        rows
     });
     runs.filter(|run| run.len() >= FEWEST_ROWS).collect()
+}
+
+/// The last decimal of the larger half of the values, rad: numbers with so many significant digits have finer ones near
+/// zero. Zero for values without decimals of a degree.
+fn digit(values: &[f64]) -> f64 {
+    let half = 0.5 * values.iter().copied().filter(|x| x.is_finite()).fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let large: Vec<f64> = values.iter().filter(|value| value.abs() >= half).map(|value| value.to_degrees()).collect();
+    let is_decimal = |digit: &f64| large.iter().all(|value| (value / digit - (value / digit).round()).abs() < 1e-3);
+    [1.0, 0.1, 0.01, 1e-3].into_iter().find(is_decimal).map_or(0.0, f64::to_radians)
 }
 
 /// What is said of a noisy channel that stands still.
 fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     let mut still = runs(values);
-    // Numbers with so many significant digits have coarser ones where they are large.
-    let half = 0.5 * values.iter().copied().filter(|x| x.is_finite()).fold(0.0, |largest: f64, x| largest.max(x.abs()));
-    let digit = quantum(&values.iter().copied().filter(|value| value.abs() >= half).collect::<Vec<_>>());
-    let least = (1.5 * digit).max(NOISE_DEG.to_radians());
+    let least = (1.5 * digit(values)).max(NOISE_DEG.to_radians());
     let is_still = |row: usize| still.iter().any(|run| run.contains(&row));
     let (mut rows, mut equal, mut turned) = (0, 0, 0);
     for row in (1..values.len().saturating_sub(1)).filter(|&row| !is_still(row)) {
-        let [one, other] = [values[row] - values[row - 1], values[row + 1] - values[row]];
-        rows += usize::from((one + other).is_finite());
-        equal += usize::from(one == 0.0);
-        turned += usize::from(one * other < 0.0 && one.abs().max(other.abs()) > least);
+        let [before, after] = [values[row] - values[row - 1], values[row + 1] - values[row]];
+        rows += usize::from((before + after).is_finite());
+        equal += usize::from(before == 0.0);
+        turned += usize::from(before * after < 0.0 && before.abs().max(after.abs()) > least);
     }
     if turned < NOISY.1 || (turned as f64) < NOISY.0 * rows as f64 {
         return None;
@@ -92,10 +99,10 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     if ends.len() >= 2 {
         let rows = ends.iter().map(|run| run.len()).sum::<usize>();
         let from = ends[0];
-        let other = ends.iter().find(|run| values[run.start] != values[from.start]);
-        let other = other.map_or_else(String::new, |run| format!(" and {}°", shown(run)));
+        let after = ends.iter().find(|run| values[run.start] != values[from.start]);
+        let after = after.map_or_else(String::new, |run| format!(" and {}°", shown(run)));
         return Some(format!(
-            "{spoken} stands at exactly {}°{other} in {rows} rows, first from t = {} s, beside readings that vary with noise: it is \
+            "{spoken} stands at exactly {}°{after} in {rows} rows, first from t = {} s, beside readings that vary with noise: it is \
              clipped at the end of its scale, and K is too large by what is cut off; mend the range of the sensor or the logger, or \
              give the order in place of it (`is = \"rudder_order_deg\"` for its column, in a sidecar NAME.trial.toml)",
             shown(from),
@@ -116,7 +123,8 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
 fn coarse(values: &[f64], spoken: &str) -> Option<String> {
     let step = quantum(values);
     let step_deg = step.to_degrees();
-    let multiple = |value: f64| (value - values[0]) / step;
+    let first = *values.iter().find(|value| value.is_finite())?;
+    let multiple = |value: f64| (value - first) / step;
     let on_scale = |value: f64| (multiple(value) - multiple(value).round()).abs() < 1e-3;
     let mut read: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     if step_deg < COARSE_DEG || !read.iter().all(|&value| on_scale(value)) {
@@ -124,11 +132,14 @@ fn coarse(values: &[f64], spoken: &str) -> Option<String> {
     }
     let changes: Vec<f64> = read.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
     let next = changes.iter().filter(|change| **change < 1.5 * step).count();
-    let after_rest = read.windows(3).filter(|rows| rows[0] == rows[1] && rows[1] != rows[2]).count();
+    let pauses = read.windows(4).filter(|rows| rows[1] == rows[2] && (rows[1] - rows[0]) * (rows[3] - rows[2]) > 0.0);
+    let pauses = pauses.count();
     read.sort_unstable_by(f64::total_cmp);
-    read.dedup_by(|one, other| (*one - *other).abs() < 0.5 * step);
-    let is_scale =
-        read.len() >= FEWEST_VALUES && next >= TO_THE_NEXT.0 && after_rest as f64 >= AFTER_REST * changes.len() as f64;
+    read.dedup_by(|before, after| (*before - *after).abs() < 0.5 * step);
+    let is_scale = read.len() >= FEWEST_VALUES
+        && next >= TO_THE_NEXT.0
+        && pauses >= PAUSES.0
+        && pauses as f64 >= PAUSES.1 * changes.len() as f64;
     (is_scale && next as f64 >= TO_THE_NEXT.1 * changes.len() as f64).then(|| {
         format!(
             "{spoken} comes in steps of {}°: it is rounded, and each reading may be wrong by half of that; log it with a decimal",
@@ -154,7 +165,7 @@ mod tests {
         angles.collect()
     }
 
-    fn told(values: &[f64]) -> String {
+    fn text_of(values: &[f64]) -> String {
         let time: Vec<f64> = (0..values.len()).map(|row| row as f64).collect();
         [still(&time, values, "the rudder"), coarse(values, "the rudder")].into_iter().flatten().collect()
     }
@@ -162,9 +173,9 @@ mod tests {
     #[test]
     fn an_instrument_that_stands_still_is_told_beside_noise_alone() {
         let clipped = |_: usize, angle: f64| angle.clamp(-15.0, 15.0);
-        assert!(told(&rudder(true, clipped)).contains("stands at exactly"));
+        assert!(text_of(&rudder(true, clipped)).contains("stands at exactly"));
         let frozen = |row: usize, angle: f64| if (230..290).contains(&row) { -20.1 } else { angle };
-        let text = told(&rudder(true, frozen));
+        let text = text_of(&rudder(true, frozen));
         assert!(text.contains("is frozen at -20.1° from t = 230 s to 289 s (60 rows)"), "{text}");
         // Holds without noise, whole degrees, a rudder at its stop.
         for (noise, change) in [(true, None), (false, None), (false, Some(15.0)), (true, Some(1e9))] {
@@ -173,15 +184,15 @@ mod tests {
                 Some(stop) => angle.clamp(-stop, stop),
                 None => angle,
             };
-            assert_eq!(told(&rudder(noise, of)), "", "{noise} {change:?}");
+            assert_eq!(text_of(&rudder(noise, of)), "", "{noise} {change:?}");
         }
     }
 
     #[test]
     fn coarse_steps_are_told_and_an_order_is_none() {
         let steps = |of: f64| move |_: usize, angle: f64| (angle / of).round() * of;
-        assert!(told(&rudder(false, steps(5.0))).contains("comes in steps of 5°"));
-        assert_eq!(told(&rudder(false, steps(1.0))), "");
-        assert_eq!(told(&rudder(false, |_, angle| if angle.abs() < 19.0 { 0.0 } else { angle })), "");
+        assert!(text_of(&rudder(false, steps(5.0))).contains("comes in steps of 5°"));
+        assert_eq!(text_of(&rudder(false, steps(1.0))), "");
+        assert_eq!(text_of(&rudder(false, |_, angle| if angle.abs() < 19.0 { 0.0 } else { angle })), "");
     }
 }

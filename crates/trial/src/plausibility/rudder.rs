@@ -4,7 +4,7 @@ use document::{Code, Warning};
 use estimation::statistics::median;
 use ship::angle::to_deg;
 
-use super::{changes, extremes, reversals};
+use super::motion::{changes, extremes};
 use crate::channel::Channel;
 use crate::record::Trial;
 
@@ -25,6 +25,9 @@ const BESIDE_A_STEP: (f64, f64) = (8.0, 0.1);
 
 /// A rudder that goes no further to the other side is on one side alone, deg.
 const ONE_SIDED_DEG: f64 = 1.0;
+
+/// Shares of its largest angle below and above which such a rudder is back at its zero, and laid.
+const DIP: [f64; 2] = [0.35, 0.75];
 
 /// Share of all turning that goes to either side where a ship turns to both.
 const BOTH_SIDES: f64 = 0.25;
@@ -52,7 +55,13 @@ fn unsigned(trial: &Trial) -> Option<Warning> {
     let (turns, back) = changes(trial.time(), trial.heading())
         .fold((0.0, 0.0), |(one, other): (f64, f64), (turn, _)| (one + turn.max(0.0), other - turn.min(0.0)));
     let is_one_sided = to_deg(low) > -ONE_SIDED_DEG && to_deg(high) > STROKE_DEG;
-    (is_one_sided && reversals(rudder) >= 3 && turns.min(back) > BOTH_SIDES * (turns + back)).then(|| {
+    let mut levels: Vec<bool> = rudder
+        .iter()
+        .filter(|delta| **delta < DIP[0] * high || **delta > DIP[1] * high)
+        .map(|delta| *delta > DIP[1] * high)
+        .collect();
+    levels.dedup();
+    (is_one_sided && levels.len() >= 6 && turns.min(back) > BOTH_SIDES * (turns + back)).then(|| {
         Code::RudderSign.warning(format!(
             "the rudder is never negative (from {:.1}° to {:.1}°) while the ship turns to both sides: it has lost its sign, or its zero is at \
              one end; give the side with it, as in `P 10.0` or a column of sides, or write `zero` or `formula` for its column in a \
@@ -89,8 +98,8 @@ fn in_per_cent(held_deg: f64) -> Option<f64> {
     (usual_deg > 0.0 && (order_deg - usual_deg).abs() < 0.04).then_some(usual_deg)
 }
 
-/// A movement of the rudder to one side that a steering gear makes: way, deg, time it took, s, and in how many rows; the
-/// largest change between two of them, deg, and its time, s.
+/// A movement of the rudder to one side that a steering gear makes: way, deg, time it took, s, and in how many rows;
+/// the largest change between two of them, deg, and its time, s.
 struct RudderStroke {
     way_deg: f64,
     took_s: f64,

@@ -2,6 +2,7 @@
 //! rudder whose side stands in another column, a count of milliseconds since 1970.
 
 use document::{Code, Warning};
+use ship::angle::DEGREE;
 
 use super::error::Problem;
 use super::layout::{Content, RawColumn};
@@ -17,6 +18,9 @@ const LARGEST_RUDDER_DEG: f64 = 46.0;
 /// Least step of a heading in tenths of a degree at north, as a number in the file.
 const WRAP_OF_TENTHS: std::ops::RangeInclusive<f64> = 3400.0..=3600.0;
 
+/// Least range of a heading in tenths of a degree over that of its rudder in degrees.
+const LEAST_RATIO: f64 = 5.0;
+
 /// What the numbers of a column are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Numbers {
@@ -31,23 +35,21 @@ enum Numbers {
 /// Refuses rudder and heading whose numbers are no angles in the unit of their columns.
 pub(super) fn check(columns: &[RawColumn], line: usize) -> Result<(), Problem> {
     let of = |channel: Channel| {
-        columns.iter().find_map(|column| match column.content {
-            // Radians, and what a sidecar scales, are their own affair.
-            Content::Channel(own, factor) if own == channel && (factor.abs() - 1f64.to_radians()).abs() < 1e-12 => {
-                Some(column)
-            }
-            _ => None,
-        })
+        // Radians, and what a sidecar scales, are their own affair.
+        let is_in_degrees = |factor: f64| (factor.abs() - DEGREE).abs() < 1e-12;
+        let is_channel = |content: Content| match content {
+            Content::Channel(held, factor) => held == channel && is_in_degrees(factor),
+            _ => false,
+        };
+        columns.iter().find(|column| is_channel(column.content))
     };
     let refusal = |column: &RawColumn, quantity, numbers| {
-        let column = column.name.clone();
-        let [low, high] = numbers_of(columns, &column);
+        let (low, high) = extremes(column.values.iter().map(|value| value.to_degrees().round()));
+        let (column, largest) = (column.name.clone(), column.largest);
         Err(match numbers {
-            Numbers::Parts(parts) => {
-                Problem::Parts { line, column, quantity, high: low.abs().max(high), parts, scale: 1.0 / parts }
-            }
+            Numbers::Parts(parts) => Problem::Parts { line, column, quantity, largest, parts, scale: 1.0 / parts },
             Numbers::Counts(zero) => Problem::Counts { line, column, quantity, low, high, zero },
-            Numbers::NoAngle => Problem::NoAngle { line, column, quantity, high: low.abs().max(high) },
+            Numbers::NoAngle => Problem::NoAngle { line, column, quantity, largest },
         })
     };
     let rudder = of(Channel::Rudder).or_else(|| of(Channel::RudderOrder));
@@ -58,13 +60,6 @@ pub(super) fn check(columns: &[RawColumn], line: usize) -> Result<(), Problem> {
         Some(heading) => refusal(heading, "heading", Numbers::Parts(10.0)),
         None => Ok(()),
     }
-}
-
-/// Least and largest number of the column with this name.
-fn numbers_of(columns: &[RawColumn], name: &str) -> [f64; 2] {
-    let column = columns.iter().find(|column| column.name == name);
-    let (low, high) = extremes(column.into_iter().flat_map(|column| column.values.iter().copied()));
-    [low, high].map(|end| (1e3 * end.to_degrees()).round() / 1e3)
 }
 
 /// What the numbers of a rudder are where they are no degrees.
@@ -93,16 +88,20 @@ fn of_rudder(rudder: &RawColumn) -> Option<Numbers> {
     })
 }
 
-/// Whether a heading counts tenths of a degree: it wraps at 3600, or moves as many times as far as the rudder as no ship
-/// does in a zig-zag.
+/// Whether a heading counts tenths of a degree: it wraps at 3600, or moves farther beside its rudder than that of any
+/// ship in a zig-zag.
 fn is_in_tenths(heading: &RawColumn, rudder: Option<&RawColumn>) -> bool {
     if !heading.is_whole || heading.largest > 3600.0 {
         return false;
     }
     let ratio = rudder.filter(|rudder| reversals(&rudder.values) >= 2);
     let ratio = ratio.map(|rudder| range(&heading.values) / range(&rudder.values));
-    WRAP_OF_TENTHS.contains(&heading.largest_step)
-        || ratio.is_some_and(|ratio| ratio > ZIG_ZAG[1] && ratio.is_finite() && ratio < 10.0 * ZIG_ZAG[1])
+    let wraps = WRAP_OF_TENTHS.contains(&heading.largest_step);
+    // One wild reading may step as far, and does not move the heading.
+    match ratio {
+        Some(ratio) => (wraps && ratio > LEAST_RATIO) || (ZIG_ZAG[1]..10.0 * ZIG_ZAG[1]).contains(&ratio),
+        None => wraps,
+    }
 }
 
 /// Gives the rudder the side that stands in a column of its own.

@@ -135,12 +135,12 @@ pub enum Problem {
     OpenUnit { line: usize, column: String, quantity: &'static str, largest: f64, channel: Channel },
     /// Tenths or hundredths of a degree.
     #[error(
-        "line {line}: the {quantity} `{column}` has whole numbers up to {high}, which are no degrees: they look like {} of a degree; \
+        "line {line}: the {quantity} `{column}` has whole numbers up to {largest}, which are no degrees: they look like {} of a degree; \
          write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = {scale}{}",
         if *parts == 10.0 { "tenths" } else { "hundredths" },
         is_angle(quantity)
     )]
-    Parts { line: usize, column: String, quantity: &'static str, high: f64, parts: f64, scale: f64 },
+    Parts { line: usize, column: String, quantity: &'static str, largest: f64, parts: f64, scale: f64 },
     /// Counts of a converter.
     #[error(
         "line {line}: the {quantity} `{column}` has whole numbers from {low} to {high}, which are not degrees: they look like counts of \
@@ -153,10 +153,10 @@ pub enum Problem {
     #[error(
         "line {line}: the {quantity} `{column}` reaches {}, which no rudder does in degrees; if its numbers are on another scale, \
          write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = 0.1{}, with the degrees of one of them",
-        ShortNumber::rounded(*high, 6),
+        ShortNumber::rounded(*largest, 6),
         is_angle(quantity)
     )]
-    NoAngle { line: usize, column: String, quantity: &'static str, high: f64 },
+    NoAngle { line: usize, column: String, quantity: &'static str, largest: f64 },
     /// Milliseconds under a name that says seconds.
     #[error(
         "line {line}: the time `{column}` begins at {first}, which as seconds is after the year 2100, and as {unit} a date of these \

@@ -10,7 +10,7 @@ use super::columnar::Kind;
 use super::error::Problem;
 use super::limits::RECORD;
 use super::lines::{Hash, Hashed};
-use super::messages::{self, Notation};
+use super::messages::{self, MessageFormat};
 use super::nmea;
 use crate::file::{self, FileError, Limited};
 
@@ -33,7 +33,7 @@ pub(super) enum Content<'a> {
     /// Sentences, one a line.
     Sentences(Text<'a>),
     /// Messages, one a line.
-    Messages(Text<'a>, Notation),
+    Messages(Text<'a>, MessageFormat),
 }
 
 impl Problem {
@@ -97,11 +97,11 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
             let text = String::from_utf8_lossy(start);
             let lines = text.lines().take(LOOKED_AT.1);
             let has_sentence = lines.clone().any(nmea::is_sentence);
-            let notation = if has_sentence { None } else { messages::notation(lines) };
+            let format = if has_sentence { None } else { messages::format(lines) };
             let text = Text { bytes, on_disk, is_made: false };
-            Ok(match notation {
+            Ok(match format {
                 _ if has_sentence => Content::Sentences(text),
-                Some(notation) => Content::Messages(text, notation),
+                Some(format) => Content::Messages(text, format),
                 None => Content::Table(text),
             })
         }

@@ -94,8 +94,8 @@ impl Log {
             Content::Sentences(text) => {
                 of_series(path, nmea::read(Lines::new(text.bytes, Encoding::Utf8)), &sidecar, whole)?
             }
-            Content::Messages(text, notation) => {
-                of_series(path, messages::read(Lines::new(text.bytes, Encoding::Utf8), &notation), &sidecar, whole)?
+            Content::Messages(text, format) => {
+                of_series(path, messages::read(Lines::new(text.bytes, Encoding::Utf8), &format), &sidecar, whole)?
             }
         };
         let sha256 = on_disk.map_or(log.sha256, lines::Hash::finish);
@@ -144,7 +144,6 @@ impl Log {
     /// Fails where the rudder is moved by more than the length of the log.
     fn complete(&mut self) -> Result<(), ReadError> {
         let RudderKeys { late_s, order_rate_deg_s } = self.sidecar.rudder;
-        self.warnings.extend(rudder::hold(&mut self.columns));
         if let Some(late) = late_s {
             self.columns = rudder::earlier(std::mem::take(&mut self.columns), late);
             if check(&self.columns).is_err() {
@@ -286,6 +285,7 @@ fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
         }
         let mut own = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
         if sidecar.is_checked() {
+            log.warnings.extend(rudder::hold(&mut own));
             log.warnings.extend(cleaning::clean(&mut own, &mut log.rejected));
         }
         Series { channel, values: own.channels.remove(&channel).unwrap_or_default(), time: own.time }

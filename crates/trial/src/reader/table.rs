@@ -16,6 +16,7 @@ use super::limits::no_rows;
 use super::lines::Lines;
 use super::position::plane;
 use super::rows::Rows;
+use super::rudder;
 use super::source::Log;
 use super::units::{self, UnitlessColumn};
 use crate::cells::Separator;
@@ -58,6 +59,7 @@ pub(super) fn read(
     let mut log = rows.finish(head.passed).map_err(fault)?;
     log.sha256 = lines.sha256();
     if sidecar.is_checked() {
+        log.warnings.extend(rudder::hold(&mut log.columns));
         log.warnings.extend(cleaning::clean(&mut log.columns, &mut log.rejected));
     }
     Ok(log)

@@ -6,8 +6,8 @@ use super::holds::{Hold, LAID};
 use document::Quantity;
 use estimation::statistics::median;
 
-/// Change between two rows with which the rudder is under way, in standard deviations of its noise and as a share of the
-/// movement.
+/// Change between two rows with which the rudder is under way, in standard deviations of its noise and as a share of
+/// the movement.
 const UNDER_WAY: (f64, f64) = (4.0, 0.01);
 
 /// A movement of the rudder into a hold.

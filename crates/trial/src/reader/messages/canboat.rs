@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use super::{Message, Reading};
+use super::message::{Message, RankedReading};
 use crate::channel::Channel;
 
 /// Parameter group numbers that are read.
@@ -31,7 +31,8 @@ impl Canboat {
     pub fn message<'a>(&mut self, line: &'a str) -> Option<Message<'a>> {
         if let Some((stamp, pgn, source, bytes)) = plain(line.trim()) {
             self.is_si = Some(true);
-            return with_readings(stamp, source, of_bytes(pgn, &bytes));
+            let instance = u64::from(bytes[0]);
+            return with_readings(stamp, source_name(pgn, source, instance), of_bytes(pgn, &bytes));
         }
         let value: Value = serde_json::from_str(line).ok()?;
         if let Some(units) = value["units"].as_str() {
@@ -40,19 +41,32 @@ impl Canboat {
         // The line outlives what was parsed of it.
         let stamp =
             value["timestamp"].as_str().and_then(|stamp| line.find(stamp).map(|at| &line[at..at + stamp.len()]))?;
-        with_readings(stamp, value["src"].as_u64()?, of_fields(value["pgn"].as_u64()?, &value["fields"]))
+        let (pgn, fields) = (value["pgn"].as_u64()?, &value["fields"]);
+        let source = source_name(pgn, value["src"].as_u64()?, number(fields, "Instance").unwrap_or(0.0) as u64);
+        with_readings(stamp, source, of_fields(pgn, fields))
     }
 }
 
-fn with_readings(stamp: &str, source: u64, readings: Vec<Reading>) -> Option<Message<'_>> {
-    (!readings.is_empty()).then(|| Message { stamp, source: format!("the device at address {source}"), readings })
+fn with_readings(stamp: &str, source: String, readings: Vec<RankedReading>) -> Option<Message<'_>> {
+    (!readings.is_empty()).then_some(Message { stamp, source, readings })
+}
+
+/// What a source is called; a device may send several rudders.
+fn source_name(pgn: u64, source: u64, instance: u64) -> String {
+    let rudder = if pgn == RUDDER && instance > 0 { format!(", rudder {instance}") } else { String::new() };
+    format!("the device at address {source}{rudder}")
+}
+
+/// A number of a message; with the option -nv of canboat it stands beside its name.
+fn number(fields: &Value, name: &str) -> Option<f64> {
+    fields[name].as_f64().or_else(|| fields[name]["value"].as_f64())
 }
 
 /// The readings in the fields of a message.
-fn of_fields(pgn: u64, fields: &Value) -> Vec<Reading> {
-    // With the option -nv a value stands beside its name.
-    let number = |name: &str| fields[name].as_f64().or_else(|| fields[name]["value"].as_f64());
-    let is_true = [&fields["Reference"], &fields["Reference"]["name"]].iter().any(|own| own.as_str() == Some("True"));
+fn of_fields(pgn: u64, fields: &Value) -> Vec<RankedReading> {
+    let number = |name: &str| number(fields, name);
+    let is_true =
+        [&fields["Reference"], &fields["Reference"]["name"]].iter().any(|reference| reference.as_str() == Some("True"));
     let readings = match pgn {
         RUDDER => vec![(Channel::Rudder, 0, number("Position")), (Channel::RudderOrder, 0, number("Angle Order"))],
         HEADING => vec![(Channel::Heading, u8::from(!is_true), number("Heading"))],
@@ -75,7 +89,7 @@ fn plain(line: &str) -> Option<(&str, u64, u64, Vec<u8>)> {
 }
 
 /// The readings in the bytes of a message, in radians and m/s; the two highest numbers of a field stand for none.
-fn of_bytes(pgn: u64, bytes: &[u8]) -> Vec<Reading> {
+fn of_bytes(pgn: u64, bytes: &[u8]) -> Vec<RankedReading> {
     let raw = |from: usize, length: usize| {
         let field = bytes.get(from..from + length)?;
         Some(field.iter().rev().fold(0_u64, |value, byte| value << 8 | u64::from(*byte)))

@@ -1,6 +1,6 @@
 //! Long tables: a row holds one quantity by its path, such as `steering.rudderAngle` of Signal K, or by a column name.
 
-use super::{Message, Reading};
+use super::message::{Message, RankedReading};
 use crate::cells::{Separator, cell, recognise};
 use crate::channel::Channel;
 use crate::names::{ColumnMeaning, meaning};
@@ -58,10 +58,12 @@ impl LongTable {
 }
 
 /// The reading of a path: one of Signal K, or a column name with its unit.
-fn reading(path: &str, value: f64) -> Option<Reading> {
+fn reading(path: &str, value: f64) -> Option<RankedReading> {
     let small = path.to_lowercase();
-    let known =
-        PATHS.iter().find(|(own, ..)| small.ends_with(own)).map(|(_, channel, class)| (*channel, *class, value));
+    let known = PATHS
+        .iter()
+        .find(|(known_path, ..)| small.ends_with(known_path))
+        .map(|(_, channel, class)| (*channel, *class, value));
     known.or_else(|| match meaning(path)? {
         ColumnMeaning::Channel(channel, Some(unit)) => Some((channel, 0, value * unit.to_si())),
         ColumnMeaning::OverGround(Some(unit)) => Some((Channel::Speed, 1, value * unit.to_si())),
