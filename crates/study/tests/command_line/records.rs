@@ -57,7 +57,7 @@ fn the_result_of_another_record_is_kept() {
 #[test]
 fn no_answer_is_taken_from_a_heading_that_the_rudder_does_not_explain() {
     let desk = Desk::new();
-    let swung = |row: usize, psi: f64| (psi + 30.0 * (row as f64 / 17.0).sin()).to_string();
+    let swung = |row: usize, psi: f64| (psi + 9.0 * (row as f64 / 5.0).sin()).to_string();
     desk.file("run.csv", with_column(&zig_zag_csv(), "heading_deg", swung));
     let run = desk.run(&["fit", "run.csv", "--method", "output-error", "--figures", "none"]);
     assert!(run.is_done().out.starts_with("No K and T can be taken from this "), "{}", run.out);
