@@ -40,11 +40,14 @@ fn read(file: &File) -> Result<ReadRecord, ReadError> {
 fn faults(file: &File, sound: &[Quantity; 2]) -> Vec<String> {
     let mut faults = Vec::new();
     match (read(file), file.outcome) {
-        (Ok(reading), Outcome::Read(words)) => {
+        (Ok(reading), outcome @ (Outcome::Read(words) | Outcome::Doubted(words))) => {
             let said = reading.warnings.iter().map(|warning| warning.text.as_str()).collect::<Vec<_>>().join("\n");
             faults.extend(
                 words.iter().filter(|word| !said.contains(**word)).map(|word| format!("no {word:?} in {said:?}")),
             );
+            if outcome == Outcome::Doubted(words) {
+                return faults.into_iter().map(|fault| format!("{}: {fault}", file.name)).collect();
+            }
             for (own, (sound, name)) in answer(&reading).iter().zip(sound.iter().zip(["K", "T"])) {
                 let error = |quantity: &Quantity| quantity.sd.expect("output error has a standard deviation");
                 let apart = (own.value - sound.value) / error(own).hypot(error(sound));
@@ -60,7 +63,7 @@ fn faults(file: &File, sound: &[Quantity; 2]) -> Vec<String> {
             );
         }
         (Ok(reading), Outcome::Refused(_)) => faults.push(format!("it was read: {:?}", reading.warnings)),
-        (Err(error), Outcome::Read(_)) => faults.push(error.to_string()),
+        (Err(error), Outcome::Read(_) | Outcome::Doubted(_)) => faults.push(error.to_string()),
     }
     faults.into_iter().map(|fault| format!("{}: {fault}", file.name)).collect()
 }

@@ -10,7 +10,7 @@ use crate::identified_ship::IdentifiedShip;
 use crate::method::MethodEntry;
 use crate::quantity::Quantity;
 use crate::scales::ScalesEntry;
-use crate::warning::{Source, Warning};
+use crate::warning::{Code, Source, Warning};
 
 /// Name of the schema.
 pub const SCHEMA: &str = "fit/2";
@@ -135,6 +135,11 @@ impl FitDocument {
         answered().find(|method| *method == SHOWN).or_else(|| answered().next()).map(String::as_str)
     }
 
+    /// Whether a channel of a record is not what its instrument read, or not what its name says.
+    pub fn has_faulty_readings(&self) -> bool {
+        self.warnings.iter().any(|warning| matches!(warning.code, Code::FaultyReadings | Code::RudderOrder))
+    }
+
     /// Everything that a reader should know of the answer to take, what costs most first.
     pub fn of_answer(&self) -> impl Iterator<Item = &Warning> {
         self.warnings.iter().filter(|own| !self.is_note(own))
@@ -185,6 +190,8 @@ pub enum Reason {
     RandomMoment,
     /// The recorded rudder is noisy, and maximum likelihood counts it.
     RudderNoise,
+    /// The heading jumps and stays off, and maximum likelihood estimates that.
+    HeadingJumps,
 }
 
 /// What the residual of the answer looks like.
@@ -199,10 +206,27 @@ pub enum ResidualKind {
     Random,
 }
 
+/// Whether K and T can be taken from the records.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Belief {
+    /// They can.
+    #[default]
+    Yes,
+    /// They cannot: `because` says why.
+    No,
+}
+
 /// The answer to take.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct VerdictEntry {
-    /// The method whose answer is to be taken.
+    /// Whether K and T can be taken at all.
+    #[serde(default)]
+    pub believe: Belief,
+    /// Why they cannot.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub because: Option<String>,
+    /// The method whose answer is to be taken; where none is, the nearest one.
     pub method: String,
     /// Why.
     pub reason: Reason,

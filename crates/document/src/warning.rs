@@ -41,6 +41,8 @@ pub enum Code {
     RuddersApart,
     /// A record that contradicts itself is believed because its sidecar says so.
     Implausible,
+    /// An instrument or a logger clips, freezes, rounds or holds what it reads, or counts in a unit of its own.
+    FaultyReadings,
     /// Nothing was recorded for a while.
     Gap,
     /// The heading jumps as no ship turns.

@@ -1,7 +1,8 @@
 //! Which answer to take: one rule, made from the record alone.
 //!
-//! Output error is the answer, because no other first-order response is nearer to the headings, with two exceptions.
-//! Where the recorded rudder has declared noise, maximum likelihood counts it. Where maximum likelihood finds a random
+//! Output error is the answer, because no other first-order response is nearer to the headings, with three exceptions.
+//! Where the recorded rudder has declared noise, maximum likelihood counts it. Where the heading jumps and stays off,
+//! and no random moment is needed beside that, it estimates the jumps. Where maximum likelihood finds a random
 //! yaw moment that the terms of a ship cannot explain ([`LackOfFit`]), it is the answer, too: output error takes the
 //! work of gusts for that of the rudder. Where terms of a ship explain the residual, the model lacks one of them. A
 //! random moment then stands for it, and K, T of maximum likelihood are those of small and fast motions. An answer of
@@ -11,6 +12,7 @@
 //! As a method of its own it makes both fits and returns the one that the rule names, so that a study can hold the
 //! rule.
 
+use document::Code;
 use document::fit::{Reason, ResidualKind};
 use serde::{Deserialize, Serialize};
 use trial::Trial;
@@ -19,12 +21,17 @@ use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 use crate::identifier::Identifier;
 use crate::lack_of_fit::LackOfFit;
+use crate::replay::pooled;
 use crate::settings::SettingsError;
 use crate::{maximum_likelihood, output_error};
 
 /// Share of the residual that the terms of a ship leave where a random moment is believed. The scenario `recommended`
 /// shows what the rule costs; METHODOLOGY says how the limit was set.
 const RANDOM: f64 = 0.33;
+
+/// A replay of maximum likelihood so many times farther from the headings than that of output error is no ship in a
+/// random moment: the moment would have to take all of it away again. In gusts it is at most some five times as far.
+const CANCELLED: f64 = 30.0;
 
 /// Which answer to take and what to think of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,10 +48,16 @@ impl Recommendation {
         let lack = output_error.and_then(|estimate| LackOfFit::of(trials, &estimate.response));
         let is_random = lack.and_then(|lack| lack.unexplained()).is_some_and(|share| share >= RANDOM);
         let has_moment = |own: &Estimate| own.noise.is_some_and(|noise| !noise.moment.is_none());
+        let rms = |own: &Estimate| pooled(trials, &own.response).unwrap_or(f64::INFINITY);
+        let is_cancelled = |own: &Estimate| output_error.is_some_and(|nearest| rms(own) > CANCELLED * rms(nearest));
+        let has_jumps = |own: &Estimate| own.warnings.iter().any(|warning| warning.code == Code::HeadingJump);
         let has_noise = trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0));
         let reason = match maximum_likelihood.filter(|own| own.K().ci95.is_some()) {
             Some(_) if has_noise => Reason::RudderNoise,
-            Some(own) if output_error.is_none() || (is_random && has_moment(own)) => Reason::RandomMoment,
+            Some(own) if !has_moment(own) && has_jumps(own) => Reason::HeadingJumps,
+            Some(own) if output_error.is_none() || (is_random && has_moment(own) && !is_cancelled(own)) => {
+                Reason::RandomMoment
+            }
             _ => Reason::NearestReplay,
         };
         Self { reason, lack }
@@ -54,7 +67,7 @@ impl Recommendation {
     pub fn method(&self) -> &'static str {
         match self.reason {
             Reason::NearestReplay => "output-error",
-            Reason::RandomMoment | Reason::RudderNoise => "maximum-likelihood",
+            Reason::RandomMoment | Reason::RudderNoise | Reason::HeadingJumps => "maximum-likelihood",
         }
     }
 
@@ -102,7 +115,7 @@ impl Identifier for Recommended {
         let likely = self.maximum_likelihood.identify(trials);
         match Recommendation::of(trials, nearest.as_ref().ok(), likely.as_ref().ok()).reason {
             Reason::NearestReplay => nearest,
-            Reason::RandomMoment | Reason::RudderNoise => likely,
+            Reason::RandomMoment | Reason::RudderNoise | Reason::HeadingJumps => likely,
         }
     }
 }

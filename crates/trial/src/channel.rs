@@ -46,6 +46,8 @@ pub enum Unit {
     Second,
     /// `ms`
     Millisecond,
+    /// `us`
+    Microsecond,
     /// `min`
     Minute,
     /// `deg`
@@ -72,9 +74,10 @@ pub enum Unit {
 
 /// Every unit in the order of its declaration: how it ends a column name, its name in words, the factor to SI units and
 /// radians, and how it is written, without blanks and in small letters.
-pub(crate) const UNITS: [(Unit, &str, &str, f64, &str); 13] = [
+pub(crate) const UNITS: [(Unit, &str, &str, f64, &str); 14] = [
     (Unit::Second, "s", "seconds", 1.0, "s, sec, secs, second, seconds, sek"),
     (Unit::Millisecond, "ms", "milliseconds", 1e-3, "ms, msec"),
+    (Unit::Microsecond, "us", "microseconds", 1e-6, "us, µs, μs, usec"),
     (Unit::Minute, "min", "minutes", 60.0, "min, minutes"),
     (Unit::Degree, "deg", "degrees", DEGREE, "deg, degs, degree, degrees, °, º, grad"),
     (Unit::Radian, "rad", "radians", 1.0, "rad, radian, radians"),
@@ -117,7 +120,7 @@ pub const TIME_COLUMN: &str = "t_s";
 /// Units that a quantity may have, the one files are written in first, and its exponents of second and metre.
 type Units = (&'static [Unit], Dimension);
 
-const TIMES: [Unit; 3] = [Unit::Second, Unit::Millisecond, Unit::Minute];
+const TIMES: [Unit; 4] = [Unit::Second, Unit::Millisecond, Unit::Microsecond, Unit::Minute];
 const ANGLE: Units = (&[Unit::Degree, Unit::Radian], [0, 0]);
 const RATE: Units = (&[Unit::DegreePerSecond, Unit::RadianPerSecond, Unit::DegreePerMinute], [-1, 0]);
 const SPEED: Units = (&[Unit::MetrePerSecond, Unit::Knot], [-1, 1]);
@@ -178,6 +181,11 @@ impl Channel {
     /// The units a column of this channel may have; the first is the one files are written in.
     pub fn units(self) -> &'static [Unit] {
         CHANNELS[self as usize].2.0
+    }
+
+    /// Whether it is an angle or its rate.
+    pub(crate) fn is_angle(self) -> bool {
+        self.units().iter().any(|unit| matches!(unit, Unit::Radian | Unit::RadianPerSecond))
     }
 
     /// The unit this channel is written in.

@@ -2,7 +2,9 @@
 //! repeat an old value until the next one comes, a heading that stood still while the ship turned, and single readings
 //! that are wrong. Each is located and told; nothing is changed where a sound record could look the same.
 
+mod north;
 pub(crate) mod readings;
+mod written;
 
 use document::{Code, Warning};
 
@@ -11,13 +13,13 @@ use crate::record::{Columns, RejectedReading};
 use crate::words::{counted, instant};
 
 /// Angle beyond which no rudder goes, rad.
-const NO_RUDDER: f64 = 1.6;
+pub(crate) const NO_RUDDER: f64 = 1.6;
 
 /// Angle that the rest of a record with such values stays within, rad: otherwise its unit is wrong, not a reading.
 const ANY_RUDDER: f64 = 1.05;
 
 /// Largest share of rows that may be left out as readings of no rudder.
-const LARGEST_SHARE: f64 = 0.1;
+pub(crate) const LARGEST_SHARE: f64 = 0.1;
 
 /// Longest repetition that is looked for, rows.
 const LONGEST_HOLD: usize = 100;
@@ -62,11 +64,14 @@ pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bo
 /// Cleans the columns; a warning of everything that was done. The single readings it was done to go to `rejected`.
 pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let mut done = Vec::new();
+    done.extend(written::below_360(columns));
     done.extend(leave_out_no_rudder(columns, rejected));
     done.extend(straighten_rudder(columns));
     for channel in [Channel::Heading, Channel::YawRate] {
         done.extend(drop_repeats(columns, channel));
     }
+    done.extend(written::drop_held(columns));
+    done.extend(north::drop_sweeps(columns, rejected));
     done.extend(drop_frozen(columns, rejected));
     done.extend(readings::drop_lost_polls(columns, rejected));
     done.extend(readings::drop_spikes(columns, rejected));

@@ -6,6 +6,9 @@
 //! is a warning. A sidecar with `plausibility = false` under `[check]` turns errors into warnings.
 
 mod alternation;
+pub(crate) mod derivative;
+mod motion;
+pub(crate) mod readings;
 mod regression;
 mod rudder;
 
@@ -18,6 +21,8 @@ use crate::channel::Channel;
 use crate::record::{RejectedReading, Trial};
 use crate::words::counted;
 use alternation::alternation;
+pub use motion::reversals;
+pub(crate) use motion::{changes, extremes, mean_rate, range};
 use regression::{PartialSlope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading};
 use rudder::rudder_movements;
 
@@ -58,6 +63,13 @@ pub enum Implausible {
          NAME.trial.toml; if it is named so already, its numbers are of another scale"
     )]
     HeadingInDegrees { heading_deg: f64, rudder_deg: f64 },
+    /// A yaw rate in another unit than its name says, where it stands for the heading.
+    #[error(
+        "the yaw rate adds up to a turn of {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks like deg/min under \
+         a name that says deg/s (a factor of 60), or degrees under one that says radians (57.3); name the column yaw_rate_deg_min \
+         (yaw_rate_deg_s), or write `is = \"yaw_rate_deg_min\"` for it in a sidecar NAME.trial.toml"
+    )]
+    YawRateInMinutes { heading_deg: f64, rudder_deg: f64 },
     /// Radians under a name that says degrees.
     #[error(
         "the heading moves through {heading_deg:.2}° only while the rudder moves through {rudder_deg:.1}°: it looks like \
@@ -149,36 +161,9 @@ pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausible> {
     Ok(warnings)
 }
 
-/// Smallest and largest finite value; ∞ and −∞ where there is none.
-pub(crate) fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
-    let finite = values.into_iter().filter(|value| value.is_finite());
-    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
-}
-
-/// Largest minus smallest finite value; 0 where there is none.
-pub(crate) fn range(values: &[f64]) -> f64 {
-    let (low, high) = extremes(values.iter().copied());
-    if low <= high { high - low } else { 0.0 }
-}
-
 /// The same of an angle in radians, deg.
 fn range_deg(values: &[f64]) -> f64 {
     to_deg(range(values))
-}
-
-/// How often a rudder (rad) goes from one side of its range to the other, by more than half of it.
-pub fn reversals(rudder: &[f64]) -> usize {
-    let (low, high) = extremes(rudder.iter().copied());
-    let (middle, quarter) = (0.5 * (low + high), 0.25 * (high - low));
-    let mut side = 0.0;
-    let mut count = 0;
-    for delta in rudder.iter().map(|delta| delta - middle).filter(|delta| delta.abs() > quarter) {
-        if delta.signum() != side {
-            count += usize::from(side != 0.0);
-            side = delta.signum();
-        }
-    }
-    count
 }
 
 /// Whether the heading steps by 2π under its own unit: 6.28 "degrees" between one row and the next.
@@ -227,7 +212,10 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     }
     let reversals = reversals(trial.rudder());
     if ratio > if reversals >= 2 { 40.0 } else { 500.0 } {
-        return Err(Implausible::HeadingInDegrees { heading_deg, rudder_deg });
+        return Err(match trial.heading_from_yaw_rate() {
+            true => Implausible::YawRateInMinutes { heading_deg, rudder_deg },
+            false => Implausible::HeadingInDegrees { heading_deg, rudder_deg },
+        });
     }
     let in_radians = Implausible::HeadingInRadians { heading_deg, rudder_deg };
     if rudder_deg >= MOVED_DEG && heading_deg <= 13.0 && wraps_at_two_pi_degrees(trial.heading()) {
@@ -308,29 +296,6 @@ fn rate_of_turn(trial: &Trial) -> Option<Warning> {
              time (t_s, t_ms, t_min)",
             MEAN_RATE_DEG_S[0], MEAN_RATE_DEG_S[1]
         ))
-    })
-}
-
-/// Mean size of the rate of turn, rad/s, from changes of heading over a hundredth of the record each; NaN without two
-/// headings.
-pub(crate) fn mean_rate(time: &[f64], heading: &[f64]) -> f64 {
-    let (turned, duration) = changes(time, heading)
-        .fold((0.0, 0.0), |(turned, duration), (turn, step)| (turned + turn.abs(), duration + step));
-    turned / duration
-}
-
-/// Changes of a channel, and the time they took (s), over a hundredth of its readings each, in which noise counts
-/// little.
-pub(crate) fn changes<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
-    const PARTS: usize = 100;
-    let read = values.iter().filter(|value| value.is_finite()).count();
-    let every = (read / PARTS).max(1);
-    let mut ends = (0..time.len()).filter(|&row| values[row].is_finite()).step_by(every);
-    let mut from = ends.next().unwrap_or(0);
-    ends.map(move |to| {
-        let change = (values[to] - values[from], time[to] - time[from]);
-        from = to;
-        change
     })
 }
 

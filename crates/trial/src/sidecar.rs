@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use ship::Particulars;
 use ship::angle::{KNOT, from_deg};
+use ship::effects::ColumnFormula;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
@@ -26,12 +27,14 @@ use crate::words::shortened;
 pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
 
 /// Which column of a table is meant.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Which {
     /// By place, from 0.
     Place(usize),
     /// By its name in the header.
     Name(String),
+    /// None of the table: it is worked out of others.
+    Formula(ColumnFormula),
 }
 
 /// One `[[column]]`, checked.
@@ -40,7 +43,10 @@ pub(crate) struct DescribedColumn {
     pub(crate) line: usize,
     pub(crate) which: Which,
     pub(crate) meaning: Option<ColumnMeaning>,
-    pub(crate) flip: bool,
+    /// What one of its numbers stands for; negative where the sign is changed.
+    pub(crate) scale: f64,
+    /// The number at zero.
+    pub(crate) zero: f64,
     pub(crate) ignore: bool,
 }
 
@@ -255,27 +261,49 @@ fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Cond
 
 fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<DescribedColumn, Fault> {
     let fault = |problem| Err((Some(column.span()), problem));
-    let ColumnKeys { index, name, is, flip, ignore } = column.get_ref();
-    let which = match (index, name) {
-        (Some(_), Some(_)) => return fault(SidecarProblem::Which { found: "both" }),
-        (None, None) => return fault(SidecarProblem::Which { found: "neither" }),
-        (Some(0), None) => return fault(SidecarProblem::Which { found: "index 0" }),
-        (Some(index), None) => Which::Place(index - 1),
-        (None, Some(_)) if !header => return fault(SidecarProblem::NameWithoutHeader),
-        (None, Some(name)) => Which::Name(name.trim().to_owned()),
+    let ColumnKeys { index, name, is, flip, scale, zero, formula, ignore } = column.get_ref();
+    let which = match (index, name, formula) {
+        (None, None, Some(formula)) => Which::Formula(ColumnFormula::read(formula.get_ref()).map_err(|error| {
+            let problem = error.to_string();
+            (Some(formula.span()), SidecarProblem::Formula { problem })
+        })?),
+        (.., Some(_)) | (Some(_), Some(_), None) => return fault(SidecarProblem::Which { found: "both" }),
+        (None, None, None) => return fault(SidecarProblem::Which { found: "neither" }),
+        (Some(0), None, None) => return fault(SidecarProblem::Which { found: "index 0" }),
+        (Some(index), None, None) => Which::Place(index - 1),
+        (None, Some(_), None) if !header => return fault(SidecarProblem::NameWithoutHeader),
+        (None, Some(name), None) => Which::Name(name.trim().to_owned()),
     };
-    if *ignore && (is.is_some() || *flip) {
+    let is_changed = *flip || scale.is_some() || zero.is_some();
+    if *ignore && (is.is_some() || is_changed) {
         return fault(SidecarProblem::IgnoredAndUsed);
     }
-    if !ignore && !flip && is.is_none() {
-        return fault(SidecarProblem::Idle);
+    let is_formula = matches!(which, Which::Formula(_));
+    if !ignore && is.is_none() && (is_formula || !is_changed) {
+        return fault(if is_formula { formula_without_meaning() } else { SidecarProblem::Idle });
     }
+    let number = |key: &str, value: Option<f64>, absent: f64| match value.unwrap_or(absent) {
+        own if own.is_finite() && (own != 0.0 || key == "zero") => Ok(own),
+        own => {
+            let (key, found) = (key.to_owned(), own.to_string());
+            Err((
+                Some(column.span()),
+                SidecarProblem::Value { key, found, expected: "a finite number, a scale other than 0" },
+            ))
+        }
+    };
+    let sign = if *flip { -1.0 } else { 1.0 };
+    let (scale, zero) = (sign * number("scale", *scale, 1.0)?, number("zero", *zero, 0.0)?);
     let known = |is: &Spanned<String>| {
         let found = || SidecarProblem::UnknownQuantity { found: shortened(is.get_ref()) };
         contract(is.get_ref()).ok_or_else(|| (Some(is.span()), found()))
     };
     let meaning = is.as_ref().map(known).transpose()?;
-    Ok(DescribedColumn { line: line_of(text, column.span().start), which, meaning, flip: *flip, ignore: *ignore })
+    Ok(DescribedColumn { line: line_of(text, column.span().start), which, meaning, scale, zero, ignore: *ignore })
+}
+
+fn formula_without_meaning() -> SidecarProblem {
+    SidecarProblem::Formula { problem: "a column that is worked out needs `is`, to say what it holds".into() }
 }
 
 #[cfg(test)]

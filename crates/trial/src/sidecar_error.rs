@@ -40,13 +40,14 @@ pub enum SidecarProblem {
     #[error("a [[column]] needs either `index` (from 1) or `name`, and this one has {found}")]
     Which { found: &'static str },
     /// A column that says nothing.
-    #[error("this [[column]] says nothing; add `is`, `flip = true` or `ignore = true`")]
+    #[error("this [[column]] says nothing; add `is`, `flip = true`, `scale`, `zero` or `ignore = true`")]
     Idle,
     /// `ignore` beside other keys.
-    #[error(
-        "`ignore = true` leaves the column out, so `is` and `flip` beside it mean nothing; remove one or the other"
-    )]
+    #[error("`ignore = true` leaves the column out, so other keys beside it mean nothing; remove one or the other")]
     IgnoredAndUsed,
+    /// A formula that cannot be read, or names no column.
+    #[error("`formula`: {problem}")]
+    Formula { problem: String },
     /// A name, but the table has no header.
     #[error("`name` needs a header and [table] says `header = false`; use `index`")]
     NameWithoutHeader,
@@ -54,7 +55,7 @@ pub enum SidecarProblem {
     #[error("no column is called `{name}`; the header of {} has {}", table.display(), crate::words::listed(found))]
     NameNotFound { name: String, table: PathBuf, found: Vec<String> },
     /// Columns described in a log of sentences.
-    #[error("the file holds sentences (NMEA 0183), which have no columns; remove every [[column]]")]
+    #[error("the file holds sentences or messages (NMEA), which have no columns; remove every [[column]]")]
     NoTable,
     /// The index is larger than the number of columns.
     #[error("there is no column {index}; {} has {columns} columns", table.display())]

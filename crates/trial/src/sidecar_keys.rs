@@ -87,6 +87,16 @@ pub(crate) struct ColumnKeys {
     /// Change the sign. (true)
     #[serde(default)]
     pub flip: bool,
+    /// What one of its numbers stands for, in the unit of `is`: 0.1 for tenths of a degree. (number)
+    pub scale: Option<f64>,
+    /// The number at zero, which is taken from every one before it is scaled: counts of a converter. (number)
+    pub zero: Option<f64>,
+    #[schemars(
+        with = "Option<String>",
+        description = "A column that is worked out of others, as they stand in the file, in place of index and name: \
+        `(port - starboard) / 2`; needs `is`. (text)"
+    )]
+    pub formula: Option<Spanned<String>>,
     /// Leave the column out. (true)
     #[serde(default)]
     pub ignore: bool,

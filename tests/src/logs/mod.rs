@@ -3,6 +3,8 @@
 //! files among them lie in `tests/logs`.
 
 pub mod combined;
+pub mod faults;
+pub mod messages;
 pub mod sentences;
 pub mod tables;
 pub mod troubles;
@@ -15,6 +17,8 @@ use std::path::PathBuf;
 pub enum Outcome {
     /// It is read: K and T are those of the sound log, and the warnings hold these words.
     Read(&'static [&'static str]),
+    /// It is read, its K and T may be wrong, and the warnings hold these words.
+    Doubted(&'static [&'static str]),
     /// It is refused, in a message with these words: the trouble and the cure.
     Refused(&'static [&'static str]),
 }
@@ -55,7 +59,7 @@ impl File {
 /// Every log.
 pub fn all() -> Vec<File> {
     let formats = tables::all().into_iter().chain(sentences::all());
-    formats.chain(troubles::all()).collect()
+    formats.chain(messages::all()).chain(troubles::all()).chain(faults::all()).collect()
 }
 
 /// The folder of the logs that are kept.

@@ -392,9 +392,10 @@ impl Prior {
         Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, beside: None }
     }
 
-    /// The same in another range.
+    /// The same in another range. A record may set an end beyond the other one: the lowest value holds then.
     #[must_use]
     pub fn within(self, [lowest, highest]: [f64; 2]) -> Self {
+        let highest = highest.max(lowest);
         Self { lowest, highest, mean: self.mean.clamp(lowest, highest), ..self }
     }
 

@@ -25,7 +25,7 @@ pub use effect::{
     Acts, Description, Effect, EffectReal, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale, SwayCoupling,
 };
 pub use file_number::{FileNumber, FileRole};
-pub use formula::{Formula, FormulaError, Sides};
+pub use formula::{ColumnFormula, Formula, FormulaError, Sides};
 pub use list::{all, listed, meaning};
 pub use second_order::SecondOrder;
 pub use speed_loss::SpeedLoss;

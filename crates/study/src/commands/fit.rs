@@ -8,7 +8,7 @@ use document::{Warning, Warnings};
 use report::Theme;
 
 use crate::documents::fit_curves::FitCurves;
-use crate::documents::{self, FIT, folder_for};
+use crate::documents::{self, FIT, folder_for_records};
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, read_all, read_others, repetitions};
 use crate::screen::{self, CommandOutput};
@@ -28,7 +28,8 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let others = read_others(&request.validate, &request.reading, &mut warnings)?;
     warnings.extend(repetitions(&trials, &others));
     let theme = request.style.theme()?;
-    let place = folder_for(FIT, &common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
+    let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit"));
+    let place = folder_for_records(FIT, &place, &trials)?;
     let fit = fit([&trials, &others], &methods, &priors, common.quiet, warnings)?;
     let folder = ResultFolder::make(&place)?;
     let curves = fit.curves();

@@ -8,7 +8,7 @@ use document::{Warning, Warnings};
 use report::Theme;
 
 use crate::documents::curves::TraceCurves;
-use crate::documents::{TRACE, folder_for};
+use crate::documents::{TRACE, folder_for_records};
 use crate::interrupt;
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_others, repetitions};
@@ -30,7 +30,8 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let trials = without(request, read_all(&request.trials, &request.reading, &mut warnings)?);
     let others = without(request, read_others(&request.validate, &request.reading, &mut warnings)?);
     warnings.extend(repetitions(&trials, &others));
-    let place = folder_for(TRACE, &common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
+    let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace"));
+    let place = folder_for_records(TRACE, &place, &trials)?;
     let traced = trace([&trials, &others], &settings, &priors, common.quiet, &mut warnings)?;
     let folder = ResultFolder::make(&place)?;
     let text = traced.write(&folder)?;

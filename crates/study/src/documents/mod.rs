@@ -21,7 +21,10 @@ use campaign::files::MANIFEST;
 use campaign::folder::ResultFolder;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
+use trial::Trial;
 
+use crate::records::file_of;
 use crate::screen;
 use answers::{CommandAnswer, Versioned};
 
@@ -54,6 +57,50 @@ pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
             path.display()
         ))),
         None => Ok(place.to_owned()),
+    }
+}
+
+/// The same for the result of some records: fails, too, when that of other records is there. A record is the same by
+/// its file, which may have been mended, or by its content.
+pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Result<PathBuf, Failure> {
+    let place = folder_for(document, place)?;
+    let path = place.join(document);
+    let earlier = path.is_file().then(|| read_text(&path)).transpose()?;
+    let earlier = earlier.map(|text| serde_json::from_str(&text).unwrap_or(Value::Null));
+    let Some(records) = earlier.map(|earlier| records_of(&earlier)).filter(|records| !records.is_empty()) else {
+        return Ok(place);
+    };
+    let is_same = |trial: &Trial| {
+        let (file, sha256) = file_of(trial);
+        records.iter().any(|(own, hash)| own == file || hash == sha256)
+    };
+    if records.len() == trials.len() && trials.iter().all(is_same) {
+        return Ok(place);
+    }
+    let files: Vec<String> = records.into_iter().map(|(file, _)| file).collect();
+    Err(Failure::input(format!(
+        "{} is the result of {}, not of {}; give another folder with --out",
+        path.display(),
+        few(&files),
+        few(&trials.iter().map(|trial| file_of(trial).0.to_owned()).collect::<Vec<_>>())
+    )))
+}
+
+/// Files and hashes of the records that an earlier document was made from.
+fn records_of(document: &Value) -> Vec<(String, String)> {
+    let list = document["trials"].as_array().or_else(|| document["records"].as_array());
+    let fitted = list.into_iter().flatten().filter(|record| record["held_out"] != true);
+    let text = |value: &Value| value.as_str().map(str::to_owned);
+    fitted.filter_map(|record| Some((text(&record["file"])?, text(&record["sha256"])?))).collect()
+}
+
+/// The first of some files, and how many there are beside it.
+fn few(files: &[String]) -> String {
+    match files {
+        [only] => only.clone(),
+        several => {
+            format!("{} and {} more", several.first().map_or("", String::as_str), several.len().saturating_sub(1))
+        }
     }
 }
 

@@ -96,24 +96,32 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
     let own = entry.parameters.as_ref()?;
     let [k, t, bias] =
         [own.k_per_s, own.t_s, own.delta_r_deg].map(|quantity| method_table::estimate(&quantity)[0].clone());
-    if let Some(straight) = verdict.straight_lines_deg {
-        let [left, straight] = [entry.heading_rmse_deg, Some(straight)].map(|deg| optional(deg, 1));
+    if let Some(because) = &verdict.because {
+        let trial = match &document.trials[..] {
+            [only] if only.zigzag.is_some() => "this zig-zag",
+            [_] => "this record",
+            _ => "these records",
+        };
         return Some(format!(
-            "No method has an answer: the nearest replay, that of {}, leaves {left}° of the headings, and a straight line, \
-             without any rudder, {straight}°.\nCheck rudder, heading and clock, or give a zig-zag.",
-            verdict.method
+            "No K and T can be taken from {trial}, because {because}.\nCheck rudder, heading and clock first, which the warnings may \
+             name; then give a zig-zag in calm weather."
         ));
     }
     let because = match verdict.reason {
         Reason::NearestReplay => "its replay is the nearest to the headings",
         Reason::RandomMoment => "a random moment acts on the ship that no term of a ship explains",
         Reason::RudderNoise => "the recorded rudder is noisy",
+        Reason::HeadingJumps => "the heading jumps and stays off, which it estimates",
     };
     let mut words = format!("Take K = {k} 1/s, T = {t} s, δ_r = {bias}° from {}, because {because}.", verdict.method);
     let [residual, rest] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
     words += &match verdict.residual {
         None => String::new(),
         Some(ResidualKind::Noise) => String::from("\nThe residual of output error is noise of the heading."),
+        Some(ResidualKind::LacksEffect) if document.has_faulty_readings() => format!(
+            "\nThe residual of output error, {residual}°, falls to {rest}° with more terms of a hull, but the readings are suspected \
+             before the ship: see the warnings."
+        ),
         Some(ResidualKind::LacksEffect) => format!(
             "\nThe residual of output error, {residual}°, falls to {rest}° with more terms of a hull: the model lacks an effect, \
              which `study trace` looks for."
@@ -152,6 +160,7 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
         Reason::NearestReplay => "look at both replays",
         Reason::RandomMoment => "it takes what the random moment does for the work of the rudder",
         Reason::RudderNoise => "it knows no noise of the rudder",
+        Reason::HeadingJumps => "it takes jumps of the heading for turns of the ship",
     };
     format!("\n{name} contradicts this answer: {why}.")
 }

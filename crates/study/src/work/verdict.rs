@@ -1,17 +1,25 @@
 //! Which answer of a fit is to be taken, and what its residual says.
 
-use document::fit::{Reason, VerdictEntry};
+use document::fit::{Belief, Reason, VerdictEntry};
 use document::method::MethodEntry;
 use identify::Estimate;
 use identify::lack_of_fit::LackOfFit;
 use identify::recommended::Recommendation;
 use identify::replay::pooled;
+use report::number::fixed;
 use ship::FirstOrder;
 use ship::angle::to_deg;
 use trial::Trial;
 
 /// A replay this many times worse than the best is set apart.
 const FAR_WORSE: f64 = 10.0;
+
+/// Share of the variance of the headings that a replay has to explain. First-order responses to sound records of ships
+/// and models explain 0.97 and more, also of strongly nonlinear ones and in gusts.
+const EXPLAINED: f64 = 0.9;
+
+/// The methods that an answer of another one is held against.
+const USUAL: [&str; 2] = ["output-error", "maximum-likelihood"];
 
 /// Which answer is to be taken; `entries` are those of the answers.
 pub fn of_answers(
@@ -21,7 +29,55 @@ pub fn of_answers(
 ) -> Option<VerdictEntry> {
     let of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
     let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
-    taken(&Recommendation::of(trials, of("output-error"), of("maximum-likelihood")), entries, straight)
+    let [nearest, likely] = USUAL.map(of);
+    let mut verdict = taken(&Recommendation::of(trials, nearest, likely), entries, straight)?;
+    verdict.because = disbelief(&verdict, entries, straight);
+    verdict.believe = if verdict.because.is_some() { Belief::No } else { Belief::Yes };
+    Some(verdict)
+}
+
+/// Why no K and T can be taken from records whose headings have this scatter about straight lines, deg; `None` where
+/// they can.
+///
+/// A random moment turns the ship, too, so it is the nearest replay that has to explain the headings. An unstable ship
+/// has K and T below zero: the interval of T has to show it.
+fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Option<f64>) -> Option<String> {
+    let taken = entries.iter().find(|entry| entry.method == verdict.method)?;
+    let answered = || entries.iter().filter(|entry| entry.parameters.is_some());
+    let [k, t] = taken.parameters.map(|own| [own.k_per_s, own.t_s])?;
+    let left_deg = answered().filter_map(|entry| entry.heading_rmse_deg).fold(f64::INFINITY, f64::min);
+    let explained = scatter_deg.map_or(1.0, |scatter| 1.0 - (left_deg / scatter).powi(2));
+    let failed = |id: &&str| entries.iter().any(|entry| entry.id() == *id && entry.parameters.is_none());
+    let is_usual = USUAL.contains(&taken.id()) || !USUAL.iter().all(failed);
+    let is_unstable = t.ci95.is_some_and(|[_, high]| high < 0.0);
+    if let Some(straight) = verdict.straight_lines_deg {
+        return Some(format!(
+            "the nearest replay, that of {}, leaves {}° of the headings, and a straight line, without any rudder, {}°",
+            verdict.method,
+            fixed(left_deg, 1),
+            fixed(straight, 1)
+        ));
+    }
+    if explained.is_nan() || explained < EXPLAINED {
+        let percent = fixed(100.0 * explained.max(0.0), 0);
+        return Some(format!(
+            "the nearest replay explains {percent} % of the variance of the heading (it leaves {}°), and K and T of a ship explain 90 % \
+             or more",
+            fixed(left_deg, 1)
+        ));
+    }
+    if !is_usual {
+        return Some(format!(
+            "{} found no answer, and {} alone, which noise and weather bias, is none",
+            USUAL.join(" and "),
+            verdict.method
+        ));
+    }
+    ((k.value <= 0.0 || t.value <= 0.0) && !is_unstable).then(|| {
+        String::from(
+            "K and T are below zero, as of a ship that is not course-stable, and their intervals do not show that she is",
+        )
+    })
 }
 
 /// The answer to take: the recommended one, or the nearest replay where that is not among the entries or no answer is
@@ -38,9 +94,10 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
     let taken = taken.unwrap_or(nearest);
     let is_far = |entry: &&MethodEntry| rms(entry) > FAR_WORSE * rms(&nearest) && entry.method != taken.method;
     let degrees = |of: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(of(lack)));
-    let usual = ["output-error", "maximum-likelihood"];
-    let contradicts = |entry: &&MethodEntry| usual.contains(&entry.id()) && (are_apart(taken, entry) || is_far(entry));
+    let contradicts = |entry: &&MethodEntry| USUAL.contains(&entry.id()) && (are_apart(taken, entry) || is_far(entry));
     Some(VerdictEntry {
+        believe: Belief::Yes,
+        because: None,
         method: taken.method.clone(),
         reason,
         residual: recommendation.residual(),
@@ -68,6 +125,38 @@ mod tests {
     use trial::Quantity;
 
     use super::*;
+
+    /// What explains too little of the headings, is of no usual method or below zero is no answer; a ship that is not
+    /// course-stable, and shows it, is.
+    #[test]
+    fn an_answer_that_cannot_be_taken_says_why() {
+        let entry = |method: &str, k_and_t: Option<[Quantity; 2]>| MethodEntry {
+            method: method.into(),
+            status: Status::Ok,
+            parameters: k_and_t.map(|[k_per_s, t_s]| IndexEstimates { k_per_s, t_s, delta_r_deg: Quantity::bare(0.0) }),
+            heading_rmse_deg: k_and_t.map(|_| 2.0),
+            ..MethodEntry::default()
+        };
+        let usual = |k: f64, t: f64, ci95: Option<[f64; 2]>| {
+            let t = Quantity { ci95, ..Quantity::bare(t) };
+            [entry("output-error", Some([Quantity::bare(k), t])), entry("maximum-likelihood", None)]
+        };
+        let nearest = Recommendation { reason: Reason::NearestReplay, lack: None };
+        let told = |entries: &[MethodEntry], scatter: f64| {
+            let verdict = taken(&nearest, entries, Some(scatter)).expect("an answer");
+            disbelief(&verdict, entries, Some(scatter)).unwrap_or_default()
+        };
+        assert_eq!(told(&usual(0.1, 40.0, None), 20.0), "");
+        assert_eq!(told(&usual(-0.1, -40.0, Some([-60.0, -30.0])), 20.0), "");
+        assert!(told(&usual(0.1, 40.0, None), 5.0).contains("explains 84 % of the variance"));
+        assert!(told(&usual(-0.1, -40.0, Some([-90.0, 20.0])), 20.0).contains("below zero"));
+        let mut others = usual(0.1, 40.0, None).to_vec();
+        others[0] = entry("output-error", None);
+        others.push(entry("least-squares", Some([Quantity::bare(0.1), Quantity::bare(40.0)])));
+        assert!(told(&others, 20.0).contains("found no answer"));
+        assert!(told(&usual(0.1, 40.0, None), 1.9).contains("a straight line"));
+        assert_eq!(told(&others[2..], 20.0), "");
+    }
 
     /// A method without an interval contradicts by its replay.
     #[test]

@@ -67,15 +67,15 @@ fn what_the_reader_noticed_is_in_the_document() {
         ("gaps.csv", "gaps longer than ten sampling periods", "gap", "doubt"),
     ] {
         let path = of_repository("tests/logs").join(log).display().to_string();
-        let own = ["fit", &path, "--method", "least-squares", "--figures", "none", "--quiet", "--out", "fit"];
+        let own = ["fit", &path, "--method", "least-squares", "--figures", "none", "--quiet", "--out", log];
         desk.run(&own).is_done();
-        let warnings = desk.json("fit/fit.json")["warnings"].clone();
+        let warnings = desk.json(&format!("{log}/fit.json"))["warnings"].clone();
         let told = |own: &Value| own["text"].as_str().is_some_and(|text| text.contains(said));
         let own =
             warnings.as_array().into_iter().flatten().find(|own| told(own)).unwrap_or_else(|| panic!("{warnings}"));
         assert_eq!((&own["code"], &own["severity"]), (&Value::from(code), &Value::from(severity)), "{log}");
         assert_eq!(own["source"]["record"], path.as_str());
-        assert!(desk.text("fit/report.md").contains(said), "{log}");
+        assert!(desk.text(&format!("{log}/report.md")).contains(said), "{log}");
     }
 }
 

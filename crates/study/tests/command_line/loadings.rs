@@ -161,11 +161,12 @@ fn a_loading_that_cannot_be_taken_is_refused() {
     desk.file("zz.csv", zig_zag_csv());
     for (fit, lacks) in [
         ("zz.csv", "b/fit.json: it has no hull of the form mmg"),
-        ("run.csv --length-m 160 --speed-m-s 7.7", "b/fit.json: it has no beam-m, draught-m, block-coefficient"),
+        ("run.csv --length-m 160 --speed-m-s 7.7", "c/fit.json: it has no beam-m, draught-m, block-coefficient"),
     ] {
-        desk.run(&words(&["fit --method output-error --out b --quiet ", fit].concat())).is_done();
-        refused("predict b/fit.json --load full.toml", lacks);
-        refused("predict f/fit.json --load full.toml --ballast b/fit.json --replay run.csv", lacks);
+        let folder = &lacks[..1];
+        desk.run(&words(&format!("fit --method output-error --out {folder} --quiet {fit}"))).is_done();
+        refused(&format!("predict {folder}/fit.json --load full.toml"), lacks);
+        refused(&format!("predict f/fit.json --load full.toml --ballast {folder}/fit.json --replay run.csv"), lacks);
     }
     desk.file("b/fit.json", desk.text("f/fit.json").replace("\"form\": \"mmg\"", "\"form\": \"cubic\""));
     refused(

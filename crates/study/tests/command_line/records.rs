@@ -34,7 +34,35 @@ fn a_record_that_contradicts_itself_is_refused_with_the_cure() {
     refused(with_column(&good, "heading_deg", radians), &["radians", "heading_rad"]);
     refused(with_column(&good, "rudder_deg", radians), &["radians", "rudder_rad"]);
     refused(good.replace("heading_deg", "heading_rad"), &["degrees", "heading_deg"]);
-    refused(with_column(&good, "rudder_deg", |_, delta| (1e300 * delta).to_string()), &["the rudder reaches"]);
+    refused(with_column(&good, "rudder_deg", |_, delta| (1e300 * delta).to_string()), &["`rudder_deg` reaches 1e301"]);
+}
+
+/// A result is made anew of the same file or the same content, and of nothing else.
+#[test]
+fn the_result_of_another_record_is_kept() {
+    let desk = Desk::new();
+    let (own, other) = (zig_zag_csv(), with_column(&zig_zag_csv(), "heading_deg", |_, psi| (psi + 0.1).to_string()));
+    desk.file("a/trial.csv", &own);
+    desk.file("b/trial.csv", &other);
+    let fit = |record: &str| desk.run(&["fit", record, "--method", "output-error", "--figures", "none", "--out", "f"]);
+    fit("a/trial.csv").is_done();
+    fit("b/trial.csv").is_refused(2, &["f/fit.json is the result of a/trial.csv, not of b/trial.csv", "--out"]);
+    desk.file("b/trial.csv", &own);
+    fit("b/trial.csv").is_done();
+    desk.file("b/trial.csv", &other);
+    fit("b/trial.csv").is_done();
+}
+
+/// A heading that the rudder does not explain: there is a verdict, which is that there are no K and T.
+#[test]
+fn no_answer_is_taken_from_a_heading_that_the_rudder_does_not_explain() {
+    let desk = Desk::new();
+    let swung = |row: usize, psi: f64| (psi + 9.0 * (row as f64 / 5.0).sin()).to_string();
+    desk.file("run.csv", with_column(&zig_zag_csv(), "heading_deg", swung));
+    let run = desk.run(&["fit", "run.csv", "--method", "output-error", "--figures", "none"]);
+    assert!(run.is_done().out.starts_with("No K and T can be taken from this "), "{}", run.out);
+    let verdict = &desk.json("run-fit/fit.json")["verdict"];
+    assert!(verdict["believe"] == "no" && verdict["because"].is_string(), "{verdict}");
 }
 
 #[test]
@@ -300,7 +328,11 @@ fn every_measured_record_can_be_identified() {
         ),
         // Here it has no interval, and a replay 66° off.
         ("esso_osaka", "zigzag_13_04_24", "° from output-error, because its replay is the nearest to the headings"),
-        ("esso_osaka", "turning_sep14_13_51_45", "No method has an answer: the nearest replay, that of least-squares"),
+        (
+            "esso_osaka",
+            "turning_sep14_13_51_45",
+            "No K and T can be taken from this record, because the nearest replay, that of least-squares, leaves",
+        ),
         ("kvlcc2_hsva", "zigzag_20_10_s", "from output-error"),
         ("kvlcc2_hsva", "zigzag_10_10_s", "from output-error"),
         ("kvlcc2_marin", "zigzag_20", "from output-error"),

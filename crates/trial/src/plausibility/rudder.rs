@@ -4,6 +4,7 @@ use document::{Code, Warning};
 use estimation::statistics::median;
 use ship::angle::to_deg;
 
+use super::motion::{changes, extremes};
 use crate::channel::Channel;
 use crate::record::Trial;
 
@@ -19,6 +20,18 @@ const RUDDER_RATES_DEG_S: std::ops::RangeInclusive<f64> = 0.3..=100.0;
 /// Share of the movements that are steps where the column is an order.
 const STEPS_OF_AN_ORDER: f64 = 0.8;
 
+/// What a step may have beside it: so many times the noise, and at most this share of the movement.
+const BESIDE_A_STEP: (f64, f64) = (8.0, 0.1);
+
+/// A rudder that goes no further to the other side is on one side alone, deg.
+const ONE_SIDED_DEG: f64 = 1.0;
+
+/// Shares of its largest angle below and above which such a rudder is back at its zero, and laid.
+const DIP: [f64; 2] = [0.35, 0.75];
+
+/// Share of all turning that goes to either side where a ship turns to both.
+const BOTH_SIDES: f64 = 0.25;
+
 /// How far the recorded angle may be from the order it holds, as a share of the order.
 const FEEDBACK_ERROR: f64 = 0.1;
 
@@ -30,9 +43,33 @@ pub(super) fn rudder_movements(trial: &Trial) -> impl Iterator<Item = Warning> {
     let strokes = strokes(trial.time(), trial.rudder());
     let against_order = match trial.channel(Channel::RudderOrder) {
         Some(order) => feedback(trial, order),
-        None => steps(&strokes),
+        None => steps(&strokes, noise_deg(trial.rudder())),
     };
-    [against_order, clock_of_rudder(&strokes), held(trial)].into_iter().flatten()
+    [against_order, clock_of_rudder(&strokes), held(trial), unsigned(trial)].into_iter().flatten()
+}
+
+/// A rudder that goes to one side alone, time and again, while the ship turns to both.
+fn unsigned(trial: &Trial) -> Option<Warning> {
+    let rudder = trial.rudder();
+    let (low, high) = extremes(rudder.iter().copied());
+    let (turns, back) = changes(trial.time(), trial.heading())
+        .fold((0.0, 0.0), |(one, other): (f64, f64), (turn, _)| (one + turn.max(0.0), other - turn.min(0.0)));
+    let is_one_sided = to_deg(low) > -ONE_SIDED_DEG && to_deg(high) > STROKE_DEG;
+    let mut levels: Vec<bool> = rudder
+        .iter()
+        .filter(|delta| **delta < DIP[0] * high || **delta > DIP[1] * high)
+        .map(|delta| *delta > DIP[1] * high)
+        .collect();
+    levels.dedup();
+    (is_one_sided && levels.len() >= 6 && turns.min(back) > BOTH_SIDES * (turns + back)).then(|| {
+        Code::RudderSign.warning(format!(
+            "the rudder is never negative (from {:.1}° to {:.1}°) while the ship turns to both sides: it has lost its sign, or its zero is at \
+             one end; give the side with it, as in `P 10.0` or a column of sides, or write `zero` or `formula` for its column in a \
+             sidecar NAME.trial.toml",
+            to_deg(low),
+            to_deg(high)
+        ))
+    })
 }
 
 /// A rudder that is held where no rudder is, or at a usual order in per cent of its stop.
@@ -61,11 +98,14 @@ fn in_per_cent(held_deg: f64) -> Option<f64> {
     (usual_deg > 0.0 && (order_deg - usual_deg).abs() < 0.04).then_some(usual_deg)
 }
 
-/// A movement of the rudder to one side that a steering gear makes: way, deg, time it took, s, and in how many rows.
+/// A movement of the rudder to one side that a steering gear makes: way, deg, time it took, s, and in how many rows;
+/// the largest change between two of them, deg, and its time, s.
 struct RudderStroke {
     way_deg: f64,
     took_s: f64,
     rows: usize,
+    largest_deg: f64,
+    largest_took_s: f64,
 }
 
 /// The movements of the rudder over more than [`STROKE_DEG`].
@@ -76,16 +116,29 @@ fn strokes(time: &[f64], rudder: &[f64]) -> Vec<RudderStroke> {
         let from = first;
         first += run.len();
         let way_deg = to_deg((rudder[first] - rudder[from]).abs());
-        RudderStroke { way_deg, took_s: time[first] - time[from], rows: run.len() }
+        let largest = (from..first).max_by(|one, other| changes[*one].abs().total_cmp(&changes[*other].abs()));
+        let row = largest.unwrap_or(from);
+        let (largest_deg, largest_took_s) = (to_deg(changes[row].abs()), time[row + 1] - time[row]);
+        RudderStroke { way_deg, took_s: time[first] - time[from], rows: run.len(), largest_deg, largest_took_s }
     });
     runs.filter(|stroke| stroke.way_deg >= STROKE_DEG).collect()
 }
 
-/// Steps in place of movements: an order under the name of the angle.
-fn steps(strokes: &[RudderStroke]) -> Option<Warning> {
-    let is_step = |stroke: &&RudderStroke| stroke.rows == 1 && stroke.way_deg > FASTEST_RUDDER_DEG_S * stroke.took_s;
+/// The usual size of a change between two rows, deg: noise, and nothing for a rudder that rests.
+fn noise_deg(rudder: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = rudder.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    to_deg(1.4826 * median(&mut sizes).unwrap_or(0.0))
+}
+
+/// Steps in place of movements: an order under the name of the angle. Beside a step there may be noise.
+fn steps(strokes: &[RudderStroke], noise_deg: f64) -> Option<Warning> {
+    let is_step = |stroke: &&RudderStroke| {
+        let beside_deg = stroke.way_deg - stroke.largest_deg;
+        beside_deg <= (BESIDE_A_STEP.0 * noise_deg).min(BESIDE_A_STEP.1 * stroke.way_deg)
+            && stroke.largest_deg > FASTEST_RUDDER_DEG_S * stroke.largest_took_s
+    };
     let steps: Vec<&RudderStroke> = strokes.iter().filter(is_step).collect();
-    let slowest_deg_s = steps.iter().map(|step| step.way_deg / step.took_s).fold(f64::INFINITY, f64::min);
+    let slowest_deg_s = steps.iter().map(|step| step.largest_deg / step.largest_took_s).fold(f64::INFINITY, f64::min);
     (steps.len() >= 2 && steps.len() as f64 >= STEPS_OF_AN_ORDER * strokes.len() as f64).then(|| {
         Code::RudderOrder.warning(format!(
             "the rudder jumps from one row to the next in {} of {} movements, at {slowest_deg_s:.0}°/s or more, while steering gears \
@@ -141,13 +194,18 @@ mod tests {
     /// What is said of a rudder that goes to and fro between ±20° at a rate (deg/s), read every `step` s, and of its
     /// order.
     fn told(rate_deg_s: f64, step: f64, scale: f64, with_order: bool) -> String {
+        told_of(rate_deg_s, step, with_order, |_, angle| scale * angle)
+    }
+
+    /// The same of a rudder that is read through a change, by row and angle, deg.
+    fn told_of(rate_deg_s: f64, step: f64, with_order: bool, read: impl Fn(usize, f64) -> f64) -> String {
         let rows = 400;
         let time: Vec<f64> = (0..rows).map(|row| f64::from(row) * step).collect();
         let order = |t: f64| -> f64 { if ((t / (100.0 * step)) as usize).is_multiple_of(2) { 20.0 } else { -20.0 } };
         let mut angle = 0.0;
-        let rudder = time.iter().map(|&t| {
+        let rudder = time.iter().enumerate().map(|(row, &t)| {
             angle += (order(t) - angle).clamp(-rate_deg_s * step, rate_deg_s * step);
-            scale * from_deg(angle)
+            from_deg(read(row, angle))
         });
         let mut channels = std::collections::BTreeMap::from([(Channel::Rudder, rudder.collect::<Vec<f64>>())]);
         channels.insert(Channel::Heading, time.iter().map(|t| 0.1 * (t / (50.0 * step)).sin()).collect());
@@ -170,6 +228,14 @@ mod tests {
         // Minutes for seconds, and minutes and seconds for hours and minutes.
         assert!(told(150.0, 1.0 / 60.0, 1.0, false).contains("check the unit of the time"));
         assert!(told(2.5 / 60.0, 60.0, 1.0, false).contains("check the unit of the time"));
+        // The order with the noise of a converter, and the angle with it.
+        let noise = |rate: f64, step: f64| {
+            told_of(rate, step, false, |row, angle| angle + 0.1 * ((row * row) as f64 * 0.618_034).fract())
+        };
+        assert!([1.0, 0.5].into_iter().all(|step| noise(1e9, step).contains("looks like the order")));
+        assert_eq!([noise(2.5, 1.0), noise(5.0, 0.5)].concat(), "");
+        let unsigned = |rate: f64| told_of(rate, 1.0, false, |_, angle| angle.abs());
+        assert!(unsigned(2.5).contains("is never negative"));
         assert!(told(2.5, 1.0, 0.85, true).contains("comes to 0.85 of its order"));
         assert_eq!(told(2.5, 1.0, 1.02, true), "");
         assert!(told(7.0, 1.0, 57.0 / 20.0, false).contains("per cent"));

@@ -16,6 +16,9 @@ use estimation::statistics::upper_median;
 /// Longest way between two readings over which a channel runs straight, in its usual intervals.
 const LONGEST_WAY: f64 = 3.0;
 
+/// Share of the rows that may be left out for a rudder without a doubt.
+const MANY: f64 = 0.2;
+
 /// Instants nearer than this are one, s.
 const SAME: f64 = 1e-6;
 
@@ -140,7 +143,9 @@ pub(super) fn straight_rudder(columns: &mut Columns) -> Option<Warning> {
     ];
     let told = told.into_iter().filter(|(count, _)| *count > 0);
     let told = told.map(|(count, text)| format!("{} {text}", counted(count, "row"))).collect::<Vec<_>>();
-    Some(Code::LeftOut.warning(told.join("; ")))
+    // Where many are left out, nobody knows what the rudder did.
+    let code = if left_out as f64 > MANY * keep.len() as f64 { Code::Gap } else { Code::LeftOut };
+    Some(code.warning(told.join("; ")))
 }
 
 /// Refuses channels whose readings have no time in common, and names what is missing altogether.

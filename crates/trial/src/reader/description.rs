@@ -26,7 +26,7 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     let open = || match input::open(path).map_err(fault)? {
         (Content::Table(table), _) => Ok(table),
-        (Content::Sentences(_), _) => Err(fault(Problem::NeedsNoSidecar)),
+        (Content::Sentences(_) | Content::Messages(..), _) => Err(fault(Problem::NeedsNoSidecar)),
     };
     let table = open()?;
     let declared = table.is_made.then_some(Separator::Tab);

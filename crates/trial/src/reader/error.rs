@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use ship::ShortNumber;
 use thiserror::Error;
 
 use crate::channel::Channel;
@@ -38,6 +39,11 @@ impl ReadError {
             }
         }
     }
+}
+
+/// What a sidecar says of an angle in degrees.
+fn is_angle(quantity: &str) -> String {
+    format!(" is = \"{}_deg\"", quantity.split(' ').next().unwrap_or_default())
 }
 
 /// What is wrong with a table. Lines count from 1 as editors do.
@@ -109,7 +115,7 @@ pub enum Problem {
     )]
     TwoClocks { other: PathBuf, stamped: bool },
     /// A file that speaks for itself.
-    #[error("this file holds sentences (NMEA 0183), which say themselves what they hold; it needs no sidecar")]
+    #[error("this file holds sentences or messages (NMEA), which say themselves what they hold; it needs no sidecar")]
     NeedsNoSidecar,
     /// A format that is recognised and not read.
     #[error("this is {format}; {cure}")]
@@ -127,6 +133,36 @@ pub enum Problem {
         channel.accepted_names(), channel.column_name()
     )]
     OpenUnit { line: usize, column: String, quantity: &'static str, largest: f64, channel: Channel },
+    /// Tenths or hundredths of a degree.
+    #[error(
+        "line {line}: the {quantity} `{column}` has whole numbers up to {largest}, which are no degrees: they look like {} of a degree; \
+         write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = {scale}{}",
+        if *parts == 10.0 { "tenths" } else { "hundredths" },
+        is_angle(quantity)
+    )]
+    Parts { line: usize, column: String, quantity: &'static str, largest: f64, parts: f64, scale: f64 },
+    /// Counts of a converter.
+    #[error(
+        "line {line}: the {quantity} `{column}` has whole numbers from {low} to {high}, which are not degrees: they look like counts of \
+         a converter about {zero}; write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" zero = {zero} scale = 0.1{}, with \
+         the count at rudder amidships and the degrees of one count, from the two stops",
+        is_angle(quantity)
+    )]
+    Counts { line: usize, column: String, quantity: &'static str, low: f64, high: f64, zero: f64 },
+    /// Neither degrees nor parts of them.
+    #[error(
+        "line {line}: the {quantity} `{column}` reaches {}, which no rudder does in degrees; if its numbers are on another scale, \
+         write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = 0.1{}, with the degrees of one of them",
+        ShortNumber::rounded(*largest, 6),
+        is_angle(quantity)
+    )]
+    NoAngle { line: usize, column: String, quantity: &'static str, largest: f64 },
+    /// Milliseconds under a name that says seconds.
+    #[error(
+        "line {line}: the time `{column}` begins at {first}, which as seconds is after the year 2100, and as {unit} a date of these \
+         days; name it t_{unit}, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_{unit}\""
+    )]
+    EpochUnit { line: usize, column: String, first: f64, unit: &'static str },
     /// A time without a unit that cannot be seconds.
     #[error(
         "line {line}: the time `{column}` has no unit, and no ship answers its rudder like that in seconds; name it t_s, t_ms or t_min, \

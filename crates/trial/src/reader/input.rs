@@ -10,6 +10,7 @@ use super::columnar::Kind;
 use super::error::Problem;
 use super::limits::RECORD;
 use super::lines::{Hash, Hashed};
+use super::messages::{self, MessageFormat};
 use super::nmea;
 use crate::file::{self, FileError, Limited};
 
@@ -31,6 +32,8 @@ pub(super) enum Content<'a> {
     Table(Text<'a>),
     /// Sentences, one a line.
     Sentences(Text<'a>),
+    /// Messages, one a line.
+    Messages(Text<'a>, MessageFormat),
 }
 
 impl Problem {
@@ -52,7 +55,7 @@ pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Probl
     let file = file::open(path, RECORD)?;
     let size = file.size;
     let content = recognise(Box::new(file))?;
-    let plain = matches!(&content, Content::Table(text) | Content::Sentences(text) if text.on_disk.is_none());
+    let plain = matches!(&content, Content::Table(text) | Content::Sentences(text) | Content::Messages(text, _) if text.on_disk.is_none());
     Ok((content, size.filter(|_| plain)))
 }
 
@@ -91,10 +94,16 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
         [0x89, b'H', b'D', b'F', ..] => refused(MATLAB_7_3, AS_LEVEL_5),
         start if start.starts_with(b"MATLAB 7.3") => refused(MATLAB_7_3, AS_LEVEL_5),
         start => {
-            let mut lines = start.split(|&byte| byte == b'\n').take(LOOKED_AT.1);
-            let has_sentence = lines.any(|line| nmea::is_sentence(&String::from_utf8_lossy(line)));
+            let text = String::from_utf8_lossy(start);
+            let lines = text.lines().take(LOOKED_AT.1);
+            let has_sentence = lines.clone().any(nmea::is_sentence);
+            let format = if has_sentence { None } else { messages::format(lines) };
             let text = Text { bytes, on_disk, is_made: false };
-            Ok(if has_sentence { Content::Sentences(text) } else { Content::Table(text) })
+            Ok(match format {
+                _ if has_sentence => Content::Sentences(text),
+                Some(format) => Content::Messages(text, format),
+                None => Content::Table(text),
+            })
         }
     }
 }

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use document::{Code, Warning};
+use ship::effects::ColumnFormula;
 
 use super::error::{Problem, ReadError};
 use super::head::Head;
@@ -23,7 +24,7 @@ pub(super) enum Content {
     Stamp,
     /// The dates that belong to stamps of the time of day.
     Date,
-    /// A channel; the factor to SI units, negative where the sign is changed.
+    /// A channel; the factor to SI units, with the scale of the column.
     Channel(Channel, f64),
     /// Latitude, rad.
     Latitude,
@@ -63,11 +64,18 @@ pub(super) struct RawColumn {
     /// Whether its unit has to be found from its values; until then they are in the unit files are written in.
     pub open: bool,
     claim: Option<(ColumnMeaning, Rank)>,
-    sign: f64,
+    scale: f64,
+    /// The number at zero.
+    pub zero: f64,
     /// The last number, as it stands in the file.
     pub last: Option<f64>,
     /// The largest number, without its sign.
     pub largest: f64,
+    /// The longest way between two numbers, and whether all are whole.
+    pub largest_step: f64,
+    pub is_whole: bool,
+    /// Cells with the word for a side.
+    pub sides: usize,
     /// How often there was a number that stands for no reading, and the last such number.
     pub sentinels: (usize, f64),
     /// Cells with text.
@@ -76,6 +84,33 @@ pub(super) struct RawColumn {
 }
 
 impl RawColumn {
+    fn new(name: &str, claim: Option<(ColumnMeaning, Rank)>) -> Self {
+        Self {
+            name: name.to_owned(),
+            content: Content::Unknown,
+            open: false,
+            claim,
+            scale: 1.0,
+            zero: 0.0,
+            last: None,
+            largest: 0.0,
+            largest_step: 0.0,
+            is_whole: true,
+            sides: 0,
+            sentinels: (0, 0.0),
+            text: 0,
+            values: Vec::new(),
+        }
+    }
+
+    /// Takes note of a number as it stands in the file.
+    pub fn note(&mut self, number: f64) {
+        self.largest_step = self.largest_step.max((number - self.last.unwrap_or(number)).abs());
+        self.is_whole &= number.fract() == 0.0;
+        self.last = Some(number);
+        self.largest = self.largest.max(((number - self.zero) * self.scale).abs());
+    }
+
     fn claims(&self, wanted: impl Fn(ColumnMeaning) -> bool) -> bool {
         self.claim.is_some_and(|(said, _)| wanted(said))
     }
@@ -85,6 +120,10 @@ impl RawColumn {
 #[derive(Debug)]
 pub(super) struct Layout {
     pub columns: Vec<RawColumn>,
+    /// How many of them are cells of a row; those behind are worked out.
+    pub cells: usize,
+    /// What the columns behind are worked out of: the places of the others in the order of the names.
+    pub formulas: Vec<(ColumnFormula, Vec<usize>)>,
     /// The ordered rudder angle stands for the rudder angle, because there is no other.
     order_is_rudder: bool,
     /// Where the names stand.
@@ -103,20 +142,13 @@ impl Layout {
     /// the table of a whole record rudder or both heading and yaw rate are absent.
     pub fn new(head: &Head, table: &Path, sidecar: &Sidecar, whole: bool) -> Result<Self, ReadError> {
         let rebuilt = sidecar.table.time_step_s.is_some();
-        let column = |(place, name): (usize, &String)| RawColumn {
-            name: name.clone(),
-            content: Content::Unknown,
-            open: false,
-            claim: claim(name, head.unit(place)).filter(|_| sidecar.has_header()),
-            sign: 1.0,
-            last: None,
-            largest: 0.0,
-            sentinels: (0, 0.0),
-            text: 0,
-            values: Vec::new(),
+        let column = |(place, name): (usize, &String)| {
+            RawColumn::new(name, claim(name, head.unit(place)).filter(|_| sidecar.has_header()))
         };
         let mut layout = Self {
             columns: head.names.iter().enumerate().map(column).collect(),
+            cells: head.names.len(),
+            formulas: Vec::new(),
             order_is_rudder: false,
             line: head.line,
             understood: Vec::new(),
@@ -175,6 +207,7 @@ impl Layout {
     /// Lets the sidecar speak: its words replace the meaning of the names.
     fn describe(&mut self, table: &Path, sidecar: &Sidecar) -> Result<(), ReadError> {
         let mut seen = vec![false; self.columns.len()];
+        // A formula names columns of the table: those before it.
         for described in &sidecar.columns {
             let fault = |problem| Err(ReadError::from(sidecar.error(described.line, problem)));
             let table = table.to_path_buf();
@@ -190,13 +223,29 @@ impl Layout {
                         return fault(SidecarProblem::NameNotFound { name, table, found });
                     }
                 },
+                Which::Formula(formula) => {
+                    let place = |name: &String| {
+                        let place = self.columns[..self.cells].iter().position(|column| column.name == *name);
+                        place.ok_or_else(|| name.clone())
+                    };
+                    match formula.names().iter().map(place).collect() {
+                        Ok(places) => self.formulas.push((formula.clone(), places)),
+                        Err(name) => {
+                            let found = self.names();
+                            return fault(SidecarProblem::NameNotFound { name, table, found });
+                        }
+                    }
+                    self.columns.push(RawColumn::new("formula", None));
+                    seen.push(false);
+                    self.columns.len() - 1
+                }
             };
             let column = &mut self.columns[place];
             let name = column.name.clone();
             if std::mem::replace(&mut seen[place], true) {
                 return fault(SidecarProblem::DescribedTwice { name });
             }
-            column.sign = if described.flip { -1.0 } else { 1.0 };
+            (column.scale, column.zero) = (described.scale, described.zero);
             match (described.meaning, &mut column.claim) {
                 _ if described.ignore => (column.content, column.claim) = (Content::Ignored, None),
                 (Some(meaning), claim) => *claim = Some((meaning, Rank::Described)),
@@ -234,7 +283,7 @@ impl Layout {
                 continue;
             }
             let factor = unit.unwrap_or(channel.written_unit()).to_si();
-            let content = |sign: f64| Content::Channel(channel, sign * factor);
+            let content = |scale: f64| Content::Channel(channel, scale * factor);
             self.settle(place, rank, unit, content);
         }
         for column in &mut self.columns {
@@ -249,7 +298,7 @@ impl Layout {
 
     fn settle(&mut self, place: usize, rank: Rank, unit: Option<Unit>, content: impl Fn(f64) -> Content) {
         let column = &mut self.columns[place];
-        column.content = content(column.sign);
+        column.content = content(column.scale);
         column.open = unit.is_none() && column.content != Content::Stamp;
         if rank >= Rank::Usual {
             self.understood.push(column.name.clone());
@@ -306,7 +355,7 @@ impl Layout {
                     self.columns[date].content = Content::Date;
                 }
             }
-            None => self.settle(place, rank, unit, |sign| Content::Time(sign * unit.map_or(1.0, Unit::to_si))),
+            None => self.settle(place, rank, unit, |scale| Content::Time(scale * unit.map_or(1.0, Unit::to_si))),
         }
         Ok(())
     }

@@ -10,6 +10,7 @@ use super::assemble::{check, columns, complete, once, series, straight_rudder};
 use super::error::{Problem, ReadError};
 use super::input::{self, Content};
 use super::lines::{self, Lines};
+use super::messages;
 use super::nmea;
 use super::rudder;
 use super::source::{Log, Series};
@@ -83,18 +84,18 @@ impl Log {
         whole: bool,
     ) -> Result<Self, ReadError> {
         let sidecar = sidecar.unwrap_or_default();
-        let (Content::Table(text) | Content::Sentences(text)) = &content;
+        let (Content::Table(text) | Content::Sentences(text) | Content::Messages(text, _)) = &content;
         let on_disk = text.on_disk.clone();
         let log = match content {
             Content::Table(text) => table::read(path, text, size, &sidecar, whole)?,
-            Content::Sentences(_) if !sidecar.columns.is_empty() => {
+            _ if !sidecar.columns.is_empty() => {
                 return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
             }
             Content::Sentences(text) => {
-                let read = nmea::read(Lines::new(text.bytes, Encoding::Utf8))
-                    .map(|(series, log)| of_sentences(series, log, &sidecar));
-                let checked = read.and_then(|log| if whole { check(&log.columns).map(|()| log) } else { Ok(log) });
-                checked.map_err(|problem| ReadError::table(path, problem))?
+                of_series(path, nmea::read(Lines::new(text.bytes, Encoding::Utf8)), &sidecar, whole)?
+            }
+            Content::Messages(text, format) => {
+                of_series(path, messages::read(Lines::new(text.bytes, Encoding::Utf8), &format), &sidecar, whole)?
             }
         };
         let sha256 = on_disk.map_or(log.sha256, lines::Hash::finish);
@@ -132,6 +133,7 @@ impl Log {
             of_file(Code::Instrument.warning(text))
         }));
         self.columns = columns(all);
+        self.names.extend(joined.names);
         self.sha256 = joined_hash(&self.sha256, &joined.sha256);
         self.rows += joined.rows;
         Ok(())
@@ -206,7 +208,7 @@ impl Log {
     ///
     /// Fails when it has too few rows, or contradicts itself ([`plausibility`]).
     pub fn into_trial(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
-        let Self { path, columns, sha256, rows, sidecar, mut warnings, part, mut rejected, .. } = self;
+        let Self { path, columns, sha256, rows, sidecar, mut warnings, part, mut rejected, names, .. } = self;
         let (first, last) = (columns.time.first().copied(), columns.time.last().copied());
         rejected.retain(|reading| first <= Some(reading.time) && Some(reading.time) <= last);
         let fault = |problem| ReadError::table(&path, problem);
@@ -228,7 +230,16 @@ impl Log {
         if let Some(particulars) = ship.or(sidecar.conditions.particulars) {
             trial = trial.with_particulars(particulars);
         }
-        let trial = trial.with_noise(sidecar.noise).with_rejected(rejected).with_conditions(sidecar.conditions);
+        trial = trial.with_noise(sidecar.noise).with_rejected(rejected).with_conditions(sidecar.conditions);
+        if checked {
+            warnings.extend(plausibility::readings::check(&trial, &names));
+        }
+        if checked && plausibility::derivative::is_derivative(&trial) {
+            trial = trial.without(&[Channel::YawRate]);
+            let text = "the yaw rate is the derivative of the heading, with its noise and jumps: it is no second instrument and is \
+                        not counted";
+            warnings.push(Code::YawRate.warning(text));
+        }
         match plausibility::check(&trial) {
             Ok(found) => warnings.extend(found),
             Err(implausible) if !checked => warnings.push(Code::Implausible.warning(implausible.to_string())),
@@ -254,6 +265,18 @@ fn joined_hash(one: &str, other: &str) -> String {
     lines::sha256(format!("{one} {other}").as_bytes())
 }
 
+/// The log of sentences or messages that were read; `whole` says whether it has to hold a whole record.
+fn of_series(
+    path: &Path,
+    read: Result<(Vec<Series>, Log), Problem>,
+    sidecar: &Sidecar,
+    whole: bool,
+) -> Result<Log, ReadError> {
+    let log = read.map(|(series, log)| of_sentences(series, log, sidecar));
+    let checked = log.and_then(|log| if whole { check(&log.columns).map(|()| log) } else { Ok(log) });
+    checked.map_err(|problem| ReadError::table(path, problem))
+}
+
 /// Channels with instants of their own, each cleaned by itself, and of them the part that the sidecar asks for.
 fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
     let cleaned = series.into_iter().map(|Series { channel, time, mut values }| {
@@ -262,6 +285,7 @@ fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
         }
         let mut own = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
         if sidecar.is_checked() {
+            log.warnings.extend(rudder::hold(&mut own));
             log.warnings.extend(cleaning::clean(&mut own, &mut log.rejected));
         }
         Series { channel, values: own.channels.remove(&channel).unwrap_or_default(), time: own.time }

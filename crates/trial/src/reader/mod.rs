@@ -12,6 +12,7 @@
 
 mod assemble;
 mod columnar;
+mod counts;
 mod description;
 mod error;
 mod head;
@@ -21,6 +22,7 @@ mod layout;
 mod limits;
 mod lines;
 mod log;
+mod messages;
 mod nmea;
 mod position;
 mod rows;

@@ -204,7 +204,7 @@ impl<'a> Rows<'a> {
 
     /// Cells to numbers in SI units, into `self.row`.
     fn parse(&mut self, line: &str, number: usize) -> Result<(), Problem> {
-        let (found, expected) = (self.cells.len(), self.row.len());
+        let (found, expected) = (self.cells.len(), self.layout.cells);
         let surplus = self.cells.get(expected..).is_some_and(|rest| rest.iter().any(|cell| !cell.is_empty()));
         // With blanks between the cells nobody can tell which one is missing.
         if surplus || (found < expected && self.separator == Separator::Blank) {
@@ -212,7 +212,7 @@ impl<'a> Rows<'a> {
         }
         self.counts.short += usize::from(found < expected);
         let checked = self.sidecar.is_checked();
-        for (place, column) in self.layout.columns.iter_mut().enumerate() {
+        for (place, column) in self.layout.columns[..expected].iter_mut().enumerate() {
             let text = self.cells.get(place).map_or("", |range| &line[range.clone()]);
             let (channel, factor) = match column.content {
                 Content::Channel(channel, factor) => (Some(channel), factor),
@@ -225,6 +225,11 @@ impl<'a> Rows<'a> {
                 Cell::Text => side(text, channel, self.separator).map_or(Cell::Text, Cell::Number),
                 read => read,
             };
+            if let (Cell::Text, Content::Unknown, Some(sign)) = (read, column.content, side_word(text)) {
+                column.sides += 1;
+                self.row[place] = sign;
+                continue;
+            }
             self.counts.decimal_commas += usize::from(matches!(read, Cell::CommaNumber(_)));
             self.row[place] = match read {
                 Cell::Number(value) | Cell::CommaNumber(value)
@@ -234,9 +239,8 @@ impl<'a> Rows<'a> {
                     f64::NAN
                 }
                 Cell::Number(value) | Cell::CommaNumber(value) => {
-                    column.last = Some(value);
-                    column.largest = column.largest.max(value.abs());
-                    value * factor
+                    column.note(value);
+                    (value - column.zero) * factor
                 }
                 Cell::Missing => f64::NAN,
                 Cell::Text if column.content == Content::Unknown => {
@@ -249,7 +253,25 @@ impl<'a> Rows<'a> {
                 }
             };
         }
+        self.work_out(line);
         Ok(())
+    }
+
+    /// Works out the columns that are none of the table.
+    fn work_out(&mut self, line: &str) {
+        let Layout { columns, cells: first, formulas, .. } = &mut self.layout;
+        for (column, (place, (formula, sources))) in columns[*first..].iter_mut().zip((*first..).zip(formulas.iter())) {
+            let number = |place: &usize| {
+                let text = self.cells.get(*place).map_or("", |range| &line[range.clone()]);
+                cell(text, self.separator).number().unwrap_or(f64::NAN)
+            };
+            let value = formula.value(&sources.iter().map(number).collect::<Vec<_>>());
+            let Content::Channel(_, factor) = column.content else { continue };
+            if value.is_finite() {
+                column.note(value);
+            }
+            self.row[place] = (value - column.zero) * factor;
+        }
     }
 
     /// Whether the row comes after the one before. A row that repeats the one before in every value does not, nor does
@@ -305,6 +327,16 @@ impl<'a> Rows<'a> {
         self.row[place] = pair[1];
         self.last_heading = Some(pair[1]);
     }
+}
+
+/// The sign of a word for a side: port is negative.
+fn side_word(text: &str) -> Option<f64> {
+    const PORT: [&str; 8] = ["p", "port", "l", "left", "bb", "backbord", "babord", "bâbord"];
+    const STARBOARD: [&str; 10] =
+        ["s", "stbd", "starboard", "r", "right", "stb", "sb", "steuerbord", "tribord", "styrbord"];
+    let word = text.trim_end_matches('.').to_lowercase();
+    let is_of = |words: &[&str]| words.contains(&word.as_str());
+    if is_of(&PORT) { Some(-1.0) } else { is_of(&STARBOARD).then_some(1.0) }
 }
 
 /// A rudder angle with its side (`P 10.5`, `10.5 S`, `10L`; port is negative), or an angle with its sign (`10.5°`).

@@ -1,10 +1,75 @@
-//! What a sidecar says of the rudder: that it is read late, or that its column is the order.
+//! What is done with the rudder before it is that of a record: one that was written on change holds its value, and what
+//! a sidecar says of it: that it is read late, or that its column is the order.
 
+use document::{Code, Warning};
+use estimation::statistics::median;
 use ship::angle::from_deg;
 
 use super::assemble;
+use super::source::Series;
 use crate::channel::Channel;
 use crate::record::Columns;
+
+/// Fewest readings, fewest long rests between them, and how many usual intervals a long rest has, where a rudder is
+/// written on change.
+const ON_CHANGE: (usize, usize, f64) = (20, 2, 5.0);
+
+/// The smallest change of a rudder that is written on change, of its usual one: noise has nearly none.
+const LEAST_CHANGE: f64 = 0.3;
+
+/// Most readings that are put into one rest.
+const MOST_HELD: f64 = 1000.0;
+
+/// Holds a rudder that was written on change: between two readings it has the value before, at the usual interval.
+/// `None` where it is written otherwise.
+///
+/// Written on change, no reading repeats the one before, and over a long rest the rudder goes no further than between
+/// two rows of a movement.
+pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
+    let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(|own| columns.channels.contains_key(own))?;
+    let values = &columns.channels[&channel];
+    let read: Vec<usize> = (0..values.len()).filter(|&row| values[row].is_finite()).collect();
+    if read.len() < ON_CHANGE.0 {
+        return None;
+    }
+    let steps = read.windows(2).map(|rows| (columns.time[rows[1]] - columns.time[rows[0]], rows));
+    let steps: Vec<(f64, f64)> = steps.map(|(step, rows)| (step, (values[rows[1]] - values[rows[0]]).abs())).collect();
+    let usual = median(&mut steps.iter().map(|(step, _)| *step).collect::<Vec<_>>())?;
+    let is_rest = |(step, _): &&(f64, f64)| *step > ON_CHANGE.2 * usual;
+    let largest = steps.iter().filter(|step| !is_rest(step)).map(|(_, change)| *change).fold(0.0, f64::max);
+    let mut changes: Vec<f64> = steps.iter().map(|(_, change)| *change).collect();
+    let typical = median(&mut changes)?;
+    let small = changes.iter().filter(|change| **change < LEAST_CHANGE * typical).count();
+    let rests: Vec<f64> = steps.iter().filter(is_rest).map(|(_, change)| *change).collect();
+    let is_held = rests.len() >= ON_CHANGE.1 && rests.iter().all(|change| *change <= 2.0 * largest);
+    let least = changes.iter().copied().fold(f64::INFINITY, f64::min);
+    if least == 0.0 || 20 * small > changes.len() || !is_held {
+        return None;
+    }
+    let mut all = assemble::series(std::mem::take(columns), 0.0);
+    for own in all.iter_mut().filter(|own| own.channel == channel) {
+        let mut held = Series { channel, time: Vec::new(), values: Vec::new() };
+        for (place, (&time, &value)) in own.time.iter().zip(&own.values).enumerate() {
+            held.time.push(time);
+            held.values.push(value);
+            let rest = own.time.get(place + 1).map_or(0.0, |next| next - time);
+            let every = usual.max(rest / MOST_HELD);
+            let between =
+                (1..).map(|step| time + every * f64::from(step)).take_while(|at| *at < time + rest - 0.5 * usual);
+            let points: Vec<f64> = between.collect();
+            held.values.extend(points.iter().map(|_| value));
+            held.time.extend(points);
+        }
+        *own = held;
+    }
+    *columns = assemble::columns(all);
+    Some(Code::FaultyReadings.warning(format!(
+        "the {} is written on change: its empty cells hold the last value until the next one, and so it is read; a change that is too \
+         small to be written (here below {:.2}°) is missing from it",
+        channel.spoken(),
+        least.to_degrees(),
+    )))
+}
 
 /// The columns if every reading of the rudder was made `late` seconds before: rows are the instants of all readings.
 pub(super) fn earlier(columns: Columns, late: f64) -> Columns {

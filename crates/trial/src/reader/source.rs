@@ -38,4 +38,6 @@ pub struct Log {
     pub warnings: Vec<Warning>,
     /// Readings taken as missing or told as doubtful.
     pub(super) rejected: Vec<RejectedReading>,
+    /// The columns that channels come from.
+    pub(super) names: Vec<(Channel, String)>,
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use document::{Code, Warning};
 
+use super::counts;
 use super::error::{Problem, ReadError};
 use super::head;
 use super::input::Text;
@@ -15,6 +16,7 @@ use super::limits::no_rows;
 use super::lines::Lines;
 use super::position::plane;
 use super::rows::Rows;
+use super::rudder;
 use super::source::Log;
 use super::units::{self, UnitlessColumn};
 use crate::cells::Separator;
@@ -57,6 +59,7 @@ pub(super) fn read(
     let mut log = rows.finish(head.passed).map_err(fault)?;
     log.sha256 = lines.sha256();
     if sidecar.is_checked() {
+        log.warnings.extend(rudder::hold(&mut log.columns));
         log.warnings.extend(cleaning::clean(&mut log.columns, &mut log.rejected));
     }
     Ok(log)
@@ -74,10 +77,14 @@ impl Rows<'_> {
         if self.stamps.is_some() {
             warnings.extend(self.spread_stamps());
         }
+        if self.sidecar.is_checked() {
+            self.check_numbers()?;
+            warnings.extend(counts::take_side(&mut self.layout.columns));
+        }
         let Layout { columns, understood, .. } = self.layout;
         let open_time = self.time_place.map(|place| &columns[place]).filter(|column| column.open);
         let open_time = open_time.map(|column| column.name.clone());
-        let (mut channels, mut unknown, mut open) = (BTreeMap::new(), Vec::new(), Vec::new());
+        let (mut channels, mut unknown, mut open, mut names) = (BTreeMap::new(), Vec::new(), Vec::new(), Vec::new());
         let [mut latitude, mut longitude] = [None, None];
         for column in columns.into_iter().filter(|column| column.content.is_kept()) {
             let RawColumn { name, content, values, largest, .. } = column;
@@ -90,6 +97,7 @@ impl Rows<'_> {
                 }
                 Content::Channel(channel, _) => {
                     channels.insert(channel, values);
+                    names.push((channel, name.clone()));
                     open.extend(column.open.then_some(UnitlessColumn { channel, name, largest }));
                 }
                 Content::Latitude => latitude = Some(values),
@@ -105,7 +113,7 @@ impl Rows<'_> {
         }
         let clock = self.stamps.as_ref().and_then(Stamps::clock);
         let columns = Columns { time: self.time, channels, unknown };
-        let mut log = Log { columns, clock, rows: self.counts.rows, ..Log::default() };
+        let mut log = Log { columns, clock, rows: self.counts.rows, names, ..Log::default() };
         let decided = units::settle(&mut log, open, open_time, line)?;
         if passed > 0 {
             let text = format!("{} before the header passed over", counted(passed, "line"));
@@ -117,6 +125,16 @@ impl Rows<'_> {
         }
         log.warnings.extend(decided.into_iter().chain(warnings));
         Ok(log)
+    }
+
+    /// Refuses numbers that are no angle or no time in the unit of their column.
+    fn check_numbers(&self) -> Result<(), Problem> {
+        let Layout { columns, line, .. } = &self.layout;
+        let time = self.time_place.map(|place| &columns[place]);
+        if let Some(time) = time.filter(|time| !time.open && time.content == Content::Time(1.0)) {
+            counts::check_time(&time.name, self.time.first().copied().unwrap_or_default(), *line)?;
+        }
+        counts::check(columns, *line)
     }
 
     /// Gives rows that share a stamp their instants, and leaves out those that are thinned; what was decided.

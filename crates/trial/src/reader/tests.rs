@@ -353,6 +353,34 @@ fn a_table_without_header_is_described_by_index() {
 }
 
 #[test]
+fn a_sidecar_scales_columns_and_works_out_others() {
+    let text: String = rows()
+        .iter()
+        .map(|[t, psi, delta]| format!("{t},{psi},{},{},{}\n", 512.0 + 10.0 * delta, delta + 0.5, 0.5 - delta))
+        .collect();
+    let text = format!("t_s,heading_deg,Counts,port,starboard\n{text}");
+    let counts = "[[column]]\nname = \"Counts\"\nis = \"rudder_deg\"\nzero = 512\nscale = 0.1\n";
+    let formula = "[[column]]\nformula = \"(port - starboard) / 2\"\nis = \"rudder_deg\"\n";
+    let sound = parse(simple()).expect("sound").trial;
+    for sidecar in [counts, formula] {
+        let trial = parse_with(&text, sidecar).expect(sidecar).trial;
+        let far = trial.rudder().iter().zip(sound.rudder()).map(|(own, sound)| (own - sound).abs());
+        assert!(far.fold(0.0, f64::max) < 1e-9, "{sidecar}");
+    }
+    let unknown = parse_with(&text, &formula.replace("port", "helm")).expect_err("no such column").to_string();
+    assert!(unknown.contains("no column is called `helm`"), "{unknown}");
+    for (sidecar, part) in [
+        ("formula = \"(port - \"\nis = \"rudder_deg\"", "the formula ends here"),
+        ("formula = \"port\"", "needs `is`"),
+        ("name = \"port\"\nscale = 0\nis = \"rudder_deg\"", "a scale other than 0"),
+    ] {
+        let message = Sidecar::parse(&format!("[[column]]\n{sidecar}\n"), Path::new("run.trial.toml"));
+        let message = message.expect_err(sidecar).to_string();
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+#[test]
 fn speed_comes_from_surge_and_sway_where_it_was_not_recorded() {
     let text: String = simple()
         .lines()

@@ -21,7 +21,7 @@ const RUDDER_EITHER: f64 = 1.6;
 
 /// Least and largest range of the heading over that of the rudder in a zig-zag: factor 56 apart, less than the 57.3
 /// between degrees and radians.
-const ZIG_ZAG: [f64; 2] = [0.25, 14.0];
+pub(super) const ZIG_ZAG: [f64; 2] = [0.25, 14.0];
 
 /// The same where the rudder is laid to one side: course changes and turning circles.
 const TURN: [f64; 2] = [1.0, 500.0];
@@ -33,7 +33,7 @@ const SIX_CIRCLES: f64 = 38.0;
 const SLOWEST_RUDDER: f64 = 3.5e-3;
 
 /// Seconds since 1970 from the years 1990 to 2100.
-const EPOCH: [f64; 2] = [6.3e8, 4.1e9];
+pub(super) const EPOCH: [f64; 2] = [6.3e8, 4.1e9];
 
 /// Days since 1899-12-30, as spreadsheets count, from the years 2000 to 2100.
 const SERIAL_DAY: [f64; 2] = [36_526.0, 73_415.0];

@@ -26,6 +26,9 @@ const BEGUN: f64 = 0.1;
 /// Rudder movement within which an approach counts as steady, as a share of the rudder of the trial.
 const STEADY_RUDDER: f64 = 0.25;
 
+/// Standard deviation of an overshoot beyond which it is not measured, deg.
+const LARGEST_SD_DEG: f64 = 3.0;
+
 /// Fewest headings whose mean is a base course.
 const FEWEST_APPROACH_ROWS: usize = 3;
 
@@ -230,11 +233,15 @@ fn overshoots(executes: &[Execute], first_reversal: usize, end: f64, heading: &H
             let until = executes.get(index + 1).map_or(end, |next| next.time.value);
             let (peak_time, peak) = heading.peak(side, execute.time.value, until)?;
             let peak_heading = Quantity { value: peak.value + heading.origin, ..peak };
+            let angle = peak_heading.minus(execute.heading).scaled(side);
+            if angle.sd.is_some_and(|sd| to_deg(sd) > LARGEST_SD_DEG) {
+                return None;
+            }
             Some(Overshoot {
                 execute: index,
                 peak_time,
                 peak_heading,
-                angle: peak_heading.minus(execute.heading).scaled(side),
+                angle,
                 time_to_check_yaw: peak_time.minus(execute.time),
             })
         })

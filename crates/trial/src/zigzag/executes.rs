@@ -6,6 +6,10 @@ use super::holds::{Hold, LAID};
 use document::Quantity;
 use estimation::statistics::median;
 
+/// Change between two rows with which the rudder is under way, in standard deviations of its noise and as a share of
+/// the movement.
+const UNDER_WAY: (f64, f64) = (4.0, 0.01);
+
 /// A movement of the rudder into a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Movement {
@@ -84,7 +88,16 @@ impl<'a> RudderMovements<'a> {
         let (from, to) = (&self.holds[index - 1], &self.holds[index]);
         let foot = self.foot(from.level, to);
         let window = 0.25 * (self.time[from.last] - self.time[from.first]);
-        let row = foot.min(from.last);
+        // The foot may be under way already: of a short hold such rows would be half of the level.
+        let way = to.level - from.level;
+        let is_under_way = |row: usize| {
+            let step = (self.angle[row] - self.angle[row - 1]) * way.signum();
+            step > (UNDER_WAY.0 * self.noise).max(UNDER_WAY.1 * way.abs())
+        };
+        let mut row = foot.min(from.last);
+        while row > from.first && is_under_way(row) {
+            row -= 1;
+        }
         let first = self.time.partition_point(|&t| t < self.time[row] - window).min(row);
         let before = Level::of(&mut self.angle[first..=row].to_vec()).expect("the row itself is in the window");
         self.movement(before, to)
@@ -203,7 +216,7 @@ pub(crate) fn row_before(time: &[f64], row: usize, by: f64) -> usize {
 }
 
 /// Step of a rounded channel: the smallest distance between two of its values. Next to nothing for one not rounded.
-fn quantum(angle: &[f64]) -> f64 {
+pub(crate) fn quantum(angle: &[f64]) -> f64 {
     let mut values = angle.to_vec();
     values.sort_unstable_by(f64::total_cmp);
     // Values that differ by rounding of the arithmetic are the same.
@@ -275,6 +288,25 @@ mod tests {
             .collect();
         for (start, expected) in starts(&time, &angle).iter().zip([10.0, 40.0, 80.0]) {
             assert!((start.value - expected).abs() < 0.5, "{} for {expected}", start.value);
+        }
+    }
+
+    /// A ship that turns fast has the rudder back before it is at rest for long.
+    #[test]
+    fn a_movement_after_a_short_hold_starts_at_its_corner() {
+        let rate = from_deg(2.5);
+        for rest in [3.0, 5.0, 9.0] {
+            let time: Vec<f64> = (0..120).map(f64::from).collect();
+            // To 20° from 10.4 s on, back after a rest, and over again.
+            let (there, back) = (18.4, 18.4 + rest);
+            let of = |t: f64| {
+                let first = (rate * (t - 10.4)).clamp(0.0, from_deg(20.0));
+                let second = (rate * (t - back)).clamp(0.0, from_deg(40.0));
+                first - second + (rate * (t - 70.0)).clamp(0.0, from_deg(40.0))
+            };
+            assert!(there < back);
+            let angle: Vec<f64> = time.iter().map(|&t| of(t)).collect();
+            assert_relative_eq!(starts(&time, &angle)[1].value, back, epsilon = 1e-6);
         }
     }
 

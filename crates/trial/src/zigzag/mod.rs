@@ -17,6 +17,7 @@ pub mod points;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use executes::quantum;
 pub use findings::{
     BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, STRAIGHT_APPROACH, Side, ZigZag, ZigZagError,
 };

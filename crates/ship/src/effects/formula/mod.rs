@@ -4,6 +4,7 @@
 //! What there is to say of its constants is found by evaluating it. A formula of the list is described, and is a yaw
 //! acceleration or the rudder that acts.
 
+mod columns;
 mod expectation;
 mod found;
 mod parse;
@@ -18,6 +19,7 @@ use estimation::number::Real;
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Places, Prior, Proposal};
 use crate::dynamics::{Measured, Regressor};
 use crate::particulars::Dimension;
+pub use columns::ColumnFormula;
 use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
 use parse::LONGEST;

@@ -32,30 +32,12 @@ fn marked(text: &str, at: usize) -> String {
 ///
 /// Fails where the text is no formula, is too deep, or has too many constants.
 pub fn parse(text: &str, is_moment: bool) -> Result<FormulaProgram, FormulaError> {
-    let mut parser = FormulaParser {
-        letters: text.chars().collect(),
-        at: 0,
-        depth: 0,
-        waiting: 0,
-        program: FormulaProgram::default(),
-    };
-    if let Some(at) = parser.letters.iter().position(|letter| letter.is_control()) {
-        return Err(parser.error(at, "a character that cannot be printed"));
-    }
-    if is_moment {
-        parser.signal(FormulaSignal::Gain)?;
-    }
-    parser.sum()?;
-    match parser.peek() {
-        None => {
-            if is_moment {
-                parser.push(Instruction::Operate(FormulaOperator::Multiply))?;
-            }
-            Ok(parser.program)
-        }
-        Some(')') => Err(parser.error(parser.at, "a bracket that was not opened")),
-        Some(letter) => Err(parser.error(parser.at, format!("`{letter}`, expected an operator or the end"))),
-    }
+    FormulaParser::new(text, false).program(is_moment)
+}
+
+/// Reads a formula whose names are those of columns; they are its constants. Fails as [`parse`] does.
+pub(super) fn parse_columns(text: &str) -> Result<FormulaProgram, FormulaError> {
+    FormulaParser::new(text, true).program(false)
 }
 
 struct FormulaParser {
@@ -64,10 +46,37 @@ struct FormulaParser {
     depth: usize,
     /// Values that wait for an operator.
     waiting: usize,
+    /// Whether every name is that of a column.
+    of_columns: bool,
     program: FormulaProgram,
 }
 
 impl FormulaParser {
+    fn new(text: &str, of_columns: bool) -> Self {
+        let (letters, program) = (text.chars().collect(), FormulaProgram::default());
+        Self { letters, at: 0, depth: 0, waiting: 0, of_columns, program }
+    }
+
+    fn program(mut self, is_moment: bool) -> Result<FormulaProgram, FormulaError> {
+        if let Some(at) = self.letters.iter().position(|letter| letter.is_control()) {
+            return Err(self.error(at, "a character that cannot be printed"));
+        }
+        if is_moment {
+            self.signal(FormulaSignal::Gain)?;
+        }
+        self.sum()?;
+        match self.peek() {
+            None => {
+                if is_moment {
+                    self.push(Instruction::Operate(FormulaOperator::Multiply))?;
+                }
+                Ok(self.program)
+            }
+            Some(')') => Err(self.error(self.at, "a bracket that was not opened")),
+            Some(letter) => Err(self.error(self.at, format!("`{letter}`, expected an operator or the end"))),
+        }
+    }
+
     fn error(&self, at: usize, problem: impl Into<String>) -> FormulaError {
         FormulaError { text: self.letters.iter().collect(), at, problem: problem.into() }
     }
@@ -234,6 +243,9 @@ impl FormulaParser {
         if self.peek() == Some('(') {
             return self.call(&name, from);
         }
+        if self.of_columns {
+            return self.constant(name, from);
+        }
         if let Some((_, signal)) = FormulaSignal::NAMES.iter().find(|(known, _)| *known == name) {
             return self.signal(*signal);
         }
@@ -249,11 +261,16 @@ impl FormulaParser {
         if FormulaFunction::NAMES.iter().any(|(known, _)| *known == name) {
             return Err(self.error(self.at, format!("expected `(` after the function `{name}`")));
         }
+        self.constant(name, from)
+    }
+
+    fn constant(&mut self, name: String, from: usize) -> Result<(), FormulaError> {
         let constants = &mut self.program.constants;
         let place = constants.iter().position(|known| *known == name).unwrap_or(constants.len());
         if place == MOST_CONSTANTS {
-            return Err(self
-                .error(from, format!("`{name}` is one more than the {MOST_CONSTANTS} constants that can be fitted")));
+            let which =
+                if self.of_columns { "columns that a formula may name" } else { "constants that can be fitted" };
+            return Err(self.error(from, format!("`{name}` is one more than the {MOST_CONSTANTS} {which}")));
         }
         if place == constants.len() {
             constants.push(name);

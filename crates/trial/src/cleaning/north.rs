@@ -1,0 +1,141 @@
+//! A heading that sweeps through the compass at north: it was interpolated or filtered as a number that goes from 360
+//! to 0, through all headings that the ship never had.
+
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+use document::{Code, Warning};
+
+use super::reject;
+use crate::channel::Channel;
+use crate::record::{Columns, RejectedReading};
+use crate::words::counted;
+
+/// Rate of a sweep over that of nine rows in ten.
+const FAST: f64 = 5.0;
+
+/// Farthest from north that a sweep begins, rad.
+const AT_NORTH: f64 = 0.6;
+
+/// Least way of a sweep from where it began, rad: 30°.
+const FAR: f64 = 0.52;
+
+/// How near a heading has to be at the end to where the sweep began, beside what the ship turns, rad: 3°.
+const BACK: f64 = 0.05;
+
+/// Rate at which it gets there, over the usual one.
+const THERE: f64 = 3.0;
+
+/// The same as a share of the way of the sweep.
+const NEAR: f64 = 0.3;
+
+/// Longest sweep, s and rows: filters of a compass take seconds.
+const LONGEST: (f64, usize) = (60.0, 600);
+
+/// Lengths of a sweep after its end in which a filter still comes to rest.
+const TAIL: usize = 2;
+
+/// Largest share of the headings that sweeps may take.
+const MOST: f64 = 0.6;
+
+/// Leaves out headings of sweeps through the compass.
+pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
+    let time = &columns.time;
+    let heading = columns.channels.get_mut(&Channel::Heading)?;
+    let read: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
+    let rate = |at: usize| {
+        let [from, to] = [read[at], read[at + 1]];
+        ((heading[to] - heading[from]) / (time[to] - time[from])).abs()
+    };
+    let mut rates: Vec<f64> = (0..read.len().saturating_sub(1)).map(rate).collect();
+    let most = rates.len() * 9 / 10;
+    let usual = *(rates.len() >= 40).then(|| rates.select_nth_unstable_by(most, f64::total_cmp).1)?;
+    let mut sweeps: Vec<Range<usize>> = Vec::new();
+    let mut at = 0;
+    while at + 1 < read.len() {
+        let swept = (rate(at) > FAST * usual).then(|| sweep(time, heading, &read, at, usual)).flatten();
+        at = swept.as_ref().map_or(at + 1, |swept| swept.end);
+        sweeps.extend(swept);
+    }
+    let places = sweeps.iter().flat_map(|swept| swept.start + 1..(swept.end + TAIL * swept.len()).min(read.len()));
+    let mut rows: Vec<usize> = places.map(|place| read[place]).collect();
+    rows.dedup();
+    if rows.is_empty() || rows.len() as f64 > MOST * read.len() as f64 {
+        return None;
+    }
+    let begins: Vec<usize> = sweeps.iter().map(|swept| read[swept.start + 1]).collect();
+    let times = reject(Channel::Heading, time, heading, &begins, rejected);
+    // Every sweep may have left the heading a turn away.
+    for swept in &sweeps {
+        let turns = ((heading[read[swept.end]] - heading[read[swept.start]]) / TAU).round() * TAU;
+        heading[read[swept.start] + 1..].iter_mut().for_each(|psi| *psi -= turns);
+    }
+    rows.iter().for_each(|&row| heading[row] = f64::NAN);
+    Some(Code::RejectedReadings.warning(format!(
+        "the heading sweeps through the compass at north {times}: it was resampled or filtered as a number that goes through 0 and 360; \
+         {} left out there; resample or filter a heading without its wrap",
+        counted(rows.len(), "heading"),
+    )))
+}
+
+/// The places from the last heading before a sweep, which begins at `at`, to the first one behind it.
+fn sweep(time: &[f64], heading: &[f64], read: &[usize], at: usize, usual: f64) -> Option<Range<usize>> {
+    let begin = heading[read[at]];
+    let from_north = |psi: f64| (psi + PI).rem_euclid(TAU) - PI;
+    let mut farthest: f64 = 0.0;
+    for end in at + 1..read.len().min(at + LONGEST.1) {
+        let elapsed = time[read[end]] - time[read[at]];
+        let apart = ((heading[read[end]] - begin + PI).rem_euclid(TAU) - PI).abs();
+        farthest = farthest.max(apart);
+        if elapsed > LONGEST.0 || (farthest <= FAR && elapsed * THERE * usual > FAR) {
+            return None;
+        }
+        if farthest > FAR && apart < (BACK + 2.0 * usual * elapsed).min(NEAR * farthest) {
+            let behind = heading[read[end]];
+            // One reading alone is a spike, unless the heading passes north with it.
+            let passes = from_north(begin) * from_north(behind) < 0.0 || (behind - begin).abs() > PI;
+            return (from_north(begin).abs() < AT_NORTH && (end > at + 2 || passes)).then_some(at..end);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{clean, with};
+    use super::*;
+
+    /// The headings as they are written, from 0 to 360, through a change, and read with their wrap taken out.
+    fn written(change: impl Fn(usize, &[f64]) -> f64) -> Vec<f64> {
+        let made = with(Channel::Heading, |row, values| values[row].rem_euclid(TAU));
+        let raw = &made.channels[&Channel::Heading];
+        let mut read: Vec<f64> = (0..raw.len()).map(|row| change(row, raw)).collect();
+        ship::angle::unwrap_heading(&mut read);
+        read
+    }
+
+    #[test]
+    fn a_heading_that_sweeps_through_the_compass_is_left_out() {
+        let truth = super::super::tests::columns().channels[&Channel::Heading].clone();
+        let resampled = |row: usize, raw: &[f64]| {
+            let (first, next) = (row / 10 * 10, (row / 10 * 10 + 10).min(raw.len() - 1));
+            raw[first] + (row - first) as f64 / 10.0 * (raw[next] - raw[first])
+        };
+        let filtered = |row: usize, raw: &[f64]| {
+            raw[row.saturating_sub(300)..=row].iter().fold(raw[row.saturating_sub(300)], |y, x| y + 0.2 * (x - y))
+        };
+        for (read, late) in [(written(resampled), 0), (written(filtered), 4)] {
+            let mut columns = with(Channel::Heading, |row, _| read[row]);
+            let text = clean(&mut columns).join("; ");
+            assert!(text.contains("sweeps through the compass at north at t = "), "{text}");
+            let heading = &columns.channels[&Channel::Heading];
+            let turns = ((heading[0] - truth[0]) / TAU).round() * TAU;
+            let far = (300..2990).map(|row| (heading[row] - turns - truth[row - late]).abs());
+            let far: Vec<f64> = far.filter(|far| far.is_finite()).collect();
+            let farthest = far.iter().copied().fold(0.0, f64::max).to_degrees();
+            assert!(far.len() > 2000 && farthest < 0.6, "{} headings, {farthest}°", far.len());
+        }
+        let mut sound = with(Channel::Heading, |row, _| written(|row, raw| raw[row])[row]);
+        assert_eq!(clean(&mut sound), [] as [String; 0]);
+    }
+}

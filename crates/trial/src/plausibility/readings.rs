@@ -1,0 +1,198 @@
+//! Does a channel hold what an instrument read? One that stands still beside noise, at the end of its scale or at any
+//! value, and one of coarse steps is told before anything is said of the ship.
+
+use std::ops::Range;
+
+use document::{Code, Warning};
+
+use crate::channel::Channel;
+use crate::record::Trial;
+use crate::words::{counted, instant, shortened};
+use crate::zigzag::quantum;
+
+/// Fewest rows of one value that noise does not make.
+const FEWEST_ROWS: usize = 20;
+
+/// Chance at which noise repeats one value over so many rows somewhere in the record.
+const ACCIDENT: f64 = 1e-6;
+
+/// Share of the rows, and fewest of them, that turn back at once and by more than a digit where a channel is noisy. A
+/// helmsman turns back later, and a channel between two digits by one of them.
+const NOISY: (f64, usize) = (0.08, 10);
+
+/// Least noise beside which a channel stands still, deg.
+const NOISE_DEG: f64 = 0.03;
+
+/// Steps below this are the usual digits of rudder and heading, deg.
+const COARSE_DEG: f64 = 1.5;
+
+/// Fewest steps of a channel, and share of its changes, that go to the next value of a coarse scale: an order goes
+/// further at once.
+const TO_THE_NEXT: (usize, f64) = (8, 0.6);
+
+/// Fewest values of a coarse scale: an order has three.
+const FEWEST_VALUES: usize = 5;
+
+/// Fewest pauses within a movement, and their share of its steps: a rudder of one rate, read evenly, goes on at every
+/// row.
+const PAUSES: (usize, f64) = (3, 0.06);
+
+/// Warnings of channels that are clipped, frozen or coarse; `columns` are their names in the file.
+pub(crate) fn check(trial: &Trial, columns: &[(Channel, String)]) -> Vec<Warning> {
+    let angles = [Channel::Rudder, Channel::Heading];
+    let warnings = angles.into_iter().flat_map(|channel| {
+        let values = if channel == Channel::Rudder { trial.rudder() } else { trial.heading() };
+        let name = columns.iter().find(|(named, _)| *named == channel);
+        let name = name.map_or_else(String::new, |(_, name)| format!(" (column `{}`)", shortened(name)));
+        let spoken = format!("the {}{name}", channel.spoken());
+        let texts = [still(trial.time(), values, &spoken), coarse(values, &spoken)];
+        texts.into_iter().flatten().map(|text| Code::FaultyReadings.warning(text))
+    });
+    warnings.collect()
+}
+
+/// Runs of at least [`FEWEST_ROWS`] rows with one value.
+fn runs(values: &[f64]) -> Vec<Range<usize>> {
+    let mut first = 0;
+    let runs = values.chunk_by(|before, next| before == next).map(|run| {
+        let rows = first..first + run.len();
+        first = rows.end;
+        rows
+    });
+    runs.filter(|run| run.len() >= FEWEST_ROWS).collect()
+}
+
+/// The last decimal of the larger half of the values, rad: numbers with so many significant digits have finer ones near
+/// zero. Zero for values without decimals of a degree.
+fn digit(values: &[f64]) -> f64 {
+    let half = 0.5 * values.iter().copied().filter(|x| x.is_finite()).fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let large: Vec<f64> = values.iter().filter(|value| value.abs() >= half).map(|value| value.to_degrees()).collect();
+    let is_decimal = |digit: &f64| large.iter().all(|value| (value / digit - (value / digit).round()).abs() < 1e-3);
+    [1.0, 0.1, 0.01, 1e-3].into_iter().find(is_decimal).map_or(0.0, f64::to_radians)
+}
+
+/// What is said of a noisy channel that stands still.
+fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
+    let mut still = runs(values);
+    let least = (1.5 * digit(values)).max(NOISE_DEG.to_radians());
+    let is_still = |row: usize| still.iter().any(|run| run.contains(&row));
+    let (mut rows, mut equal, mut turned) = (0, 0, 0);
+    for row in (1..values.len().saturating_sub(1)).filter(|&row| !is_still(row)) {
+        let [before, after] = [values[row] - values[row - 1], values[row + 1] - values[row]];
+        rows += usize::from((before + after).is_finite());
+        equal += usize::from(before == 0.0);
+        turned += usize::from(before * after < 0.0 && before.abs().max(after.abs()) > least);
+    }
+    if turned < NOISY.1 || (turned as f64) < NOISY.0 * rows as f64 {
+        return None;
+    }
+    // Digits repeat a value by chance, the oftener the coarser they are.
+    let again = (equal as f64 / rows as f64).max(0.01);
+    let longest = (ACCIDENT / values.len() as f64).ln() / again.ln();
+    still.retain(|run| run.len() as f64 > longest);
+    let first = still.first()?.clone();
+    let [low, high] =
+        [f64::min, f64::max].map(|of| values.iter().copied().filter(|x| x.is_finite()).fold(f64::NAN, of));
+    let at_end = |run: &&Range<usize>| values[run.start] == low || values[run.start] == high;
+    let ends: Vec<&Range<usize>> = still.iter().filter(at_end).collect();
+    let shown = |run: &Range<usize>| instant(values[run.start].to_degrees());
+    if ends.len() >= 2 {
+        let rows = ends.iter().map(|run| run.len()).sum::<usize>();
+        let from = ends[0];
+        let after = ends.iter().find(|run| values[run.start] != values[from.start]);
+        let after = after.map_or_else(String::new, |run| format!(" and {}°", shown(run)));
+        return Some(format!(
+            "{spoken} stands at exactly {}°{after} in {rows} rows, first from t = {} s, beside readings that vary with noise: it is \
+             clipped at the end of its scale, and K is too large by what is cut off; mend the range of the sensor or the logger, or \
+             give the order in place of it (`is = \"rudder_order_deg\"` for its column, in a sidecar NAME.trial.toml)",
+            shown(from),
+            instant(time[from.start]),
+        ));
+    }
+    Some(format!(
+        "{spoken} is frozen at {}° from t = {} s to {} s ({}), while it varies with noise before and after: K and T are of an angle \
+         that nobody read; use the part without it (--from, --until), or give the order in place of it",
+        shown(&first),
+        instant(time[first.start]),
+        instant(time[first.end - 1]),
+        counted(first.len(), "row"),
+    ))
+}
+
+/// What is said of a channel in coarse steps.
+fn coarse(values: &[f64], spoken: &str) -> Option<String> {
+    let step = quantum(values);
+    let step_deg = step.to_degrees();
+    let first = *values.iter().find(|value| value.is_finite())?;
+    let multiple = |value: f64| (value - first) / step;
+    let on_scale = |value: f64| (multiple(value) - multiple(value).round()).abs() < 1e-3;
+    let mut read: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    if step_deg < COARSE_DEG || !read.iter().all(|&value| on_scale(value)) {
+        return None;
+    }
+    let changes: Vec<f64> = read.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
+    let next = changes.iter().filter(|change| **change < 1.5 * step).count();
+    let pauses = read.windows(4).filter(|rows| rows[1] == rows[2] && (rows[1] - rows[0]) * (rows[3] - rows[2]) > 0.0);
+    let pauses = pauses.count();
+    read.sort_unstable_by(f64::total_cmp);
+    read.dedup_by(|before, after| (*before - *after).abs() < 0.5 * step);
+    let is_scale = read.len() >= FEWEST_VALUES
+        && next >= TO_THE_NEXT.0
+        && pauses >= PAUSES.0
+        && pauses as f64 >= PAUSES.1 * changes.len() as f64;
+    (is_scale && next as f64 >= TO_THE_NEXT.1 * changes.len() as f64).then(|| {
+        format!(
+            "{spoken} comes in steps of {}°: it is rounded, and each reading may be wrong by half of that; log it with a decimal",
+            instant(step_deg)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A rudder between two holds at 2.5°/s, one row a second, with `noise` of its sensor in tenths of a degree.
+    fn rudder(noise: bool, change: impl Fn(usize, f64) -> f64) -> Vec<f64> {
+        let mut angle: f64 = 0.0;
+        let angles = (0..600_usize).map(|row| {
+            let order = if row < 60 { 0.0 } else { [20.0, -20.0][row / 100 % 2] };
+            angle += (order - angle).clamp(-2.5, 2.5);
+            let draw = ((row * row) as f64 * 0.618_034).fract() - 0.5;
+            let read = if noise { angle + 0.5 * draw } else { angle };
+            change(row, (10.0 * read).round() / 10.0).to_radians()
+        });
+        angles.collect()
+    }
+
+    fn text_of(values: &[f64]) -> String {
+        let time: Vec<f64> = (0..values.len()).map(|row| row as f64).collect();
+        [still(&time, values, "the rudder"), coarse(values, "the rudder")].into_iter().flatten().collect()
+    }
+
+    #[test]
+    fn an_instrument_that_stands_still_is_told_beside_noise_alone() {
+        let clipped = |_: usize, angle: f64| angle.clamp(-15.0, 15.0);
+        assert!(text_of(&rudder(true, clipped)).contains("stands at exactly"));
+        let frozen = |row: usize, angle: f64| if (230..290).contains(&row) { -20.1 } else { angle };
+        let text = text_of(&rudder(true, frozen));
+        assert!(text.contains("is frozen at -20.1° from t = 230 s to 289 s (60 rows)"), "{text}");
+        // Holds without noise, whole degrees, a rudder at its stop.
+        for (noise, change) in [(true, None), (false, None), (false, Some(15.0)), (true, Some(1e9))] {
+            let of = |_: usize, angle: f64| match change {
+                Some(1e9) => angle.round(),
+                Some(stop) => angle.clamp(-stop, stop),
+                None => angle,
+            };
+            assert_eq!(text_of(&rudder(noise, of)), "", "{noise} {change:?}");
+        }
+    }
+
+    #[test]
+    fn coarse_steps_are_told_and_an_order_is_none() {
+        let steps = |of: f64| move |_: usize, angle: f64| (angle / of).round() * of;
+        assert!(text_of(&rudder(false, steps(5.0))).contains("comes in steps of 5°"));
+        assert_eq!(text_of(&rudder(false, steps(1.0))), "");
+        assert_eq!(text_of(&rudder(false, |_, angle| if angle.abs() < 19.0 { 0.0 } else { angle })), "");
+    }
+}

@@ -1,0 +1,141 @@
+//! Numbers that are no angle in the unit of their name: counts of a converter, tenths and hundredths of a degree, a
+//! rudder whose side stands in another column, a count of milliseconds since 1970.
+
+use document::{Code, Warning};
+use ship::angle::DEGREE;
+
+use super::error::Problem;
+use super::layout::{Content, RawColumn};
+use super::units::{EPOCH, ZIG_ZAG};
+use crate::channel::Channel;
+use crate::cleaning::{LARGEST_SHARE, NO_RUDDER};
+use crate::plausibility::{extremes, range, reversals};
+use crate::words::shortened;
+
+/// Largest angle of a rudder, deg: few go beyond 45°.
+const LARGEST_RUDDER_DEG: f64 = 46.0;
+
+/// Least step of a heading in tenths of a degree at north, as a number in the file.
+const WRAP_OF_TENTHS: std::ops::RangeInclusive<f64> = 3400.0..=3600.0;
+
+/// Least range of a heading in tenths of a degree over that of its rudder in degrees.
+const LEAST_RATIO: f64 = 5.0;
+
+/// What the numbers of a column are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Numbers {
+    /// So many to a degree.
+    Parts(f64),
+    /// Counts about this one.
+    Counts(f64),
+    /// Neither.
+    NoAngle,
+}
+
+/// Refuses rudder and heading whose numbers are no angles in the unit of their columns.
+pub(super) fn check(columns: &[RawColumn], line: usize) -> Result<(), Problem> {
+    let of = |channel: Channel| {
+        // Radians, and what a sidecar scales, are their own affair.
+        let is_in_degrees = |factor: f64| (factor.abs() - DEGREE).abs() < 1e-12;
+        let is_channel = |content: Content| match content {
+            Content::Channel(held, factor) => held == channel && is_in_degrees(factor),
+            _ => false,
+        };
+        columns.iter().find(|column| is_channel(column.content))
+    };
+    let refusal = |column: &RawColumn, quantity, numbers| {
+        let (low, high) = extremes(column.values.iter().map(|value| value.to_degrees().round()));
+        let (column, largest) = (column.name.clone(), column.largest);
+        Err(match numbers {
+            Numbers::Parts(parts) => Problem::Parts { line, column, quantity, largest, parts, scale: 1.0 / parts },
+            Numbers::Counts(zero) => Problem::Counts { line, column, quantity, low, high, zero },
+            Numbers::NoAngle => Problem::NoAngle { line, column, quantity, largest },
+        })
+    };
+    let rudder = of(Channel::Rudder).or_else(|| of(Channel::RudderOrder));
+    if let Some((rudder, numbers)) = rudder.and_then(|rudder| Some((rudder, of_rudder(rudder)?))) {
+        return refusal(rudder, "rudder angle", numbers);
+    }
+    match of(Channel::Heading).filter(|heading| is_in_tenths(heading, rudder)) {
+        Some(heading) => refusal(heading, "heading", Numbers::Parts(10.0)),
+        None => Ok(()),
+    }
+}
+
+/// What the numbers of a rudder are where they are no degrees.
+fn of_rudder(rudder: &RawColumn) -> Option<Numbers> {
+    let read: Vec<f64> = rudder.values.iter().copied().filter(|value| value.is_finite()).collect();
+    let wild = read.iter().filter(|value| value.abs() > NO_RUDDER).count();
+    let is_few = wild as f64 <= LARGEST_SHARE * read.len() as f64;
+    let (low, high) = extremes(read.iter().copied().map(f64::to_degrees));
+    // From 0 to 360, it is written in another way, and read.
+    let is_circle = low >= -1e-9
+        && high <= 360.0 + 1e-9
+        && read.iter().all(|value| {
+            let degrees = value.to_degrees();
+            !(60.0..270.0).contains(&degrees)
+        });
+    if is_few || is_circle {
+        return None;
+    }
+    let largest = high.max(-low);
+    let has_zero = low <= 0.1 * largest && high >= -0.1 * largest;
+    let parts = [10.0, 100.0].into_iter().find(|parts| largest <= parts * LARGEST_RUDDER_DEG);
+    Some(match parts {
+        Some(parts) if rudder.is_whole && has_zero => Numbers::Parts(parts),
+        _ if rudder.is_whole && !has_zero => Numbers::Counts((0.5 * (low + high)).round()),
+        _ => Numbers::NoAngle,
+    })
+}
+
+/// Whether a heading counts tenths of a degree: it wraps at 3600, or moves farther beside its rudder than that of any
+/// ship in a zig-zag.
+fn is_in_tenths(heading: &RawColumn, rudder: Option<&RawColumn>) -> bool {
+    if !heading.is_whole || heading.largest > 3600.0 {
+        return false;
+    }
+    let ratio = rudder.filter(|rudder| reversals(&rudder.values) >= 2);
+    let ratio = ratio.map(|rudder| range(&heading.values) / range(&rudder.values));
+    let wraps = WRAP_OF_TENTHS.contains(&heading.largest_step);
+    // One wild reading may step as far, and does not move the heading.
+    match ratio {
+        Some(ratio) => (wraps && ratio > LEAST_RATIO) || (ZIG_ZAG[1]..10.0 * ZIG_ZAG[1]).contains(&ratio),
+        None => wraps,
+    }
+}
+
+/// Gives the rudder the side that stands in a column of its own.
+pub(super) fn take_side(columns: &mut [RawColumn]) -> Option<Warning> {
+    let is_side = |column: &RawColumn| {
+        let (low, high) = extremes(column.values.iter().copied());
+        column.content == Content::Unknown
+            && column.sides > 0
+            && column.last.is_none()
+            && column.text == 0
+            && low < high
+    };
+    let sides: Vec<usize> = (0..columns.len()).filter(|&place| is_side(&columns[place])).collect();
+    let [side] = sides[..] else { return None };
+    let is_rudder =
+        |column: &RawColumn| matches!(column.content, Content::Channel(Channel::Rudder, factor) if factor > 0.0);
+    let rudder = columns.iter().position(is_rudder)?;
+    if !columns[rudder].values.iter().all(|value| value.is_nan() || *value >= 0.0) {
+        return None;
+    }
+    let signs = std::mem::take(&mut columns[side].values);
+    columns[rudder].values.iter_mut().zip(&signs).for_each(|(value, sign)| *value *= sign);
+    columns[side].values = signs;
+    let [rudder, side] = [rudder, side].map(|place| shortened(&columns[place].name));
+    let text = format!("the rudder `{rudder}` has no sign; it is taken from the side in `{side}`, port negative");
+    Some(Code::TurnedSign.warning(text))
+}
+
+/// Refuses a time that counts milliseconds or microseconds since 1970 under a name that says seconds.
+pub(super) fn check_time(column: &str, first: f64, line: usize) -> Result<(), Problem> {
+    let unit =
+        [(1e-3, "ms"), (1e-6, "us")].into_iter().find(|(factor, _)| (EPOCH[0]..EPOCH[1]).contains(&(first * factor)));
+    match unit {
+        Some((_, unit)) => Err(Problem::EpochUnit { line, column: column.to_owned(), first, unit }),
+        None => Ok(()),
+    }
+}

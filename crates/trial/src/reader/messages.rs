@@ -1,0 +1,201 @@
+//! Logs of messages, one quantity or a few at a time, each with its stamp and source: NMEA 2000 as canboat writes it
+//! (JSON lines, or plain lines of hexadecimal bytes), and long tables of time, path, value and source as Signal K
+//! exports them. Every channel comes from one source; which, is said.
+
+mod canboat;
+mod message;
+mod table;
+
+use std::collections::BTreeMap;
+use std::io::Read;
+
+use document::{Code, Warning};
+use ship::angle::DEGREE;
+
+use super::error::Problem;
+use super::limits::MAX_CELLS;
+use super::lines::Lines;
+use super::source::{Log, Series};
+use crate::channel::Channel;
+use crate::clock::{Clock, DAY, Stamp, StampFault, Stamps};
+use crate::words::{counted, shortened};
+use canboat::Canboat;
+use message::Message;
+use table::LongTable;
+
+/// Share of the readings of the busiest source below which a source speaks now and then.
+const SPARSE: f64 = 0.2;
+
+/// Largest rudder in radians, and largest heading, where no line says the unit.
+const LARGEST_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
+
+/// How the lines of a log are written.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum MessageFormat {
+    /// NMEA 2000.
+    Canboat,
+    /// Time, path, value, source.
+    Long,
+}
+
+/// The format of a log of messages, from its first lines; `None` for other files.
+pub(super) fn format<'a>(lines: impl Iterator<Item = &'a str> + Clone) -> Option<MessageFormat> {
+    if lines.clone().any(canboat::is_message) {
+        return Some(MessageFormat::Canboat);
+    }
+    lines.map(str::trim).find(|line| !line.is_empty()).and_then(LongTable::of).map(|_| MessageFormat::Long)
+}
+
+/// A channel of a source, and how good a quantity of its kind it is.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct MessageSource {
+    channel: Channel,
+    class: u8,
+    name: String,
+}
+
+/// What was read so far.
+#[derive(Default)]
+struct MessageLog {
+    stamps: Stamps,
+    sources: BTreeMap<MessageSource, Series>,
+    messages: usize,
+    readings: usize,
+    unread: usize,
+}
+
+impl MessageLog {
+    fn take(&mut self, message: &Message, line: usize) -> Result<(), Problem> {
+        let text = message.stamp;
+        // Older versions of canboat write 2011-11-24-22:42:04.388.
+        let joined = text.get(10..11).filter(|mark| *mark == "-").map(|_| format!("{}T{}", &text[..10], &text[11..]));
+        let stamp = Stamp::parse(joined.as_deref().unwrap_or(text)).filter(Stamp::has_time);
+        let value = || shortened(text);
+        let stamp = stamp.ok_or_else(|| Problem::NotAStamp { line, column: "timestamp".into(), value: value() })?;
+        let at = self.stamps.seconds(stamp).map_err(|fault| match fault {
+            StampFault::EitherMonth => Problem::EitherMonth { line, value: value() },
+            StampFault::NoTime => Problem::NotAStamp { line, column: "timestamp".into(), value: value() },
+        })?;
+        self.messages += 1;
+        for &(channel, class, value) in &message.readings {
+            let source = MessageSource { channel, class, name: message.source.clone() };
+            let empty = || Series { channel, time: Vec::new(), values: Vec::new() };
+            let signal = self.sources.entry(source).or_insert_with(empty);
+            if value.is_finite() && signal.time.last().is_none_or(|last| at > *last) {
+                signal.time.push(at);
+                signal.values.push(value);
+                self.readings += 1;
+            }
+        }
+        if self.readings > MAX_CELLS {
+            return Err(Problem::TooManyReadings { line, limit: MAX_CELLS });
+        }
+        Ok(())
+    }
+
+    /// One source for every channel, and what was decided.
+    fn choice(self) -> (Vec<Series>, Vec<Warning>) {
+        let (mut series, mut warnings) = (Vec::new(), Vec::new());
+        for channel in Channel::ALL {
+            let is_own =
+                |(source, signal): &(&MessageSource, &Series)| source.channel == channel && !signal.time.is_empty();
+            let mut offers: Vec<_> = self.sources.iter().filter(is_own).collect();
+            let most = offers.iter().map(|(_, signal)| signal.time.len()).max().unwrap_or(0);
+            offers.sort_by_key(|(source, signal)| {
+                let readings = signal.time.len();
+                ((readings as f64) < SPARSE * most as f64, source.class, usize::MAX - readings)
+            });
+            let Some(&(MessageSource { class, name, .. }, signal)) = offers.first() else { continue };
+            let kind = match (channel, class) {
+                (Channel::Heading, 1) => "magnetic heading",
+                (Channel::Speed, 0) => "speed through the water",
+                (Channel::Speed, _) => "speed over ground",
+                (channel_of, _) => channel_of.spoken(),
+            };
+            let unused_sources: Vec<String> =
+                offers[1..].iter().map(|(source, signal)| format!("{} ({})", source.name, signal.time.len())).collect();
+            let unused = if unused_sources.is_empty() {
+                String::new()
+            } else {
+                format!("; not used: {}", unused_sources.join(", "))
+            };
+            let text = format!("{kind} from {name} ({}){unused}", counted(signal.time.len(), "reading"));
+            warnings.push(Code::Instrument.warning(text));
+            if (channel, *class) == (Channel::Heading, 1) {
+                let text = "the heading is magnetic; changes of heading are right, the direction of north is not";
+                warnings.push(Code::OtherReference.warning(text));
+            }
+            series.push(signal.clone());
+        }
+        (series, warnings)
+    }
+}
+
+/// Reads the whole log: one series for each channel, and a log that has no columns yet.
+///
+/// Fails where a stamp is none, and where no message gives a quantity that is used.
+pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Result<(Vec<Series>, Log), Problem> {
+    let mut log = MessageLog::default();
+    let (mut canboat, mut table) = (Canboat::default(), None);
+    while let Some(text) = lines.next_line()?.map(str::to_owned) {
+        let number = lines.number();
+        if text.trim().is_empty() {
+            continue;
+        }
+        let message = match (format, &mut table) {
+            (MessageFormat::Canboat, _) => canboat.message(&text),
+            (MessageFormat::Long, Some(table)) => LongTable::message(table, &text),
+            (MessageFormat::Long, table) => {
+                *table = LongTable::of(&text);
+                continue;
+            }
+        };
+        match message {
+            Some(message) => log.take(&message, number)?,
+            None => log.unread += 1,
+        }
+    }
+    let (rows, unread, messages) = (lines.number(), log.unread, log.messages);
+    let clock = log.stamps.clock();
+    let (mut series, mut warnings) = log.choice();
+    if series.is_empty() {
+        return Err(Problem::NoReadings { sentences: messages });
+    }
+    if *format == MessageFormat::Canboat {
+        warnings.extend(in_radians(&mut series, canboat.is_si));
+    }
+    if unread > 0 {
+        let text = format!("{} of {} give no quantity that is used", counted(unread, "line"), counted(rows, "line"));
+        warnings.push(Code::LeftOut.warning(text));
+    }
+    let clock = begin_at_zero(&mut series, clock);
+    Ok((series, Log { clock, warnings, rows, sha256: lines.sha256(), ..Log::default() }))
+}
+
+/// Brings angles to radians: canboat writes degrees, and radians where it is asked to.
+fn in_radians(series: &mut [Series], is_si: Option<bool>) -> Option<Warning> {
+    let of = |channel: Channel| {
+        let signal = series.iter().find(|signal| signal.channel == channel);
+        signal.map_or(0.0, |signal| signal.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())))
+    };
+    let seems_si = of(Channel::Rudder) <= LARGEST_RAD[0] && of(Channel::Heading) <= LARGEST_RAD[1];
+    if !is_si.unwrap_or(seems_si) {
+        let is_angle = |signal: &&mut Series| signal.channel.is_angle();
+        series.iter_mut().filter(is_angle).flat_map(|signal| &mut signal.values).for_each(|value| *value *= DEGREE);
+    }
+    let unit = if seems_si { "radians" } else { "degrees" };
+    is_si
+        .is_none()
+        .then(|| Code::AssumedUnit.warning(format!("angles are read as {unit}, which fits their values alone")))
+}
+
+/// Makes the first instant time 0.
+fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
+    let first = series.iter().filter_map(|signal| signal.time.first()).copied().fold(f64::INFINITY, f64::min);
+    let rounded = |time: f64| (time * 1e6).round() / 1e6;
+    series.iter_mut().flat_map(|signal| &mut signal.time).for_each(|time| *time = rounded(*time - first));
+    let clock = clock?;
+    let second = clock.second + first;
+    let days = (second / DAY).floor();
+    Some(Clock { day: clock.day.map(|day| day + days as i64), second: second - days * DAY, ..clock })
+}

@@ -1,0 +1,72 @@
+//! Long tables: a row holds one quantity by its path, such as `steering.rudderAngle` of Signal K, or by a column name.
+
+use super::message::{Message, RankedReading};
+use crate::cells::{Separator, cell, recognise};
+use crate::channel::Channel;
+use crate::names::{ColumnMeaning, meaning};
+
+/// Names of the four columns, in small letters.
+const COLUMNS: [&[&str]; 4] = [
+    &["time", "timestamp", "datetime", "date"],
+    &["path", "key", "quantity"],
+    &["value"],
+    &["source", "$source", "src"],
+];
+
+/// Paths of Signal K, whose values are in SI units.
+const PATHS: [(&str, Channel, u8); 6] = [
+    ("steering.rudderangle", Channel::Rudder, 0),
+    ("navigation.headingtrue", Channel::Heading, 0),
+    ("navigation.headingmagnetic", Channel::Heading, 1),
+    ("navigation.rateofturn", Channel::YawRate, 0),
+    ("navigation.speedthroughwater", Channel::Speed, 0),
+    ("navigation.speedoverground", Channel::Speed, 1),
+];
+
+/// Where the columns of a long table are.
+#[derive(Debug, Clone)]
+pub(super) struct LongTable {
+    separator: Separator,
+    time: usize,
+    path: usize,
+    value: usize,
+    source: Option<usize>,
+}
+
+impl LongTable {
+    /// The table with this header; `None` for a table of another kind.
+    pub fn of(header: &str) -> Option<Self> {
+        let is_of = |cell: &str, place: usize| COLUMNS[place].contains(&cell.to_lowercase().as_str());
+        let known = |cells: &[&str]| cells.iter().filter(|cell| (0..4).any(|place| is_of(cell, place))).count();
+        let separator = recognise(header, known);
+        let mut ranges = Vec::new();
+        separator.split(header, &mut ranges);
+        let place = |which: usize| ranges.iter().position(|range| is_of(&header[range.clone()], which));
+        Some(Self { separator, time: place(0)?, path: place(1)?, value: place(2)?, source: place(3) })
+    }
+
+    /// The message of a row; `None` where it gives no quantity that is used.
+    pub fn message<'a>(&self, row: &'a str) -> Option<Message<'a>> {
+        let mut ranges = Vec::new();
+        self.separator.split(row, &mut ranges);
+        let text = |place: usize| ranges.get(place).map_or("", |range| &row[range.clone()]);
+        let value = cell(text(self.value), self.separator).number()?;
+        let readings = vec![reading(text(self.path), value)?];
+        let source = self.source.map_or("the table", text);
+        Some(Message { stamp: text(self.time), source: source.to_owned(), readings })
+    }
+}
+
+/// The reading of a path: one of Signal K, or a column name with its unit.
+fn reading(path: &str, value: f64) -> Option<RankedReading> {
+    let small = path.to_lowercase();
+    let known = PATHS
+        .iter()
+        .find(|(known_path, ..)| small.ends_with(known_path))
+        .map(|(_, channel, class)| (*channel, *class, value));
+    known.or_else(|| match meaning(path)? {
+        ColumnMeaning::Channel(channel, Some(unit)) => Some((channel, 0, value * unit.to_si())),
+        ColumnMeaning::OverGround(Some(unit)) => Some((Channel::Speed, 1, value * unit.to_si())),
+        _ => None,
+    })
+}
