@@ -210,7 +210,7 @@ impl Scenario {
         (0..self.cells.len()).map(|cell| self.trials_of(cell)).sum()
     }
 
-    /// The same scenario with those of its methods that have one of these labels, all of no label; `None` where no method
+    /// The same scenario with those of its methods that have one of these labels, all of no label; `None` where none
     /// is left.
     pub fn with_methods(mut self, labels: &[String]) -> Option<Self> {
         if !labels.is_empty() {

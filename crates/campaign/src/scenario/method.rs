@@ -69,8 +69,8 @@ impl Procedure {
         }
     }
 
-    /// The first-order response of all records of one trial together; `None` for what makes none. A method that draws at
-    /// random draws from the stream of this trial.
+    /// The first-order response of all records of one trial together; `None` for what makes none. A method that draws
+    /// at random draws from the stream of this trial.
     pub fn identify(&self, trials: &[Trial], key: &StreamKey) -> Option<Result<Estimate, IdentifyError>> {
         match self {
             Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),

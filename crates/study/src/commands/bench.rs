@@ -1,5 +1,5 @@
-//! `study bench`: the benchmark on measured and simulated trials. Its studies are run as any others, its numbers are made
-//! in `campaign::benchmark`; here its tables, figures and files.
+//! `study bench`: the benchmark on measured and simulated trials. Its studies are run as any others, its numbers are
+//! made in `campaign::benchmark`; here its tables, figures and files.
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -242,9 +242,12 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     figures
 }
 
+/// What a figure shows, and what is drawn.
+type Shown = (String, Plot);
+
 fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Item = PageFigure> + use<'a> {
     let fourier = |data: &CurveFit| format!("The series leaves {} of the heading", rms(&data.residual));
-    let figures: [(&str, &str, Option<(String, Plot)>); 5] = [
+    let figures: [(&str, &str, Option<Shown>); 5] = [
         (
             "trial",
             "The trial with its characteristic points (ITTC): executes, overshoots, times to check yaw, period.",
