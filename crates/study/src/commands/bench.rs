@@ -72,8 +72,8 @@ fn task(name: &str) -> Result<BenchTask, String> {
 /// Methods of the caller, by their labels.
 pub type Entrants = Vec<(String, Arc<dyn Identifier>)>;
 
-/// Runs the studies of a benchmark, or what is missing of them, below a folder, or in a temporary one; `entrants` answer
-/// beside the methods of the scenarios.
+/// Runs the studies of a benchmark, or what is missing of them, below a folder, or in a temporary one; `entrants`
+/// answer beside the methods of the scenarios.
 ///
 /// Fails when a scenario is at fault, and when nothing can be asked.
 pub fn measure(

@@ -15,7 +15,7 @@ use report::figures::{
     AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn,
     Ruler, Stack,
 };
-use report::number::{MISSING, fixed, significant};
+use report::number::{MISSING, counted, fixed, significant};
 use report::palette::{HEADING, Look, Marker, RGBColor, RUDDER, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
@@ -256,7 +256,9 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
         for (number, word) in [(0, "first"), (1, "second")] {
             let of = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
             let Some(angle) = of(&zigzag) else { continue };
-            for (off, replay) in off.iter_mut().zip(&replays) {
+            // Records that judge are told where there are any.
+            let is_told = entry.held_out || !document.records.iter().any(|other| other.held_out);
+            for (off, replay) in off.iter_mut().zip(&replays).filter(|_| is_told) {
                 off.extend(replay.as_ref().and_then(of).map(|own| (own - angle).abs()));
             }
             let limit = criteria.iter().find(|limit| {
@@ -287,9 +289,14 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
                    MSC.137(76) where one is for this zig-zag and for a ship of this length. Without a mark: that \
                    replay has no such overshoot.";
     let data = NamedRows { names, columns: vec![column], ..NamedRows::default() };
-    let [before, after] =
-        off.map(|mut off| median(&mut off).map_or_else(|| MISSING.to_owned(), |off| significant(off, 2)));
-    let finding = format!("Overshoots are {before}° off before and {after}° after (median of {})", data.names.len());
+    let count = off[1].len();
+    let [before, after] = off
+        .map(|mut off| median(&mut off).map_or_else(|| MISSING.to_owned(), |off| format!("{}°", significant(off, 2))));
+    let held = match document.records.iter().filter(|entry| entry.held_out).count() {
+        0 => String::new(),
+        records => format!(" of {} that no model has seen", counted(records as u64, "record")),
+    };
+    let finding = format!("Overshoots{held} are {before} off with K and T alone, {after} traced (median of {count})");
     Some(PageFigure::new("overshoots", finding, caption, data))
 }
 

@@ -164,6 +164,10 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
         page.figures([figure]);
         page.say(JUDGED);
     }
+    if let Some(figure) = figures::overshoots(document, curves) {
+        page.part("Overshoots");
+        page.figures([figure]);
+    }
     what_is_left(&mut page, document);
     page.part("Next trial");
     page.say(&document.next_trial);
@@ -179,7 +183,6 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
         page.figures(moments);
     }
     page.folded_part("Further figures");
-    page.figures(figures::overshoots(document, curves));
     page.figures(turns.map(|(curves, seen)| {
         let caption = "Steady yaw rate against rudder of the model, an unstable branch dashed; thin: ships that the records \
                        cannot tell from it; grey: the range of the records.";
