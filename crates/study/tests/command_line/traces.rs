@@ -138,8 +138,8 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     let (shown, folded) = page.split_once("<main").and_then(|(_, main)| main.split_once("<details>")).expect("parts");
     assert_eq!(
         shown.matches("<figure>").count(),
-        3,
-        "the finding, what each effect carries, and the records that were held out"
+        4,
+        "the finding, what each effect carries, held-out records, overshoots"
     );
     assert!(!shown.contains("<table") && folded.contains(">Evidence</h2></summary>"));
     let caption = "(a), (b): a record that was fitted.";
