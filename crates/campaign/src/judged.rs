@@ -1,13 +1,11 @@
 //! Trials of measured records that share a fit: every method is fitted once, and each trial is judged by its record.
 
-use std::borrow::Cow;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use ::trace::Analysis;
 use ::trace::comparison::before as of_base;
 use ::trace::record::PreparedRecord;
-use ::trace::without_spikes;
 use document::IdentifiedShip;
 use identify::Estimate;
 use predict::ShipMixture;
@@ -73,21 +71,19 @@ struct SharedTrials<'a> {
     tasks: &'a [Task],
     fitted: &'a [Trial],
     /// The fitted records without readings of their compass that belong to no ship: these count for no method.
-    shown: Cow<'a, [Trial]>,
+    shown: &'a [Trial],
     /// The record that judges each of them, as it is and without such readings.
-    judges: Vec<Option<[Trial; 2]>>,
+    judges: Vec<Option<[&'a Trial; 2]>>,
 }
 
 /// Runs trials that share a fit, in their order.
 fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome> {
     let question = |task: &Task| &set.questions[task.replicate as usize];
-    let fitted: Vec<Trial> = question(&tasks[0]).fitted.iter().map(|&place| set.trials[place].clone()).collect();
-    let judge = |task: &Task| {
-        let judge = &set.trials[question(task).judge?];
-        Some([judge.clone(), without_spikes(std::slice::from_ref(judge)).0[0].clone()])
-    };
-    let judges = tasks.iter().map(judge).collect();
-    let trials = SharedTrials { scenario, tasks, shown: without_spikes(&fitted).0, judges, fitted: &fitted };
+    let both = [&set.trials, set.shown()];
+    let of_fit = |all: &[Trial]| question(&tasks[0]).fitted.iter().map(|&place| all[place].clone()).collect();
+    let [fitted, shown]: [Vec<Trial>; 2] = both.map(of_fit);
+    let judges = tasks.iter().map(|task| question(task).judge.map(|place| both.map(|all| &all[place]))).collect();
+    let trials = SharedTrials { scenario, tasks, fitted: &fitted, shown: &shown, judges };
     let blank = |task: &Task| TrialOutcome {
         rows: Vec::new(),
         timing: TrialTiming { cell: task.cell as u64, simulation: Duration::ZERO, methods: Vec::new() },
@@ -111,10 +107,8 @@ impl SharedTrials<'_> {
         let key = |task: &Task| engine::key(self.scenario, *task);
         let shared = match procedure {
             Procedure::Trace(settings) => {
-                let held_out: Vec<Trial> = (0..self.judges.len())
-                    .filter_map(|trial| self.replayed(trial))
-                    .map(|[judge, _]| judge.clone())
-                    .collect();
+                let judge = |trial| self.replayed(trial).map(|[judge, _]| judge.clone());
+                let held_out: Vec<Trial> = (0..self.judges.len()).filter_map(judge).collect();
                 let settings = ::trace::Settings { hulls: true, ..settings.clone() };
                 let analysis = ::trace::trace(self.fitted, &held_out, &settings);
                 let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)), Some(&settings));
@@ -139,11 +133,11 @@ impl SharedTrials<'_> {
 
     /// The judge of a trial, where it is of the length of the fitted records: a response of another scale is not
     /// replayed.
-    fn replayed(&self, trial: usize) -> Option<&[Trial; 2]> {
+    fn replayed(&self, trial: usize) -> Option<[&Trial; 2]> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
         let fitted = self.fitted.iter().find_map(length);
         let are_alike = |(one, other): (f64, f64)| (one / other - 1.0).abs() < SCALE;
-        self.judges[trial].as_ref().filter(|[judge, _]| length(judge).zip(fitted).is_none_or(are_alike))
+        self.judges[trial].filter(|[judge, _]| length(judge).zip(fitted).is_none_or(are_alike))
     }
 
     /// The first-order response of the records; `None` for a trace.
@@ -163,7 +157,7 @@ impl SharedTrials<'_> {
     fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
         let judge = self.replayed(trial).map(|[_, shown]| shown);
         let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };
-        let asked = TrialQuestion { trials: &self.shown, key, reference: &reference, missing: &[], check: None };
+        let asked = TrialQuestion { trials: self.shown, key, reference: &reference, missing: &[], check: None };
         let (row, errors) = match &fit.answer {
             FitAnswer::Response(estimate) => {
                 let replayed = |judge| of_base(judge, &PreparedRecord::whole(judge), &estimate.response, true).ok();

@@ -4,7 +4,9 @@
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
+use ::trace::without_spikes;
 use report::number::counted;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -149,12 +151,19 @@ pub struct RecordSet {
     pub warnings: Vec<String>,
     /// SHA-256 of every file and of the sidecar that describes it.
     sha256: String,
+    /// What [`shown`](Self::shown) returns, once somebody has asked.
+    shown: OnceLock<Vec<Trial>>,
 }
 
 impl RecordSet {
     /// The name of a record.
     pub fn name(&self, place: usize) -> &str {
         self.trials[place].name()
+    }
+
+    /// The records without the readings of their compass that belong to no ship: these count for no method.
+    pub(crate) fn shown(&self) -> &[Trial] {
+        self.shown.get_or_init(|| without_spikes(&self.trials).0.into_owned())
     }
 
     /// Reads the records of a table.
@@ -196,12 +205,11 @@ impl RecordSet {
                 "leave records out, or call one otherwise",
             ));
         }
-        let stem = |(file, _): &(String, String)| {
-            Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
-        };
-        let absent_names: Vec<String> = absent.iter().map(stem).collect();
+        let stem = |file: &str| Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let absent_names: Vec<String> = absent.iter().map(|(file, _)| stem(file)).collect();
         let questions = questions(&wire.judge, &names, &absent_names, &key.child("judge"))?;
-        Ok(Self { trials, questions, absent, warnings, sha256: identity::hex(&digest.finalize()) })
+        let (sha256, shown) = (identity::hex(&digest.finalize()), OnceLock::new());
+        Ok(Self { trials, questions, absent, warnings, sha256, shown })
     }
 }
 

@@ -59,9 +59,9 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
         ));
     }
     if explained.is_nan() || explained < EXPLAINED {
-        let percent = fixed(100.0 * explained.max(0.0), 0);
+        let [percent, least] = [explained.max(0.0), EXPLAINED].map(|share| fixed(100.0 * share, 0));
         return Some(format!(
-            "the nearest replay explains {percent} % of the variance of the heading (it leaves {}°), and K and T of a ship explain 90 % \
+            "the nearest replay explains {percent} % of the variance of the heading (it leaves {}°), and K and T of a ship explain {least} % \
              or more",
             fixed(left_deg, 1)
         ));

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use document::{Code, Warning};
 
+use super::extremes;
 use crate::channel::Channel;
 use crate::record::Trial;
 use crate::words::{counted, instant, shortened};
@@ -91,8 +92,7 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     let longest = (ACCIDENT / values.len() as f64).ln() / again.ln();
     still.retain(|run| run.len() as f64 > longest);
     let first = still.first()?.clone();
-    let [low, high] =
-        [f64::min, f64::max].map(|of| values.iter().copied().filter(|x| x.is_finite()).fold(f64::NAN, of));
+    let (low, high) = extremes(values.iter().copied());
     let at_end = |run: &&Range<usize>| values[run.start] == low || values[run.start] == high;
     let ends: Vec<&Range<usize>> = still.iter().filter(at_end).collect();
     let shown = |run: &Range<usize>| instant(values[run.start].to_degrees());
@@ -132,8 +132,8 @@ fn coarse(values: &[f64], spoken: &str) -> Option<String> {
     }
     let changes: Vec<f64> = read.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
     let next = changes.iter().filter(|change| **change < 1.5 * step).count();
-    let pauses = read.windows(4).filter(|rows| rows[1] == rows[2] && (rows[1] - rows[0]) * (rows[3] - rows[2]) > 0.0);
-    let pauses = pauses.count();
+    let goes_on = |rows: &&[f64]| rows[1] == rows[2] && (rows[1] - rows[0]) * (rows[3] - rows[2]) > 0.0;
+    let pauses = read.windows(4).filter(goes_on).count();
     read.sort_unstable_by(f64::total_cmp);
     read.dedup_by(|before, after| (*before - *after).abs() < 0.5 * step);
     let is_scale = read.len() >= FEWEST_VALUES
