@@ -1,9 +1,10 @@
-//! A page: blocks in reading order, from which the terminal, Markdown and (of the Markdown) a browser are written. What
-//! a figure shows is part of the page, so a page can be drawn again wherever it was made.
+//! A page: a template of Markdown that was filled in, and its figures in the places that the template gives them.
+//!
+//! A template is Markdown with two marks of its own: a paragraph `![stem]` is the figure of that stem, and a headline
+//! `##~ Title` begins a part that a browser shows when it is asked for.
 
 use crate::figures::Plot;
 use crate::markdown::{prose, text};
-use crate::table::Table;
 
 /// A figure of a page.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,203 +29,154 @@ impl PageFigure {
     ) -> Self {
         Self { stem: stem.into(), finding: finding.into(), caption: caption.into(), plot: plot.into() }
     }
-}
 
-/// A part of a page.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PageBlock {
-    /// A headline, read as it is, and its level, 1 for the page itself.
-    Headline(usize, String),
-    /// A headline of a part that a browser shows when it is asked for.
-    Folded(String),
-    /// A paragraph of Markdown.
-    Prose(String),
-    /// A list, every entry Markdown.
-    List(Vec<String>),
-    /// A table.
-    Table(Table),
-    /// A figure.
-    Figure(Box<PageFigure>),
-}
-
-impl PageBlock {
-    /// Level of a headline.
-    fn level(&self) -> Option<usize> {
-        match self {
-            Self::Headline(level, _) => Some(*level),
-            Self::Folded(_) => Some(2),
-            _ => None,
-        }
+    /// The figure with its number, as Markdown.
+    fn to_markdown(&self, number: usize) -> String {
+        let (finding, caption) = (text(&self.finding), text(&self.caption));
+        format!("![Figure {number}]({}.png)\n\n*Figure {number}. {finding}. {caption}*", self.stem)
     }
 }
 
-/// Blocks in reading order.
+/// Figures by the places that a template has for them.
 #[derive(Debug, Clone, PartialEq, Default)]
+pub struct PlacedFigures<P>(pub Vec<(P, PageFigure)>);
+
+impl<P: PartialEq> PlacedFigures<P> {
+    /// Adds figures of a place.
+    pub fn put(&mut self, place: P, figures: impl IntoIterator<Item = PageFigure>)
+    where
+        P: Copy,
+    {
+        self.0.extend(figures.into_iter().map(|figure| (place, figure)));
+    }
+
+    /// Whether a place has a figure.
+    pub fn has(&self, place: P) -> bool {
+        self.0.iter().any(|(other, _)| *other == place)
+    }
+
+    /// The figures of a place, as a template has them.
+    pub fn at(&self, place: P) -> String {
+        self.0
+            .iter()
+            .filter(|(other, _)| *other == place)
+            .map(|(_, figure)| format!("\n\n![{}]\n\n", figure.stem))
+            .collect()
+    }
+}
+
+/// A page with its figures.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Page {
-    /// The blocks.
-    pub blocks: Vec<PageBlock>,
+    /// Paragraphs, headlines, tables and places of figures, without the blank lines between them.
+    blocks: Vec<String>,
+    figures: Vec<PageFigure>,
+    folded: Vec<String>,
 }
 
 impl Page {
-    /// A page of this title.
-    pub fn titled(title: impl Into<String>) -> Self {
-        Self { blocks: vec![PageBlock::Headline(1, title.into())] }
-    }
-
-    /// Adds a headline of a part.
-    pub fn part(&mut self, title: impl Into<String>) {
-        self.blocks.push(PageBlock::Headline(2, title.into()));
-    }
-
-    /// Adds a headline of a part that a browser shows when it is asked for; elsewhere it is a part as any other.
-    pub fn folded_part(&mut self, title: impl Into<String>) {
-        self.blocks.push(PageBlock::Folded(title.into()));
+    /// A template that was filled in, and the figures that have a place in it.
+    ///
+    /// # Panics
+    ///
+    /// When the template was not filled in, which it is where all it shows can be written into a string.
+    pub fn new(filled: askama::Result<String>, figures: PlacedFigures<impl Sized>) -> Self {
+        let filled = prose(&filled.expect("writing to a string does not fail"));
+        let mut folded = Vec::new();
+        let mut blocks = Vec::new();
+        for block in filled.split("\n\n").map(|block| block.trim_matches('\n')).filter(|block| !block.trim().is_empty())
+        {
+            let title = block.strip_prefix("##~ ");
+            folded.extend(title.map(str::to_owned));
+            blocks.push(title.map_or_else(|| block.to_owned(), |title| format!("## {title}")));
+        }
+        let place = |figure: &PageFigure| blocks.iter().position(|block| stem(block) == Some(figure.stem.as_str()));
+        let mut placed: Vec<(usize, PageFigure)> =
+            figures.0.into_iter().filter_map(|(_, figure)| Some((place(&figure)?, figure))).collect();
+        placed.sort_by_key(|(place, _)| *place);
+        Self { figures: placed.into_iter().map(|(_, figure)| figure).collect(), blocks, folded }
     }
 
     /// Titles of the parts that a browser shows when it is asked for.
     pub fn folded(&self) -> Vec<&str> {
-        let titles = self.blocks.iter().filter_map(|block| match block {
-            PageBlock::Folded(title) => Some(title.as_str()),
-            _ => None,
-        });
-        titles.collect()
-    }
-
-    /// Adds a headline below that of a part.
-    pub fn subpart(&mut self, title: impl Into<String>) {
-        self.blocks.push(PageBlock::Headline(3, title.into()));
-    }
-
-    /// Adds a paragraph of Markdown, unless it is empty.
-    pub fn say(&mut self, prose: impl AsRef<str>) {
-        let prose = prose.as_ref().trim();
-        if !prose.is_empty() {
-            self.blocks.push(PageBlock::Prose(prose.to_owned()));
-        }
-    }
-
-    /// Adds paragraphs of words that are read as they are, one a line.
-    pub fn words(&mut self, lines: &str) {
-        lines.lines().for_each(|line| self.say(text(line)));
-    }
-
-    /// Adds a list of Markdown, unless it is empty.
-    pub fn list(&mut self, entries: impl IntoIterator<Item = String>) {
-        let entries: Vec<String> = entries.into_iter().collect();
-        if !entries.is_empty() {
-            self.blocks.push(PageBlock::List(entries));
-        }
-    }
-
-    /// Adds a table.
-    pub fn table(&mut self, table: Table) {
-        self.blocks.push(PageBlock::Table(table));
-    }
-
-    /// Adds figures.
-    pub fn figures(&mut self, figures: impl IntoIterator<Item = PageFigure>) {
-        self.blocks.extend(figures.into_iter().map(|figure| PageBlock::Figure(Box::new(figure))));
+        self.folded.iter().map(String::as_str).collect()
     }
 
     /// The figures in reading order.
-    pub fn drawings(&self) -> impl Iterator<Item = &PageFigure> {
-        self.blocks
-            .iter()
-            .filter_map(|block| if let PageBlock::Figure(own) = block { Some(own.as_ref()) } else { None })
+    pub fn figures(&self) -> &[PageFigure] {
+        &self.figures
+    }
+
+    fn figure(&self, block: &str) -> Option<(usize, &PageFigure)> {
+        let stem = stem(block)?;
+        self.figures.iter().enumerate().find(|(_, figure)| figure.stem == stem)
     }
 
     /// The same in words and tables: without figures, and without headlines that have nothing else below them.
     pub fn without_figures(self) -> Self {
-        let mut blocks: Vec<PageBlock> = Vec::new();
-        for block in self.blocks.into_iter().rev() {
-            let stays = match (&block, block.level()) {
-                (PageBlock::Figure(_), _) => false,
-                (_, Some(level)) => blocks.last().is_some_and(|next| next.level().is_none_or(|next| next > level)),
-                _ => true,
+        let mut blocks: Vec<String> = Vec::new();
+        for block in self.blocks.iter().rev() {
+            let stays = match level(block) {
+                Some(level) => blocks.last().is_some_and(|next| self::level(next).is_none_or(|next| next > level)),
+                None => self.figure(block).is_none(),
             };
-            blocks.extend(stays.then_some(block));
+            blocks.extend(stays.then(|| block.clone()));
         }
         blocks.reverse();
-        Self { blocks }
+        Self { blocks, figures: Vec::new(), ..self }
     }
 
     /// As Markdown (the GitHub flavour), every figure with its number and caption. HTML in it is shown and not obeyed.
     pub fn to_markdown(&self) -> String {
-        let mut number = 0;
-        let block = |block: &PageBlock| match block {
-            PageBlock::Headline(level, title) => format!("{} {title}\n", "#".repeat(*level), title = text(title)),
-            PageBlock::Folded(title) => format!("## {}\n", text(title)),
-            PageBlock::Prose(prose) => format!("{prose}\n"),
-            PageBlock::List(entries) => entries.iter().map(|entry| format!("- {entry}\n")).collect(),
-            PageBlock::Table(table) => table.to_markdown(),
-            PageBlock::Figure(figure) => {
-                let PageFigure { stem, finding, caption, .. } = figure.as_ref();
-                number += 1;
-                format!("![Figure {number}]({stem}.png)\n\n*Figure {number}. {}. {}*\n", text(finding), text(caption))
-            }
+        let block = |block: &String| match self.figure(block) {
+            Some((place, figure)) => prose(&figure.to_markdown(place + 1)),
+            None => block.clone(),
         };
-        prose(&self.blocks.iter().map(block).collect::<Vec<String>>().join("\n"))
+        self.blocks.iter().map(block).collect::<Vec<String>>().join("\n\n") + "\n"
     }
+}
 
-    /// For a terminal: words and tables.
-    pub fn to_text(&self) -> String {
-        let block = |block: &PageBlock| match block {
-            PageBlock::Headline(_, words) | PageBlock::Folded(words) | PageBlock::Prose(words) => {
-                Some(format!("{words}\n"))
-            }
-            PageBlock::List(entries) => Some(entries.join("\n") + "\n"),
-            PageBlock::Table(table) => Some(table.to_text()),
-            PageBlock::Figure(_) => None,
-        };
-        self.blocks.iter().filter_map(block).collect::<Vec<String>>().join("\n")
-    }
+/// Level of a headline, 1 for that of the page.
+fn level(block: &str) -> Option<usize> {
+    let level = block.len() - block.trim_start_matches('#').len();
+    (level > 0 && block[level..].starts_with(' ')).then_some(level)
+}
 
-    /// The tables in LaTeX, below each other.
-    pub fn to_latex(&self) -> String {
-        let tables =
-            self.blocks.iter().filter_map(|block| if let PageBlock::Table(own) = block { Some(own) } else { None });
-        tables.map(Table::to_latex).collect::<Vec<String>>().join("\n")
-    }
+/// Stem of the figure whose place a block is.
+fn stem(block: &str) -> Option<&str> {
+    block.strip_prefix("![")?.strip_suffix(']')
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::figures::Panels;
-    use crate::table::TableHead;
+
+    fn figure(stem: &str) -> PageFigure {
+        PageFigure::new(stem, "K is 0.1", "a*b", Panels::default())
+    }
 
     #[test]
-    fn blocks_stand_apart_in_every_form() {
-        let mut page = Page::titled("Trial [1](x) a_b");
-        page.words("a*b\n<b>c");
-        page.say("  ");
-        page.part("Numbers");
-        let mut table = Table::new(TableHead::default().texts(["K"]));
-        table.push(["0.1"]);
-        page.table(table);
-        page.figures([PageFigure::new("fit", "K is 0.1", "a*b", Panels::default())]);
-        page.list(["one".to_owned(), "two".to_owned()]);
-        let markdown = "# Trial [1]\\(x) a\\_b\n\na\\*b\n\n\\<b>c\n\n## Numbers\n\n| K   |\n| --- |\n| 0.1 |\n\n![Figure 1](fit.png)\n\n\
-                        *Figure 1. K is 0.1. a\\*b*\n\n- one\n- two\n";
+    fn figures_are_numbered_where_the_template_has_them() {
+        let figures = PlacedFigures([("b", figure("fit")), ("c", figure("nowhere")), ("a", figure("last"))].to_vec());
+        let [first, next] = ["a", "b"].map(|place| figures.at(place));
+        let filled = format!("# Trial\n\n\n\n{first}\n<b>c\n{next}##~ Numbers\n\n- one\n- two\n![none]\n");
+        assert!(figures.has("c") && !figures.has("d"));
+        let page = Page::new(Ok(filled), figures);
+        let markdown = "# Trial\n\n![Figure 1](last.png)\n\n*Figure 1. K is 0.1. a\\*b*\n\n\\<b>c\n\n![Figure 2](fit.png)\n\n\
+                        *Figure 2. K is 0.1. a\\*b*\n\n## Numbers\n\n- one\n- two\n![none]\n";
         assert_eq!(page.to_markdown(), markdown);
-        assert!(page.to_text().ends_with("Numbers\n\nK\n───\n0.1\n\none\ntwo\n"), "{}", page.to_text());
-        assert!(page.to_latex().contains("toprule") && page.drawings().count() == 1);
+        assert_eq!(page.folded(), ["Numbers"]);
+        assert_eq!(page.figures().iter().map(|own| own.stem.as_str()).collect::<Vec<_>>(), ["last", "fit"]);
     }
 
     #[test]
     fn without_figures_no_headline_stands_over_nothing() {
-        let figure = || [PageFigure::new("fit", "K is 0.1", "one", Panels::default())];
-        let mut page = Page::titled("Trial");
-        page.figures(figure());
-        page.part("Seen");
-        page.subpart("Here");
-        page.figures(figure());
-        page.part("Told");
-        page.subpart("There");
-        page.say("words");
-        page.folded_part("Further figures");
-        page.figures(figure());
-        assert_eq!(page.folded(), ["Further figures"]);
-        assert_eq!(page.without_figures().to_markdown(), "# Trial\n\n## Told\n\n### There\n\nwords\n");
+        let filled = String::from(
+            "# Trial\n\n![fit]\n\n## Seen\n\n### Here\n\n![fit]\n\n## Said\n\n### There\n\nwords\n\n##~ Further\n\n![fit]",
+        );
+        let page = Page::new(Ok(filled), PlacedFigures([((), figure("fit"))].to_vec())).without_figures();
+        assert_eq!(page.to_markdown(), "# Trial\n\n## Said\n\n### There\n\nwords\n");
+        assert!(page.figures().is_empty());
     }
 }

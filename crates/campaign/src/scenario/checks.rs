@@ -115,6 +115,6 @@ pub fn about(labels: &[String], methods: &[Method]) -> Result<(), KeyFault> {
     let known: Vec<&str> = methods.iter().map(|method| method.label.as_str()).collect();
     let words = ["no method is called", "expected the id or the label of an [[identifier]]"];
     labels.iter().enumerate().try_for_each(|(index, label)| {
-        place_among(label, &known, KeyPath::dotted("output.methods").child(index), words).map(|_| ())
+        place_among(label, &known, KeyPath::dotted("output.highlight.series").child(index), words).map(|_| ())
     })
 }

@@ -55,4 +55,4 @@ pub use predictions::Predictions;
 
 pub use specification::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
-pub use words::{MarkedValue, Presentation, Published, Words};
+pub use words::{Highlight, MarkedValue, Presentation, Published, Words};

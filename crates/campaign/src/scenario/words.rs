@@ -31,14 +31,24 @@ pub struct Presentation {
     pub figure: Option<String>,
     /// Title of that figure: what it shows, in a sentence.
     pub title: Option<String>,
-    /// Labels of the methods that figure is about; others are grey or left out. Of several traces the first is drawn.
-    pub methods: Vec<String>,
+    /// What that figure is about.
+    pub highlight: Highlight,
     /// Stems of the figures that are made beside it; all there are when left out.
     pub figures: Option<Vec<String>>,
     /// Values of an axis with a name of their own.
     pub marks: Vec<MarkedValue>,
     /// Cells, by the labels of their points joined by commas, whose errors are shown one by one.
     pub detail: Vec<String>,
+}
+
+/// What a figure is about: everything else in it is pale.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Highlight {
+    /// Labels of methods; all where left out. Of several traces the first of them is drawn.
+    pub series: Vec<String>,
+    /// Names of rows; all where left out. Their values are written beside them.
+    pub rows: Vec<String>,
 }
 
 /// A value of an axis with a name, such as the limit of a rule.

@@ -230,7 +230,9 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
     };
     let rows: Vec<(AxisSide, f64)> = stack.rows.iter().enumerate().map(&mut row).collect();
     let head = |panel: &LayeredPanel| {
-        let is_sample = |layer: &&Layer| stack.across.is_some() && !matches!(layer.kind, LayerKind::Marks(_));
+        // A layer with a name is in the key.
+        let is_nameless = |layer: &&Layer| layer.name.is_none() && !matches!(layer.kind, LayerKind::Marks(_));
+        let is_sample = |layer: &&Layer| stack.across.is_some() && is_nameless(layer);
         let sample = panel.layers.first().filter(is_sample).and_then(|layer| layer.sample(theme, 1.0));
         panel.head.as_ref().map(|head| KeyEntry::new(sample.unwrap_or(KeySample::Nothing), head))
     };

@@ -163,6 +163,8 @@ pub struct NamedRows {
     pub names: Vec<String>,
     /// The columns, side by side.
     pub columns: Vec<RowsColumn>,
+    /// Rows on a pale ground, and what these are.
+    pub shaded: Option<(String, Vec<usize>)>,
     /// A remark under the figure.
     pub note: Option<String>,
 }
@@ -184,6 +186,9 @@ fn thick_stroke(theme: &Theme) -> Stroke {
 
 /// Rows that may stand twice below each other.
 const FEW: usize = 8;
+
+/// Opacity of the ground of rows.
+const GROUND: f64 = 0.1;
 
 /// Height of the rows of a wide figure, as a share of its width, at least and at most: few rows stand farther apart, up
 /// to so many times as far, many rows nearer to each other.
@@ -208,6 +213,10 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> Plotted<Dr
         let columns = part.iter().map(|column| AxisSide::new(axis(column), column.x.title.as_str())).collect();
         let charts = sheet.grid(Grid { columns, rows: vec![row.clone()], ..Grid::default() })?;
         for (chart, column) in charts.iter().zip(part) {
+            for row in data.shaded.iter().flat_map(|(_, rows)| rows).map(|&row| row as f64) {
+                let (left, right) = chart.x.ends();
+                chart.rectangle([left, right], [row - 0.5, row + 0.5], HEADING.mix(GROUND))?;
+            }
             beyond |= draw(chart, theme, column, pitch)?;
         }
     }
@@ -244,7 +253,9 @@ fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
     let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
     let items = items.filter_map(|item| Some(KeyEntry::new(item.sample(theme), item.name.as_ref()?)));
     let mut entries: Vec<KeyEntry> = Vec::new();
-    for entry in lines.chain(items) {
+    let ground = Stroke { opacity: GROUND, ..Stroke::solid(HEADING, theme.tick_font) };
+    let shaded = data.shaded.iter().map(|(name, _)| KeyEntry::new(KeySample::Line(ground), name));
+    for entry in lines.chain(items).chain(shaded) {
         if entries.iter().all(|known| known.label != entry.label) {
             entries.push(entry);
         }

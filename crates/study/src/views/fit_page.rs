@@ -1,11 +1,12 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
+use askama::Template;
 use document::fit::{FitDocument, Reason, ResidualKind, VerdictEntry, ZigZagEntry};
 use document::method::MethodEntry;
 use document::names;
 use report::markdown::text;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
-use report::{Page, Table};
+use report::{Page, PlacedFigures, Table};
 use trial::Quantity;
 
 use super::{fit_figures, method_table, scale_tables};
@@ -14,64 +15,50 @@ use crate::documents::prior;
 use crate::scales::scale_name;
 use crate::work::every_scale::PREFERRED_METHODS;
 
-const MODEL: &str = "The model is T dr/dt + r = K (δ + δ_r) with the yaw rate r and the rudder δ. *95 %* is the interval that a \
-                     method quotes beside its estimate, a dash where it quotes none. *rms ψ* is the root mean square of \
-                     measured minus replayed heading; on records that were kept for validation only the initial state is \
-                     fitted.";
-
-const FILES: &str = "`fit.json` has all of it with all digits: the records with their SHA-256 and their characteristics, every \
-                     method with its estimates, intervals, warnings and diagnostics, and what is known of the ship for \
-                     `study predict`.";
-
 /// Stem of the figure that begins the page: every answer replayed on the first record.
 const FIRST: &str = "replays";
 
+/// `report.md`.
+#[derive(Template)]
+#[template(path = "fit.md", escape = "none")]
+struct FitPage {
+    verdict: Option<String>,
+    /// Paragraphs below the verdict.
+    lines: Vec<String>,
+    answers: Table,
+    warnings: Vec<String>,
+    /// Lines on the records, each with what it is indented by.
+    notes: Vec<(&'static str, String)>,
+    scales: Vec<(String, Option<Table>)>,
+    remarks: Vec<String>,
+    figures: PlacedFigures<&'static str>,
+}
+
 /// `report.md` with its figures.
 pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
-    let mut page = Page::titled("Identification");
-    if let Some(words) = verdict(document) {
-        let (first, rest) = words.split_once('\n').unwrap_or((&words, ""));
-        page.say(format!("**{}**", text(first)));
-        page.words(rest);
+    let (mut first, mut others) = (Vec::new(), Vec::new());
+    for figure in fit_figures::figures(document, curves) {
+        // The answers over the first record tell most; every other figure can wait.
+        if figure.stem == FIRST { first.push(figure) } else { others.push(figure) }
     }
-    page.words(&headline(document, curves));
-    let mut figures = fit_figures::figures(document, curves);
-    // The answers over the first record tell most; every other figure can wait.
-    let first = figures.iter().position(|figure| figure.stem == FIRST).map(|place| figures.remove(place));
-    page.figures(first);
-    page.part("Methods");
-    page.table(answers(document, curves));
-    page.say(MODEL);
-    page.say(FILES);
-    if document.of_answer().next().is_some() {
-        page.part("Warnings");
-        page.list(document.of_answer().map(|entry| text(&entry.to_string())));
-    }
+    let mut figures = PlacedFigures::default();
+    figures.put("first", first);
+    figures.put("others", others);
+    let words = verdict(document).unwrap_or_default() + "\n" + &headline(document, curves);
+    let mut lines = words.lines().map(str::to_owned);
     let notes = notes(document, curves);
-    if !notes.trim().is_empty() {
-        page.folded_part("Records");
-        let entry = |line: &str| {
-            let place = if line.starts_with("  ") { "  - " } else { "- " };
-            format!("{place}{}", text(line.trim()))
-        };
-        let lines: Vec<String> = notes.lines().filter(|line| !line.trim().is_empty()).map(entry).collect();
-        page.say(lines.join("\n"));
-    }
-    let scales = scales(document);
-    if !scales.is_empty() {
-        page.folded_part("Without dimension");
-        for (words, table) in scales {
-            page.say(words);
-            table.into_iter().for_each(|table| page.table(table));
-        }
-    }
-    if document.notes().next().is_some() {
-        page.folded_part("Notes");
-        page.list(document.notes().map(|entry| text(&entry.to_string())));
-    }
-    page.folded_part("Figures");
-    page.figures(figures);
-    page
+    let note = |line: &str| (if line.starts_with("  ") { "  " } else { "" }, line.trim().to_owned());
+    let page = FitPage {
+        verdict: document.verdict.as_ref().and_then(|_| lines.next()),
+        lines: lines.filter(|line| !line.is_empty()).collect(),
+        answers: answers(document, curves),
+        warnings: document.of_answer().map(ToString::to_string).collect(),
+        notes: notes.lines().filter(|line| !line.trim().is_empty()).map(note).collect(),
+        scales: scales(document),
+        remarks: document.notes().map(ToString::to_string).collect(),
+        figures,
+    };
+    Page::new(page.render(), page.figures)
 }
 
 /// What follows the table on the screen.

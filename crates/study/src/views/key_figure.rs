@@ -1,22 +1,31 @@
-//! The figure that stands for a study: its finding above it, T alone where a figure shows errors of K and of T, the
-//! methods it is about in colour; the others are left out of curves, and grey in rows.
+//! The figure that stands for a study: its finding above it, T alone where a figure shows errors of K and of T, what it
+//! is about in colour and everything else pale.
 
-use report::figures::{Layer, LayerKind, LayeredPanel, NamedRows, Panels, Plot, RowItem, RowKind, RowPlace, Stack};
+use campaign::scenario::Highlight;
+use report::CurveOrigin;
+use report::figures::{
+    Layer, LayerKind, LayeredPanel, NamedRows, Panels, Plot, RowItem, RowKind, RowPlace, RowsColumn, Stack,
+};
+use report::number::{counted, significant};
 use report::palette::{Look, Marker, QUIET, SOLID};
-use report::{CurveOrigin, number::counted};
 
-use super::charts::{CUT_NOTE, EXACT_NOTE};
 use campaign::statistics::distinct;
 
 /// How a method is drawn that the figure is not about.
 const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
 
-/// A chart as the figure that stands for a study; `about` are the names of the methods it is about, none: all.
-pub fn of_chart(mut plot: Plot, about: &[String]) -> Plot {
+/// Share of the range of what a figure is about by which everything else may widen its axes.
+const ASIDE: f64 = 0.25;
+
+/// Share of an axis that is left free for the values of rows.
+const ROOM: f64 = 0.12;
+
+/// A chart as the figure that stands for a study.
+pub fn of_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
     match &mut plot {
-        Plot::Panels(data) => of_panels(data, about),
-        Plot::Rows(data) => of_rows(data, about),
-        Plot::Cells(data) => data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), about)),
+        Plot::Panels(data) => of_panels(data, &highlight.series),
+        Plot::Rows(data) => of_rows(data, highlight),
+        Plot::Cells(data) => data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), &highlight.series)),
         Plot::ZigZag(_) => {}
     }
     plot
@@ -25,6 +34,22 @@ pub fn of_chart(mut plot: Plot, about: &[String]) -> Plot {
 fn is_quiet(name: Option<&String>, about: &[String]) -> bool {
     let is_method = |name: &String| name != CurveOrigin::Bound.label();
     !about.is_empty() && name.is_some_and(|name| is_method(name) && !about.contains(name))
+}
+
+/// A layer that the figure is not about.
+fn paled(layer: Layer) -> Layer {
+    let mut kind = layer.kind;
+    match &mut kind {
+        LayerKind::Line(pen) => pen.colour = QUIET,
+        LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
+        LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour = QUIET,
+        LayerKind::Marks(marks) => {
+            (marks.look.colour, marks.intervals) = (QUIET, Vec::new());
+            marks.joined.iter_mut().for_each(|pen| pen.colour = QUIET);
+        }
+        LayerKind::Record => {}
+    }
+    Layer { name: None, kind, ..layer }.within(ASIDE)
 }
 
 /// Whether an axis is of errors or intervals of K.
@@ -44,8 +69,11 @@ fn of_panels(data: &mut Panels, about: &[String]) {
         data.names_aside = true;
         keep_t(stack);
         for panel in &mut stack.panels {
-            let left_out = panel.layers.extract_if(.., |layer| is_quiet(layer.name.as_ref(), about));
-            others.extend(left_out.filter_map(|layer| layer.name));
+            let (quiet, mut shown): (Vec<Layer>, Vec<Layer>) =
+                panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
+            others.extend(quiet.iter().filter_map(|layer| layer.name.clone()));
+            panel.layers = quiet.into_iter().map(paled).collect();
+            panel.layers.append(&mut shown);
         }
         let own = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
         let all = distinct(stack.panels.iter().flat_map(own));
@@ -56,16 +84,10 @@ fn of_panels(data: &mut Panels, about: &[String]) {
             said.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {what}.")));
         }
     }
-    let mut note = data.note.take().unwrap_or_default();
+    let note = data.note.take().unwrap_or_default();
     let others = distinct(others).len();
     if others > 0 {
-        // What is said of arrows and of the exact may hold for what is left out alone.
-        note = note.replace(EXACT_NOTE, "");
-        let mut layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
-        if !layers.any(|layer| marks(layer).is_some() && layer.curve.y.contains(&f64::INFINITY)) {
-            note = note.replace(CUT_NOTE, "");
-        }
-        said.push(format!("Left out: {}.", counted(others as u64, "other method")));
+        said.push(format!("Pale: {}.", counted(others as u64, "other method")));
     }
     said.insert(0, note.trim().to_owned());
     data.note = Some(said.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
@@ -83,7 +105,7 @@ fn keep_t(stack: &mut Stack) {
     stack.rows.iter_mut().for_each(|row| row.height = 0.34);
 }
 
-fn of_rows(data: &mut NamedRows, about: &[String]) {
+fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) {
     data.columns.retain(|column| !is_of_k(&column.x.title));
     for column in &mut data.columns {
         let own = column.rows.iter().zip(&data.names).filter(|(_, name)| about.contains(name)).flat_map(|(row, _)| row);
@@ -106,13 +128,39 @@ fn of_rows(data: &mut NamedRows, about: &[String]) {
             }
         }
     }
+    if !rows.is_empty() {
+        data.columns.iter_mut().for_each(|column| pale_rows(column, &data.names, rows));
+    }
+}
+
+/// Pales the rows that a figure is not about, and writes the first value of each other row beside it.
+fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String]) {
+    column.room = ROOM;
+    for (row, name) in column.rows.iter_mut().zip(names) {
+        let is_quiet = !about.contains(name);
+        let marks = row.iter_mut().filter_map(|item| match &mut item.kind {
+            RowKind::Mark(look, value, _) => Some((look, *value, &mut item.text)),
+            _ => None,
+        });
+        for (place, (look, value, text)) in marks.enumerate() {
+            match (is_quiet, place) {
+                (true, _) => look.colour = QUIET,
+                (false, 0) => *text = Some(significant(value, 2)),
+                (false, _) => {}
+            }
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use report::figures::{PanelRow, RowsColumn, Ruler};
+    use report::figures::{PanelRow, Ruler};
 
     use super::*;
+
+    fn about_output_error() -> Highlight {
+        Highlight { series: vec![String::from("output-error")], rows: Vec::new() }
+    }
 
     fn method(id: &str) -> (String, Look) {
         (id.to_owned(), CurveOrigin::Method(id.to_owned()).look())
@@ -133,13 +181,17 @@ mod tests {
             panels: (0..4).flat_map(|row| [panel(0, row), panel(1, row)]).collect(),
             ..Stack::default()
         };
-        let Plot::Panels(data) = of_chart(Panels::of(stack).into(), &[String::from("output-error")]) else { panic!() };
+        let Plot::Panels(data) = of_chart(Panels::of(stack).into(), &about_output_error()) else { panic!() };
         let panels = &data.stacks[0].panels;
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
         assert_eq!(panels[1].head.as_deref(), Some("column 1"));
-        assert_eq!((panels[0].layers.len(), panels[0].layers[0].name.as_deref()), (1, Some("output-error")));
-        assert_eq!(data.note.as_deref(), Some("Left out: 1 other method."));
+        // What the figure is not about lies below, without a name.
+        let names: Vec<Option<&str>> = panels[0].layers.iter().map(|layer| layer.name.as_deref()).collect();
+        assert_eq!(names, [None, Some("output-error")]);
+        let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
+        assert_eq!((marks.look.colour, panels[0].layers[0].room), (QUIET, Some(ASIDE)));
+        assert_eq!(data.note.as_deref(), Some("Pale: 1 other method."));
     }
 
     #[test]
@@ -154,11 +206,31 @@ mod tests {
         };
         let rows =
             NamedRows { columns: vec![column("error of K [%]"), column("error of T [%]")], ..NamedRows::default() };
-        let Plot::Rows(data) = of_chart(rows.into(), &[String::from("output-error")]) else { panic!() };
+        let Plot::Rows(data) = of_chart(rows.into(), &about_output_error()) else { panic!() };
         assert_eq!(data.columns.len(), 1);
         let row = &data.columns[0].rows[0];
         assert_eq!(row[0].name.as_deref(), Some("output-error"));
         assert_eq!((row.len(), row[1].place, row[2].place), (3, RowPlace::Below, RowPlace::Beside));
         assert_eq!(row[1].name, row[2].name);
+    }
+
+    #[test]
+    fn rows_that_a_figure_is_about_have_their_value_beside_them() {
+        let (name, look) = method("output-error");
+        let row = |value: f64| vec![RowItem::below(name.as_str(), look, value, None)];
+        let column = RowsColumn {
+            x: Ruler::decimal("error of T [%]"),
+            rows: vec![row(1.25), row(2.0)],
+            ..RowsColumn::default()
+        };
+        let rows =
+            NamedRows { names: vec!["5/5".into(), "20/20".into()], columns: vec![column], ..NamedRows::default() };
+        let highlight = Highlight { rows: vec![String::from("20/20")], ..Highlight::default() };
+        let Plot::Rows(data) = of_chart(rows.into(), &highlight) else { panic!() };
+        let shown = |row: usize| match &data.columns[0].rows[row][0] {
+            RowItem { kind: RowKind::Mark(look, ..), text, .. } => (look.colour == QUIET, text.as_deref()),
+            _ => panic!(),
+        };
+        assert_eq!((shown(0), shown(1)), ((true, None), (false, Some("2.0"))));
     }
 }

@@ -42,7 +42,7 @@ fn remove_former(folder: &ResultFolder, page: &Page) -> Result<(), Failure> {
     let former = String::from_utf8_lossy(&former);
     let images = former.split("](").filter_map(|rest| rest.split_once(')')?.0.strip_suffix(".png"));
     let has = |stem: &str, kind: &str| folder.path().join(stem).with_extension(kind).is_file();
-    let is_old = |stem: &&str| has(stem, "svg") && page.drawings().all(|figure| figure.stem != *stem);
+    let is_old = |stem: &&str| has(stem, "svg") && page.figures().iter().all(|figure| figure.stem != *stem);
     let old: Vec<&str> = images.filter(is_old).collect();
     folder.remove_all(|name| {
         let stem = name.strip_suffix(".png").or_else(|| name.strip_suffix(".svg"));
@@ -51,7 +51,7 @@ fn remove_former(folder: &ResultFolder, page: &Page) -> Result<(), Failure> {
 }
 
 fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure> {
-    let figures: Vec<&PageFigure> = page.drawings().collect();
+    let figures = page.figures();
     let mut titles: Vec<String> = figures.iter().flat_map(|figure| figure.plot.axis_titles()).collect();
     titles.sort_unstable();
     titles.dedup();

@@ -181,6 +181,7 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
         note: Some(format!("Marks: means. {BARS}")),
+        ..NamedRows::default()
     };
     Some((rows, design.methods[summary.reference].label.clone()))
 }

@@ -1,11 +1,12 @@
 //! The form for reporting manoeuvring data to IMO (MSC/Circ.1053, appendix 6) as a page.
 
+use askama::Template;
 use campaign::statistics::grouped;
 use predict::form::{DECIMALS, ImoFormEntry, STOPPING, TRACK_REACH_LENGTHS};
 use predict::interval::PredictionInterval;
 use report::markdown::text;
 use report::number::{fixed, significant};
-use report::{Page, Table, TableHead};
+use report::{Page, PlacedFigures, Table, TableHead};
 
 use super::bench_figures::capital;
 
@@ -29,33 +30,33 @@ fn filled(entry: &ImoFormEntry) -> String {
     }
 }
 
+/// `trial-form.md`.
+#[derive(Template)]
+#[template(path = "form.md", escape = "none")]
+struct FormPage<'a> {
+    declared: Vec<(&'a str, Table)>,
+    tested: Table,
+    remarks: &'a [String],
+}
+
 /// The page of the form.
 pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
-    let mut page = Page::titled("Form for reporting manoeuvring data to IMO");
-    page.say(
-        "MSC/Circ.1053 (2002), appendix 6; criteria of resolution MSC.137(76). Every entry names its source; what is predicted \
-         is no trial.",
-    );
     let sections = grouped(entries, |entry| entry.section.as_str()).into_iter();
     let is_declared = |(section, own): &(&str, Vec<&ImoFormEntry>)| {
         own.iter().all(|entry| entry.side.is_none()) && *section != STOPPING
     };
-    let (declared, tested): (Vec<_>, Vec<_>) = sections.partition(is_declared);
-    for (section, own) in declared {
-        if !section.is_empty() {
-            page.part(capital(section));
-        }
+    let (declared, measured): (Vec<_>, Vec<_>) = sections.partition(is_declared);
+    let declaration = |(section, entries): (_, Vec<&ImoFormEntry>)| {
         let mut table = Table::new(TableHead::default().texts(["entry", "value", "unit", "source"]));
-        for entry in own {
+        for entry in entries {
             table.push([entry.field.clone(), filled(entry), unit(entry).to_owned(), entry.source.clone()]);
         }
-        page.table(table);
-    }
-    page.part("Test results");
-    let mut table =
+        (section, table)
+    };
+    let mut tested =
         Table::new(TableHead::default().texts(["test", "result", "side", "value", "unit", "IMO criterion", "source"]));
-    for entry in tested.into_iter().flat_map(|(_, own)| own) {
-        table.push([
+    for entry in measured.into_iter().flat_map(|(_, own)| own) {
+        tested.push([
             entry.section.clone(),
             entry.field.clone(),
             entry.side.clone().unwrap_or_default(),
@@ -65,11 +66,8 @@ pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
             entry.source.clone(),
         ]);
     }
-    page.table(table);
-    page.part("Remarks");
-    page.list(remarks.iter().map(|remark| text(remark)));
-    page.say(if remarks.is_empty() { "None." } else { "" });
-    page
+    let page = FormPage { declared: declared.into_iter().map(declaration).collect(), tested, remarks };
+    Page::new(page.render(), PlacedFigures::<()>::default())
 }
 
 fn criterion(entry: &ImoFormEntry) -> String {

@@ -1,12 +1,13 @@
 //! The page of a prediction: words, tables and figures.
 
+use askama::Template;
 use document::names;
 use predict::document::OtherLoading;
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
-use report::Page;
 use report::markdown::text;
 use report::number::{counted, fixed, with_uncertainty};
+use report::{Page, PlacedFigures};
 use ship::angle::to_deg;
 use ship::{Particulars, ShortNumber};
 use trial::{Manoeuvre, imo};
@@ -110,55 +111,34 @@ fn doubts(document: &PredictDocument) -> impl Iterator<Item = String> {
     document.corrected.iter().flat_map(|own| own.warnings.iter().map(|doubt| format!("{}: {}", own.name, doubt.text)))
 }
 
-const READING: &str = "Every row is a figure of merit of ships that are drawn from the model: a structure by its probability, \
-                       parameters by their covariance, a random moment, a rate of the rudder and a first yaw rate as the \
-                       records have them. Intervals hold 50 and 90 % of them. \"Mostly from\" names the source that makes most \
-                       of the interval, each source drawn alone.";
+/// `report.md`.
+#[derive(Template)]
+#[template(path = "predict.md", escape = "none")]
+struct PredictPage<'a> {
+    document: &'a PredictDocument,
+    lines: Vec<String>,
+    caution: Option<String>,
+    replays: Vec<String>,
+    loading: String,
+    corrected_from: String,
+    doubts: Vec<String>,
+    figures: PlacedFigures<&'static str>,
+}
 
 /// `report.md` with its figures.
 pub fn page(document: &PredictDocument) -> Page {
-    let mut page = Page::titled("Prediction");
-    page.words(&words(document));
-    page.say(READING);
-    page.table(predict_tables::figures(document));
-    if !document.imo.is_empty() {
-        page.part("IMO MSC.137(76)");
-        page.say(
-            "The share of the drawn ships that keep within the limit. The criteria are for full load, even keel, deep water \
-             and calm.",
-        );
-        caution(document).into_iter().for_each(|caution| page.say(text(&caution)));
-        page.table(predict_tables::criteria(document));
-    }
-    if !document.replays.is_empty() {
-        page.part("Records");
-        page.say(
-            "Nothing is fitted to these records. The band is that of the recorded rudder; figures of a zig-zag are those of a \
-             helm that reverses the rudder at the headings of the record.",
-        );
-        page.list(document.replays.iter().map(|own| format!("{}: {}", text(&names::record(&own.name)), coverage(own))));
-    }
-    if !document.corrected.is_empty() {
-        let loading = text(&OtherLoading::name(document.load.as_ref()));
-        page.part(format!("Corrected to {loading}"));
-        page.say(format!(
-            "R = T F/B (MSC/Circ.1053, 3.4.1.2): T is measured, B is what the model of the condition of the trial does in the \
-             same manoeuvre, F what the model at {loading} does. {}",
-            text(&corrected_from(document))
-        ));
-        page.table(predict_tables::corrected(document));
-        let drawn = match document.load {
-            Some(_) => "drawn together where F was taken from B",
-            None => "drawn apart",
-        };
-        page.say(format!(
-            "The intervals hold the errors of both models, {drawn}, the random moment of a trial in each, and the reading of T."
-        ));
-        page.list(doubts(document).map(|doubt| text(&doubt)));
-    }
-    if document.form.is_some() {
-        page.say("The form of MSC/Circ.1053 is in [trial-form.md](trial-form.md).");
-    }
-    page.figures(predict_figures::figures(document));
-    page
+    let mut figures = PlacedFigures::default();
+    figures.put("all", predict_figures::figures(document));
+    let replay = |replay: &RecordReplay| format!("{}: {}", text(&names::record(&replay.name)), coverage(replay));
+    let page = PredictPage {
+        document,
+        lines: words(document).lines().map(str::to_owned).collect(),
+        caution: caution(document),
+        replays: document.replays.iter().map(replay).collect(),
+        loading: text(&OtherLoading::name(document.load.as_ref())),
+        corrected_from: corrected_from(document),
+        doubts: doubts(document).collect(),
+        figures,
+    };
+    Page::new(page.render(), page.figures)
 }

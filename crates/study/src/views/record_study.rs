@@ -1,22 +1,26 @@
 //! A finished study of measured records: its tables, its figure and its page.
 
+use askama::Template;
 use campaign::design::Design;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
+use campaign::manifest::Manifest;
 use campaign::rows::StudyRow;
+use campaign::scenario::Words;
 use campaign::statistics::Statistic;
 use campaign::store::StoredStudy;
 use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
 use document::names;
 use report::figures::{Division, NamedRows, Plot, RowItem, RowKind, RowsColumn, Ruler};
+use report::markdown::text;
 use report::number::{self, MISSING, significant};
 use report::palette::Look;
-use report::{CurveOrigin, Page, PageFigure, Table, Theme};
+use report::{CurveOrigin, Page, PageFigure, PlacedFigures, Table, Theme};
 
 use super::bench_figures::capital;
 use super::page_files::write_page;
-use super::study_figures::{self, FigurePlace};
-use super::{coverage_table, study_page, tables};
+use super::study_figures::{self, FigurePlace, StudyFigure};
+use super::{coverage_table, tables};
 use crate::options::FigureChoice;
 
 /// The rows as a table for people.
@@ -174,28 +178,28 @@ pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     text
 }
 
-const READING: &str = "*own error*: median over fits of the heading error on the records that were fitted; *judged error*: median \
-                       over trials on the record that judges, which chose nothing: its rudder is replayed, and the initial \
-                       state alone is fitted; *over*: median over trials of this error over that of the first method on the \
-                       same trial, and the same where both replays are restarted every 60 s; *named*: effects with the number of fits that named them. Intervals are those of a \
-                       bootstrap over fits, or over judging records where there is one fit. `records.csv` has every trial \
-                       with K and T, `rows` the same for programs.";
+/// `report.md`.
+#[derive(Template)]
+#[template(path = "records.md", escape = "none")]
+struct RecordsPage<'a> {
+    manifest: &'a Manifest,
+    words: &'a Words,
+    brief: Table,
+    coverage: Option<Table>,
+    figures: PlacedFigures<FigurePlace>,
+}
 
-fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<PageFigure>) -> Page {
+fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> Page {
     let StoredStudy { manifest, design, .. } = stored;
-    let mut page = Page::titled(manifest.name.as_str());
-    page.say(format!("**{}**", design.words.question.trim()));
-    page.say(&design.words.finding);
-    page.figures(figures);
-    page.say(&design.words.analysis);
-    page.table(brief(&summary.records, design));
-    page.say(READING);
-    if !summary.predictions.is_empty() {
-        page.part("What intervals of predictions hold");
-        page.table(coverage_table::pooled(&summary.predictions, design));
-    }
-    study_page::how_it_was_made(&mut page, manifest);
-    page
+    let predictions = &summary.predictions;
+    let page = RecordsPage {
+        manifest,
+        words: &design.words,
+        brief: brief(&summary.records, design),
+        coverage: (!predictions.is_empty()).then(|| coverage_table::pooled(predictions, design)),
+        figures: PlacedFigures(figures),
+    };
+    Page::new(page.render(), page.figures)
 }
 
 /// Makes the tables, the figure and the page in a folder; returns what they are made from.
@@ -226,7 +230,7 @@ pub fn put(
         let held = study_figures::predictions(design, &made).map(|figure| (FigurePlace::AllTrials, figure));
         judged.into_iter().chain(held).collect()
     };
-    let figures = study_figures::chosen(all, design, choice).into_iter().map(|(_, figure)| figure);
-    write_page(folder, page(stored, &made, figures.collect()), Some(theme))?;
+    let figures = study_figures::chosen(all, design, choice);
+    write_page(folder, page(stored, &made, figures), Some(theme))?;
     Ok(made)
 }

@@ -10,12 +10,12 @@ use report::{CurveOrigin, PageFigure, PlotCurve};
 use super::trace_tables::term;
 use crate::documents::curves::TraceCurves;
 
-/// The way in numbers: `1.9° → 0.90° with speed loss → 0.32° with sway coupling`.
+/// The way in numbers: `1.9° → 0.90° (speed loss) → 0.32° (sway coupling)`.
 pub fn sentence(steps: &[StairEntry]) -> String {
     let size = |step: &StairEntry| format!("{}°", significant(step.heading_rmse_deg, 2));
     let of = |step: &StairEntry| match &step.id {
         None => size(step),
-        Some(id) => format!("{} with {}", size(step), names::effect(id)),
+        Some(id) => format!("{} ({})", size(step), names::effect(id)),
     };
     steps.iter().map(of).collect::<Vec<_>>().join(" → ")
 }
@@ -45,7 +45,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         panels.push(panel(format!("{name} carries"), carried, &CurveOrigin::Record));
         panels.push(panel(format!("{}° are left", size(number + 1)), pair[1].clone(), &CurveOrigin::After));
     }
-    let row = PanelRow::zeroed(Ruler::new("heading [°]", Division::Angle), 0.13);
+    let row = PanelRow::zeroed(Ruler::new("heading [°]", Division::Angle), 0.085);
     let plot = Panels::of(Stack::multiples(3, Ruler::time(), row, panels));
     let caption = format!(
         "{}: what is left of the heading before an effect, what the effect carries of it, and what is left behind it. Every \

@@ -70,7 +70,7 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
         found.map(|(place, figure)| {
             let mut plot = figure.plot.clone();
             if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials) {
-                plot = key_figure::of_chart(plot, &words.methods);
+                plot = key_figure::of_chart(plot, &words.highlight);
             }
             let finding = words.title.clone().unwrap_or_else(|| figure.finding.clone());
             (FigurePlace::Key, PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot))
@@ -105,7 +105,7 @@ const MOST_TRACED: usize = 24;
 
 /// What one of several traces said: the first that the scenario calls what its figures are about, else the first.
 pub fn one_trace(design: &Design, summary: &Summary) -> Vec<TraceSummary> {
-    let about = &design.words.output.methods;
+    let about = &design.words.output.highlight.series;
     let is_about = |line: &&TraceSummary| about.contains(&design.methods[line.method].label);
     let one = summary.tracing.iter().find(is_about).or(summary.tracing.first()).map_or(0, |line| line.method);
     summary.tracing.iter().filter(|line| line.method == one).cloned().collect()

@@ -2,27 +2,24 @@
 //! records that were not fitted, the evidence, the innovations, the moment that the base lacks, and the residuals from
 //! several sides.
 
-use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use campaign::curves::{curve, degrees};
 use document::names;
 use document::trace::{
     BeforeAfter, Document, EffectEntry, ErrorsEntry, MissingMomentEntry, Outcome, RecordEntry, TraceDocument,
 };
 use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
-use estimation::statistics::median;
 use identify::replay::Replay;
 use report::figures::{
-    AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn,
-    Ruler, Stack,
+    AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler, Stack,
 };
-use report::number::{MISSING, counted, fixed, significant};
+use report::number::{MISSING, fixed, significant};
 use report::palette::{HEADING, Look, Marker, RGBColor, RUDDER, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
-use trial::{Trial, ZigZag, imo};
+use trial::{Trial, ZigZag};
 
 use super::record_figures::{ModelOverTime, over_time};
-use super::trace_tables::{horizon, term};
+use super::trace_tables::term;
 use super::{innovation_figure, missing_moment};
 use crate::documents::curves::{TraceCurves, TracedRecord, slugs, suffix};
 use crate::documents::missing_moment::MissingMomentCurves;
@@ -30,23 +27,18 @@ use crate::documents::missing_moment::MissingMomentCurves;
 /// Lines of a spectrum whose frequencies differ by no more than this factor are averaged into one.
 const LINE: f64 = 1.06;
 
-/// Every record with the models before and after: the fitted ones, and those that were held out.
-pub fn records(document: &TraceDocument, curves: &TraceCurves) -> [Vec<PageFigure>; 2] {
+/// Every fitted record with the models before and after.
+pub fn records(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
-    let (fitted, judged) = document.errors();
-    let errors = fitted.iter().chain(judged.iter().filter(|one| one.used == "held out")).map(|one| one.errors);
-    let mut figures = [Vec::new(), Vec::new()];
-    for (number, ((entry, record), errors)) in document.records.iter().zip(&curves.records).zip(errors).enumerate() {
+    let fitted = document.records.iter().zip(&curves.records).enumerate().filter(|(_, (entry, _))| !entry.held_out);
+    let figure = |((number, (entry, record)), errors): ((usize, (&RecordEntry, &TracedRecord)), &BeforeAfter)| {
         let name = names::record(&entry.name);
-        let ratio = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
-        let held = if entry.held_out { ", held out" } else { "" };
-        let finding = format!("{name}{held}: error of the heading × {ratio} over the whole replay");
-        let caption = format!("{name}{held}: heading, residual and rudder, with the 95 % band of the model after.");
-        let data = record_fit(record, errors);
-        let figure = PageFigure::new(format!("record{}", suffix(&stems, number)), finding, caption, data);
-        figures[usize::from(entry.held_out)].push(figure);
-    }
-    figures
+        let share = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
+        let finding = format!("{name}: error of the heading × {share} over the whole replay");
+        let caption = format!("{name}: heading, residual and rudder, with the 95 % band of the model after.");
+        PageFigure::new(format!("record{}", suffix(&stems, number)), finding, caption, record_fit(record, errors))
+    };
+    fitted.zip(&document.trace.error.identification).map(figure).collect()
 }
 
 /// The innovations of every fitted record.
@@ -99,7 +91,8 @@ pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
     figures
 }
 
-fn models(record: &TracedRecord) -> [(CurveOrigin, &Replay); 2] {
+/// The replays of a record before and after.
+pub fn models(record: &TracedRecord) -> [(CurveOrigin, &Replay); 2] {
     let [before, after] = &record.replays;
     [(CurveOrigin::Before, before), (CurveOrigin::After, after)]
 }
@@ -134,40 +127,17 @@ fn record_fit(record: &TracedRecord, errors: &BeforeAfter) -> Panels {
     over_time(heading, rudder, models_over_time(record, Some(rms)))
 }
 
-/// The ratio of the heading errors of some records, after over before.
-pub fn ratio<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> f64 {
-    let square =
-        |of: fn(&BeforeAfter) -> &ErrorsEntry| all.clone().map(|one| of(one).heading_rmse_deg.powi(2)).sum::<f64>();
-    (square(|one| &one.after) / square(|one| &one.before)).sqrt()
+/// Root mean squares of the heading errors of some records, before and after, degrees.
+pub fn rms<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> [f64; 2] {
+    let count = all.clone().count() as f64;
+    let models: [fn(&BeforeAfter) -> &ErrorsEntry; 2] = [|errors| &errors.before, |errors| &errors.after];
+    models.map(|model| (all.clone().map(|errors| model(errors).heading_rmse_deg.powi(2)).sum::<f64>() / count).sqrt())
 }
 
-/// Errors on records that were not fitted, from zero, so that a ratio can be seen; `None` where there are none.
-pub fn held_out(document: &TraceDocument) -> Option<PageFigure> {
-    let (_, judged) = document.errors();
-    let column = |title: String, of: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
-        let row = |errors: &BeforeAfter| -> Vec<RowItem> {
-            let pairs = [(CurveOrigin::Before, &errors.before), (CurveOrigin::After, &errors.after)];
-            let mark =
-                |(origin, own): (CurveOrigin, _)| Some(RowItem::below(origin.label(), origin.look(), of(own)?, None));
-            pairs.into_iter().filter_map(mark).collect()
-        };
-        let rows = judged.iter().map(|one| row(one.errors)).collect();
-        RowsColumn { x: Ruler::decimal(title), rows, zero: true, ..RowsColumn::default() }
-    };
-    let mut columns = vec![column(String::from("whole replay [°]"), &|own| Some(own.heading_rmse_deg))];
-    columns.extend(HORIZONS.map(|length| column(format!("every {length:.0} s [°]"), &move |own| horizon(own, length))));
-    let count = judged.len();
-    let records = if count == 1 { "record that was" } else { "records that were" };
-    let title =
-        format!("Heading error × {:.2} on {count} {records} not fitted", ratio(judged.iter().map(|one| one.errors)));
-    let data = NamedRows {
-        names: judged.iter().map(|one| format!("{}, {}", names::record(one.name), one.used)).collect(),
-        columns,
-        ..NamedRows::default()
-    };
-    let caption = "Error of the heading on records that were not fitted, before and after: of the whole replay, and of \
-                   replays that begin anew every 20 and 60 s.";
-    (!judged.is_empty()).then(|| PageFigure::new("held-out", title, caption, data))
+/// The ratio of the heading errors of some records, after over before.
+pub fn ratio<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> f64 {
+    let [before, after] = rms(all);
+    after / before
 }
 
 /// Support beyond which a bar is cut, as many times the median of all.
@@ -241,63 +211,6 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
         "Probability of every effect with its most probable form, and the support −ΔBIC that it has beside all others.{group}"
     );
     PageFigure::new("evidence", named_effects(trace), caption, data)
-}
-
-/// The first two overshoots of every zig-zag, which are those that have a limit, with those of both replays; `None`
-/// where no record is a zig-zag.
-pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
-    let (mut names, mut rows, mut off) = (Vec::new(), Vec::new(), [const { Vec::new() }; 2]);
-    for (entry, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
-        let Ok(zigzag) = ZigZag::of(trial) else { continue };
-        let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
-        // The limits are for ships: a model has none, and which ship it is a model of the record does not say.
-        let ship = entry.particulars().filter(|own| own.length >= imo::SHORTEST_M);
-        let criteria: Vec<_> = ship.map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
-        for (number, word) in [(0, "first"), (1, "second")] {
-            let of = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
-            let Some(angle) = of(&zigzag) else { continue };
-            // Records that judge are told where there are any.
-            let is_told = entry.held_out || !document.records.iter().any(|other| other.held_out);
-            for (off, replay) in off.iter_mut().zip(&replays).filter(|_| is_told) {
-                off.extend(replay.as_ref().and_then(of).map(|own| (own - angle).abs()));
-            }
-            let limit = criteria.iter().find(|limit| {
-                limit.unit == imo::Unit::Degrees && limit.measured.is_some() && limit.name.contains(word)
-            });
-            // One mark above the other, so that neither hides the other.
-            let mark = |origin: CurveOrigin, aside: f64, replay: &Option<ZigZag>| {
-                let value = replay.as_ref().and_then(of)?;
-                let item = RowItem::new(origin.label(), RowKind::Mark(origin.look(), value, None)).softly();
-                Some(RowItem { place: RowPlace::Aside(aside), ..item })
-            };
-            let measured = Look { marker: Marker::Square, ..CurveOrigin::Record.look() };
-            let items = [
-                Some(RowItem::new("measured", RowKind::Bar(measured, angle))),
-                limit.map(|limit| RowItem::new("IMO limit", RowKind::Limit(limit.limit))),
-                mark(CurveOrigin::Before, -0.16, &replays[0]),
-                mark(CurveOrigin::After, 0.16, &replays[1]),
-            ];
-            names.push(format!("{}, {word}", names::record(&entry.name)));
-            rows.push(items.into_iter().flatten().collect());
-        }
-    }
-    if names.is_empty() {
-        return None;
-    }
-    let column = RowsColumn { x: Ruler::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
-    let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of IMO \
-                   MSC.137(76) where one is for this zig-zag and for a ship of this length. Without a mark: that \
-                   replay has no such overshoot.";
-    let data = NamedRows { names, columns: vec![column], ..NamedRows::default() };
-    let count = off[1].len();
-    let [before, after] = off
-        .map(|mut off| median(&mut off).map_or_else(|| MISSING.to_owned(), |off| format!("{}°", significant(off, 2))));
-    let held = match document.records.iter().filter(|entry| entry.held_out).count() {
-        0 => String::new(),
-        records => format!(" of {} that no model has seen", counted(records as u64, "record")),
-    };
-    let finding = format!("Overshoots{held} are {before} off with K and T alone, {after} traced (median of {count})");
-    Some(PageFigure::new("overshoots", finding, caption, data))
 }
 
 /// The residual before and after from several sides.

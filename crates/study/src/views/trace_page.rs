@@ -1,21 +1,24 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
+use askama::Template;
 use campaign::statistics::distinct;
 use document::identified_ship::ValidityRange;
 use document::names;
-use document::trace::{Outcome, ParameterEntry, TraceDocument};
+use document::trace::{Outcome, ParameterEntry, PriorEntry, TraceDocument};
 use predict::steady::SteadyCurve;
 use report::markdown::text;
-use report::number::{fixed, significant};
-use report::{Page, PageFigure, Table, TableHead};
+use report::number::{MISSING, fixed, significant};
+use report::{Page, PageFigure, PlacedFigures, Table, TableHead};
 use ship::ShortNumber;
+use ship::angle::to_deg;
 use ship::vessel::prime::meaning;
+use trial::ZigZag;
 
 use super::record_figures::{stability, steady_turns};
-use super::staircase;
 use super::trace_figures as figures;
 use super::trace_hero;
 use super::trace_tables as tables;
+use super::{held_out, overshoots, staircase};
 use crate::documents::curves::TraceCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
@@ -120,147 +123,144 @@ fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
     parameters.iter().filter(|own| own.at_bound).map(of).collect()
 }
 
-const JUDGED: &str = "Nothing but the initial state is fitted to a record here. *Held out*: the record took no part in the \
-                      analysis. *Left out*: base and model are fitted to the other records. In the table of every \
-                      record, *own bias* is the heading error where a rudder bias of that record is fitted too, and \
-                      *own moment* where this is a slow yaw moment, straight between five instants: what is gone \
-                      there can be of its weather or trim.";
-
-const ERRORS: &str = "*Heading*: the recorded rudder replayed over the whole record. *Every 20 s*: the replay begins anew so \
-                      often. *After/before* is the ratio of the errors of the whole replay. ΔBIC, below, weighs every \
-                      heading given those before it: it may fall where a whole replay gains nothing.";
-
-const EVIDENCE: &str = "The probability of an effect is the weight of all structures that have it. ΔBIC is −2 log of \
-                        the ratio of the evidence with the effect to that without: negative where the effect helps. \
-                        An effect is named where its probability, or that of the group it cannot be told from, is \
-                        high enough, its size is none by chance, and no moment of another shape explains the records \
-                        better in its place.";
-
-const HULLS: &str = "Hulls of three degrees of freedom, fitted about what the dimensions of the ship say (`mmg`) or what \
-                     hulls have (`quadratic`, `cubic`): their coefficients without dimension that are one standard \
-                     deviation or more from what was expected. Predictions are made with these hulls, and they take part \
-                     in the replays where the structures leave more than noise.";
-
-const CANDIDATES: &str = "Visibility is the expected square of the size of an effect over its error beside all other \
-                          candidates: what is small here cannot be seen in these records.";
+/// `report.md`.
+#[derive(Template)]
+#[template(path = "trace.md", escape = "none")]
+struct TracePage<'a> {
+    document: &'a TraceDocument,
+    title: String,
+    /// The physics of the effects of the staircase, a sentence each.
+    physics: Vec<String>,
+    glance: Table,
+    limits: Vec<String>,
+    noise: String,
+    located: Vec<String>,
+    errors: Table,
+    formulas: Vec<String>,
+    aliases: Table,
+    model: String,
+    prior: &'a PriorEntry,
+    /// Prior probabilities of an effect and of a moment of time, and the probability from which an effect is named.
+    odds: [String; 3],
+    figures: PlacedFigures<&'static str>,
+}
 
 /// `report.md` with its figures; `turns` are the steady turns of the model. The finding, the figure that shows it and
 /// what it is worth on other records come first; what they rest on is folded.
 pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
-    let mut page = Page::titled(format!("Trace of {}", document.title()));
-    page.say(format!("**{}**", document.trace.headline));
-    page.say(document.scales.as_ref().map_or_else(String::new, |scales| format!("{scales}.")));
-    let [of_fitted, of_held_out] = figures::records(document, curves);
-    let mut records = of_fitted.into_iter().chain(of_held_out);
-    let first = trace_hero::figure(document, curves).or_else(|| records.next());
-    page.figures(first);
-    if let Some(figure) = staircase::figure(document, curves) {
-        page.part("What each effect carries");
-        page.list(physics(document));
-        page.figures([figure]);
+    let prior = &document.trace.prior;
+    let page = TracePage {
+        document,
+        title: title(document, curves),
+        physics: physics(document),
+        glance: glance(document, curves),
+        limits: limits(document),
+        noise: noise(document),
+        located: located(document, "`").collect(),
+        errors: all_errors(document),
+        formulas: formulas(document, "`").collect(),
+        aliases: aliases(document),
+        model: model(document),
+        odds: [prior.probability, prior.probability_of_time, prior.named_from].map(|share| significant(share, 2)),
+        prior,
+        figures: placed(document, curves, turns),
+    };
+    Page::new(page.render(), page.figures)
+}
+
+/// The figures by the places of the template.
+fn placed(
+    document: &TraceDocument,
+    curves: &TraceCurves,
+    turns: Option<&(Vec<SteadyCurve>, ValidityRange)>,
+) -> PlacedFigures<&'static str> {
+    let mut placed = PlacedFigures::default();
+    let mut records = figures::records(document, curves).into_iter();
+    let hero = trace_hero::figure(document, curves);
+    match staircase::figure(document, curves) {
+        Some(stairs) => placed.put("first", [stairs]),
+        None if hero.is_none() => placed.put("first", records.next()),
+        None => {}
     }
-    if let Some(figure) = figures::held_out(document) {
-        page.part("Records that were not fitted");
-        page.figures([figure]);
-        page.say(JUDGED);
-    }
-    if let Some(figure) = figures::overshoots(document, curves) {
-        page.part("Overshoots");
-        page.figures([figure]);
-    }
-    what_is_left(&mut page, document);
-    page.part("Next trial");
-    page.say(&document.next_trial);
-    page.folded_part("Every record");
-    page.table(all_errors(document));
-    page.say(ERRORS);
-    page.figures(records);
-    evidence(&mut page, document, curves);
-    model_and_noise(&mut page, document);
-    let moments = figures::moments(document, curves);
-    if !moments.is_empty() {
-        page.folded_part("The yaw moment that the base lacks");
-        page.figures(moments);
-    }
-    page.folded_part("Further figures");
-    page.figures(turns.map(|(curves, seen)| {
+    placed.put("overshoots", overshoots::figure(document, curves));
+    placed.put(
+        "held out",
+        hero.into_iter().chain(held_out::residuals(document, curves)).chain(held_out::errors(document)),
+    );
+    placed.put("records", records);
+    placed.put("evidence", [figures::evidence(document)]);
+    placed.put("innovations", figures::innovations(document, curves));
+    placed.put("moments", figures::moments(document, curves));
+    placed.put("further", turns.map(|(curves, seen)| {
         let caption = "Steady yaw rate against rudder of the model, an unstable branch dashed; thin: ships that the records \
                        cannot tell from it; grey: the range of the records.";
         PageFigure::new("steady", stability(curves), caption, steady_turns(curves, *seen))
     }));
-    page.figures(figures::further(document, curves));
-    settings(&mut page, document);
-    page
+    placed.put("further", figures::further(document, curves));
+    placed
+}
+
+/// Names of the fitted records, and what the first of them is where its name does not say it.
+fn title(document: &TraceDocument, curves: &TraceCurves) -> String {
+    let name = document.title();
+    let zigzag = curves.records.first().and_then(|record| ZigZag::of(&record.trial).ok());
+    let manoeuvre = zigzag.and_then(|zigzag| Some((zigzag.pair?, zigzag.side)));
+    let manoeuvre =
+        manoeuvre.filter(|(pair, _)| !name.contains(&pair.to_string())).map_or_else(String::new, |(pair, side)| {
+            let side = side.map_or_else(String::new, |side| format!(", first to {side}"));
+            format!(": a {pair} zig-zag{side}")
+        });
+    let ship = document.particulars().map_or_else(String::new, |ship| format!(" ({})", scale_name(ship)));
+    format!("{name}{manoeuvre}{ship}")
 }
 
 /// The physics of the effects of the staircase, a sentence each.
-fn physics(document: &TraceDocument) -> impl Iterator<Item = String> {
+fn physics(document: &TraceDocument) -> Vec<String> {
     let ids = document.staircase.iter().filter_map(|step| step.id.as_deref());
-    distinct(ids).into_iter().filter_map(|id| Some(format!("**{}**: {}.", names::effect(id), names::physics(id)?)))
+    let sentence = |id| Some(format!("**{}**: {}.", names::effect(id), names::physics(id)?));
+    distinct(ids).into_iter().filter_map(sentence).collect()
 }
 
-/// What speaks for and against every effect, and whether what is left is noise.
-fn evidence(page: &mut Page, document: &TraceDocument, curves: &TraceCurves) {
-    let trace = &document.trace;
-    let table = |page: &mut Page, title: &str, table: Table, words: &str| {
-        page.subpart(title);
-        page.table(table);
-        page.say(words);
-    };
-    page.folded_part("Evidence");
-    page.figures([figures::evidence(document)]);
-    page.say(EVIDENCE);
-    page.figures(figures::innovations(document, curves));
-    if !trace.effects.is_empty() {
-        table(page, "Effects", tables::effects(document), "");
+/// Errors of the heading and of the overshoots without and with the effects, on fitted records and on others.
+fn glance(document: &TraceDocument, curves: &TraceCurves) -> Table {
+    let head =
+        TableHead::default().texts(["records"]).numbers(["heading error by K and T", "with effects"]).unit("deg");
+    let mut table = Table::new(head.numbers(["overshoot error by K and T", "with effects"]).unit("deg"));
+    let error = &document.trace.error;
+    let rows = [("fitted", &error.identification, false), ("not fitted", &error.validation, true)];
+    for (used, errors, held_out) in rows.into_iter().filter(|(_, errors, _)| !errors.is_empty()) {
+        let headings = figures::rms(errors.iter());
+        let (overshoots, _) = overshoots::medians(document, curves, held_out);
+        let numbers = headings.map(Some).into_iter().chain(overshoots);
+        let numbers = numbers.map(|number| number.map_or_else(|| MISSING.to_owned(), |number| significant(number, 2)));
+        table.push(std::iter::once(format!("{} {used}", errors.len())).chain(numbers));
     }
-    for effect in &trace.effects {
-        let name = names::effect_form(&effect.id, &effect.form);
-        page.say(format!("**{name}**: `{}`. {}", effect.equation, effect.evidence));
-    }
-    table(page, "Structures", tables::structures(document), "");
-    table(page, "Candidates", tables::candidates(document), CANDIDATES);
-    formulas(document, "`").for_each(|typed| page.say(format!("{typed}.")));
-    table(page, "Aliases and blind spots", aliases(document), "");
+    table
 }
 
-/// The parameters, the noise and the hulls.
-fn model_and_noise(page: &mut Page, document: &TraceDocument) {
-    page.folded_part("Model");
-    page.table(tables::parameters(document));
-    page.say(model(document));
-    page.subpart("Noise");
-    page.table(tables::noise(document));
-    if !document.ship.hulls.is_empty() {
-        page.subpart("The hull behind the response");
-        page.table(tables::hulls(document));
-        page.say(document.earlier_trials.as_ref().map_or_else(String::new, |earlier| text(&prior::sentence(earlier))));
-        page.say(HULLS);
-    }
-}
-
-/// How the structures were weighed.
-fn settings(page: &mut Page, document: &TraceDocument) {
-    let prior = &document.trace.prior;
-    page.folded_part("Settings");
-    page.say(format!(
-        "{} candidates; prior probability of an effect {}, of a moment of time in one record {}; named from a probability of \
-         {}; rule: {}.",
-        prior.candidates,
-        significant(prior.probability, 2),
-        significant(prior.probability_of_time, 2),
-        significant(prior.named_from, 2),
-        prior.rule,
-    ));
-}
-
-/// The noise, and what no effect explains.
-fn what_is_left(page: &mut Page, document: &TraceDocument) {
-    page.part("What is left");
-    page.say(format!("Noise: {}.", noise(document)));
-    let unexplained = &document.trace.unexplained;
-    page.say(unexplained.signature.as_ref().map_or_else(String::new, |signature| format!("{signature}.")));
-    located(document, "`").for_each(|words| page.say(words));
+/// What the model is not for, a sentence each.
+fn limits(document: &TraceDocument) -> Vec<String> {
+    let rudder = fixed(to_deg(document.ship.seen.rudder_rad), 0);
+    let largest = document
+        .trace
+        .error
+        .validation
+        .iter()
+        .max_by(|one, other| one.after.heading_rmse_deg.total_cmp(&other.after.heading_rmse_deg));
+    let worst = largest.and_then(|errors| {
+        let name = document.records.iter().find(|record| record.file == errors.file).map(|record| &record.name)?;
+        let degrees = significant(errors.after.heading_rmse_deg, 2);
+        Some(format!(" The record that it foretells worst is {}: {degrees}° of heading.", text(&names::record(name))))
+    });
+    let speed = document.particulars().map_or_else(
+        || String::from("Another approach speed than that of the records."),
+        |ship| format!("Another approach speed than {} m/s.", ShortNumber(ship.speed)),
+    );
+    vec![
+        format!("Rudder beyond {rudder}°, the largest of the fitted records.{}", worst.unwrap_or_default()),
+        speed,
+        String::from("Weather of another kind than that of the records, and shallow water."),
+    ]
 }
 
 /// A sentence or two for every moment that is no effect of the list, with `mark` around what can be typed.

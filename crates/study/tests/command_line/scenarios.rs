@@ -277,7 +277,7 @@ fn a_faulty_rule_or_validation_is_shown_at_its_place() {
     );
     let output = |text: &str| format!("{GOOD}[output]\n{text}\n");
     refused(&output("detail = [\"20/20\"]"), 28, &["20/20", "cell"]);
-    refused(&output("methods = [\"output-eror\"]"), 28, &["output-eror", "output-error"]);
+    refused(&output("highlight = { series = [\"output-eror\"] }"), 28, &["output-eror", "output-error"]);
     refused(&output("marks = [{ axis = \"noise\", at = 1, label = \"a\" }]"), 28, &["no axis", "noise", "a sweep"]);
     refused(&output("figures = [\"../errors\"]"), 28, &["output.figures", "/"]);
 }

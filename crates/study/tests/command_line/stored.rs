@@ -150,7 +150,7 @@ fn two_reruns_and_a_report_at_once_leave_a_whole_study() {
 #[test]
 fn figures_are_chosen() {
     let desk = Desk::new();
-    let output = "[output]\nfigure = \"errors\"\ntitle = \"It does\"\nmethods = [\"least-squares\"]\nfigures = [\"coverage\", \"eror\"]\n";
+    let output = "[output]\nfigure = \"errors\"\ntitle = \"It does\"\nhighlight = { series = [\"least-squares\"] }\nfigures = [\"coverage\", \"eror\"]\n";
     desk.file("study.toml", format!("{STUDY}{output}"));
     let figures = |folder: &str| -> Vec<String> {
         let entries = fs::read_dir(desk.path(folder)).expect("a folder").flatten();

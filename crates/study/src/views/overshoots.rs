@@ -1,0 +1,109 @@
+//! The overshoots of the zig-zags of a trace beside those of the replays of their rudder.
+
+use ::trace::replay_errors::replayed_zigzag;
+use document::names;
+use document::trace::{RecordEntry, TraceDocument};
+use estimation::statistics::median;
+use report::figures::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn, Ruler};
+use report::number::{MISSING, counted, significant};
+use report::palette::{Look, Marker};
+use report::{CurveOrigin, PageFigure};
+use ship::angle::to_deg;
+use trial::{ZigZag, imo};
+
+use crate::documents::curves::{TraceCurves, TracedRecord};
+
+/// The first or the second overshoot of a record, which are those that have a limit, degrees.
+struct ReplayedOvershoot<'a> {
+    record: &'a RecordEntry,
+    word: &'static str,
+    measured: f64,
+    /// By the models before and after; `None` where a replay has none.
+    replayed: [Option<f64>; 2],
+    limit: Option<f64>,
+    /// Largest rudder of the record, rad.
+    rudder: f64,
+}
+
+/// The overshoots of all records, those with the least rudder first.
+fn overshoots<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<ReplayedOvershoot<'a>> {
+    let mut all = Vec::new();
+    for (record, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
+        let Ok(zigzag) = ZigZag::of(trial) else { continue };
+        let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
+        // The limits are for ships: a model has none, and which ship it is a model of the record does not say.
+        let ship = record.particulars().filter(|ship| ship.length >= imo::SHORTEST_M);
+        let criteria: Vec<_> = ship.map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
+        let rudder = trial.rudder().iter().fold(0.0, |largest: f64, angle| largest.max(angle.abs()));
+        for (number, word) in [(0, "first"), (1, "second")] {
+            let angle = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
+            let Some(measured) = angle(&zigzag) else { continue };
+            let limit = criteria.iter().find(|limit| {
+                limit.unit == imo::Unit::Degrees && limit.measured.is_some() && limit.name.contains(word)
+            });
+            let replayed = replays.each_ref().map(|replay| replay.as_ref().and_then(angle));
+            let limit = limit.map(|limit| limit.limit);
+            all.push(ReplayedOvershoot { record, word, measured, replayed, limit, rudder });
+        }
+    }
+    all.sort_by(|one, other| one.rudder.total_cmp(&other.rudder));
+    all
+}
+
+/// Median distances of the overshoots of both replays from the measured ones, degrees, and how many there are; of
+/// records that were held out, or of fitted ones.
+pub fn medians(document: &TraceDocument, curves: &TraceCurves, held_out: bool) -> ([Option<f64>; 2], usize) {
+    let all = overshoots(document, curves);
+    let off = |model: usize| -> Vec<f64> {
+        let judged = all.iter().filter(|overshoot| overshoot.record.held_out == held_out);
+        judged.filter_map(|overshoot| Some((overshoot.replayed[model]? - overshoot.measured).abs())).collect()
+    };
+    let [mut before, mut after] = [off(0), off(1)];
+    ([median(&mut before), median(&mut after)], after.len())
+}
+
+/// The first two overshoots of every zig-zag with those of both replays, on a ground where the rudder is no larger than
+/// in the fitted records; `None` where no record is a zig-zag.
+pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
+    let all = overshoots(document, curves);
+    // One mark above the other, so that neither hides the other.
+    let mark = |origin: CurveOrigin, aside: f64, value: Option<f64>| {
+        let item = RowItem::new(origin.label(), RowKind::Mark(origin.look(), value?, None)).softly();
+        Some(RowItem { place: RowPlace::Aside(aside), ..item })
+    };
+    let row = |overshoot: &ReplayedOvershoot| -> Vec<RowItem> {
+        let measured = Look { marker: Marker::Square, ..CurveOrigin::Record.look() };
+        let items = [
+            Some(RowItem::new("measured", RowKind::Bar(measured, overshoot.measured))),
+            overshoot.limit.map(|limit| RowItem::new("IMO limit", RowKind::Limit(limit))),
+            mark(CurveOrigin::Before, -0.16, overshoot.replayed[0]),
+            mark(CurveOrigin::After, 0.16, overshoot.replayed[1]),
+        ];
+        items.into_iter().flatten().collect()
+    };
+    let rows = all.iter().map(row).collect();
+    let column = RowsColumn { x: Ruler::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
+    let name = |overshoot: &ReplayedOvershoot| {
+        let used = if overshoot.record.held_out { "" } else { " (fitted)" };
+        format!("{}, {}{used}", names::record(&overshoot.record.name), overshoot.word)
+    };
+    let seen = document.ship.seen.rudder_rad;
+    let (within, beyond): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&place| all[place].rudder <= seen);
+    let shaded = (!beyond.is_empty()).then(|| (String::from("rudder within that of the fit"), within));
+    let data =
+        NamedRows { names: all.iter().map(name).collect(), columns: vec![column], shaded, ..NamedRows::default() };
+    let held_out = document.records.iter().filter(|record| record.held_out).count();
+    let (off, count) = medians(document, curves, held_out > 0);
+    let [before, after] =
+        off.map(|off| off.map_or_else(|| MISSING.to_owned(), |off| format!("{}°", significant(off, 2))));
+    let of_records = match held_out {
+        0 => String::new(),
+        records => format!(" of {} that no model has seen", counted(records as u64, "record")),
+    };
+    let finding =
+        format!("Overshoots{of_records} are {before} off with K and T alone, {after} traced (median of {count})");
+    let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of IMO \
+                   MSC.137(76) where one is for this zig-zag and for a ship of this length. Without a mark: that \
+                   replay has no such overshoot.";
+    (!all.is_empty()).then(|| PageFigure::new("overshoots", finding, caption, data))
+}
