@@ -1,7 +1,7 @@
 //! Named rows below each other over one or several axes: marks with intervals, bars from zero, limits, distributions.
 
-use plotters::style::Color as _;
 use plotters::style::text_anchor::HPos;
+use plotters::style::{Color as _, RGBColor};
 
 use super::panels::{Pen, Ruler};
 use super::reach::{Extents, INTERVALS};
@@ -26,8 +26,8 @@ pub enum RowKind {
     Mark(Look, f64, Option<[f64; 2]>),
     /// A thin interval.
     Thin([f64; 2]),
-    /// A thick interval.
-    Thick([f64; 2]),
+    /// A range in a pale colour.
+    Range(RGBColor, [f64; 2]),
     /// A bar from zero.
     Bar(Look, f64),
     /// A line from the bottom to the top of the row.
@@ -90,7 +90,7 @@ impl RowItem {
     fn is_value(&self) -> bool {
         match self.kind {
             RowKind::Mark(_, value, _) | RowKind::Bar(_, value) => !value.is_nan(),
-            RowKind::Limit(_) | RowKind::Thin(_) | RowKind::Thick(_) => false,
+            RowKind::Limit(_) | RowKind::Thin(_) | RowKind::Range(..) => false,
             RowKind::Violin(..) | RowKind::Heading => true,
         }
     }
@@ -100,7 +100,7 @@ impl RowItem {
             RowKind::Mark(look, ..) | RowKind::Violin(look, ..) => KeySample::Marker(*look),
             RowKind::Bar(look, _) => KeySample::Line(bar_stroke(look, theme)),
             RowKind::Thin(_) => KeySample::Line(Stroke::solid(HEADING, theme.line)),
-            RowKind::Thick(_) => KeySample::Line(thick_stroke(theme)),
+            RowKind::Range(colour, _) => KeySample::Line(range_stroke(*colour, theme)),
             RowKind::Limit(_) => KeySample::Upright(limit_stroke(theme)),
             RowKind::Heading => KeySample::Nothing,
         }
@@ -113,7 +113,7 @@ impl RowItem {
                 data.soft.extend(interval.iter().flatten().map(|end| (*end, INTERVALS)));
                 vec![*value]
             }
-            RowKind::Thin(ends) | RowKind::Thick(ends) => ends.to_vec(),
+            RowKind::Thin(ends) | RowKind::Range(_, ends) => ends.to_vec(),
             RowKind::Bar(_, value) => vec![0.0, *value],
             RowKind::Limit(value) => vec![*value],
             RowKind::Heading => Vec::new(),
@@ -180,8 +180,8 @@ fn limit_stroke(theme: &Theme) -> Stroke {
 }
 
 /// Pale, so that the marks on it can be seen, and higher than a mark, so that a narrow one is seen too.
-fn thick_stroke(theme: &Theme) -> Stroke {
-    Stroke { opacity: 0.55, ..Stroke::solid(HEADING, 2.9 * theme.marker) }
+fn range_stroke(colour: RGBColor, theme: &Theme) -> Stroke {
+    Stroke { opacity: 0.4, ..Stroke::solid(colour, 2.9 * theme.marker) }
 }
 
 /// Rows that may stand twice below each other.
@@ -256,8 +256,11 @@ fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
     let ground = Stroke { opacity: GROUND, ..Stroke::solid(HEADING, theme.tick_font) };
     let shaded = data.shaded.iter().map(|(name, _)| KeyEntry::new(KeySample::Line(ground), name));
     for entry in lines.chain(items).chain(shaded) {
-        if entries.iter().all(|known| known.label != entry.label) {
-            entries.push(entry);
+        match entries.iter_mut().find(|known| known.label == entry.label) {
+            // A range is of the mark that bears its name.
+            Some(known) if matches!(entry.sample, KeySample::Marker(_)) => *known = entry,
+            Some(_) => {}
+            None => entries.push(entry),
         }
     }
     entries
@@ -339,7 +342,7 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
             Ok(mark(chart, theme, item, *value, y, is_alone)? || beyond)
         }
         RowKind::Thin(ends) => bar(*ends, false, Stroke::solid(HEADING, theme.line)),
-        RowKind::Thick(ends) => bar(*ends, false, thick_stroke(theme)),
+        RowKind::Range(colour, ends) => bar(*ends, false, range_stroke(*colour, theme)),
         RowKind::Bar(look, value) => bar([0.0, *value], false, bar_stroke(look, theme)),
         RowKind::Limit(value) => {
             chart.line(name, [(*value, y - HALF), (*value, y + HALF)], limit_stroke(theme)).map(|()| false)

@@ -4,7 +4,7 @@
 use super::*;
 use crate::backend::UNITS;
 use crate::curve::PlotCurve;
-use crate::palette::{self, CurveOrigin, DASHED, INK, Look};
+use crate::palette::{self, CurveOrigin, DASHED, HEADING, INK, Look};
 use crate::{Drawing, Theme};
 
 /// A sine of `n` points, `wild` among them.
@@ -123,7 +123,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         let look = Look { hollow: row.is_multiple_of(2), ..CurveOrigin::After.look() };
         let others = [
             RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).softly(),
-            RowItem::new("50 %", RowKind::Thick([0.1, size(row)])),
+            RowItem::new("50 %", RowKind::Range(HEADING, [0.1, size(row)])),
             RowItem { text: Some("0.9".into()), ..RowItem::new("bar", RowKind::Bar(look, size(row))) },
             RowItem::new("limit", RowKind::Limit(size(row))),
             RowItem::new(
@@ -155,6 +155,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             column(Ruler::new("rms error [%]", Division::Factors), false),
             column(Ruler::decimal("coverage [%]").within(4.0, Some(0.0)), true),
         ],
+        shaded: Some(("as fitted".into(), vec![0])),
         note: Some("Rates are those of the gear.".into()),
     };
     let cell = |x: usize, y: usize, empty: bool| MapCell {

@@ -5,6 +5,7 @@ use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
 use campaign::scenario::{STRAIGHT_ON, TRACE};
 use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
+use report::palette::Look;
 use report::{CurveOrigin, PageFigure};
 
 /// A score over that of the reference beyond which an arrow stands for it.
@@ -18,6 +19,9 @@ pub fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
+
+/// Cases from which a median stands for them.
+const MIN_CASES: usize = 5;
 
 /// The figures, one for every kind of record.
 pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
@@ -89,7 +93,16 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         return None;
     }
     let column = |board: &&Board| {
+        let points = |method: &str| -> Vec<RowItem> {
+            let cases = results.cases.iter().filter(|case| case.task == board.task && case.field == board.field);
+            let ratios = cases.filter_map(|case| Some(case.score_of(method)? / case.score_of(&results.reference)?));
+            let look = Look { hollow: true, ..origin(method).look() };
+            ratios.map(|ratio| RowItem::new("", RowKind::Mark(look, ratio.max(f64::MIN_POSITIVE), None))).collect()
+        };
         let row = |method: &&String| {
+            if board.cases < MIN_CASES {
+                return points(method);
+            }
             let standing = board.standings.iter().find(|standing| standing.method == **method);
             let Some(ratio) = standing.and_then(|standing| standing.ratio) else { return Vec::new() };
             let value = ratio.value.filter(|value| *value <= FAR).unwrap_or(f64::INFINITY);
@@ -98,7 +111,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             vec![RowItem::new("", RowKind::Mark(origin(method).look(), value.max(f64::MIN_POSITIVE), interval))]
         };
         RowsColumn {
-            x: Ruler::new(format!("score ratio, {}", axis_title(board.task)), Division::Factors),
+            x: Ruler::new(format!("score ratio, {} (n = {})", axis_title(board.task), board.cases), Division::Factors),
             reference: Some(Reference95::line(1.0)),
             rows: others.iter().map(row).collect(),
             ..RowsColumn::default()
@@ -108,8 +121,8 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         names: others.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
         note: Some(format!(
-            "Score: rms heading error; of K and T the larger error. Left of the line a method is better than {}. Medians over the cases; bars: 95 % intervals, from six independent \
-             records on.",
+            "Score: rms heading error; of K and T the larger error. Left of the line a method is better than {}. Medians over the cases, hollow: single cases of fewer than {MIN_CASES}; bars: 95 % intervals, \
+             from six independent records on.",
             results.reference
         )),
         ..NamedRows::default()

@@ -17,6 +17,8 @@ use campaign::summary::{Performance, Summary};
 pub enum ErrorMeasure {
     /// Root mean square errors of K and T.
     Rms,
+    /// The same over the Cramér–Rao bound.
+    OverBound,
     /// Coverage of their intervals, and their width.
     Coverage,
     /// Trials without an answer.
@@ -27,12 +29,13 @@ pub enum ErrorMeasure {
 
 impl ErrorMeasure {
     /// In the order of the report.
-    pub const ALL: [Self; 4] = [Self::Rms, Self::Validation, Self::Coverage, Self::Failures];
+    pub const ALL: [Self; 5] = [Self::Rms, Self::OverBound, Self::Validation, Self::Coverage, Self::Failures];
 
     /// Stem of the figure.
     pub fn stem(self) -> &'static str {
         match self {
             Self::Rms => "errors",
+            Self::OverBound => "errors-over-bound",
             Self::Coverage => "coverage",
             Self::Failures => "failures",
             Self::Validation => "validation",
@@ -41,14 +44,15 @@ impl ErrorMeasure {
 
     fn panels(self) -> usize {
         match self {
-            Self::Rms => 2,
+            Self::Rms | Self::OverBound => 2,
             Self::Coverage => 4,
             Self::Failures | Self::Validation => 1,
         }
     }
 
     fn ruler(self, panel: usize, title: String) -> Ruler {
-        let is_log = matches!(self, Self::Rms | Self::Validation) || self == Self::Coverage && panel > 1;
+        let is_log =
+            matches!(self, Self::Rms | Self::OverBound | Self::Validation) || self == Self::Coverage && panel > 1;
         Ruler::new(title, if is_log { Division::Factors } else { Division::Decimal })
     }
 
@@ -56,7 +60,7 @@ impl ErrorMeasure {
     pub fn of(self, record: &Performance, panel: usize) -> Option<Statistic> {
         let errors = if panel.is_multiple_of(2) { &record.k } else { &record.t };
         match self {
-            Self::Rms => errors.rms,
+            Self::Rms | Self::OverBound => errors.rms,
             // What a few answers quote says nothing of a method.
             Self::Coverage => {
                 let often = errors.quoting.is_some_and(|share| share.value >= OFTEN);
@@ -66,6 +70,11 @@ impl ErrorMeasure {
             Self::Failures => record.failure_rate.map(|share| share.times(100.0)),
             Self::Validation => record.validation_rmse_deg,
         }
+    }
+
+    /// Whether it is one of errors of K and T.
+    fn is_of_errors(self) -> bool {
+        matches!(self, Self::Rms | Self::OverBound)
     }
 
     /// What its values are held against.
@@ -102,7 +111,7 @@ pub fn comparable<'a>(
     mut cells: impl Iterator<Item = &'a CellFacts>,
 ) -> Option<(Vec<usize>, bool)> {
     let is_trace = |method: &usize| design.methods[*method].id == TRACE;
-    let of_indices = matches!(measure, ErrorMeasure::Rms | ErrorMeasure::Coverage);
+    let of_indices = measure.is_of_errors() || measure == ErrorMeasure::Coverage;
     let is_nearest = of_indices && cells.any(|cell| cell.is_nearest);
     let mut methods: Vec<usize> = (0..design.methods.len()).collect();
     let to_nearest = is_nearest && !methods.iter().all(is_trace);
@@ -126,8 +135,6 @@ struct ComparedMethods<'a> {
     design: &'a Design,
     summary: &'a Summary,
     measure: ErrorMeasure,
-    /// Whether errors are in units of the Cramér–Rao bound.
-    over_bound: bool,
     /// Whether errors are differences from a first-order response that is nearest to the ship.
     to_nearest: bool,
     /// Methods that can be compared.
@@ -139,19 +146,21 @@ impl<'a> ComparedMethods<'a> {
     fn new(design: &'a Design, summary: &'a Summary, measure: ErrorMeasure, groups: &[ChartGroup]) -> Option<Self> {
         let cells = || groups.iter().flat_map(|group| &group.cells).map(|&cell| &design.cells[cell]);
         let (mut methods, to_nearest) = comparable(design, measure, cells())?;
-        let is_bounded = measure == ErrorMeasure::Rms && cells().all(|cell| cell.bound_percent2.is_some());
-        let over_bound = is_bounded && !cells().any(|cell| cell.is_nearest);
+        let is_bounded = cells().all(|cell| cell.bound_percent2.is_some() && !cell.is_nearest);
+        if measure == ErrorMeasure::OverBound && !is_bounded {
+            return None;
+        }
         if measure == ErrorMeasure::Failures {
             methods.retain(|&method| summary.overall[method].failed() > 0);
         }
-        Some(Self { design, summary, measure, over_bound, to_nearest, methods })
+        Some(Self { design, summary, measure, to_nearest, methods })
     }
 
     /// Titles of the panels.
     fn titles(&self) -> Vec<String> {
         let of_both = |words: &str| ["K", "T"].map(|symbol| words.replace('#', symbol));
         match self.measure {
-            ErrorMeasure::Rms if self.over_bound => of_both("rms error of # / Cramér–Rao bound").to_vec(),
+            ErrorMeasure::OverBound => of_both("rms error of # / Cramér–Rao bound").to_vec(),
             ErrorMeasure::Rms => ["K", "T"].map(|symbol| rms_title(symbol, self.to_nearest)).to_vec(),
             ErrorMeasure::Coverage => {
                 [of_both("95 % intervals that hold # [%]"), of_both("median width for # [%]")].concat()
@@ -164,8 +173,9 @@ impl<'a> ComparedMethods<'a> {
     /// What a person should see.
     fn reading(&self) -> &'static str {
         match self.measure {
-            ErrorMeasure::Rms if self.over_bound => {
-                "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals."
+            ErrorMeasure::OverBound => {
+                "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals. A bias that \
+                 stays falls here as the noise grows."
             }
             ErrorMeasure::Rms if self.to_nearest => {
                 "Root mean square difference of K and T from those of the nearest first-order response, with 95 % bootstrap \
@@ -189,17 +199,17 @@ impl<'a> ComparedMethods<'a> {
     }
 
     fn bound(&self, cell: usize, panel: usize) -> Option<f64> {
-        let covariance = self.design.cells[cell].bound_percent2.filter(|_| self.measure == ErrorMeasure::Rms)?;
+        let covariance = self.design.cells[cell].bound_percent2.filter(|_| self.measure.is_of_errors())?;
         Some(covariance[panel][panel].sqrt())
     }
 
     /// The figure, and whether it is too large to set an axis.
     fn of(&self, cell: usize, method: usize, panel: usize) -> Option<(Statistic, bool)> {
         let figure = self.measure.of(self.summary.record(cell, method)?, panel)?;
-        let is_worthless = self.measure == ErrorMeasure::Rms && figure.value > WORTHLESS;
-        let unit = if self.over_bound { self.bound(cell, panel)? } else { 1.0 };
+        let is_worthless = self.measure.is_of_errors() && figure.value > WORTHLESS;
+        let unit = if self.measure == ErrorMeasure::OverBound { self.bound(cell, panel)? } else { 1.0 };
         let figure = figure.times(1.0 / unit);
-        match self.measure == ErrorMeasure::Rms && !self.over_bound && figure.value > 0.0 && figure.value < EXACT {
+        match self.measure == ErrorMeasure::Rms && figure.value > 0.0 && figure.value < EXACT {
             // What is left is the rounding of the arithmetic.
             true => Some((Statistic { value: EXACT, ci95: None }, false)),
             false => Some((figure, is_worthless)),
@@ -214,7 +224,11 @@ impl<'a> ComparedMethods<'a> {
 
     /// The bound in the unit of the panel; `None` where it is not shown.
     fn shown_bound(&self, cell: usize, panel: usize) -> Option<f64> {
-        if self.over_bound { Some(1.0) } else { self.bound(cell, panel).filter(|_| !self.to_nearest) }
+        if self.measure == ErrorMeasure::OverBound {
+            Some(1.0)
+        } else {
+            self.bound(cell, panel).filter(|_| !self.to_nearest)
+        }
     }
 
     /// What is said under a figure some of whose values are drawn elsewhere.

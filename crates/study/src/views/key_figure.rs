@@ -114,7 +114,8 @@ fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) 
         column.reached = densities.flat_map(|own| own.iter().map(|(value, _)| *value)).collect();
     }
     for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
-        // The others share a line.
+        // The others share a line, and have no ranges.
+        row.retain(|item| !matches!(item.kind, RowKind::Range(..)) || !is_quiet(item.name.as_ref(), about));
         row.sort_by_key(|item| is_quiet(item.name.as_ref(), about));
         let value = |item: &RowItem| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None };
         let own: Vec<_> = row.iter().filter(|item| !is_quiet(item.name.as_ref(), about)).map(value).collect();

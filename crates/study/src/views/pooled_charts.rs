@@ -7,7 +7,7 @@ use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summa
 use estimation::statistics::median;
 use report::figures::{
     CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind,
-    RowsColumn, Ruler, Shades, Stack,
+    RowPlace, RowsColumn, Ruler, Shades, Stack,
 };
 use report::palette::{DASHED, DOTTED, INK};
 use report::{CurveOrigin, PlotCurve, symbol};
@@ -187,8 +187,8 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
 }
 
 /// How often 90 % intervals of predictions hold, cell by cell and method by method, and how wide they are: the mean
-/// share and the median width over the predicted values, and as a bar the lowest and the highest share and the middle
-/// half of the widths; nothing without predictions.
+/// share and the median width over the predicted values, on the range from the lowest to the highest share and of the
+/// middle half of the widths; nothing without predictions.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
     let several = design.cells.len() > 1;
@@ -202,19 +202,27 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
             let mean = values.iter().sum::<f64>() / values.len() as f64;
             Some((if outer > 0 { median(&mut values)? } else { mean }, ends))
         };
-        let of_method = |method: usize| -> Vec<Option<RowItem>> {
+        let of_method = |method: usize| -> Vec<Vec<RowItem>> {
             let origin = origin(design, method);
-            let item = |value, bar| RowItem::below(origin.label(), origin.look(), value, bar);
+            let look = origin.look();
+            let item = |(value, ends): (f64, [f64; 2])| {
+                let range = RowItem {
+                    place: RowPlace::Below,
+                    ..RowItem::new(origin.label(), RowKind::Range(look.colour, ends))
+                };
+                let mark = RowItem::new(origin.label(), RowKind::Mark(look, value, None));
+                vec![range, RowItem { place: RowPlace::Beside, ..mark }]
+            };
             let is_of = |line: &&PredictionSummary, cell| (line.cell, line.method) == (cell, method);
             let of_cell = |cell| summed(summary.predictions.iter().filter(|line| is_of(line, cell)).map(of).collect());
             let cells: Vec<_> = (0..design.cells.len()).map(of_cell).collect();
             // The first row is of the marks of all others.
             let all = summed(cells.iter().flatten().map(|(value, _)| *value).collect()).filter(|_| several);
-            let rows = cells.into_iter().map(|own| own.map(|(value, bar)| item(value, Some(bar))));
-            several.then(|| all.map(|(value, _)| item(value, None))).into_iter().chain(rows).collect()
+            let all = several.then(|| all.map_or_else(Vec::new, |(value, _)| item((value, [value; 2]))));
+            all.into_iter().chain(cells.into_iter().map(|cell| cell.map_or_else(Vec::new, item))).collect()
         };
         let columns: Vec<_> = (0..design.methods.len()).map(of_method).collect();
-        let row = |row: usize| columns.iter().filter_map(|column| column[row].clone()).collect();
+        let row = |row: usize| columns.iter().flat_map(|column| column[row].clone()).collect();
         let rows = (0..design.cells.len() + usize::from(several)).map(row).collect();
         RowsColumn { x, rows, lines, ..RowsColumn::default() }
     };
@@ -234,8 +242,8 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
             column(Ruler::new("width [% of value]", Division::Factors), width, 25, Vec::new()),
         ],
         note: Some(String::from(
-            "Over the predicted overshoots, times and turns. Marks: mean share, median width. Bars: lowest to highest share, \
-             middle half of the widths.",
+            "Over the predicted overshoots, times and turns. Marks: mean share, median width. Pale: from the worst to the \
+             best share, the middle half of the widths.",
         )),
         ..NamedRows::default()
     })

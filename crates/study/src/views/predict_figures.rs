@@ -220,7 +220,7 @@ fn interval(of: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> {
     let name = if extrapolated { "median, extrapolated" } else { "median" };
     vec![
         RowItem::new("90 %", RowKind::Thin(of.ci90)).softly(),
-        RowItem::new("50 % of the drawn ships", RowKind::Thick(of.ci50)),
+        RowItem::new("50 % of the drawn ships", RowKind::Range(HEADING, of.ci50)),
         RowItem::new(name, RowKind::Mark(look, of.median, None)),
     ]
 }

@@ -95,6 +95,9 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
     table
 }
 
+/// Trials from which a median stands for them.
+const MIN_TRIALS: usize = 5;
+
 /// The heading error of every method on every record that judges, a line each.
 fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFigure {
     let mut names = Vec::new();
@@ -109,7 +112,8 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
             .filter_map(|row| row.validation_rmse_deg)
             .map(|error| RowItem::new("", RowKind::Mark(pale, error, None)).softly())
             .collect();
-        items.extend(line.judged_deg.map(|own| RowItem::new("", RowKind::Mark(look, own.value, own.ci95))));
+        let median = line.judged_deg.filter(|_| items.len() >= MIN_TRIALS);
+        items.extend(median.map(|own| RowItem::new("", RowKind::Mark(look, own.value, own.ci95))));
         items
     });
     let column = RowsColumn {
@@ -124,7 +128,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         names,
         columns: vec![column],
         note: Some(String::from(
-            "Hollow marks: one trial each; full marks: medians; bars: 95 % intervals over fits, of six or more.",
+            "Hollow marks: one trial each; full marks: medians of five or more; bars: 95 % intervals over fits, of six or more.",
         )),
         ..NamedRows::default()
     };

@@ -140,8 +140,8 @@ pub fn ratio<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> f64 {
     after / before
 }
 
-/// Support beyond which a bar is cut, as many times the median of all.
-const MOST_SUPPORT: f64 = 30.0;
+/// ΔBIC beyond which a bar is cut, as many times the median of all.
+const LONGEST_BAR: f64 = 30.0;
 
 fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
     let (name, colour) = match outcome {
@@ -165,7 +165,7 @@ fn named_effects(trace: &Document) -> String {
     }
 }
 
-/// Every effect with its probability and the support that the records give it: the named ones first, then the others
+/// Every effect with its probability and ΔBIC: the named ones first, then the others
 /// by their probability.
 pub fn evidence(document: &TraceDocument) -> PageFigure {
     let trace = &document.trace;
@@ -176,7 +176,7 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
             true => fixed(alone, 3),
             false => format!("{} ({})", fixed(alone, 3), fixed(one.probability, 3)),
         };
-        (name, (alone, text), Some(-one.delta_bic), Outcome::Added)
+        (name, (alone, text), Some(one.delta_bic), Outcome::Added)
     });
     let others = trace.candidates.iter().filter(|one| trace.effects.iter().all(|effect| effect.id != one.id));
     let mut others: Vec<_> = others
@@ -184,7 +184,7 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
             let best = one.forms.iter().max_by(|own, other| own.probability.total_cmp(&other.probability));
             let name =
                 best.map_or_else(|| names::effect(&one.id), |best| term(&one.id, &best.form, best.only.as_ref()));
-            (name, (one.probability, fixed(one.probability, 3)), one.delta_bic.map(|change| -change), one.outcome)
+            (name, (one.probability, fixed(one.probability, 3)), one.delta_bic, one.outcome)
         })
         .collect();
     others.sort_by(|one, other| other.1.0.total_cmp(&one.1.0));
@@ -195,20 +195,20 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
     };
     let column = |x: Ruler, room: f64, rows| RowsColumn { x, rows, zero: true, room, ..RowsColumn::default() };
     let probability = rows.iter().map(|(_, (own, text), _, outcome)| bar(*own, text.clone(), *outcome));
-    let support = rows.iter().map(|(_, _, own, outcome)| {
+    let change = rows.iter().map(|(_, _, own, outcome)| {
         bar(own.unwrap_or(0.0), own.map_or_else(|| MISSING.to_owned(), |own| significant(own, 3)), *outcome)
     });
     let has_group = trace.effects.iter().any(|one| !one.aliases.is_empty());
-    let cut = Ruler::decimal("support −ΔBIC").within(MOST_SUPPORT, Some(0.0));
+    let cut = Ruler::decimal("ΔBIC (negative: it helps)").within(LONGEST_BAR, Some(0.0));
     let room = if has_group { 0.5 } else { 0.25 };
     let columns =
-        vec![column(Ruler::decimal("probability"), room, probability.collect()), column(cut, 0.3, support.collect())];
+        vec![column(Ruler::decimal("probability"), room, probability.collect()), column(cut, 0.3, change.collect())];
     let names = rows.iter().map(|row| row.0.clone()).collect();
     let data = NamedRows { names, columns, ..NamedRows::default() };
     let group =
         if has_group { " In brackets: that it, or one that the records cannot tell from it, is there." } else { "" };
     let caption = format!(
-        "Probability of every effect with its most probable form, and the support −ΔBIC that it has beside all others.{group}"
+        "Probability of every effect with its most probable form, and ΔBIC beside all others: negative where it helps.{group}"
     );
     PageFigure::new("evidence", named_effects(trace), caption, data)
 }

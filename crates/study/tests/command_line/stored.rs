@@ -202,7 +202,10 @@ points = [
     desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
     let drawn = |stem: &str| desk.text(&format!("out/{stem}.svg"));
     assert!(drawn("errors-cubic").contains("rms difference of K"));
-    assert!(drawn("errors-first-order").contains("rms error of K / Cramér–Rao bound"));
+    let first_order = drawn("errors-first-order");
+    assert!(first_order.contains("rms error of K [%]") && first_order.contains("Cramér–Rao bound"));
+    assert!(drawn("errors-over-bound-first-order").contains("rms error of K / Cramér–Rao bound"));
+    assert!(!desk.path("out/errors-over-bound-cubic.png").exists());
     assert!(desk.text("out/report.md").contains("error of K and T over the Cramér–Rao"));
     assert!(desk.path("out/coverage-first-order.png").exists() && !desk.path("out/coverage-cubic.png").exists());
     assert!(drawn("indices").contains(" of the 5/5") && !desk.path("out/ranking.png").exists());
