@@ -16,6 +16,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 import time
 import tomllib
 from pathlib import Path
@@ -25,12 +26,13 @@ RESULTS = ROOT / "results"
 PUBLISHED = RESULTS / "published"
 PLAN = RESULTS / "publish.toml"
 MARK = "<!-- Made by `python3 results/publish.py --page`, which writes it anew. -->\n"
-HEAD = """# Results
+HEAD = "# Results\n"
+STUDIES = """
+## Studies
 
-One study a section: its question, what came out, and the figure that shows it. The folder of a study holds the whole
-report, every figure with its 95 % interval as CSV and LaTeX, and a manifest from which \
-`study NAME/manifest.toml --out DIR`
-runs it again; a study that starts other programs is run from its scenario.
+One study a section: its question, what came out, and the figure that shows it; its name leads to the whole report. The
+folder of a study also holds every figure with its 95 % interval as CSV and LaTeX, and a manifest from which
+`study NAME/manifest.toml --out DIR` runs it again; a study that starts other programs is run from its scenario.
 """
 
 
@@ -56,7 +58,7 @@ def table(path):
 
 def read_plan():
     """`publish.toml`, and the files of the scenarios by their names."""
-    plan = {"answers": {}, "program": [], "check": []} | read(PLAN)
+    plan = {"answers": {}, "question": [], "program": [], "check": []} | read(PLAN)
     for own in plan["program"]:
         if missing := {"name", "question", "page", "commands"} - own.keys():
             raise Failed(f"{PLAN}: program {own.get('name', '')}: give its {' and '.join(sorted(missing))}")
@@ -216,8 +218,22 @@ def moved_figures(file):
     return moved
 
 
+def in_lines(text):
+    """A text in lines as wide as those of every page."""
+    return textwrap.fill(" ".join(text.split()), 120, break_long_words=False, break_on_hyphens=False)
+
+
+def in_short(finding):
+    """A finding up to the last end of a sentence, or semicolon, that two lines hold; with dots where more was found."""
+    finding = in_lines(finding)
+    ends = [found.end() for found in re.finditer(r"\.(?=\s+[A-Z0-9]|$)|;(?=\s)", finding)]
+    parts = [in_lines(re.sub(";$", ".", finding[:end]) + (" …" if end < len(finding) else "")) for end in ends]
+    return next((part for part in reversed(parts) if part.count("\n") < 2), finding)
+
+
 def write_page(plan, scenarios, place):
-    """Writes the page over what is published: what programs made, then the studies, in the words of their scenarios."""
+    """Writes the page over what is published: questions with their answers, what programs made, and the studies, in the
+    words of their scenarios."""
     entries = [(own, own["page"], own.get("figure")) for own in plan["program"] if (PUBLISHED / own["name"]).is_dir()]
     for name, file in scenarios.items():
         if (PUBLISHED / name / "manifest.toml").is_file():
@@ -225,13 +241,19 @@ def write_page(plan, scenarios, place):
             figure = words.get("output", {}).get("figure")
             stem = "hero" if figure and (PUBLISHED / name / "hero.png").is_file() else figure
             entries.append((words | {"name": name}, "report.md", stem and f"{stem}.png"))
-    text = HEAD
+    text, reports = HEAD, {words["name"]: f"published/{words['name']}/{report}" for words, report, _ in entries}
+    for own in plan["question"]:
+        if unknown := [name for name in own["studies"] if name not in reports]:
+            raise Failed(f"{PLAN}: question {own['question']!r}: {', '.join(unknown)} is not published")
+        links = ", ".join(f"[{name}]({reports[name]})" for name in own["studies"])
+        text += f"\n**{own['question']}**\n\n" + in_lines(f"{own['answer']}({links})") + "\n"
+    text += STUDIES
     for words, report, figure in entries:
-        name, finding = words["name"], words.get("finding", "").strip()
+        name, finding = words["name"], in_short(words.get("finding", ""))
         for file in filter(None, (report, figure)):
             if not (PUBLISHED / name / file).is_file():
                 raise Failed(f"{PUBLISHED / name}: the page over all needs {file}, and the folder holds no such file")
-        text += f"\n## [{name}](published/{name}/{report})\n\n**{words['question'].strip()}**\n"
+        text += f"\n### [{name}](published/{name}/{report})\n\n**{words['question'].strip()}**\n"
         text += f"\n{finding}\n" if finding else ""
         text += f"\n![Figure of {name}](published/{name}/{figure})\n" if figure else ""
     # HTML in the words is shown and not obeyed.

@@ -24,15 +24,6 @@ struct Claims {
     held: Vec<String>,
     claim: Vec<Claim>,
     copy: Vec<TableCopy>,
-    lines: Vec<Lines>,
-}
-
-/// A block of output in a page, below a comment `<!-- Lines: PATH -->`, whose lines stand in a stored report.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Lines {
-    page: String,
-    report: String,
 }
 
 /// A stored table that stands in a page, below a comment `<!-- Table: PATH -->`.
@@ -55,7 +46,7 @@ struct Claim {
     pages: Vec<String>,
     /// The words, with every number in braces, `{89.8} %`.
     says: String,
-    /// The table of the numbers.
+    /// The table of the numbers, or a report in whose words they stand.
     table: String,
     /// The figure of every number, in their order.
     #[serde(default)]
@@ -141,24 +132,6 @@ impl TableCopy {
     }
 }
 
-impl Lines {
-    /// The lines that the report does not have: blanks, marks of tables and what is printed before a colon aside.
-    fn faults(&self) -> Result<Vec<String>, String> {
-        let bare = |line: &str| line.replace([' ', '|', '*', '\\'], "");
-        let report: Vec<String> = read(&self.report)?.lines().map(bare).collect();
-        let page = read(&self.page)?;
-        let mark = format!("<!-- Lines: {} -->\n\n```text\n", self.report);
-        let block = page.split_once(&mark).and_then(|(_, rest)| rest.split_once("```"));
-        let (block, _) = block.ok_or_else(|| format!("{} has no block below {mark}", self.page))?;
-        let stands = |line: &&str| {
-            let line = bare(line.trim_start_matches("next trial: "));
-            report.iter().any(|own| own.contains(&line))
-        };
-        let others = block.lines().filter(|line| !stands(line));
-        Ok(others.map(|line| format!("{} is not in {}: {line}", self.page, self.report)).collect())
-    }
-}
-
 const CLAIMS: &str = "tests/claims.toml";
 /// What is published beside the studies.
 const PLAN: &str = "results/publish.toml";
@@ -231,9 +204,6 @@ fn claims_follow_from_the_stored_results() {
             (Err(error), _) | (_, Err(error)) => faults.push(error),
         }
     }
-    for lines in &claims.lines {
-        faults.extend(lines.faults().unwrap_or_else(|error| vec![error]));
-    }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
@@ -252,9 +222,9 @@ fn numbers_of_findings_are_held() {
         faults.extend(unheld(&page, finding, &claims));
     }
     let plan: toml::Table = read(PLAN).expect("it is there").parse().expect("it is TOML");
-    let programs = plan["program"].as_array().expect("programs");
-    for finding in programs.iter().filter_map(|own| own.get("finding")?.as_str()) {
-        faults.extend(unheld(PLAN, finding, &claims));
+    for (list, key) in [("program", "finding"), ("question", "answer")] {
+        let texts = plan[list].as_array().expect("a list").iter().filter_map(|entry| entry.get(key)?.as_str());
+        texts.for_each(|text| faults.extend(unheld(PLAN, text, &claims)));
     }
     for page in &claims.held {
         faults.extend(unheld(page, &read(page).expect("it is there"), &claims));

@@ -17,7 +17,7 @@ pub fn read(path: &str) -> Result<String, String> {
     std::fs::read_to_string(root().join(path)).map_err(|error| format!("{path}: {error}"))
 }
 
-/// A number of a table.
+/// A number of a table, or of a report in Markdown, where `column` is the words before it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Number {
@@ -77,7 +77,8 @@ enum Take {
 impl Number {
     /// The stored value in the unit of the sentence.
     pub fn stored(&self, table: &str) -> Result<f64, String> {
-        self.taken(table).map(|value| self.factor * value)
+        let value = if table.ends_with(".md") { after(&self.column, table) } else { self.taken(table) };
+        value.map(|value| self.factor * value)
     }
 
     fn taken(&self, table: &str) -> Result<f64, String> {
@@ -126,6 +127,18 @@ impl Number {
             (Take::Low, _) => Ok(interval()[0]),
             (Take::High, _) => Ok(interval()[1]),
         }
+    }
+}
+
+/// The one number that a report has behind some words.
+fn after(words: &str, report: &str) -> Result<f64, String> {
+    let text = read(report)?;
+    let number = |rest: &str| parsed(rest.trim_start().split(|c: char| !"−.0123456789".contains(c)).next()?);
+    let mut numbers: Vec<f64> = text.split(words).skip(1).filter_map(number).collect();
+    numbers.dedup();
+    match numbers[..] {
+        [number] => Ok(number),
+        _ => Err(format!("{report}: {} numbers behind {words:?}", numbers.len())),
     }
 }
 

@@ -22,8 +22,11 @@ pub fn is_rounded(written: &str, stored: f64) -> bool {
 }
 
 /// The stored number in the form of the one that is written: as many decimals, or as many significant digits where it
-/// has become ten times larger or smaller.
+/// has become ten times larger or smaller. What is right stays, also where it stands between two.
 pub fn in_the_form_of(written: &str, stored: f64) -> String {
+    if is_rounded(written, stored) {
+        return written.to_owned();
+    }
     let size = |value: f64| value.abs().log10().floor() as i32;
     let decimals = match parsed(written) {
         Some(old) if old != 0.0 && stored != 0.0 && (size(stored) - size(old)).abs() > 1 => {
@@ -104,6 +107,7 @@ fn a_number_is_right_to_its_last_digit() {
 fn a_number_is_written_in_the_form_that_it_had() {
     let new = |written, stored| in_the_form_of(written, stored);
     assert_eq!([new("0.49", 0.517), new("−14", -12.6), new("+29", 3.2)], ["0.52", "−13", "+3"]);
+    assert_eq!([new("0.36", 0.355), new("83", 82.5)], ["0.36", "83"]);
     assert_eq!([new("22", 0.84), new("0.063", 6.31), new("0.1", -0.04)], ["0.84", "6.3", "0.0"]);
     let page = "holds T in 74 %\n  [71, 76], not 74 %";
     let edits = edits(page, "in {74} % [{71}, {76}]", &["8".into(), "7".into(), "9".into()]);
