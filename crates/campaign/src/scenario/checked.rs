@@ -182,7 +182,7 @@ impl Scenario {
     ) -> Result<Self, KeyFault> {
         checks::detail(&words.output.detail, &cells)?;
         checks::marks(&words.output.marks, &axes)?;
-        checks::about(&words.output.highlight.series, methods)?;
+        checks::highlight(&words.output.highlight, methods, &axes, &cells)?;
         Ok(Self {
             name: name.to_owned(),
             seed: 0,

@@ -9,7 +9,7 @@ use crate::scenario::method::Method;
 use crate::scenario::name::{self, LONGEST_NAME};
 use crate::scenario::problem::{KeyFault, KeyPath, of_text, place_among};
 use crate::scenario::sweep::SweepAxis;
-use crate::scenario::words::MarkedValue;
+use crate::scenario::words::{Highlight, MarkedValue};
 
 /// Largest number of trials; more is a slip of the pen.
 const MOST_TRIALS: u64 = 1_000_000_000;
@@ -110,11 +110,21 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
     Ok(())
 }
 
-/// Every label is that of a method.
-pub fn about(labels: &[String], methods: &[Method]) -> Result<(), KeyFault> {
-    let known: Vec<&str> = methods.iter().map(|method| method.label.as_str()).collect();
-    let words = ["no method is called", "expected the id or the label of an [[identifier]]"];
-    labels.iter().enumerate().try_for_each(|(index, label)| {
-        place_among(label, &known, KeyPath::dotted("output.highlight.series").child(index), words).map(|_| ())
+/// Every highlighted name is that of a method, of a point of a sweep or of a cell.
+pub fn highlight(
+    Highlight { series, rows }: &Highlight,
+    methods: &[Method],
+    axes: &[SweepAxis],
+    cells: &[DesignCell],
+) -> Result<(), KeyFault> {
+    let points = axes.iter().flat_map(|axis| &axis.points).map(|point| point.label.clone());
+    let labels = methods.iter().map(|method| method.label.clone()).chain(points);
+    let known: Vec<String> = labels.chain(cells.iter().map(|cell| cell.labels.join(", "))).collect();
+    let words = ["nothing is called", "expected the label of an [[identifier]], of a point of a sweep or of a cell"];
+    [("series", series), ("rows", rows)].into_iter().try_for_each(|(part, names)| {
+        names.iter().enumerate().try_for_each(|(index, name)| {
+            let key = KeyPath::dotted("output.highlight").child(part).child(index);
+            place_among(name, &known, key, words).map(|_| ())
+        })
     })
 }

@@ -124,7 +124,7 @@ fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) 
         for item in row.iter_mut().filter(|item| is_quiet(item.name.as_ref(), about)) {
             if let RowItem { kind: RowKind::Mark(look, _, interval), .. } = item {
                 (*look, *interval) = (OTHER, None);
-                (item.name, item.place) = (Some(String::from("other methods")), place);
+                (item.name, item.place) = (Some(String::from("others")), place);
                 place = RowPlace::Beside;
             }
         }
@@ -134,7 +134,7 @@ fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) 
     }
 }
 
-/// Pales the rows that a figure is not about, and writes the first value of each other row beside it.
+/// Pales the rows that a figure is not about, and writes the values of each other row beside it.
 fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String]) {
     column.room = ROOM;
     for (row, name) in column.rows.iter_mut().zip(names) {
@@ -143,12 +143,17 @@ fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String]) {
             RowKind::Mark(look, value, _) => Some((look, *value, &mut item.text)),
             _ => None,
         });
-        for (place, (look, value, text)) in marks.enumerate() {
-            match (is_quiet, place) {
-                (true, _) => look.colour = QUIET,
-                (false, 0) => *text = Some(significant(value, 2)),
-                (false, _) => {}
+        let (mut values, mut first) = (Vec::new(), None);
+        for (look, value, text) in marks {
+            if is_quiet || look.colour == QUIET {
+                look.colour = QUIET;
+                continue;
             }
+            values.push(significant(value, 2));
+            first = first.or(Some(text));
+        }
+        if let Some(text) = first {
+            *text = Some(values.join(", "));
         }
     }
 }

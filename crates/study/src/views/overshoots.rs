@@ -50,16 +50,26 @@ fn overshoots<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<Repl
     all
 }
 
-/// Median distances of the overshoots of both replays from the measured ones, degrees, and how many there are; of
-/// records that were held out, or of fitted ones.
-pub fn medians(document: &TraceDocument, curves: &TraceCurves, held_out: bool) -> ([Option<f64>; 2], usize) {
-    let all = overshoots(document, curves);
-    let off = |model: usize| -> Vec<f64> {
-        let judged = all.iter().filter(|overshoot| overshoot.record.held_out == held_out);
-        judged.filter_map(|overshoot| Some((overshoot.replayed[model]? - overshoot.measured).abs())).collect()
-    };
-    let [mut before, mut after] = [off(0), off(1)];
-    ([median(&mut before), median(&mut after)], after.len())
+/// How far the overshoots of a replay are from measured ones.
+pub struct OvershootError {
+    /// Median distance, degrees; `None` where the replay has none of them.
+    pub median_deg: Option<f64>,
+    /// Measured overshoots.
+    pub measured: usize,
+    /// Those of them that the replay does not have.
+    pub missing: usize,
+}
+
+/// The errors of the overshoots of both replays, of records that were held out or of fitted ones.
+pub fn errors(document: &TraceDocument, curves: &TraceCurves, held_out: bool) -> [OvershootError; 2] {
+    let mut all = overshoots(document, curves);
+    all.retain(|overshoot| overshoot.record.held_out == held_out);
+    [0, 1].map(|model| {
+        let distance = |own: &ReplayedOvershoot| Some((own.replayed[model]? - own.measured).abs());
+        let mut distances: Vec<f64> = all.iter().filter_map(distance).collect();
+        let missing = all.len() - distances.len();
+        OvershootError { median_deg: median(&mut distances), measured: all.len(), missing }
+    })
 }
 
 /// The first two overshoots of every zig-zag with those of both replays, on a ground where the rudder is no larger than
@@ -93,17 +103,20 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
     let data =
         NamedRows { names: all.iter().map(name).collect(), columns: vec![column], shaded, ..NamedRows::default() };
     let held_out = document.records.iter().filter(|record| record.held_out).count();
-    let (off, count) = medians(document, curves, held_out > 0);
-    let [before, after] =
-        off.map(|off| off.map_or_else(|| MISSING.to_owned(), |off| format!("{}°", significant(off, 2))));
+    let said = |error: OvershootError| {
+        let off = error.median_deg.map_or_else(|| MISSING.to_owned(), |off| format!("{}°", significant(off, 2)));
+        let missing = if error.missing > 0 { format!(" ({} missing)", error.missing) } else { String::new() };
+        (format!("{off} off"), missing, error.measured)
+    };
+    let [(before, no_before, count), (after, no_after, _)] = errors(document, curves, held_out > 0).map(said);
     let of_records = match held_out {
         0 => String::new(),
         records => format!(" of {} that no model has seen", counted(records as u64, "record")),
     };
     let finding =
-        format!("Overshoots{of_records} are {before} off with K and T alone, {after} traced (median of {count})");
+        format!("{count} overshoots{of_records} are {before} with K and T alone{no_before}, {after} traced{no_after}");
     let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of IMO \
                    MSC.137(76) where one is for this zig-zag and for a ship of this length. Without a mark: that \
-                   replay has no such overshoot.";
+                   replay has no such overshoot, which counts as missing. Distances are medians.";
     (!all.is_empty()).then(|| PageFigure::new("overshoots", finding, caption, data))
 }

@@ -230,7 +230,7 @@ fn glance(document: &TraceDocument, curves: &TraceCurves) -> Table {
     let rows = [("fitted", &error.identification, false), ("not fitted", &error.validation, true)];
     for (used, errors, held_out) in rows.into_iter().filter(|(_, errors, _)| !errors.is_empty()) {
         let headings = figures::rms(errors.iter());
-        let (overshoots, _) = overshoots::medians(document, curves, held_out);
+        let overshoots = overshoots::errors(document, curves, held_out).map(|error| error.median_deg);
         let numbers = headings.map(Some).into_iter().chain(overshoots);
         let numbers = numbers.map(|number| number.map_or_else(|| MISSING.to_owned(), |number| significant(number, 2)));
         table.push(std::iter::once(format!("{} {used}", errors.len())).chain(numbers));

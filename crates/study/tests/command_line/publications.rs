@@ -8,9 +8,10 @@ use toml::Table;
 
 use crate::desk::{Desk, of_repository};
 
-/// Published results are those of the scenarios as they are, and the page over them is what the command makes.
+/// Published results are those of the scenarios: words may have changed since they were made, rows may not.
 #[test]
 fn published_results_belong_to_the_scenarios() {
+    let desk = Desk::new();
     let results = of_repository("results");
     let folders = ["scenarios", "scenarios/measured"].map(of_repository);
     for entry in folders.iter().flat_map(|folder| fs::read_dir(folder).expect("the folder is there")) {
@@ -21,7 +22,15 @@ fn published_results_belong_to_the_scenarios() {
         let manifest = fs::read_to_string(&manifest).unwrap_or_else(|error| panic!("{name}: {error}"));
         let manifest: Table = manifest.parse().expect("it is TOML");
         let scenario = fs::read_to_string(&path).expect("it was just listed");
-        assert!(manifest["scenario"].as_str() == Some(&scenario), "{name} was changed after its results were made");
+        let is_same = || {
+            let checked = desk.run(&["check", &path.to_string_lossy(), "--format", "json"]);
+            let checked: serde_json::Value = serde_json::from_str(&checked.is_done().out).expect("it is JSON");
+            checked["scenarios"][0]["design_sha256"].as_str() == manifest["design-sha256"].as_str()
+        };
+        assert!(
+            manifest["scenario"].as_str() == Some(&scenario) || is_same(),
+            "{name} was changed after its results were made"
+        );
     }
 }
 

@@ -411,3 +411,24 @@ fn every_scenario_of_the_repository_is_right() {
     // Notes under a scenario are indented.
     assert_eq!(run.is_done().out.lines().filter(|line| !line.starts_with(' ')).count(), files.len());
 }
+
+/// What the title of a figure names is in colour.
+#[test]
+fn a_title_names_what_is_highlighted() {
+    let mut titles = 0;
+    for entry in std::fs::read_dir(of_repository("scenarios")).expect("the folder is there").flatten() {
+        let Ok(text) = std::fs::read_to_string(entry.path()) else { continue };
+        let scenario: toml::Table = text.parse().expect("it is TOML");
+        let words = campaign::scenario::Words::of(&text).output;
+        let Some(title) = words.title.filter(|_| !words.highlight.series.is_empty()) else { continue };
+        let ids = scenario["identifier"].as_array().expect("a list").iter().filter_map(|identifier| {
+            let method = identifier.get("method").and_then(|method| method.as_table()?.keys().next().cloned());
+            identifier.get("label").and_then(|label| label.as_str().map(str::to_owned)).or(method)
+        });
+        for id in ids.filter(|id| title.to_lowercase().contains(&id.replace('-', " "))) {
+            assert!(words.highlight.series.contains(&id), "{}: {id} in \"{title}\"", entry.path().display());
+            titles += 1;
+        }
+    }
+    assert!(titles > 6, "{titles}");
+}

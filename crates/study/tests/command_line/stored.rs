@@ -174,7 +174,7 @@ fn figures_are_chosen() {
     desk.run(&["report", "named", "--figures", "none", "--out", "bare", "--quiet"]).is_done();
     assert!(figures("bare").is_empty() && desk.path("bare/report.md").exists());
     desk.run(&["report", "named", "--figures", "all", "--out", "all", "--quiet"]).is_done();
-    assert_eq!(figures("all"), ["coverage.png", "errors.png", "hero.png"]);
+    assert_eq!(figures("all"), ["coverage.png", "errors-over-bound.png", "errors.png", "hero.png"]);
 }
 
 /// A ship that is not first order has no K and T: what is found is held against the nearest response and called so,

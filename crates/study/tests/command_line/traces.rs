@@ -78,14 +78,24 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     let errors = &json["error"]["identification"][0];
     assert!(errors["after"]["heading_rmse_deg"].as_f64() < errors["before"]["heading_rmse_deg"].as_f64());
     let report = desk.text("run-trace/report.md");
-    let parts =
-        ["Records that were not fitted", "What is left", "Next trial", "Every record", "Evidence", "Model", "Settings"];
+    let parts = [
+        "Overshoots",
+        "Records that were not fitted",
+        "Do not use it for",
+        "What is left",
+        "Next trial",
+        "Every record",
+        "Evidence",
+        "Model",
+        "Settings",
+    ];
     let found: Vec<usize> = parts.iter().filter_map(|part| report.find(&format!("\n## {part}\n"))).collect();
     assert!(found.len() == parts.len() && found.is_sorted(), "{found:?}");
     for part in ["Effects", "Candidates", "Noise"] {
         assert!(report.contains(&format!("\n### {part}\n")), "{part}");
     }
-    let figures = ["hero", "record", "residual", "evidence", "innovations", "record-other", "held-out", "staircase"];
+    let figures =
+        ["hero", "record", "residual", "evidence", "innovations", "held-out-residuals", "held-out", "staircase"];
     for figure in figures {
         assert!(desk.path(&format!("run-trace/{figure}.png")).exists(), "{figure}");
         assert!(report.contains(&format!("({figure}.png)")), "{figure}");
@@ -125,23 +135,31 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     let report = desk.text("t/report.md");
     let mut paragraphs = report.split("\n\n");
     let (title, headline) = (paragraphs.next().unwrap_or_default(), paragraphs.next().unwrap_or_default());
-    assert!(title.starts_with("# Trace of run"), "{title}");
+    assert_eq!(title, "# Trace of run: a 10/10 zig-zag, first to starboard");
     for part in
         ["**The first-order response lacks second order", " (× 0.", "held out × 0.", "; in windows of 60 s × 0."]
     {
         assert!(headline.contains(part), "{part}: {headline}");
     }
-    assert_eq!(paragraphs.next(), Some("![Figure 1](hero.png)"));
-    let [caption, table, held_out] = ["*Figure 1. ", "\n| ", "(held-out.png)"].map(|what| report.find(what));
-    assert!(caption < held_out && held_out < table && caption.is_some(), "{caption:?} {held_out:?} {table:?}");
+    assert!(paragraphs.next().is_some_and(|physics| physics.starts_with("- **second order**: her sway")), "{report}");
+    assert!(
+        paragraphs
+            .next()
+            .is_some_and(|glance| glance.contains("| 1 fitted     |") && glance.contains("| 1 not fitted |"))
+    );
+    assert_eq!(paragraphs.next(), Some("![Figure 1](staircase.png)"));
+    let numbers = report.match_indices("![Figure ").map(|(at, mark)| report[at + mark.len()..].split(']').next());
+    let numbers: Vec<usize> =
+        numbers.map(|number| number.and_then(|own| own.parse().ok()).expect("a number")).collect();
+    assert_eq!(numbers, (1..=numbers.len()).collect::<Vec<_>>(), "figures are numbered without gaps");
     let page = desk.text("t/report.html");
     let (shown, folded) = page.split_once("<main").and_then(|(_, main)| main.split_once("<details>")).expect("parts");
     assert_eq!(
         shown.matches("<figure>").count(),
-        4,
-        "the finding, what each effect carries, held-out records, overshoots"
+        5,
+        "what each effect carries, overshoots, and of held-out records examples, residuals and errors"
     );
-    assert!(!shown.contains("<table") && folded.contains(">Evidence</h2></summary>"));
+    assert!(shown.matches("<table").count() == 1 && folded.contains(">Evidence</h2></summary>"));
     let caption = "(a), (b): a record that was fitted.";
     assert_eq!((report.matches(caption).count(), page.matches(caption).count()), (1, 1));
     desk.draw(&["trace", "run.csv", "--out", "alone", "--quiet"]).is_done();
