@@ -10,6 +10,7 @@ import argparse
 import csv
 import fnmatch
 import functools
+import itertools
 import json
 import os
 import re
@@ -183,7 +184,11 @@ def keep_only(folder, kept):
     for page in folder.rglob("*.md"):
         figure = re.compile(r"!\[[^]\n]*\]\(([^)\n]+)\)\n\n(?:\*[^\n]+\*\n\n)?")
         shown = lambda found: found[0] if (page.parent / found[1]).is_file() else ""  # noqa: E731
-        page.write_bytes(figure.sub(shown, page.read_bytes().decode()).encode())
+        number = itertools.count(2)
+        text = figure.sub(shown, page.read_bytes().decode())
+        # A figure has its number twice: in its image and in its caption.
+        numbered = lambda found: f"{found[1]}{next(number) // 2}"  # noqa: E731
+        page.write_bytes(re.sub(r"^(!\[Figure |\*Figure )\d+", numbered, text, flags=re.MULTILINE).encode())
 
 
 def changes(name):

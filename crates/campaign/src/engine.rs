@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use ::trace::comparison::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use document::names;
-use document::trace::{EffectEntry, LocatedEntry};
+use document::trace::{EffectEntry, LocatedEntry, ParameterEntry};
 use identify::replay::pooled;
 use identify::{Estimate, StopReason};
 use ship::FirstOrder;
@@ -20,7 +20,7 @@ use trial::{Quantity, Trial};
 use crate::known::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
-use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceAnswer};
+use crate::rows::{EffectSize, LocatedMoment, NamedEffect, StudyRow, TraceAnswer};
 use crate::scenario::{Method, Procedure, Scenario, Specification, TrialSpecification};
 use crate::statistics::Moments;
 use crate::summary::effect_ids;
@@ -298,7 +298,14 @@ fn named(effect: &EffectEntry) -> NamedEffect {
         id: effect.id.as_str().into(),
         aliases: aliases.map(|id| id.as_str().into()).collect(),
         time_s: time.map(|parameter| parameter.quantity.value),
+        sizes: effect.parameters.values().map(size).collect(),
     }
+}
+
+fn size(parameter: &ParameterEntry) -> EffectSize {
+    let prime = parameter.prime.as_ref().map(|prime| (format!("{}′", parameter.symbol), prime.quantity));
+    let (symbol, quantity) = prime.unwrap_or((parameter.symbol.clone(), parameter.quantity));
+    EffectSize { symbol: symbol.into(), value: quantity.value, sd: quantity.sd }
 }
 
 /// A moment that was located in records that end at a time, s.

@@ -8,7 +8,7 @@ use identify::StopReason;
 use serde::Deserialize;
 use serde::de::value::{Error as UnknownWord, StrDeserializer};
 
-use super::row::{LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
+use super::row::{EffectSize, LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
 
 /// A column that every file of rows has.
 pub struct RowColumn {
@@ -121,10 +121,14 @@ pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
 };
 
 /// Columns that follow in a study of measured records.
-pub const RECORD_COLUMNS: [RowColumn; 1] = columns! {
+pub const RECORD_COLUMNS: [RowColumn; 2] = columns! {
     "validation_60_s_rmse_deg",
     "in a study of measured records: rms error of the heading on the record that judges, its replay restarted every 60 s"
         => number(validation_windows_deg);
+    "trace_sizes",
+    "in a study of measured records: parameters of the effects named, joined by + and those of one effect by |: symbol, \
+     with a prime where it is without dimension, =value, and ± with its standard deviation where it is fitted"
+        => text(sizes, set_sizes);
 };
 
 /// Columns that follow in a study whose ships state what is right to say of them.
@@ -200,7 +204,7 @@ fn groups(row: &StudyRow) -> Option<Cow<'_, str>> {
 fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let group = |part: &str| {
         let mut ids = part.split('|').filter(|id| !id.is_empty()).map(Box::from);
-        Some(NamedEffect { id: ids.next()?, aliases: ids.collect(), time_s: None })
+        Some(NamedEffect { id: ids.next()?, aliases: ids.collect(), ..NamedEffect::default() })
     };
     let groups = list(text, "groups of effects", group)?;
     let named = &mut answer(row).named;
@@ -208,6 +212,36 @@ fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
         return Err(format!("the groups {text:?} are not those of the effects named"));
     }
     *named = groups;
+    Ok(())
+}
+
+/// The parameters of the effects named.
+fn sizes(row: &StudyRow) -> Option<Cow<'_, str>> {
+    let size = |EffectSize { symbol, value, sd }: &EffectSize| {
+        format!("{symbol}={value}{}", sd.map_or_else(String::new, |sd| format!("±{sd}")))
+    };
+    let effect = |effect: &NamedEffect| effect.sizes.iter().map(size).collect::<Vec<_>>().join("|");
+    Some(joined(&row.traced.as_ref()?.named, effect))
+}
+
+/// The columns before have named the effects.
+fn set_sizes(row: &mut StudyRow, text: &str) -> Result<(), String> {
+    let size = |part: &str| {
+        let (symbol, number) = part.split_once('=')?;
+        let (value, sd) = number.split_once('±').map_or((number, None), |(value, sd)| (value, Some(sd)));
+        let sd = sd.map(str::parse).transpose().ok()?;
+        Some(EffectSize { symbol: symbol.into(), value: value.parse().ok()?, sd })
+    };
+    let effect = |part: &str| part.split('|').filter(|size| !size.is_empty()).map(size).collect::<Option<Vec<_>>>();
+    let fault = || format!("{text:?} are no parameters of the effects named");
+    let named = &mut answer(row).named;
+    let parts: Vec<&str> = if named.is_empty() { Vec::new() } else { text.split('+').collect() };
+    if parts.len() != named.len() {
+        return Err(fault());
+    }
+    for (named, part) in named.iter_mut().zip(parts) {
+        named.sizes = effect(part).ok_or_else(fault)?;
+    }
     Ok(())
 }
 

@@ -14,4 +14,4 @@ mod tests;
 pub use columns::{COLUMNS, LOCATED_COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS};
 pub use file::{BlockLabel, Damage, decode, encode};
 pub use layout::RowLayout;
-pub use row::{LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
+pub use row::{EffectSize, LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};

@@ -14,6 +14,19 @@ pub struct NamedEffect {
     pub aliases: Vec<Box<str>>,
     /// When an effect of time acts, s: the middle of a passing moment, the beginning of a lasting one.
     pub time_s: Option<f64>,
+    /// Its parameters, in a study of measured records.
+    pub sizes: Vec<EffectSize>,
+}
+
+/// A parameter of an effect, without dimension where the length and the speed of the ship are known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectSize {
+    /// Symbol, with a prime where it is without dimension.
+    pub symbol: Box<str>,
+    /// Value; SI units and radians where it has a dimension.
+    pub value: f64,
+    /// Standard deviation; `None` of a parameter that is not fitted.
+    pub sd: Option<f64>,
 }
 
 impl NamedEffect {

@@ -1,6 +1,7 @@
 use ::trace::Verdict;
 use document::trace::Dependence;
 
+use super::columns::{Access, RECORD_COLUMNS};
 use super::*;
 use crate::design::{CellFacts, Design};
 use crate::scenario::{MethodName, MissingPhysics};
@@ -69,6 +70,32 @@ fn written(rows: &[StudyRow], layout: &RowLayout) -> Vec<u8> {
     encode(rows, &label(), layout).expect("plain values")
 }
 
+/// Parameters of effects are read as they were written, and belong to the effects named.
+#[test]
+fn sizes_of_effects_belong_to_the_effects_named() {
+    let size = |symbol: &str, value, sd| EffectSize { symbol: symbol.into(), value, sd };
+    let effect = |id: &str, sizes| NamedEffect { id: id.into(), sizes, ..NamedEffect::default() };
+    let named = vec![
+        effect("speed_loss", vec![size("m_a", 0.1 + 0.2, Some(1e-17)), size("e_n′", -0.0, None)]),
+        effect("wind_moment", Vec::new()),
+    ];
+    let row = |named| StudyRow { traced: Some(Box::new(TraceAnswer { named, ..TraceAnswer::default() })), ..good(0) };
+    let [.., column] = &RECORD_COLUMNS;
+    let Access::Text(get, set) = column.access else { panic!("{} is a text", column.name) };
+    for named in [named, Vec::new()] {
+        let whole = row(named.clone());
+        let text = get(&whole).expect("a trace has sizes").into_owned();
+        let without = named.iter().map(|own| NamedEffect { sizes: Vec::new(), ..own.clone() }).collect();
+        let mut read = row(without);
+        assert_eq!(set(&mut read, &text), Ok(()));
+        assert_eq!(read, whole);
+    }
+    let mut one = row(vec![effect("speed_loss", Vec::new())]);
+    for text in ["m_a=1+e=2", "m_a", "m_a=x", "m_a=1±x"] {
+        assert!(set(&mut one, text).is_err(), "{text}");
+    }
+}
+
 /// What a trace said, and figures that were predicted from an answer, are read as they were written.
 #[test]
 fn traces_and_predictions_have_columns_of_their_own() {
@@ -80,6 +107,7 @@ fn traces_and_predictions_have_columns_of_their_own() {
         id: id.into(),
         aliases: aliases.iter().map(|&alias| alias.into()).collect(),
         time_s,
+        sizes: Vec::new(),
     };
     let (depends_on, form, alternatives) =
         (Dependence::YawRate, "moment with r|r|".into(), vec!["a".into(), "b".into()]);

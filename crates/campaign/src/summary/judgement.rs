@@ -168,6 +168,7 @@ mod tests {
             id: id.into(),
             aliases: vec![alias.into()],
             time_s: Some(time_s),
+            ..NamedEffect::default()
         };
         let (named, located) = (names.iter().map(effect).collect(), located.into_iter().collect());
         Judgement::of(&TraceAnswer { verdict: Verdict::Traced, named, located, ..TraceAnswer::default() }, physics)

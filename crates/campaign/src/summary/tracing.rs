@@ -218,7 +218,7 @@ mod tests {
         let effect = |ids: &&[&str]| NamedEffect {
             id: ids[0].into(),
             aliases: ids[1..].iter().map(|&alias| alias.into()).collect(),
-            time_s: None,
+            ..NamedEffect::default()
         };
         for groups in trials {
             tally.add(&TraceAnswer {

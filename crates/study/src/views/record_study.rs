@@ -1,5 +1,7 @@
 //! A finished study of measured records: its tables, its figure and its page.
 
+use std::collections::HashSet;
+
 use askama::Template;
 use campaign::design::Design;
 use campaign::failure::Failure;
@@ -25,6 +27,9 @@ use crate::options::FigureChoice;
 
 /// The rows as a table for people.
 const RECORDS: &str = "records.csv";
+
+/// The parameters of the effects named.
+const EFFECTS: &str = "effects.csv";
 
 /// Figure of the errors on the records that judge.
 const JUDGED: &str = "judged";
@@ -91,6 +96,32 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
         cells.push(named.unwrap_or_default().join("+"));
         cells.push(row.failure.as_deref().unwrap_or_default().to_owned());
         table.push(cells);
+    }
+    table
+}
+
+/// The parameters of the effects that every fit named, a line each.
+fn effects(rows: &[StudyRow], design: &Design) -> Table {
+    let head = tables::head(design).texts(["fitted", "effect", "parameter"]).numbers(["value", "sd"]);
+    let mut table = Table::new(head);
+    // A fit has a row for each record that it is judged on.
+    let mut fits = HashSet::new();
+    for row in rows {
+        let cell = &design.cells[row.cell as usize];
+        let Some(record) = cell.records.get(row.replicate as usize) else { continue };
+        let named = row.traced.iter().flat_map(|traced| &traced.named);
+        if row.traced.is_none() || !fits.insert((row.cell, row.method, &record.fitted)) {
+            continue;
+        }
+        for effect in named {
+            for size in &effect.sizes {
+                let mut cells = tables::place(design, row.cell as usize, row.method);
+                cells.extend([record.fitted.clone(), effect.id.to_string(), size.symbol.to_string()]);
+                cells
+                    .extend([Some(size.value), size.sd].map(|own| own.map_or_else(String::new, |x| significant(x, 6))));
+                table.push(cells);
+            }
+        }
     }
     table
 }
@@ -225,6 +256,9 @@ pub fn put(
     let made = Summary { records: record_summaries(&rows, design), ..tally.finish() };
     folder.write("summary.csv", summary(&made.records, design).to_csv())?;
     folder.write(RECORDS, trials(&rows, design).to_csv())?;
+    if rows.iter().any(|row| row.traced.is_some()) {
+        folder.write(EFFECTS, effects(&rows, design).to_csv())?;
+    }
     if !made.predictions.is_empty() {
         folder.write("predictions.csv", coverage_table::table(&made.predictions, design).to_csv())?;
     }

@@ -1,18 +1,18 @@
 //! One page over several finished studies, each with its question, its answer in a sentence and the figure that stands
 //! for it. Made from their manifests and figures, so it needs no rows.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use askama::Template;
 use campaign::disk;
 use campaign::failure::{Failure, OnPath};
 use campaign::files;
 use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
 use campaign::scenario::name;
-use report::markdown;
+use report::{Page, PlacedFigures};
 
-use super::page_files::{KEY_FIGURE, REPORT};
+use super::page_files::KEY_FIGURE;
 
 /// Name of the page.
 const PAGE: &str = "README.md";
@@ -37,6 +37,12 @@ struct Section {
     figure: Option<String>,
 }
 
+#[derive(Template)]
+#[template(path = "studies.md", escape = "none")]
+struct StudiesPage {
+    sections: Vec<Section>,
+}
+
 /// Fails where a folder is not that of a study, and where a page of somebody else lies in the place of this one.
 pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
     if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
@@ -58,7 +64,8 @@ pub fn write(studies: &[PathBuf], target: &ResultFolder) -> Result<PathBuf, Fail
     is_possible(studies, target.path())?;
     let place = target.path().canonicalize().on("find", target.path())?;
     let sections = studies.iter().map(|folder| section(folder, &place)).collect::<Result<Vec<_>, _>>()?;
-    target.write(PAGE, MARK.to_owned() + &markdown::prose(&page(&sections)))?;
+    let page = Page::new(StudiesPage { sections }.render(), PlacedFigures::<()>::default());
+    target.write(PAGE, MARK.to_owned() + &page.to_markdown())?;
     Ok(target.path().join(PAGE))
 }
 
@@ -106,22 +113,6 @@ fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
         folder,
         format!("the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {known}"),
     ))
-}
-
-fn page(sections: &[Section]) -> String {
-    let mut page =
-        String::from("# Results\n\nOne study a section: its question, what came out, and the figure that shows it.\n");
-    for Section { name, folder, question, finding, figure } in sections {
-        write!(page, "\n## [{name}]({folder}/{REPORT})\n\n**{question}**\n")
-            .expect("writing to a string does not fail");
-        if !finding.is_empty() {
-            write!(page, "\n{finding}\n").expect("writing to a string does not fail");
-        }
-        if let Some(figure) = figure {
-            write!(page, "\n![Figure of {name}]({folder}/{figure})\n").expect("writing to a string does not fail");
-        }
-    }
-    page
 }
 
 #[cfg(test)]
