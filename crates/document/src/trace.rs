@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
 use crate::earlier_trials::EarlierTrials;
+use crate::fit::{Amplitude, SingleRecords};
 use crate::identified_ship::IdentifiedShip;
 use crate::names;
 use crate::noise::Moment;
@@ -312,6 +313,12 @@ pub struct TraceDocument {
     /// The base, and behind it the effects of the most probable structure one by one; nothing where it has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub staircase: Vec<StairEntry>,
+    /// The amplitude of the fitted zig-zags: K and T of `base` belong to it, those of `model` to small motions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub amplitude: Option<Amplitude>,
+    /// K and T of every fitted zig-zag alone, where there are several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub single_records: Option<SingleRecords>,
     /// What is known of the ship, for `study predict`; SI units and radians.
     pub ship: IdentifiedShip,
     /// What earlier trials of `--prior` say of the hull, and whether the records contradict them.

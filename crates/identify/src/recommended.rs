@@ -4,7 +4,8 @@
 //! Where the recorded rudder has declared noise, maximum likelihood counts it. Where the heading jumps and stays off,
 //! and no random moment is needed beside that, it estimates the jumps. Where maximum likelihood finds a random
 //! yaw moment that the terms of a ship cannot explain ([`LackOfFit`]), it is the answer, too: output error takes the
-//! work of gusts for that of the rudder. Where terms of a ship explain the residual, the model lacks one of them. A
+//! work of gusts for that of the rudder. Records that declare a calm have no such moment. Where terms of a ship explain
+//! the residual, the model lacks one of them. A
 //! random moment then stands for it, and K, T of maximum likelihood are those of small and fast motions. An answer of
 //! maximum likelihood without an interval of K is never taken: its random moment explains the manoeuvre itself. A
 //! replay far worse than that of output error is no such sign: under strong random moments the true ship has one, too.
@@ -40,13 +41,16 @@ pub struct Recommendation {
     pub reason: Reason,
     /// What output error leaves of the records; `None` where it has no answer or the noise is not known.
     pub lack: Option<LackOfFit>,
+    /// Whether all records declare a calm, in which nothing turns the ship at random.
+    pub is_calm: bool,
 }
 
 impl Recommendation {
     /// From the answers of output error and maximum likelihood on these records.
     pub fn of(trials: &[Trial], output_error: Option<&Estimate>, maximum_likelihood: Option<&Estimate>) -> Self {
         let lack = output_error.and_then(|estimate| LackOfFit::of(trials, &estimate.response));
-        let is_random = lack.and_then(|lack| lack.unexplained()).is_some_and(|share| share >= RANDOM);
+        let is_calm = trials.iter().all(Trial::is_calm);
+        let is_random = !is_calm && lack.and_then(|lack| lack.unexplained()).is_some_and(|share| share >= RANDOM);
         let has_moment = |own: &Estimate| own.noise.is_some_and(|noise| !noise.moment.is_none());
         let rms = |own: &Estimate| pooled(trials, &own.response).unwrap_or(f64::INFINITY);
         let is_cancelled = |own: &Estimate| output_error.is_some_and(|nearest| rms(own) > CANCELLED * rms(nearest));
@@ -60,7 +64,7 @@ impl Recommendation {
             }
             _ => Reason::NearestReplay,
         };
-        Self { reason, lack }
+        Self { reason, lack, is_calm }
     }
 
     /// The method whose answer is to be taken.
@@ -75,7 +79,7 @@ impl Recommendation {
     pub fn residual(&self) -> Option<ResidualKind> {
         let share = self.lack?.unexplained();
         Some(share.map_or(ResidualKind::Noise, |share| {
-            if share < RANDOM { ResidualKind::LacksEffect } else { ResidualKind::Random }
+            if share < RANDOM || self.is_calm { ResidualKind::LacksEffect } else { ResidualKind::Random }
         }))
     }
 }

@@ -19,8 +19,8 @@ pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usi
     }
     if lag1 > 0.0 {
         let warning = format!(
-            "the residual is coloured (lag-1 autocorrelation {lag1:.2}): intervals are from the Newey-West covariance; \
-             the model lacks an effect, or the noise of the compass is correlated"
+            "errors of the replay last from reading to reading (correlation {lag1:.2}): the model lacks an effect, or the compass \
+             has a memory; intervals allow for it"
         );
         return (Uncertainty::Covariance(robust.clone()), Some(Code::ColouredResidual.warning(warning)));
     }

@@ -167,7 +167,7 @@ fn mark_stroke(label: &str, theme: &Theme) -> Stroke {
 
 /// Panels of a stack side by side.
 fn columns(stack: &Stack, theme: &Theme) -> usize {
-    let narrower = usize::from(theme.is_narrow());
+    let narrower = usize::from(theme.is_narrow() && !stack.unbroken);
     stack.across.map_or(stack.x.len(), |across| across.saturating_sub(narrower)).max(1)
 }
 

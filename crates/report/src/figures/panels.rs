@@ -309,6 +309,8 @@ pub struct Stack {
     pub marks: Vec<AxisLine>,
     /// Small multiples, so many side by side: the one axis and the one row are those of all.
     pub across: Option<usize>,
+    /// Whether these stay side by side on a narrow page, too: a row of them is one thing.
+    pub unbroken: bool,
     /// Whether it takes half the width of the figure; two of them stand side by side where there is room.
     pub is_half: bool,
     /// Whether there is a line at zero from bottom to top.

@@ -31,7 +31,7 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
         let caption = format!(
             "{name}: K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag."
         );
-        let of = |own: &SingleRecord| (format!("rudder {}°", fixed(own.rudder_deg, 0)), own.k_per_s.value);
+        let of = |own: &SingleRecord| (format!("rudder {}°", fixed(own.amplitude.rudder_deg, 0)), own.k_per_s.value);
         let finding = format!("Record by record {}", findings::range("K [1/s]", all.records.iter().map(of)));
         PageFigure::new("amplitude", finding, caption, single_records(all, document))
     }));
@@ -195,7 +195,7 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     };
     let ([by_k, by_t], [k, t]) = (factors(ship), titles(ship));
     let x = [format!("rudder {} [°]", symbol("δ")), format!("peak heading {} [°]", symbol("ψ"))];
-    let amplitudes: [fn(&SingleRecord) -> f64; 2] = [|own| own.rudder_deg, |own| own.heading_deg];
+    let amplitudes: [fn(&SingleRecord) -> f64; 2] = [|own| own.amplitude.rudder_deg, |own| own.amplitude.heading_deg];
     let mut panels: Vec<LayeredPanel> = amplitudes.map(|of| panel(|own| own.k_per_s, by_k, of)).into();
     panels.extend(amplitudes.map(|of| panel(|own| own.t_s, by_t, of)));
     let rows = vec![row(k, joint.map(|own| own.k_per_s), by_k), row(t, joint.map(|own| own.t_s), by_t)];

@@ -9,7 +9,7 @@ use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, PlacedFigures, Table};
 use trial::Quantity;
 
-use super::{fit_figures, method_table, scale_tables};
+use super::{fit_figures, indices, method_table, scale_tables};
 use crate::documents::fit_curves::FitCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
@@ -26,6 +26,8 @@ struct FitPage {
     /// Paragraphs below the verdict.
     lines: Vec<String>,
     answers: Table,
+    /// K and T of every record alone, where there are several.
+    records: Option<Table>,
     warnings: Vec<String>,
     /// Lines on the records, each with what it is indented by.
     notes: Vec<(&'static str, String)>,
@@ -52,6 +54,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
         verdict: document.verdict.as_ref().and_then(|_| lines.next()),
         lines: lines.filter(|line| !line.is_empty()).collect(),
         answers: answers(document, curves),
+        records: document.single_records.as_ref().map(indices::records),
         warnings: document.of_answer().map(ToString::to_string).collect(),
         notes: notes.lines().filter(|line| !line.trim().is_empty()).map(note).collect(),
         scales: scales(document),
@@ -89,10 +92,18 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
             [_] => "this record",
             _ => "these records",
         };
-        return Some(format!(
-            "No K and T can be taken from {trial}, because {because}.\nCheck rudder, heading and clock first, which the warnings may \
-             name; then give a zig-zag in calm weather."
-        ));
+        let advice = match &document.single_records {
+            Some(all) if all.agree == Some(false) => {
+                format!(
+                    "{} Take those of each record, or have `study trace` fit them together.",
+                    indices::of_records(all)
+                )
+            }
+            _ => String::from(
+                "Check rudder, heading and clock first, which the warnings may name; then give a zig-zag in calm weather.",
+            ),
+        };
+        return Some(format!("No K and T can be taken from {trial}, because {because}.\n{advice}"));
     }
     let because = match verdict.reason {
         Reason::NearestReplay => "its replay is the nearest to the headings",
@@ -101,6 +112,8 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
         Reason::HeadingJumps => "the heading jumps and stays off, which it estimates",
     };
     let mut words = format!("Take K = {k} 1/s, T = {t} s, δ_r = {bias}° from {}, because {because}.", verdict.method);
+    let amplitude = indices::of_amplitude(document.amplitude.as_ref());
+    words += &if amplitude.is_empty() { String::new() } else { format!("\n{amplitude}") };
     let [residual, rest] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
     words += &match verdict.residual {
         None => String::new(),
@@ -109,9 +122,13 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
             "\nThe residual of output error, {residual}°, falls to {rest}° with more terms of a hull, but the readings are suspected \
              before the ship: see the warnings."
         ),
+        Some(ResidualKind::LacksEffect) if !verdict.falls_with_ship_terms() => format!(
+            "\nThe residual of output error, {residual}°, is no noise, and the records declare a calm: the model may lack an effect, which \
+             `study trace` looks for."
+        ),
         Some(ResidualKind::LacksEffect) => format!(
-            "\nThe residual of output error, {residual}°, falls to {rest}° with more terms of a hull: the model lacks an effect, \
-             which `study trace` looks for."
+            "\nThe residual of output error, {residual}°, falls to {rest}° with more terms of a hull: the model may lack an \
+             effect, which `study trace` looks for; it has K and T of small motions, too."
         ),
         Some(ResidualKind::Random) => {
             format!("\nThe residual of output error, {residual}°, is random: more terms of a hull leave {rest}° of it.")
@@ -129,6 +146,8 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
             ),
         };
     }
+    words +=
+        &document.single_records.as_ref().map_or_else(String::new, |all| format!("\n{}", indices::of_records(all)));
     words += &contradiction(document, verdict);
     if !verdict.set_apart.is_empty() {
         words += &format!("\nMore than ten times as far from the headings are: {}.", verdict.set_apart.join(", "));

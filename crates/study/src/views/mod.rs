@@ -11,6 +11,7 @@ pub mod findings;
 pub mod fit_figures;
 pub mod fit_page;
 pub mod held_out;
+pub mod indices;
 pub mod innovation_figure;
 pub mod key_figure;
 pub mod method_table;

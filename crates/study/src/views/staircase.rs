@@ -46,7 +46,8 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         panels.push(panel(format!("{}° are left", size(number + 1)), pair[1].clone(), &CurveOrigin::After));
     }
     let row = PanelRow::zeroed(Ruler::new("heading [°]", Division::Angle), 0.085);
-    let plot = Panels::of(Stack::multiples(3, Ruler::time(), row, panels));
+    let stack = Stack { unbroken: true, ..Stack::multiples(3, Ruler::time(), row, panels) };
+    let plot = Panels::of(stack);
     let caption = format!(
         "{}: what is left of the heading before an effect, what the effect carries of it, and what is left behind it. Every \
          step is fitted anew for the nearest replay; degrees are root mean squares over all fitted records.",

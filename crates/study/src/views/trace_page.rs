@@ -18,7 +18,7 @@ use super::record_figures::{stability, steady_turns};
 use super::trace_figures as figures;
 use super::trace_hero;
 use super::trace_tables as tables;
-use super::{held_out, overshoots, staircase};
+use super::{held_out, indices, overshoots, staircase};
 use crate::documents::curves::TraceCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
@@ -34,7 +34,11 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     if !trace.effects.is_empty() {
         before += &format!("\n{}", tables::effects(document).to_text());
     }
+    before += &format!("\n{}", indices::of_trace(document).to_text());
     let mut behind = String::new();
+    if let Some(all) = &document.single_records {
+        behind += &format!("\n{}", indices::of_records(all));
+    }
     for typed in formulas(document, "") {
         behind += &format!("\n{typed}");
     }

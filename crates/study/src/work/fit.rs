@@ -3,7 +3,7 @@
 
 use campaign::failure::Failure;
 use campaign::stored_figures::Replays;
-use document::fit::{CriterionEntry, FitDocument, SCHEMA, TrialEntry, ZigZagEntry};
+use document::fit::{CriterionEntry, FitDocument, SCHEMA, TrialEntry, VerdictEntry, ZigZagEntry};
 use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
 use document::{Code, Source, Warning, Warnings};
@@ -129,9 +129,9 @@ pub fn fit(
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
     };
+    let verdict = verdict::of_answers(trials, &answers, &entries);
     let document = FitDocument {
         schema: SCHEMA.into(),
-        verdict: verdict::of_answers(trials, &answers, &entries),
         zigzag: records[0].zigzag.clone(),
         trials: records,
         ships: answers.iter().filter_map(ship_of).collect(),
@@ -140,7 +140,9 @@ pub fn fit(
         scaling: together.sentence(),
         length_m: ship.map(|ship| ship.length),
         speed_m_s: ship.map(|ship| ship.speed),
-        single_records: single_records::of_records(trials, &preferred(methods, &entries)),
+        amplitude: single_records::mean_amplitude(trials),
+        single_records: single_records::of_records(trials, &preferred(methods, &entries, verdict.as_ref())),
+        verdict,
         warnings: warnings.ranked(),
         methods: entries,
     };
@@ -225,8 +227,13 @@ pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Named>, Failur
     Ok(own.collect())
 }
 
-/// The methods that were used and gave an answer with an interval, those first whose intervals hold most.
-fn preferred<'a>(methods: &'a [Named], entries: &[MethodEntry]) -> Vec<&'a dyn Identifier> {
+/// The methods that were used and gave an answer with an interval: that of the verdict, then those whose intervals hold
+/// most.
+fn preferred<'a>(
+    methods: &'a [Named],
+    entries: &[MethodEntry],
+    verdict: Option<&VerdictEntry>,
+) -> Vec<&'a dyn Identifier> {
     let has_interval = |label: &str| {
         let own = entries.iter().find(|entry| entry.method == label).and_then(|entry| entry.parameters);
         own.is_some_and(|own| own.k_per_s.ci95.is_some())
@@ -235,7 +242,8 @@ fn preferred<'a>(methods: &'a [Named], entries: &[MethodEntry]) -> Vec<&'a dyn I
     let mut found: Vec<&dyn Identifier> = answered.map(|(_, method)| method.as_ref()).collect();
     found.sort_by_key(|method| PREFERRED_METHODS.iter().position(|id| *id == method.id()).unwrap_or(usize::MAX));
     found.truncate(PREFERRED_METHODS.len());
-    found
+    let taken = methods.iter().find(|(label, _)| verdict.is_some_and(|verdict| verdict.method == *label));
+    taken.map(|(_, method)| method.as_ref()).into_iter().chain(found).collect()
 }
 
 /// The message when no method gives an answer: every reason once.

@@ -1,25 +1,41 @@
 //! Every record of several identified alone: whether K and T of a first-order response depend on the amplitude.
 
-use document::fit::{SingleRecord, SingleRecords};
+use document::fit::{Amplitude, SingleRecord, SingleRecords};
 use identify::{Estimate, Identifier};
 use rayon::prelude::*;
 use ship::angle::to_deg;
-use trial::{Trial, ZigZag};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+use trial::{Quantity, Trial, ZigZag};
 
-/// Mean size of the rudder of a zig-zag, and of its heading at the peaks, rad.
-fn amplitudes(trial: &Trial) -> Option<[f64; 2]> {
-    let zigzag = ZigZag::of(trial).ok()?;
-    let base = zigzag.base_course.heading.value;
-    let peaks: Vec<f64> = zigzag.overshoots.iter().map(|one| (one.peak_heading.value - base).abs()).collect();
-    let rudders: Vec<f64> = zigzag.executes.iter().map(|one| one.rudder_after.abs()).collect();
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    (!peaks.is_empty() && !rudders.is_empty()).then(|| [mean(&rudders), mean(&peaks)])
+use crate::records::names;
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
+    (count > 0).then(|| sum / f64::from(count))
 }
 
-fn alone(trial: &Trial, method: &dyn Identifier) -> Option<SingleRecord> {
+/// Mean sizes of rudder and heading of a zig-zag.
+fn amplitude(trial: &Trial) -> Option<Amplitude> {
+    let zigzag = ZigZag::of(trial).ok()?;
+    let base = zigzag.base_course.heading.value;
+    let peaks = zigzag.overshoots.iter().map(|overshoot| (overshoot.peak_heading.value - base).abs());
+    let rudders = zigzag.executes.iter().map(|execute| execute.rudder_after.abs());
+    Some(Amplitude { rudder_deg: to_deg(mean(rudders)?), heading_deg: to_deg(mean(peaks)?) })
+}
+
+/// Mean amplitude of the zig-zags among some records.
+pub fn mean_amplitude(trials: &[Trial]) -> Option<Amplitude> {
+    let all: Vec<Amplitude> = trials.iter().filter_map(amplitude).collect();
+    Some(Amplitude {
+        rudder_deg: mean(all.iter().map(|own| own.rudder_deg))?,
+        heading_deg: mean(all.iter().map(|own| own.heading_deg))?,
+    })
+}
+
+fn alone(trial: &Trial, record: &str, method: &dyn Identifier) -> Option<SingleRecord> {
     let of = |estimate: Estimate| {
-        let [rudder_deg, heading_deg] = amplitudes(trial)?.map(to_deg);
-        Some(SingleRecord { rudder_deg, heading_deg, k_per_s: estimate.K(), t_s: estimate.T() })
+        let amplitude = amplitude(trial)?;
+        Some(SingleRecord { record: record.to_owned(), amplitude, k_per_s: estimate.K(), t_s: estimate.T() })
     };
     method.identify(std::slice::from_ref(trial)).ok().and_then(of).filter(|own| own.k_per_s.value.is_finite())
 }
@@ -27,17 +43,59 @@ fn alone(trial: &Trial, method: &dyn Identifier) -> Option<SingleRecord> {
 /// Every record alone by the first of some methods, or by the next where that fails for one of them; `None` for less
 /// than two zig-zags.
 pub fn of_records(trials: &[Trial], methods: &[&dyn Identifier]) -> Option<SingleRecords> {
-    let zigzags: Vec<&Trial> = trials.iter().filter(|trial| amplitudes(trial).is_some()).collect();
+    let names = names(trials.iter().map(Trial::name));
+    let zigzags: Vec<(&Trial, &String)> =
+        trials.iter().zip(&names).filter(|(trial, _)| amplitude(trial).is_some()).collect();
     let mut best: Option<SingleRecords> = None;
     for method in methods.iter().filter(|_| zigzags.len() > 1) {
-        let records: Vec<SingleRecord> = zigzags.par_iter().filter_map(|trial| alone(trial, *method)).collect();
+        let records = zigzags.par_iter().filter_map(|(trial, name)| alone(trial, name, *method));
+        let records: Vec<SingleRecord> = records.collect();
         let complete = records.len() == zigzags.len();
         if best.as_ref().is_none_or(|best| records.len() > best.records.len()) {
-            best = Some(SingleRecords { method: method.id().to_owned(), records });
+            let agree = agree(&records);
+            best = Some(SingleRecords { method: method.id().to_owned(), records, agree });
         }
         if complete {
             break;
         }
     }
     best.filter(|best| best.records.len() > 1)
+}
+
+/// Probability below which differences are none of chance.
+const LEVEL: f64 = 0.05;
+
+/// Whether K and T of some records are the same: the sum of their squared distances from the weighted means, in standard
+/// deviations, is χ² of 2 (n − 1) degrees of freedom.
+fn agree(records: &[SingleRecord]) -> Option<bool> {
+    let deviation = |of: fn(&SingleRecord) -> Quantity| -> Option<f64> {
+        let all = records.iter().map(|own| Some((of(own).value, of(own).sd.filter(|sd| *sd > 0.0)?.powi(-2))));
+        let all: Vec<(f64, f64)> = all.collect::<Option<_>>()?;
+        let weight: f64 = all.iter().map(|(_, weight)| weight).sum();
+        let middle = all.iter().map(|(value, weight)| value * weight).sum::<f64>() / weight;
+        Some(all.iter().map(|(value, weight)| weight * (value - middle).powi(2)).sum())
+    };
+    let sum = deviation(|own| own.k_per_s)? + deviation(|own| own.t_s)?;
+    let chance = ChiSquared::new(2.0 * (records.len() as f64 - 1.0)).ok()?;
+    Some(chance.sf(sum) >= LEVEL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two values one standard deviation from their mean each, of K and of T: χ²₂ = 4, probability exp(−2) = 0.135; two
+    /// of them: χ²₂ = 16, exp(−8).
+    #[test]
+    fn records_agree_as_far_as_chance_goes() {
+        let record = |k: f64, t: f64, sd: Option<f64>| SingleRecord {
+            record: String::new(),
+            amplitude: Amplitude { rudder_deg: 10.0, heading_deg: 14.0 },
+            k_per_s: Quantity { sd, ..Quantity::bare(k) },
+            t_s: Quantity { sd, ..Quantity::bare(t) },
+        };
+        let pair = |apart: f64| agree(&[record(1.0, 2.0, Some(0.1)), record(1.0 + apart, 2.0 + apart, Some(0.1))]);
+        assert_eq!((pair(0.2), pair(0.24), pair(0.25), pair(0.4)), (Some(true), Some(true), Some(false), Some(false)));
+        assert_eq!(agree(&[record(1.0, 2.0, None), record(1.0, 2.0, Some(0.1))]), None);
+    }
 }

@@ -8,12 +8,13 @@ use campaign::folder::ResultFolder;
 use campaign::known::{self, RecordFacts};
 use document::trace::{MissingMomentEntry, RecordEntry, TraceDocument};
 use document::{Code, Warnings};
+use identify::output_error;
 use identify::suspicion::suspicion;
 use indicatif::ProgressBar;
 use trial::{Channel, Trial};
 
 use super::earlier::{self, EarlierModel};
-use super::planned;
+use super::{planned, single_records};
 use crate::documents::curves::{self, TraceCurves, slugs, suffix};
 use crate::documents::{self, TRACE, missing_moment, prior};
 use crate::options::{TraceRequest, Withheld};
@@ -128,12 +129,15 @@ pub fn trace(
     warnings.extend(ship.rudder_logged_late().map(|late| Code::LateRudder.warning(rudder_logged_late(late))));
     let earlier_trials = earlier::entry(priors, &trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
+    let output_error = output_error::Settings::default().build().map_err(Failure::input)?;
     let document = TraceDocument {
         earlier_trials,
         ship,
         records: entries,
         missing_moment: moments,
         staircase,
+        amplitude: single_records::mean_amplitude(&trials),
+        single_records: single_records::of_records(&trials, &[&output_error]),
         scales,
         next_trial: next_trial(&analysis, &trials),
         trace: analysis.document,

@@ -141,7 +141,7 @@ mod tests {
             let t = Quantity { ci95, ..Quantity::bare(t) };
             [entry("output-error", Some([Quantity::bare(k), t])), entry("maximum-likelihood", None)]
         };
-        let nearest = Recommendation { reason: Reason::NearestReplay, lack: None };
+        let nearest = Recommendation { reason: Reason::NearestReplay, lack: None, is_calm: false };
         let told = |entries: &[MethodEntry], scatter: f64| {
             let verdict = taken(&nearest, entries, Some(scatter)).expect("an answer");
             disbelief(&verdict, entries, Some(scatter)).unwrap_or_default()
@@ -172,7 +172,7 @@ mod tests {
             heading_rmse_deg: Some(rms),
             ..MethodEntry::default()
         };
-        let taken = Recommendation { reason: Reason::NearestReplay, lack: None };
+        let taken = Recommendation { reason: Reason::NearestReplay, lack: None, is_calm: false };
         let told = |rms: f64, straight: f64| {
             let far = [entry("output-error", 9.0, 1.9), entry("least-squares", 28.0, rms)];
             let all = [&far[..], &[entry("maximum-likelihood", 41.0, rms)]].concat();

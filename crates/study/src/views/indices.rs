@@ -1,0 +1,68 @@
+//! K and T beside what they belong to: an amplitude, small motions, a record.
+
+use document::fit::{Amplitude, SingleRecord, SingleRecords};
+use document::names;
+use document::trace::{Indices, TraceDocument};
+use report::number::{fixed, significant};
+use report::{Table, TableHead};
+
+use super::method_table::estimate;
+
+/// Which amplitude K and T of a first-order response belong to; nothing where the records are no zig-zags.
+pub fn of_amplitude(amplitude: Option<&Amplitude>) -> String {
+    amplitude.map_or_else(String::new, |Amplitude { rudder_deg, heading_deg }| {
+        let [rudder, heading] = [rudder_deg, heading_deg].map(|angle| fixed(*angle, 0));
+        format!("They belong to this amplitude: rudder {rudder}°, heading to {heading}°.")
+    })
+}
+
+/// How far K and T go from record to record, and whether they agree.
+pub fn of_records(all: &SingleRecords) -> String {
+    let range = |of: fn(&SingleRecord) -> f64, unit: &str| {
+        let values = || all.records.iter().map(of);
+        let ends = [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];
+        let [from, to] = ends.map(|end| significant(end, 2));
+        format!("from {from} to {to} {unit}")
+    };
+    let [k, t] = [range(|own| own.k_per_s.value, "1/s"), range(|own| own.t_s.value, "s")];
+    let agree = match all.agree {
+        Some(true) => "; they agree",
+        Some(false) => "; they do not agree, so K and T belong to each record and its amplitude, not to the ship",
+        None => "",
+    };
+    format!("Record by record ({}) K goes {k} and T {t}{agree}.", all.method)
+}
+
+/// K and T of every record alone.
+pub fn records(all: &SingleRecords) -> Table {
+    let head = TableHead::default().texts(["record"]).numbers(["rudder", "heading"]).unit("deg");
+    let head = head.numbers(["K"]).unit("1/s").interval().numbers(["T"]).unit("s").interval();
+    let mut table = Table::new(head);
+    for SingleRecord { record, amplitude, k_per_s, t_s } in &all.records {
+        let angles = [amplitude.rudder_deg, amplitude.heading_deg].map(|angle| fixed(angle, 0));
+        let cells = [names::record(record)].into_iter().chain(angles);
+        table.push(cells.chain([k_per_s, t_s].into_iter().flat_map(estimate)));
+    }
+    table
+}
+
+/// K and T of the first-order response and of the model of a trace, with what each pair is for.
+pub fn of_trace(document: &TraceDocument) -> Table {
+    let head = TableHead::default().texts(["K and T of"]).numbers(["K"]).unit("1/s").interval();
+    let mut table = Table::new(head.numbers(["T"]).unit("s").interval().texts(["for"]));
+    let amplitude = document.amplitude.as_ref().map_or_else(
+        || String::from("motions as large as these"),
+        |own| format!("this amplitude (rudder {}°)", fixed(own.rudder_deg, 0)),
+    );
+    let trace = &document.trace;
+    let is_same = trace.model.indices == trace.base;
+    let rows: [(String, &Indices, &str); 2] = [
+        (amplitude, &trace.base, "an autopilot at this rudder, comparing trials"),
+        (String::from("small motions"), &trace.model.indices, "the model: its effects come on top"),
+    ];
+    for (of, indices, purpose) in rows.into_iter().take(if is_same { 1 } else { 2 }) {
+        let numbers = [&indices.K_per_s, &indices.T_s].into_iter().flat_map(estimate);
+        table.push([of].into_iter().chain(numbers).chain([purpose.to_owned()]));
+    }
+    table
+}
