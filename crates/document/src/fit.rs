@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
 use crate::earlier_trials::EarlierTrials;
+use crate::form::ImoFormEntry;
 use crate::identified_ship::IdentifiedShip;
 use crate::method::MethodEntry;
 use crate::quantity::Quantity;
@@ -34,6 +35,24 @@ pub struct TrialEntry {
     /// Why it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_zigzag: Option<String>,
+    /// The turning circle that it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub circle: Option<CircleEntry>,
+}
+
+/// A recorded turning circle; a current that its positions show is taken out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct CircleEntry {
+    /// `port` or `starboard`.
+    pub side: String,
+    /// Rudder angle that was held, deg.
+    pub rudder_deg: f64,
+    /// Advance at 90° of heading, ship lengths; none without positions or an unknown length.
+    pub advance_lengths: Option<f64>,
+    /// Transfer at 90° of heading, ship lengths.
+    pub transfer_lengths: Option<f64>,
+    /// Tactical diameter at 180° of heading, ship lengths.
+    pub tactical_diameter_lengths: Option<f64>,
 }
 
 /// One IMO criterion.
@@ -118,6 +137,12 @@ pub struct FitDocument {
     /// The amplitude of the zig-zags, to which K and T belong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub amplitude: Option<Amplitude>,
+    /// The form of MSC/Circ.1053 with what the records measure, where they measure something of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub form: Vec<ImoFormEntry>,
+    /// What the form says beside its entries.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub form_remarks: Vec<String>,
     /// Every zig-zag identified alone, where there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single_records: Option<SingleRecords>,

@@ -14,6 +14,7 @@
 pub mod earlier_trials;
 pub mod error;
 pub mod fit;
+mod form;
 pub mod identified_ship;
 pub mod method;
 pub mod names;
@@ -26,6 +27,7 @@ pub mod trace;
 pub mod warning;
 
 pub use error::IdentifiedShipError;
+pub use form::ImoFormEntry;
 pub use identified_ship::{IdentifiedShip, KnownGear, StoredEffect, ValidityRange, WeightedStructure};
 pub use noise::{HeadingNoise, Moment, RandomMoment};
 pub use quantity::Quantity;

@@ -11,8 +11,7 @@ mod remarks;
 
 pub use record::FormRecord;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+pub use document::ImoFormEntry;
 use serde_json::Value;
 use ship::Particulars;
 use simulate::{Manoeuvre, Side};
@@ -34,41 +33,6 @@ pub const STOPPING: &str = "stopping";
 
 /// Most decimals of a result: no trial tells a hundredth of a degree or of a ship length.
 pub const DECIMALS: usize = 2;
-
-/// An entry of the form.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ImoFormEntry {
-    /// Heading it stands under.
-    pub section: String,
-    /// What it is called.
-    pub field: String,
-    /// "port" or "starboard", where the form has one for either side.
-    pub side: Option<String>,
-    /// A declared word, or a declared or measured number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub value: Option<Value>,
-    /// Standard deviation of a measured number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sd: Option<f64>,
-    /// Median of a predicted or corrected number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub median: Option<f64>,
-    /// The interval of nine tenths of the draws.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ci90: Option<[f64; 2]>,
-    /// Unit of value and limit.
-    pub unit: String,
-    /// Largest value allowed.
-    pub limit: Option<f64>,
-    /// Of a predicted entry whether the manoeuvre is beyond what the records have seen.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub extrapolated: Option<bool>,
-    /// Of a predicted entry the share of the drawn ships that keep within the limit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub probability_of_passing: Option<f64>,
-    /// Where it comes from.
-    pub source: String,
-}
 
 /// The form.
 #[derive(Debug, Clone, PartialEq)]
@@ -164,10 +128,11 @@ pub fn fill<'a>(
     };
     let of_file = declared.map(|(file, form)| Declared { file, form, length: form.particulars.map(|own| own.length) });
     let said: Vec<Declared> = records.iter().map(of_record).chain(of_file).collect();
+    let scale = if predictions.is_empty() { "scale of the records" } else { "scale of the prediction" };
     let field = |&(section, name, unit, of): &Field| {
         let found = said.iter().find_map(|own| Some((format!("declared with {}", own.file), of(own)?)));
-        let scale = particulars.filter(|_| name == SCALE).map(|own| Value::from(own.length / own.speed));
-        let (source, value) = found.or_else(|| Some(("scale of the prediction".into(), scale?))).unzip();
+        let ratio = particulars.filter(|_| name == SCALE).map(|own| Value::from(own.length / own.speed));
+        let (source, value) = found.or_else(|| Some((scale.into(), ratio?))).unzip();
         entry(section, name, unit, value, source.unwrap_or_default())
     };
     let mut entries: Vec<ImoFormEntry> = FIELDS.iter().map(field).collect();
@@ -250,7 +215,10 @@ fn predicted(
     let kind: Manoeuvre = limit.manoeuvre.parse().expect("the name of a manoeuvre");
     let kind = if side == "port" { kind.to(Side::Port) } else { kind };
     let Some(prediction) = predictions.iter().find(|prediction| prediction.kind == kind) else {
-        return untold("hardly a drawn ship comes to the end of the manoeuvre");
+        return untold(match predictions {
+            [] => "not measured; `study predict --form` predicts it",
+            _ => "hardly a drawn ship comes to the end of the manoeuvre",
+        });
     };
     let Some(figure) = prediction.figures.get(limit.figure) else {
         return untold("the length of the ship, or her speed and drift, are not known");

@@ -6,7 +6,7 @@ use rand_distr::StandardNormal;
 use ship::Polyline;
 pub use simulate::motion::Current;
 use simulate::{Purpose, StreamKey};
-use trial::{Channel, Trial};
+use trial::{Channel, Trial, ZigZag};
 
 use crate::figures::{self, Figures};
 use crate::simulated_manoeuvre::{self, PlanarMotion, SimulatedManoeuvre};
@@ -19,6 +19,9 @@ const LONGER: f64 = 2.0;
 
 /// Change of heading after which a track is not drawn on, rad: one and a half circles.
 const LONGEST_TRACK: f64 = 3.0 * std::f64::consts::PI;
+
+/// Times of a ship that a record of unknown length and speed is taken for.
+const ROWS: f64 = 40.0;
 
 /// Drawn ships whose tracks are kept.
 const DRAWN_TRACKS: usize = 40;
@@ -140,6 +143,36 @@ impl HeldTurn {
         times.push(self.until + LONGER * (self.until - self.execute));
         values.push(*values.last()?);
         Polyline::new(times, values).ok()
+    }
+}
+
+/// A recorded turning circle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredCircle {
+    /// The rudder.
+    pub turn: HeldTurn,
+    /// Its figures of merit.
+    pub figures: Figures,
+    /// North and east in ship lengths from the execute on, where the course is north; `None` without positions or
+    /// length.
+    pub track: Option<Vec<[f64; 2]>>,
+}
+
+impl MeasuredCircle {
+    /// The circle of a record without the current that it shows; `None` of a zig-zag, and of a turn of less than 90°.
+    pub fn of(trial: &Trial) -> Option<Self> {
+        if ZigZag::of(trial).is_ok() {
+            return None;
+        }
+        let (trial, _) = without_current(trial.clone(), None);
+        let turn = HeldTurn::of(&trial)?;
+        let ship = trial.particulars();
+        let timescale = ship.map_or_else(|| trial.duration() / ROWS, |ship| ship.length / ship.speed);
+        let passage = recorded(&trial, timescale, ship.map(|ship| ship.length))?;
+        let figures = turn.figures(&passage);
+        figures.get("time_to_90_s").copied().flatten()?;
+        let track = turn.track(&passage);
+        Some(Self { turn, figures, track })
     }
 }
 

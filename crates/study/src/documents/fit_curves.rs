@@ -33,6 +33,9 @@ pub struct FitRecord {
     pub replays: Replays,
     /// The rudder.
     pub rudder: PlotCurve,
+    /// The track of a turning circle, east and north in ship lengths from the execute on, where the course is north.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub circle: Option<PlotCurve>,
     /// Headings and rudder angles that are left out or doubtful, where there are some.
     pub rejected: Option<[PlotCurve; 2]>,
 }

@@ -9,7 +9,8 @@ use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, PlacedFigures, Table};
 use trial::Quantity;
 
-use super::{fit_figures, indices, method_table, scale_tables};
+use super::bench_figures::capital;
+use super::{circle, fit_figures, indices, method_table, predict_form, scale_tables};
 use crate::documents::fit_curves::FitCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
@@ -21,10 +22,20 @@ const FIRST: &str = "replays";
 /// `report.md`.
 #[derive(Template)]
 #[template(path = "fit.md", escape = "none")]
-struct FitPage {
+struct FitPage<'a> {
+    title: String,
     verdict: Option<String>,
     /// Paragraphs below the verdict.
     lines: Vec<String>,
+    /// What the records measure of the criteria of IMO.
+    criteria: Option<Table>,
+    /// A sentence for every turning circle.
+    circles: Vec<String>,
+    /// The form of MSC/Circ.1053: what is declared, the tests, and remarks.
+    form: Option<(Vec<(&'a str, Table)>, Table)>,
+    /// What the form says beside its entries, and the mark of its headlines.
+    form_remarks: &'a [String],
+    mark: &'static str,
     answers: Table,
     /// K and T of every record alone, where there are several.
     records: Option<Table>,
@@ -46,13 +57,21 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     let mut figures = PlacedFigures::default();
     figures.put("first", first);
     figures.put("others", others);
+    figures.put("circle", circle::figure(document, curves));
     let words = verdict(document).unwrap_or_default() + "\n" + &headline(document, curves);
     let mut lines = words.lines().map(str::to_owned);
     let notes = notes(document, curves);
     let note = |line: &str| (if line.starts_with("  ") { "  " } else { "" }, line.trim().to_owned());
+    let has_form = !document.form.is_empty();
     let page = FitPage {
+        title: title(document, curves),
         verdict: document.verdict.as_ref().and_then(|_| lines.next()),
         lines: lines.filter(|line| !line.is_empty()).collect(),
+        criteria: has_form.then(|| predict_form::criteria(&document.form)),
+        circles: circle::sentences(document, curves),
+        form: has_form.then(|| predict_form::tables(&document.form)),
+        form_remarks: &document.form_remarks,
+        mark: "###",
         answers: answers(document, curves),
         records: document.single_records.as_ref().map(indices::records),
         warnings: document.of_answer().map(ToString::to_string).collect(),
@@ -62,6 +81,16 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
         figures,
     };
     Page::new(page.render(), page.figures)
+}
+
+/// The records, and the scale of the ship where it is known.
+fn title(document: &FitDocument, curves: &FitCurves) -> String {
+    let records = match (&document.trials[..], curves.records.first()) {
+        ([_], Some(record)) => names::record(&record.name),
+        (several, _) => format!("{} records", several.len()),
+    };
+    let ship = document.particulars().map_or_else(String::new, |ship| format!(" ({})", scale_name(ship)));
+    format!("{records}{ship}")
 }
 
 /// What follows the table on the screen.
@@ -196,6 +225,10 @@ fn notes(document: &FitDocument, curves: &FitCurves) -> String {
         let of = if document.trials.len() > 1 { format!("{}: ", names::record(&record.name)) } else { String::new() };
         match (&entry.zigzag, &entry.no_zigzag) {
             (Some(zigzag), _) => notes += &format!("\n{of}{}", characteristics(zigzag)),
+            (None, _) if entry.circle.is_some() => {
+                let circle = entry.circle.iter().map(|turn| circle::sentence(&names::record(&record.name), turn));
+                notes += &circle.map(|words| format!("\n{words}\n")).collect::<String>();
+            }
             (None, Some(why)) => notes += &format!("\n{of}no zig-zag characteristics: {why}\n"),
             (None, None) => {}
         }

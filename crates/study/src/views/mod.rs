@@ -5,6 +5,7 @@ pub mod bench_page;
 pub mod bench_tables;
 pub mod blind_spots_table;
 pub mod charts;
+pub mod circle;
 pub mod coverage_table;
 pub mod curve_tables;
 pub mod findings;

@@ -36,11 +36,12 @@ fn filled(entry: &ImoFormEntry) -> String {
 struct FormPage<'a> {
     declared: Vec<(&'a str, Table)>,
     tested: Table,
-    remarks: &'a [String],
+    form_remarks: &'a [String],
+    mark: &'static str,
 }
 
-/// The page of the form.
-pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
+/// The tables of the form: what is declared under the headings of its parts, and the tests.
+pub fn tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
     let sections = grouped(entries, |entry| entry.section.as_str()).into_iter();
     let is_declared = |(section, own): &(&str, Vec<&ImoFormEntry>)| {
         own.iter().all(|entry| entry.side.is_none()) && *section != STOPPING
@@ -66,8 +67,41 @@ pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
             entry.source.clone(),
         ]);
     }
-    let page = FormPage { declared: declared.into_iter().map(declaration).collect(), tested, remarks };
-    Page::new(page.render(), PlacedFigures::<()>::default())
+    (declared.into_iter().map(declaration).collect(), tested)
+}
+
+/// What is measured of the criteria of MSC.137(76), to both sides.
+pub fn criteria(entries: &[ImoFormEntry]) -> Table {
+    let head = TableHead::default().texts(["test", "result"]).numbers(["to port", "to starboard"]).texts(["unit"]);
+    let mut table = Table::new(head.numbers(["limit"]).texts(["kept"]));
+    let tests = entries.iter().filter(|entry| entry.side.is_some());
+    for ((test, result), sides) in grouped(tests, |entry| (entry.section.as_str(), entry.field.as_str())) {
+        let of = |side: &str| sides.iter().find(|entry| entry.side.as_deref() == Some(side));
+        let values = ["port", "starboard"].map(|side| of(side).map_or_else(|| EMPTY.to_owned(), |entry| filled(entry)));
+        let limit = sides.iter().find_map(|entry| entry.limit);
+        let measured: Vec<f64> = sides.iter().filter_map(|entry| entry.value.as_ref()?.as_f64()).collect();
+        let kept = match limit {
+            Some(limit) if !measured.is_empty() => {
+                if measured.iter().all(|value| *value <= limit) {
+                    "yes"
+                } else {
+                    "no"
+                }
+            }
+            _ => EMPTY,
+        };
+        let limit = limit.map_or_else(|| EMPTY.to_owned(), |limit| fixed(limit, 1));
+        let unit = sides.first().map_or("", |entry| unit(entry)).to_owned();
+        let cells = [test.to_owned(), result.to_owned()].into_iter().chain(values);
+        table.push(cells.chain([unit, limit, kept.to_owned()]));
+    }
+    table
+}
+
+/// The page of the form.
+pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
+    let (declared, tested) = tables(entries);
+    Page::new(FormPage { declared, tested, form_remarks: remarks, mark: "##" }.render(), PlacedFigures::<()>::default())
 }
 
 fn criterion(entry: &ImoFormEntry) -> String {

@@ -3,19 +3,22 @@
 
 use campaign::failure::Failure;
 use campaign::stored_figures::Replays;
-use document::fit::{CriterionEntry, FitDocument, SCHEMA, TrialEntry, VerdictEntry, ZigZagEntry};
+use document::fit::{CircleEntry, CriterionEntry, FitDocument, SCHEMA, TrialEntry, VerdictEntry, ZigZagEntry};
 use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
-use document::{Code, Source, Warning, Warnings};
+use document::{Code, ImoFormEntry, Source, Warning, Warnings};
 use identify::estimate::Uncertainty;
 use identify::replay::replay;
 use identify::suspicion::suspicion;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
+use predict::form::{self, Form, FormRecord};
+use predict::turn::{self, Current, MeasuredCircle};
 use rayon::prelude::*;
 use report::{CurveOrigin, PlotCurve};
+use ship::Particulars;
 use ship::angle::to_deg;
-use trial::{Channel, Trial, ZigZag, ZigZagError, imo};
+use trial::{Channel, Side, Trial, ZigZag, ZigZagError, imo};
 
 use super::earlier::{self, EarlierModel};
 use super::every_scale::{self, Named, PREFERRED_METHODS};
@@ -77,6 +80,10 @@ impl FitResult {
                 replays: replay_curves(trial, &self.answers, |method| CurveOrigin::Method(method.to_owned())),
             },
             rudder: curve(trial.time(), trial.rudder()),
+            circle: MeasuredCircle::of(trial).and_then(|circle| circle.track).map(|track| {
+                let (x, y): (Vec<f64>, Vec<f64>) = track.into_iter().map(|[north, east]| (east, north)).unzip();
+                PlotCurve { x, y }
+            }),
             rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
             name,
         }
@@ -130,6 +137,7 @@ pub fn fit(
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
     };
     let verdict = verdict::of_answers(trials, &answers, &entries);
+    let (form, form_remarks) = form_of(trials, ship).map(|form| (form.entries, form.remarks)).unwrap_or_default();
     let document = FitDocument {
         schema: SCHEMA.into(),
         zigzag: records[0].zigzag.clone(),
@@ -141,6 +149,8 @@ pub fn fit(
         length_m: ship.map(|ship| ship.length),
         speed_m_s: ship.map(|ship| ship.speed),
         amplitude: single_records::mean_amplitude(trials),
+        form,
+        form_remarks,
         single_records: single_records::of_records(trials, &preferred(methods, &entries, verdict.as_ref())),
         verdict,
         warnings: warnings.ranked(),
@@ -159,7 +169,29 @@ fn trial_entry(trial: &Trial, zigzag: &Result<ZigZag, ZigZagError>) -> TrialEntr
         duration_s: trial.duration(),
         zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, trial)),
         no_zigzag: zigzag.as_ref().err().map(ToString::to_string),
+        circle: MeasuredCircle::of(trial).map(|circle| circle_entry(&circle, trial.particulars())),
     }
+}
+
+fn circle_entry(circle: &MeasuredCircle, ship: Option<Particulars>) -> CircleEntry {
+    let lengths = |name: &str| Some(circle.figures.get(name).copied().flatten()? / ship?.length);
+    CircleEntry {
+        side: Side::of(circle.turn.side).to_string(),
+        rudder_deg: to_deg(circle.turn.rudder),
+        advance_lengths: lengths("advance_m"),
+        transfer_lengths: lengths("transfer_m"),
+        tactical_diameter_lengths: lengths("tactical_diameter_m"),
+    }
+}
+
+/// The form of MSC/Circ.1053 with what the records measure; nothing where they measure nothing of it.
+fn form_of(records: &[Trial], ship: Option<Particulars>) -> Option<Form> {
+    let records: Vec<(Trial, Option<Current>)> =
+        records.iter().map(|trial| turn::without_current(trial.clone(), None)).collect();
+    let held = records.iter().map(|(trial, current)| FormRecord { trial, correction: None, current: *current });
+    let form = form::fill(&[], ship, "", &held.collect::<Vec<_>>(), None);
+    let is_measured = |entry: &ImoFormEntry| entry.side.is_some() && entry.value.is_some();
+    form.entries.iter().any(is_measured).then_some(form)
 }
 
 /// The entry of a zig-zag; criteria where length and speed are declared.

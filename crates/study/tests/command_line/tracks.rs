@@ -48,6 +48,48 @@ fn circle(current: [f64; 2], turn_deg: f64) -> String {
     record(turn, if turn_deg > 700.0 { 1700.0 } else { 700.0 }, current)
 }
 
+/// A circle among the records of a fit is measured: its advance is the way ahead at 90° of heading, and the page has it to
+/// scale beside what the zig-zag measures of the criteria of IMO.
+#[test]
+fn a_fit_measures_a_circle_and_the_criteria() {
+    let desk = Desk::new();
+    let text = circle([0.0; 2], 400.0);
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
+    desk.file("zig.csv", zig_zag());
+    desk.file("turn.csv", text);
+    let fit = ["fit", "zig.csv", "turn.csv", "--method", "output-error", "--out", "f", "--quiet"];
+    desk.draw(&[&fit[..], &SCALE].concat()).is_done();
+    let json = desk.json("f/fit.json");
+    let turn = &json["trials"][1]["circle"];
+    assert_eq!(turn["side"], "starboard");
+    let begin = rows.iter().rposition(|row| row[2] == 0.0).unwrap_or(0);
+    let ahead = |turned: f64| rows.iter().find(|row| row[1] >= turned).expect("she turns on");
+    let lengths = |key: &str| turn[key].as_f64().expect("a number");
+    let start = &rows[begin];
+    assert!((lengths("advance_lengths") - (ahead(90.0)[3] - start[3]) / 160.9).abs() < 0.05, "{turn}");
+    assert!((lengths("transfer_lengths") - (ahead(90.0)[4] - start[4]) / 160.9).abs() < 0.05, "{turn}");
+    assert!((lengths("tactical_diameter_lengths") - (ahead(180.0)[4] - start[4]) / 160.9).abs() < 0.05, "{turn}");
+    let form = json["form"].as_array().expect("entries");
+    let overshoot = |side: &str| {
+        let is_it = |entry: &&serde_json::Value| entry["section"] == "zig-zag 20°/20°" && entry["side"] == side;
+        form.iter().find(is_it).and_then(|entry| entry["value"].as_f64())
+    };
+    assert_eq!(overshoot("starboard"), json["zigzag"]["overshoots_deg"][0].as_f64());
+    assert_eq!(overshoot("port"), None);
+    let page = desk.text("f/report.md");
+    for part in ["## Against IMO MSC.137(76)", "## Turning circle", "](circle.png)", "## Form for reporting"] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    assert!(page.contains("turn, a turning circle to starboard with 20.0° of rudder: advance"), "{page}");
+    // A zig-zag that the form does not ask for fills no form in.
+    desk.run(&["fit", "zig.csv", "--method", "output-error", "--out", "bare", "--quiet"]).is_done();
+    assert!(desk.json("bare/fit.json")["trials"][0].get("circle").is_none());
+}
+
 /// Positions tell the speed, and the hull that is fitted to it the drift: advance and tactical diameter are predicted,
 /// with the drift angle and the pivot point.
 #[test]
