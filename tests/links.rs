@@ -66,7 +66,9 @@ fn links_lead_somewhere() {
     let folders = ["docs", "crates", "deploy", "examples", "tests"].map(|folder| root().join(folder));
     let below = folders.iter().filter(|folder| folder.is_dir()).flat_map(|folder| pages(folder, true));
     let alone = [root(), root().join("results")].into_iter().flat_map(|folder| pages(&folder, false));
-    let wrong: Vec<String> = alone.chain(below).flat_map(|page| faults(&page)).collect();
+    // Links of a template are those of the page that it becomes.
+    let is_page = |page: &PathBuf| !page.iter().any(|part| part == "templates");
+    let wrong: Vec<String> = alone.chain(below).filter(is_page).flat_map(|page| faults(&page)).collect();
     assert!(wrong.is_empty(), "links that lead nowhere:\n{}", wrong.join("\n"));
 }
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use ::trace::comparison::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use document::names;
-use document::trace::{EffectEntry, LocatedEntry, ParameterEntry};
+use document::trace::{EffectEntry, LocatedEntry};
 use identify::replay::pooled;
 use identify::{Estimate, StopReason};
 use ship::FirstOrder;
@@ -298,14 +298,8 @@ fn named(effect: &EffectEntry) -> NamedEffect {
         id: effect.id.as_str().into(),
         aliases: aliases.map(|id| id.as_str().into()).collect(),
         time_s: time.map(|parameter| parameter.quantity.value),
-        sizes: effect.parameters.values().map(size).collect(),
+        sizes: effect.parameters.values().map(EffectSize::of).collect(),
     }
-}
-
-fn size(parameter: &ParameterEntry) -> EffectSize {
-    let prime = parameter.prime.as_ref().map(|prime| (format!("{}′", parameter.symbol), prime.quantity));
-    let (symbol, quantity) = prime.unwrap_or((parameter.symbol.clone(), parameter.quantity));
-    EffectSize { symbol: symbol.into(), value: quantity.value, sd: quantity.sd }
 }
 
 /// A moment that was located in records that end at a time, s.

@@ -22,6 +22,7 @@ pub mod noise;
 mod quantity;
 pub mod scales;
 mod shown;
+pub mod single_records;
 pub mod stored_hull;
 pub mod trace;
 pub mod warning;

@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
 use crate::earlier_trials::EarlierTrials;
-use crate::fit::{Amplitude, SingleRecords};
 use crate::identified_ship::IdentifiedShip;
 use crate::names;
 use crate::noise::Moment;
+use crate::single_records::{Amplitude, SingleRecords};
 
 mod entries;
 mod errors;

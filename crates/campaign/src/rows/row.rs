@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ::trace::Verdict;
-use document::trace::Dependence;
+use document::trace::{Dependence, ParameterEntry};
 
 /// An effect that a trace named.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -27,6 +27,15 @@ pub struct EffectSize {
     pub value: f64,
     /// Standard deviation; `None` of a parameter that is not fitted.
     pub sd: Option<f64>,
+}
+
+impl EffectSize {
+    /// That of a parameter of a trace.
+    pub fn of(parameter: &ParameterEntry) -> Self {
+        let prime = parameter.prime.as_ref().map(|prime| (format!("{}′", parameter.symbol), prime.quantity));
+        let (symbol, quantity) = prime.unwrap_or((parameter.symbol.clone(), parameter.quantity));
+        Self { symbol: symbol.into(), value: quantity.value, sd: quantity.sd }
+    }
 }
 
 impl NamedEffect {

@@ -1,9 +1,10 @@
 //! Figures of a fit, from its document and its curves: every record with its characteristic points, with the replays of
 //! all methods and with the one that is shown alone over time; K and T of all methods, and of every record alone.
 
-use document::fit::{FitDocument, SingleRecord, SingleRecords};
+use document::fit::FitDocument;
 use document::method::MethodEntry;
 use document::names;
+use document::single_records::{SingleRecord, SingleRecords};
 use report::figures::{
     Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Plot, Reference95, Ruler, Stack,
 };

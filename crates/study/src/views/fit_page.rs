@@ -143,8 +143,20 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
     let mut words = format!("Take K = {k} 1/s, T = {t} s, δ_r = {bias}° from {}, because {because}.", verdict.method);
     let amplitude = indices::of_amplitude(document.amplitude.as_ref());
     words += &if amplitude.is_empty() { String::new() } else { format!("\n{amplitude}") };
+    words += &residual(document, verdict);
+    words +=
+        &document.single_records.as_ref().map_or_else(String::new, |all| format!("\n{}", indices::of_records(all)));
+    words += &contradiction(document, verdict);
+    if !verdict.set_apart.is_empty() {
+        words += &format!("\nMore than ten times as far from the headings are: {}.", verdict.set_apart.join(", "));
+    }
+    Some(words)
+}
+
+/// What the residual of output error is, and whether most of it goes with a late rudder.
+fn residual(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let [residual, rest] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
-    words += &match verdict.residual {
+    let mut words = match verdict.residual {
         None => String::new(),
         Some(ResidualKind::Noise) => String::from("\nThe residual of output error is noise of the heading."),
         Some(ResidualKind::LacksEffect) if document.has_faulty_readings() => format!(
@@ -175,13 +187,7 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
             ),
         };
     }
-    words +=
-        &document.single_records.as_ref().map_or_else(String::new, |all| format!("\n{}", indices::of_records(all)));
-    words += &contradiction(document, verdict);
-    if !verdict.set_apart.is_empty() {
-        words += &format!("\nMore than ten times as far from the headings are: {}.", verdict.set_apart.join(", "));
-    }
-    Some(words)
+    words
 }
 
 /// Why the other one of output error and maximum likelihood has another answer.

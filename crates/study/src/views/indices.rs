@@ -1,7 +1,7 @@
 //! K and T beside what they belong to: an amplitude, small motions, a record.
 
-use document::fit::{Amplitude, SingleRecord, SingleRecords};
 use document::names;
+use document::single_records::{Amplitude, SingleRecord, SingleRecords};
 use document::trace::{Indices, TraceDocument};
 use report::number::{fixed, significant};
 use report::{Table, TableHead};

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use report::{CurveOrigin, PlotCurve};
 use ship::Particulars;
 use ship::angle::to_deg;
-use trial::{Channel, Side, Trial, ZigZag, ZigZagError, imo};
+use trial::{Channel, Side, Trial, ZigZag, imo};
 
 use super::earlier::{self, EarlierModel};
 use super::every_scale::{self, Named, PREFERRED_METHODS};
@@ -123,10 +123,8 @@ pub fn fit(
     }
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|own| own.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| suspicion(estimate, ship, records)));
-    let zigzags: Vec<_> = records.iter().map(ZigZag::of).collect();
-    warnings
-        .extend(records.iter().zip(&zigzags).filter_map(|(trial, zigzag)| late_begin(trial, zigzag.as_ref().ok()?)));
-    let records: Vec<TrialEntry> = records.iter().zip(&zigzags).map(|(own, zigzag)| trial_entry(own, zigzag)).collect();
+    warnings.extend(records.iter().filter_map(|trial| late_begin(trial, &ZigZag::of(trial).ok()?)));
+    let records: Vec<TrialEntry> = records.iter().map(trial_entry).collect();
     let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
     warnings.extend(no_track(&shown));
     warnings.extend(no_loading(trials, &shown));
@@ -160,8 +158,8 @@ pub fn fit(
 }
 
 /// The entry of a record.
-fn trial_entry(trial: &Trial, zigzag: &Result<ZigZag, ZigZagError>) -> TrialEntry {
-    let (file, sha256) = file_of(trial);
+fn trial_entry(trial: &Trial) -> TrialEntry {
+    let ((file, sha256), zigzag) = (file_of(trial), ZigZag::of(trial));
     TrialEntry {
         file: file.into(),
         sha256: sha256.into(),

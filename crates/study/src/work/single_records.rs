@@ -1,6 +1,6 @@
 //! Every record of several identified alone: whether K and T of a first-order response depend on the amplitude.
 
-use document::fit::{Amplitude, SingleRecord, SingleRecords};
+use document::single_records::{Amplitude, SingleRecord, SingleRecords};
 use identify::{Estimate, Identifier};
 use rayon::prelude::*;
 use ship::angle::to_deg;
@@ -65,8 +65,8 @@ pub fn of_records(trials: &[Trial], methods: &[&dyn Identifier]) -> Option<Singl
 /// Probability below which differences are none of chance.
 const LEVEL: f64 = 0.05;
 
-/// Whether K and T of some records are the same: the sum of their squared distances from the weighted means, in standard
-/// deviations, is χ² of 2 (n − 1) degrees of freedom.
+/// Whether K and T of some records are the same: the sum of their squared distances from the weighted means, in
+/// standard deviations, is χ² of 2 (n − 1) degrees of freedom.
 fn agree(records: &[SingleRecord]) -> Option<bool> {
     let deviation = |of: fn(&SingleRecord) -> Quantity| -> Option<f64> {
         let all = records.iter().map(|own| Some((of(own).value, of(own).sd.filter(|sd| *sd > 0.0)?.powi(-2))));

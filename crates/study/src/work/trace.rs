@@ -1,7 +1,7 @@
 //! A trace: the analysis of the crate [`trace`](mod@::trace), what is known of the ship beside it, and the files that
 //! everything shown is made from.
 
-use ::trace::{Analysis, Settings, TraceError, Watcher};
+use ::trace::{Analysis, Innovations, Settings, TraceError, Watcher};
 use campaign::Observer;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
@@ -117,11 +117,7 @@ pub fn trace(
         speed_m_s: own.particulars().map(|ship| ship.speed),
     };
     let entries: Vec<RecordEntry> = all.enumerate().zip(&names).map(entry).collect();
-    let compared = trials.iter().chain(&held_out).zip(analysis.identification.iter().chain(&analysis.validation));
-    let tables = compared.map(|(trial, comparison)| curves::table(trial, comparison));
-    let mut tables: Vec<(String, String)> = entries.iter().map(|entry| entry.curves.clone()).zip(tables).collect();
-    let innovations = entries.iter().zip(&innovations);
-    tables.extend(innovations.filter_map(|(entry, own)| Some((entry.innovations.clone()?, curves::innovations(own)))));
+    let mut tables = tables(&analysis, [&trials, &held_out], &entries, &innovations);
     let (staircase, table) = curves::staircase(analysis.staircase());
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
     tables.extend(curves_of_moments.into_iter().chain(table));
@@ -143,6 +139,22 @@ pub fn trace(
         trace: analysis.document,
     };
     Ok(TraceResult { document, tables })
+}
+
+/// The tables of the records and of their innovations under the names of their files.
+fn tables(
+    analysis: &Analysis,
+    [fitted, others]: [&[Trial]; 2],
+    entries: &[RecordEntry],
+    innovations: &[Innovations],
+) -> Vec<(String, String)> {
+    let compared = fitted.iter().chain(others).zip(analysis.identification.iter().chain(&analysis.validation));
+    let tables = compared.map(|(trial, comparison)| curves::table(trial, comparison));
+    let tables = entries.iter().map(|entry| entry.curves.clone()).zip(tables);
+    let innovations = entries.iter().zip(innovations);
+    let innovations =
+        innovations.filter_map(|(entry, own)| Some((entry.innovations.clone()?, curves::innovations(own))));
+    tables.chain(innovations).collect()
 }
 
 /// The moments that the base lacks on the fitted records, and their tables under the names of their files.
