@@ -12,10 +12,10 @@ use ship::ShortNumber;
 use ship::vessel::prime::meaning;
 
 use super::record_figures::{stability, steady_turns};
-use super::staircase;
 use super::trace_figures as figures;
 use super::trace_hero;
 use super::trace_tables as tables;
+use super::{horizon, prior_odds, staircase};
 use crate::documents::curves::TraceCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
@@ -43,6 +43,7 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     behind += &odd(document);
     behind +=
         &document.earlier_trials.as_ref().map_or_else(String::new, |earlier| format!("\n{}", prior::sentence(earlier)));
+    behind += &prior_odds::sentence(document).map_or_else(String::new, |sentence| format!("\n{sentence}"));
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
@@ -163,6 +164,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
         page.part("Records that were not fitted");
         page.figures([figure]);
         page.say(JUDGED);
+        page.figures(horizon::figure(document));
     }
     if let Some(figure) = figures::overshoots(document, curves) {
         page.part("Overshoots");
@@ -210,6 +212,8 @@ fn evidence(page: &mut Page, document: &TraceDocument, curves: &TraceCurves) {
     page.folded_part("Evidence");
     page.figures([figures::evidence(document)]);
     page.say(EVIDENCE);
+    page.figures(prior_odds::figure(document));
+    page.say(prior_odds::sentence(document).unwrap_or_default());
     page.figures(figures::innovations(document, curves));
     if !trace.effects.is_empty() {
         table(page, "Effects", tables::effects(document), "");
