@@ -80,13 +80,17 @@ impl StoredModel {
         calm: bool,
         warnings: &mut Warnings,
     ) -> Result<Self, Failure> {
-        let StoredAnswer { mut ships, verdict, records } = ships_of(shown, text)?;
+        let StoredAnswer { mut ships, verdict, disbelief, records } = ships_of(shown, text)?;
         // A trace has one answer.
         let asked = asked.filter(|_| !ships.contains_key(TRACE));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
         if asked.is_none() && ships.len() > 1 {
             let text = format!("the answer of {method} is used; --method names another");
             warnings.push(Code::Answer, Source::File(shown.to_owned()), text);
+        }
+        if let Some(because) = disbelief {
+            let text = format!("no K and T can be taken from its records, so its predictions are worth nothing: {because}");
+            warnings.push(Code::NotIdentified, Source::File(shown.to_owned()), text);
         }
         let known = ships.remove(&method).expect("it was found there");
         if let Some(late) = known.rudder_logged_late() {
@@ -248,6 +252,7 @@ pub fn predict(
         hull: !mixture.first().hulls.is_empty(),
         load: taken.as_ref().map(|(.., load)| load.clone()),
         seen: mixture.first().seen,
+        warnings: warnings.ranked(),
         ..PredictDocument::default()
     };
     if request.form {

@@ -2,6 +2,7 @@
 //! (JSON lines, or plain lines of hexadecimal bytes), and long tables of time, path, value and source as Signal K
 //! exports them. Every channel comes from one source; which, is said.
 
+mod can;
 mod canboat;
 mod message;
 mod table;
@@ -28,6 +29,8 @@ const SPARSE: f64 = 0.2;
 
 /// Largest rudder in radians, and largest heading, where no line says the unit.
 const LARGEST_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
+
+pub(super) use can::is_log as is_can_log;
 
 /// How the lines of a log are written.
 #[derive(Debug, Clone, PartialEq)]
