@@ -239,6 +239,16 @@ fn a_document_is_read_as_it_was_written() {
     let text = serde_json::to_string(&analysis.document).expect("plain data");
     let again: crate::Document = serde_json::from_str(&text).expect("the same");
     assert_eq!(serde_json::to_string(&again).expect("plain data"), text);
+    // One that was written before the prior odds were moved has none.
+    let mut earlier = serde_json::to_value(&again).expect("plain data");
+    let remove = |from: &mut serde_json::Value, key: &str| from.as_object_mut().and_then(|all| all.remove(key));
+    for list in ["effects", "candidates"] {
+        let entries = earlier[list].as_array_mut().into_iter().flatten();
+        entries.for_each(|entry| drop(remove(entry, "probability_by_prior_odds")));
+    }
+    assert!(remove(&mut earlier["prior"], "odds_factors").is_some());
+    let earlier: crate::Document = serde_json::from_value(earlier).expect("an earlier document");
+    assert!(earlier.prior.odds_factors.is_empty() && earlier.effects[0].probability_by_prior_odds.is_empty());
 }
 
 /// Errors of the recorded rudder are noise of the instruments: nothing is named for them, nothing located, and nothing

@@ -89,7 +89,8 @@ impl StoredModel {
             warnings.push(Code::Answer, Source::File(shown.to_owned()), text);
         }
         if let Some(because) = disbelief {
-            let text = format!("no K and T can be taken from its records, so its predictions are worth nothing: {because}");
+            let text =
+                format!("no K and T can be taken from its records, so its predictions are worth nothing: {because}");
             warnings.push(Code::NotIdentified, Source::File(shown.to_owned()), text);
         }
         let known = ships.remove(&method).expect("it was found there");

@@ -147,9 +147,10 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     let (shown, folded) = page.split_once("<main").and_then(|(_, main)| main.split_once("<details>")).expect("parts");
     assert_eq!(
         shown.matches("<figure>").count(),
-        4,
-        "the finding, what each effect carries, held-out records, overshoots"
+        5,
+        "the finding, what each effect carries, held-out records, their error ahead, overshoots"
     );
+    assert!(report.contains("(horizon.png)") && report.contains("(prior-odds.png)"), "{report}");
     assert!(!shown.contains("<table") && folded.contains(">Evidence</h2></summary>"));
     let caption = "(a), (b): a record that was fitted.";
     assert_eq!((report.matches(caption).count(), page.matches(caption).count()), (1, 1));

@@ -82,7 +82,8 @@ impl MessageLog {
         self.messages += 1;
         for &(channel, class, value) in &message.readings {
             let source = MessageSource { channel, class, name: message.source.clone() };
-            let empty = || Series { channel, time: Vec::new(), values: Vec::new() };
+            let name = Some(message.source.clone());
+            let empty = || Series { channel, time: Vec::new(), values: Vec::new(), source: name };
             let signal = self.sources.entry(source).or_insert_with(empty);
             if value.is_finite() && signal.time.last().is_none_or(|last| at > *last) {
                 signal.time.push(at);
