@@ -181,7 +181,7 @@ mod tests {
         let distance = |response: &FirstOrder| pooled(&trials, response).expect("a replay");
         let biased = |by: f64| FirstOrder { rudder_bias: own.response.rudder_bias + by, ..own.response };
         let ratio = |response: &FirstOrder| distance(response) / distance(&own.response);
-        // The heading is linear in the bias, and the nearest replay has the least square: it grows with that of the bias.
+        // The heading is linear in the bias, and the nearest replay has the least square.
         let unit = (ratio(&biased(1.0)).powi(2) - 1.0).sqrt();
         let reason = |times: f64| {
             let response = biased((times * times - 1.0).sqrt() / unit);

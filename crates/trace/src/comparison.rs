@@ -114,8 +114,8 @@ pub struct RecordComparison {
 }
 
 impl RecordComparison {
-    /// Heading errors against how far ahead the replays go: of the windows of which the record holds more than one, then
-    /// of the whole record.
+    /// Heading errors against how far ahead the replays go: of the windows of which the record holds more than one,
+    /// then of the whole record.
     pub fn horizons(&self) -> Vec<HorizonEntry> {
         let [before, after] = [&self.before.errors, &self.after.errors];
         let time = &self.before.replay.time;

@@ -361,7 +361,7 @@ impl TraceParts<'_> {
             after: (&one.after).into(),
             horizons: Vec::new(),
         };
-        let judged = |(trial, one)| BeforeAfter { horizons: RecordComparison::horizons(one), ..of((trial, one)) };
+        let judged = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..of((trial, on)) };
         let left_out = self.trials.iter().zip(self.left_out).filter_map(|(trial, one)| Some((trial, one.as_ref()?)));
         ErrorEntry {
             kept_base: match (self.remainder.is_founded, self.no_nearer) {

@@ -60,25 +60,25 @@ fn table(channels: &[ChannelEntry]) -> Table {
     let head = head.numbers(["every", "longest gap", "from"]).unit("s").numbers(["lowest", "highest", "step"]);
     let head = head.texts(["unit"]).numbers(["wraps"]).texts(["positive turns to", "held against"]);
     let mut table = Table::new(head.numbers(["scale"]).numbers(["lag"]).unit("s"));
-    let words = |text: &Option<String>| text.clone().unwrap_or_else(|| MISSING.to_owned());
+    let text = |text: &Option<String>| text.clone().unwrap_or_else(|| MISSING.to_owned());
     let three = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 3);
-    for own in channels {
+    for entry in channels {
         table.push([
-            own.channel.clone(),
-            words(&own.source),
-            own.readings.to_string(),
-            three(own.interval_s),
-            three(own.longest_gap_s),
-            optional(own.longest_gap_from_s, 1),
-            fixed(own.lowest, 2),
-            fixed(own.highest, 2),
-            significant(own.step.unwrap_or(f64::NAN), 2),
-            own.unit.replace("_s", "/s"),
-            own.wraps.map_or_else(|| MISSING.to_owned(), |wraps| wraps.to_string()),
-            words(&own.turns_to),
-            words(&own.reference),
-            three(own.scale),
-            optional(own.lag_s, 2),
+            entry.channel.clone(),
+            text(&entry.source),
+            entry.readings.to_string(),
+            three(entry.interval_s),
+            three(entry.longest_gap_s),
+            optional(entry.longest_gap_from_s, 1),
+            fixed(entry.lowest, 2),
+            fixed(entry.highest, 2),
+            significant(entry.step.unwrap_or(f64::NAN), 2),
+            entry.unit.replace("_s", "/s"),
+            entry.wraps.map_or_else(|| MISSING.to_owned(), |wraps| wraps.to_string()),
+            text(&entry.turns_to),
+            text(&entry.reference),
+            three(entry.scale),
+            optional(entry.lag_s, 2),
         ]);
     }
     table

@@ -86,10 +86,10 @@ impl From<&ChannelInspection> for ChannelEntry {
             highest: shown(readings.range[1]),
             step: readings.step.map(shown),
             wraps: readings.wraps,
-            turns_to: to_starboard.map(|own| side(own).to_owned()),
-            reference: relation.map(|own| spoken(own.reference)),
-            scale: relation.map(|own| own.scale),
-            lag_s: relation.and_then(|own| own.lag),
+            turns_to: to_starboard.map(|to_starboard| side(to_starboard).to_owned()),
+            reference: relation.map(|relation| spoken(relation.reference)),
+            scale: relation.map(|relation| relation.scale),
+            lag_s: relation.and_then(|relation| relation.lag),
         }
     }
 }

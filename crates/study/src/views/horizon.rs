@@ -85,8 +85,8 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
 pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
     let records: Vec<&[HorizonEntry]> =
-        judged.iter().map(|one| one.errors.horizons.as_slice()).filter(|horizons| !horizons.is_empty()).collect();
-    let used = judged.iter().find(|one| !one.errors.horizons.is_empty())?.used;
+        judged.iter().map(|record| record.errors.horizons.as_slice()).filter(|horizons| !horizons.is_empty()).collect();
+    let used = judged.iter().find(|record| !record.errors.horizons.is_empty())?.used;
     let horizons = common(&records);
     let layers = (0..MODELS.len()).flat_map(|number| layers(&records, &horizons, number)).collect();
     let x = Ruler::new("horizon [s]", Division::Factors);
@@ -114,7 +114,7 @@ mod tests {
         errors.iter().map(entry).collect()
     }
 
-    /// A horizon is pooled over the records that have it, where they are half of all; whole records at their mean length.
+    /// A horizon is pooled over the records that have it, where these are half of all; the last is the mean length.
     #[test]
     fn records_are_pooled_over_the_horizons_that_half_of_them_have() {
         let long = record(&[[10.0, 1.0, 0.1], [20.0, 3.0, 0.3], [40.0, 5.0, 1.0], [80.0, 9.0, 1.5], [90.0, 6.0, 2.0]]);
@@ -124,12 +124,13 @@ mod tests {
         let places = |horizons: &[Vec<&HorizonEntry>]| horizons.iter().map(|all| place(all)).collect::<Vec<f64>>();
         assert_eq!(places(&horizons), [10.0, 20.0, 40.0, 70.0]);
         assert_eq!(places(&common(&[&long, &short, &short])), [10.0, 20.0, 190.0 / 3.0]);
-        assert_eq!(MODELS.map(|(_, error)| pooled(&horizons[0], error)), [5.0, 0.5]);
-        let said = "Heading error 20 s ahead 0.35° instead of 3.5°, over the whole record 3.2° instead of 7.1° (two)";
-        assert_eq!(finding(&horizons, "two").as_deref(), Some(said));
+        assert_eq!(MODELS.map(|(_, error)| (1e9 * pooled(&horizons[0], error)).round()), [5e9, 5e8]);
+        let expected =
+            "Heading error 20 s ahead 0.35° instead of 3.5°, over the whole record 3.2° instead of 7.1° (two)";
+        assert_eq!(finding(&horizons, "two").as_deref(), Some(expected));
         let whole = record(&[[12.0, 2.0, 1.0]]);
-        let said = "Heading error over the whole record 1.0° instead of 2.0° (one)";
-        assert_eq!(finding(&common(&[&whole]), "one").as_deref(), Some(said));
+        let expected = "Heading error over the whole record 1.0° instead of 2.0° (one)";
+        assert_eq!(finding(&common(&[&whole]), "one").as_deref(), Some(expected));
         // Fewer than five records are lines, five or more a band, and one is itself alone.
         let count = |records: &[&[HorizonEntry]]| layers(records, &common(records), 0).len();
         assert_eq!([count(&[&long]), count(&records), count(&[long.as_slice(); 5])], [1, 3, 2]);

@@ -49,16 +49,16 @@ fn lines(document: &TraceDocument) -> Vec<OddsLine<'_>> {
         OddsLine { name, is_named: true, probability: &effect.probability_by_prior_odds }
     });
     let is_other = |outcome| matches!(outcome, Outcome::Rejected | Outcome::NotObservable);
-    let others =
-        trace.candidates.iter().filter(|one| is_other(one.outcome) && is_whole(&one.probability_by_prior_odds));
-    let others = others.map(|one| OddsLine {
-        name: names::effect(&one.id),
+    let unnamed = trace.candidates.iter().filter(|candidate| is_other(candidate.outcome));
+    let unnamed = unnamed.filter(|candidate| is_whole(&candidate.probability_by_prior_odds));
+    let unnamed = unnamed.map(|candidate| OddsLine {
+        name: names::effect(&candidate.id),
         is_named: false,
-        probability: &one.probability_by_prior_odds,
+        probability: &candidate.probability_by_prior_odds,
     });
-    let mut others: Vec<OddsLine> = others.filter(|line| line.ends()[1] >= DRAWN).collect();
-    others.sort_by(|one, other| other.ends()[1].total_cmp(&one.ends()[1]));
-    let mut lines: Vec<OddsLine> = named.chain(others).collect();
+    let mut unnamed: Vec<OddsLine> = unnamed.filter(|line| line.ends()[1] >= DRAWN).collect();
+    unnamed.sort_by(|first, second| second.ends()[1].total_cmp(&first.ends()[1]));
+    let mut lines: Vec<OddsLine> = named.chain(unnamed).collect();
     lines.truncate(MOST);
     lines
 }
@@ -67,7 +67,7 @@ fn lines(document: &TraceDocument) -> Vec<OddsLine<'_>> {
 fn finding(lines: &[OddsLine], named_from: f64) -> String {
     let joined = |lines: &[&OddsLine]| lines.iter().map(|line| line.name.as_str()).collect::<Vec<_>>().join(", ");
     let lowest = |line: &OddsLine| line.ends()[0];
-    let (named, others): (Vec<&OddsLine>, Vec<&OddsLine>) = lines.iter().partition(|line| line.is_named);
+    let (named, unnamed): (Vec<&OddsLine>, Vec<&OddsLine>) = lines.iter().partition(|line| line.is_named);
     let (safe, weak): (Vec<&OddsLine>, Vec<&OddsLine>) = named.into_iter().partition(|line| lowest(line) >= named_from);
     let mut parts = Vec::new();
     if !safe.is_empty() {
@@ -80,7 +80,7 @@ fn finding(lines: &[OddsLine], named_from: f64) -> String {
         format!("{} from {lowest} to {highest}", line.name)
     };
     parts.extend(weak.iter().map(|line| moves(line)));
-    let most = others.into_iter().max_by(|one, other| one.change().total_cmp(&other.change()));
+    let most = unnamed.into_iter().max_by(|first, second| first.change().total_cmp(&second.change()));
     match most {
         Some(line) if line.change() >= MOVES => parts.push(moves(line)),
         Some(line) => parts.push(format!("no other above {}", fixed((1e2 * line.ends()[1]).ceil() / 1e2, 2))),
@@ -147,8 +147,8 @@ mod tests {
             line("lag", false, &[0.1, 0.4, 0.8]),
             line("dead band", false, &[0.0, 0.0, 0.06]),
         ];
-        let said = "sway, damping at 0.972 or more; speed loss from 0.70 to 0.99; lag from 0.10 to 0.80";
-        assert_eq!(finding(&lines, 0.95), said);
+        let expected = "sway, damping at 0.972 or more; speed loss from 0.70 to 0.99; lag from 0.10 to 0.80";
+        assert_eq!(finding(&lines, 0.95), expected);
         assert_eq!(finding(&lines[..1], 0.95), "sway at 0.972 or more; no other above 0.05");
         assert_eq!(finding(&lines[4..], 0.95), "no other above 0.06");
     }

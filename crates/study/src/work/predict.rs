@@ -227,14 +227,10 @@ pub fn predict(
         return Err(Failure::about(&file, error));
     }
     let loading = OtherLoading::name(taken.as_ref().map(|(.., load)| load));
-    let (mut replays, mut corrections) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
     let replays_of = ReplayedModels { full: models, ballast, loading: &loading, scale, draws };
-    for (record, current) in &records {
-        let (replayed, correction) = replays_of.beside(record, *current, warnings)?;
-        replays.push(replayed);
-        corrections.push(correction);
-        steps.advance();
-    }
+    let replayed = records.iter().map(|(record, current)| replays_of.beside(record, *current, warnings));
+    let replayed: Result<Vec<_>, Failure> = replayed.inspect(|_| steps.advance()).collect();
+    let (replays, corrections): (Vec<_>, Vec<_>) = replayed?.into_iter().unzip();
     steps.finish();
     let weight = 1.0 / models.len() as f64;
     let mut document = PredictDocument {

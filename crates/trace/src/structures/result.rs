@@ -107,8 +107,8 @@ impl Structures {
         there.map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
     }
 
-    /// The same with the prior odds of every term that `is_weighed` times a factor: the weight of a structure changes by
-    /// the factor for each of its terms. Structures that the search did not refit have no part in it.
+    /// The same with the prior odds of every term that `is_weighed` times a factor: the weight of a structure changes
+    /// by the factor for each of its terms. Structures that the search did not refit have no part in it.
     pub fn of_any_with_odds(
         &self,
         factor: f64,
@@ -117,9 +117,9 @@ impl Structures {
     ) -> f64 {
         let (mut there, mut all) = (0.0, 0.0);
         for (weight, names) in self.weighed_names() {
-            let own: f64 = names.iter().filter(|name| is_weighed(name)).map(|_| factor).product();
-            all += weight * own;
-            there += if names.iter().any(&is_one) { weight * own } else { 0.0 };
+            let odds: f64 = names.iter().filter(|name| is_weighed(name)).map(|_| factor).product();
+            all += weight * odds;
+            there += if names.iter().any(&is_one) { weight * odds } else { 0.0 };
         }
         if all > 0.0 { (there / all).clamp(0.0, 1.0) } else { 0.0 }
     }
@@ -155,7 +155,7 @@ mod tests {
         let with = |structures: &Structures, factor, asked: Option<TermName>| {
             structures.of_any_with_odds(factor, |name| Some(*name) != asked, |name| *name == DAMPING)
         };
-        let near = |one: f64, other: f64| assert!((one - other).abs() < 1e-15, "{one} {other}");
+        let near = |value: f64, expected: f64| assert!((value - expected).abs() < 1e-15, "{value} {expected}");
         let alone = structures(&[(0.7, &[]), (0.3, &[DAMPING])]);
         for factor in [0.1, 1.0, 3.0, 10.0] {
             near(with(&alone, factor, None), factor * 0.3 / (0.7 + factor * 0.3));

@@ -52,8 +52,10 @@ impl Log {
         let of = |readings: &ChannelReadings| {
             let (to_starboard, relation) = match readings.channel {
                 Channel::Rudder => (steered, rudder),
-                Channel::RudderOrder => (steered.zip(rudder).map(|(side, own)| side == (own.scale > 0.0)), None),
-                Channel::YawRate => (yaw_rate.map(|own| own.scale > 0.0), yaw_rate),
+                Channel::RudderOrder => {
+                    (steered.zip(rudder).map(|(side, relation)| side == (relation.scale > 0.0)), None)
+                }
+                Channel::YawRate => (yaw_rate.map(|relation| relation.scale > 0.0), yaw_rate),
                 _ => (None, None),
             };
             ChannelInspection { readings: readings.clone(), to_starboard, relation }
@@ -74,11 +76,11 @@ impl Log {
     /// explains most.
     fn related(
         &self,
-        [own, reference]: [Channel; 2],
+        [channel, reference]: [Channel; 2],
         made: impl Fn(&[f64], &[f64]) -> Vec<f64>,
     ) -> Option<ChannelRelation> {
         let time = self.time();
-        let (x, y) = (made(time, self.channel(own)?), self.channel(reference)?);
+        let (x, y) = (made(time, self.channel(channel)?), self.channel(reference)?);
         let read = |values: &[f64]| (0..time.len()).filter(|&row| values[row].is_finite()).collect::<Vec<usize>>();
         let rows = read(&x);
         let path = Polyline::new(rows.iter().map(|&row| time[row]).collect(), rows.iter().map(|&row| x[row]).collect());
@@ -93,7 +95,7 @@ impl Log {
         let step = reach / f64::from(LAGS);
         let share = |number: i32| slope(step * f64::from(number)).map_or(0.0, |slope| slope.share);
         let shares: Vec<f64> = (-LAGS..=LAGS).map(share).collect();
-        let best = (0..shares.len()).max_by(|&one, &other| shares[one].total_cmp(&shares[other]))?;
+        let best = (0..shares.len()).max_by(|&first, &second| shares[first].total_cmp(&shares[second]))?;
         let peak = |place: usize| {
             let [before, at, after] = [shares[place - 1], shares[place], shares[place + 1]];
             let bend = before - 2.0 * at + after;
@@ -110,11 +112,11 @@ mod tests {
     use super::*;
     use std::fmt::Write;
 
-    /// A ship of K = 0.1 1/s and T = 15 s under a rudder that follows its order 2 s later, seen by a yaw rate with `sign`
+    /// A ship of K = 0.1 1/s and T = 15 s, whose rudder follows its order 2 s later, seen by a yaw rate with `sign`
     /// in deg/min and 3 s late.
     fn log(sign: f64, row: impl Fn(usize) -> bool) -> Log {
         let mut text = String::from("t_s,heading_deg,rudder_deg,rudder_order_deg,yaw_rate_deg_min,speed_kn\n");
-        let order = |t: f64| if (t / 40.0) as usize % 2 == 0 { 10.0 } else { -10.0 };
+        let order = |t: f64| if (t % 80.0) < 40.0 { 10.0 } else { -10.0 };
         let (mut psi, mut rates) = (355.0, vec![0.0; 1]);
         for number in 0..400_usize {
             let t = number as f64;
@@ -132,7 +134,7 @@ mod tests {
     }
 
     fn of(all: &[ChannelInspection], channel: Channel) -> &ChannelInspection {
-        all.iter().find(|own| own.readings.channel == channel).expect("it was read")
+        all.iter().find(|inspected| inspected.readings.channel == channel).expect("it was read")
     }
 
     #[test]
@@ -162,6 +164,6 @@ mod tests {
         let all = log(-1.0, |_| true).inspect();
         let rate = of(&all, Channel::YawRate);
         assert_eq!((rate.to_starboard, of(&all, Channel::Rudder).to_starboard), (Some(false), Some(true)));
-        assert!(rate.relation.is_some_and(|own| (own.scale + 1.0).abs() < 0.02), "{rate:?}");
+        assert!(rate.relation.is_some_and(|relation| (relation.scale + 1.0).abs() < 0.02), "{rate:?}");
     }
 }

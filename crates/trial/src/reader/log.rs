@@ -137,7 +137,8 @@ impl Log {
         }));
         self.columns = columns(all);
         self.names.extend(joined.names);
-        let is_new = |readings: &ChannelReadings| self.readings.iter().all(|own| own.channel != readings.channel);
+        let is_new =
+            |readings: &ChannelReadings| self.readings.iter().all(|earlier| earlier.channel != readings.channel);
         let further: Vec<ChannelReadings> = joined.readings.into_iter().filter(is_new).collect();
         self.readings.extend(further.into_iter().map(|readings| readings.later(offset)));
         self.sha256 = joined_hash(&self.sha256, &joined.sha256);
@@ -297,7 +298,7 @@ fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
         Series { channel, values: own.channels.remove(&channel).unwrap_or_default(), time: own.time, source }
     });
     let cleaned: Vec<Series> = cleaned.collect();
-    log.readings = cleaned.iter().map(|own| ChannelReadings::of(own, sidecar.part())).collect();
+    log.readings = cleaned.iter().map(|series| ChannelReadings::of(series, sidecar.part())).collect();
     let mut columns = columns(cleaned);
     let keep: Vec<bool> = columns.time.iter().map(|t| sidecar.part().contains(t)).collect();
     columns.retain(&keep);

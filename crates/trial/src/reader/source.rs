@@ -88,7 +88,7 @@ impl ChannelReadings {
             source: source.clone(),
             count: read.len(),
             interval: upper_median(ways().map(|[_, way]| way)),
-            longest: ways().max_by(|one, other| one[1].total_cmp(&other[1])),
+            longest: ways().max_by(|first, second| first[1].total_cmp(&second[1])),
             range: [low, high],
             step: changes.min_by(f64::total_cmp),
             wraps: (*channel == Channel::Heading).then(crossings),
@@ -98,7 +98,7 @@ impl ChannelReadings {
     /// Of the columns of a table with their names.
     pub(super) fn of_columns(columns: &Columns, names: &[(Channel, String)]) -> Vec<Self> {
         let of = |(channel, values): (&Channel, &Vec<f64>)| {
-            let source = names.iter().find(|(own, _)| own == channel).map(|(_, name)| name.clone());
+            let source = names.iter().find(|(named, _)| named == channel).map(|(_, name)| name.clone());
             let series = Series { channel: *channel, time: columns.time.clone(), values: values.clone(), source };
             Self::of(&series, f64::NEG_INFINITY..=f64::INFINITY)
         };

@@ -1,10 +1,11 @@
-//! MATLAB files of level 5 (`save -v6`, `-v7`) and level 4 (`save -v4`) as text: numeric variables of one length are the
-//! columns of a table. Texts, cells, structures, sparse and complex variables are left out, and so is what has more than
-//! two dimensions; a cell array with the name of a quantity that no other variable holds is refused.
+//! MATLAB files of level 5 (`save -v6`, `-v7`) and level 4 (`save -v4`) as text: numeric variables of one length are
+//! the columns of a table. Texts, cells, structures, sparse and complex variables are left out, and so is what has more
+//! than two dimensions; a cell array with the name of a quantity that no other variable holds is refused.
 //!
 //! Source of the layout: MathWorks, "MAT-File Format", chapter 1 (level 5 MAT-files).
 
 mod level4;
+mod variable;
 
 use std::io::Read;
 
@@ -15,6 +16,7 @@ use crate::file::FileError;
 use crate::names::{self, ColumnMeaning};
 use crate::reader::error::Problem;
 use crate::reader::{MAX_CELLS, RECORD};
+use variable::{CELL, COMPRESSED, OtherVariable, Scan, Variable, Variables, class_name, contradiction, damaged, size};
 
 pub use level4::starts as is_level4;
 
@@ -30,99 +32,8 @@ const UP_TO_NAME: usize = 192;
 /// Most bytes of all variables when they are unpacked.
 const MOST_UNPACKED: u64 = 8 * MAX_CELLS as u64;
 
-/// Kinds of data elements.
+/// Kind of a data element that holds a variable.
 const MATRIX: u32 = 14;
-const COMPRESSED: u32 = 15;
-
-/// Bytes of a number of a kind of data element; `None` for what is no number.
-fn size(kind: u32) -> Option<usize> {
-    Some(match kind {
-        1 | 2 => 1,
-        3 | 4 => 2,
-        5..=7 => 4,
-        9 | 12 | 13 => 8,
-        _ => return None,
-    })
-}
-
-/// A numeric variable.
-struct Variable {
-    name: String,
-    rows: usize,
-    columns: usize,
-    /// Kind of its numbers, and bytes of each.
-    stored: (u32, usize),
-    /// The numbers, column by column.
-    bytes: Vec<u8>,
-    big_endian: bool,
-}
-
-/// A variable that is no column: its name, and what it is.
-struct OtherVariable {
-    name: String,
-    what: String,
-}
-
-/// A file's variables that are columns, and those that are none.
-type Variables = (Vec<Variable>, Vec<OtherVariable>);
-
-/// What a cell array is.
-const CELL: &str = "a cell array";
-
-/// What a class without numbers is.
-fn class_name(class: u32) -> &'static str {
-    match class {
-        1 => CELL,
-        2 => "a structure",
-        4 => "text",
-        5 => "a sparse matrix",
-        _ => "a variable without numbers",
-    }
-}
-
-/// Bytes that are read from the front.
-struct Scan<'a> {
-    rest: &'a [u8],
-    big_endian: bool,
-}
-
-impl<'a> Scan<'a> {
-    fn take(&mut self, length: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.rest.split_at_checked(length)?;
-        self.rest = rest;
-        Some(taken)
-    }
-
-    fn word(&mut self) -> Option<u32> {
-        let bytes = self.take(4)?.try_into().ok()?;
-        Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
-    }
-
-    /// The next data element: its kind and its bytes. What fills it up to eight bytes is passed over.
-    fn element(&mut self) -> Option<(u32, &'a [u8])> {
-        let tag = self.word()?;
-        if tag >> 16 != 0 {
-            // Short elements stand in their own tag.
-            let data = self.take(4)?;
-            return Some((tag & 0xffff, data.get(..(tag >> 16) as usize)?));
-        }
-        let length = self.word()? as usize;
-        let data = self.take(length)?;
-        if tag != COMPRESSED {
-            let filling = (8 - length % 8) % 8;
-            self.rest = self.rest.get(filling..).unwrap_or_default();
-        }
-        Some((tag, data))
-    }
-}
-
-fn damaged(found: &str) -> Problem {
-    Problem::Damaged { format: "a MATLAB file", found: found.to_owned() }
-}
-
-fn contradiction() -> Problem {
-    damaged("a variable of it contradicts itself")
-}
 
 /// Class of the numbers of a variable, and whether they are complex.
 fn flags(word: u32) -> (u32, bool) {
@@ -155,10 +66,9 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, OtherVari
         return Some(Err(OtherVariable { name, what: sizes }));
     }
     let (kind, data) = scan.element()?;
-    let stored = (kind, size(kind)?);
     let [rows, columns] = *dimensions.first_chunk()?;
-    (rows.checked_mul(columns)?.checked_mul(stored.1)? == data.len()).then_some(())?;
-    Some(Ok(Variable::new(name, [rows, columns], stored, data, big_endian)))
+    (rows.checked_mul(columns)?.checked_mul(size(kind)?)? == data.len()).then_some(())?;
+    Some(Ok(Variable::new(name, [rows, columns], kind, data, big_endian)))
 }
 
 /// Unpacks a variable, with its tag; one that holds no numbers up to its name alone.
@@ -224,8 +134,8 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         _ => None,
     };
     let is_lacking = |cell: &&OtherVariable| {
-        let own = quantity(&cell.name);
-        cell.what == CELL && own.is_some() && numeric.iter().all(|variable| quantity(&variable.name) != own)
+        let of_cell = quantity(&cell.name);
+        cell.what == CELL && of_cell.is_some() && numeric.iter().all(|variable| quantity(&variable.name) != of_cell)
     };
     if let Some(cell) = others.iter().find(is_lacking) {
         return Err(Problem::CellArray { column: cell.name.clone() });
@@ -262,33 +172,4 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         Ok(text)
     };
     Ok(Box::new(Written::new((0..=length).map(line))))
-}
-
-impl Variable {
-    /// A variable of so many rows and columns; a row is as good as a column.
-    fn new(name: String, size: [usize; 2], stored: (u32, usize), numbers: &[u8], big_endian: bool) -> Self {
-        let [rows, columns] = if size[0] == 1 { [size[1], 1] } else { size };
-        Self { name, rows, columns, stored, bytes: numbers.to_vec(), big_endian }
-    }
-
-    /// Writes a number by its place.
-    fn write(&self, text: &mut String, place: usize) {
-        let (kind, size) = self.stored;
-        let mut bytes = [0; 8];
-        let Some(own) = self.bytes.get(place * size..(place + 1) * size) else { return };
-        bytes[..size].copy_from_slice(own);
-        if self.big_endian {
-            bytes[..size].reverse();
-        }
-        let all = u64::from_le_bytes(bytes);
-        match kind {
-            1 => text::whole(text, all as i8),
-            3 => text::whole(text, all as i16),
-            5 => text::whole(text, all as i32),
-            12 => text::whole(text, all as i64),
-            7 => text::single(text, f32::from_bits(all as u32)),
-            9 => text::number(text, f64::from_bits(all)),
-            _ => text::whole(text, all),
-        }
-    }
 }

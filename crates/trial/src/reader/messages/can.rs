@@ -19,19 +19,19 @@ pub fn is_log<'a>(lines: impl Iterator<Item = &'a str>) -> bool {
 fn is_frame(line: &str) -> bool {
     let cells = line.split([',', ';', '\t', ' ', '"', '\r']).map(str::trim).filter(|cell| !cell.is_empty());
     let cells: Vec<&str> = cells.collect();
-    if cells.iter().any(|cell| is_joined(cell)) {
-        return true;
-    }
-    let is_counted = |count: usize, from: usize| {
-        let counts = |cell: &&str| cell.trim_matches(['[', ']']).parse() == Ok(count);
-        cells[..from].iter().any(|cell| identifier(cell)) && cells[..from].iter().any(counts)
+    let bytes = cells.iter().rev().take_while(|cell| is_hexadecimal(cell, 2)).count();
+    let word = cells.last().map_or(0, |cell| unprefixed(cell).len());
+    let in_word =
+        (word > 2 && word.is_multiple_of(2) && is_hexadecimal(cells[cells.len() - 1], word)).then_some((word / 2, 1));
+    let is_counted = |(count, length): (usize, usize)| {
+        let (head, data) = cells.split_at(cells.len() - length);
+        let mut identifiers = head.iter().filter(|cell| is_identifier(cell)).peekable();
+        let is_there = identifiers.peek().is_some();
+        let has_letter = |cell: &&str| cell.bytes().any(|digit| digit.is_ascii_alphabetic());
+        let is_count = |cell: &&str| cell.trim_matches(['[', ']']).parse() == Ok(count);
+        is_there && head.iter().any(is_count) && identifiers.chain(data).any(has_letter)
     };
-    let is_letter = |cell: &&str| cell.bytes().any(|digit| digit.is_ascii_alphabetic());
-    let [bytes, from] = [cells.iter().rev().take_while(|cell| is_hexadecimal(cell, 2)).count(), cells.len()];
-    let in_cells =
-        (1..=bytes.min(8)).any(|count| is_counted(count, from - count) && cells.iter().any(|c| is_letter(&c)));
-    let word = cells.last().map_or("", |cell| unprefixed(cell));
-    in_cells || word.len() > 2 && is_hexadecimal(word, word.len() & !1) && is_counted(word.len() / 2, from - 1)
+    cells.iter().any(|cell| is_joined(cell)) || (1..=bytes).map(|count| (count, count)).chain(in_word).any(is_counted)
 }
 
 fn unprefixed(cell: &str) -> &str {
@@ -43,8 +43,8 @@ fn is_hexadecimal(cell: &str, digits: usize) -> bool {
     cell.len() == digits && cell.bytes().all(|digit| digit.is_ascii_hexdigit())
 }
 
-/// Whether a cell is an identifier: of three or eight digits, with a prefix of any, perhaps with the `x` of an extended.
-fn identifier(cell: &str) -> bool {
+/// Whether a cell is an identifier: of three or eight digits, or of any with a prefix or the `x` of an extended one.
+fn is_identifier(cell: &str) -> bool {
     let digits = unprefixed(cell).trim_end_matches(['x', 'X', 'h', 'H']);
     let is_whole = digits.len() < cell.len() || DIGITS.contains(&digits.len());
     is_whole && u32::from_str_radix(digits, 16).is_ok_and(|number| number <= MAX_IDENTIFIER)
@@ -53,8 +53,8 @@ fn identifier(cell: &str) -> bool {
 /// Whether a cell is an identifier and its bytes, as candump writes them into files.
 fn is_joined(cell: &str) -> bool {
     let Some((id, bytes)) = cell.split_once('#') else { return false };
-    let is_even = bytes.len() % 2 == 0 && is_hexadecimal(bytes, bytes.len());
-    DIGITS.contains(&id.len()) && identifier(id) && is_even
+    let is_even = bytes.len().is_multiple_of(2) && is_hexadecimal(bytes, bytes.len());
+    DIGITS.contains(&id.len()) && is_identifier(id) && is_even
 }
 
 #[cfg(test)]
@@ -79,6 +79,8 @@ mod tests {
             "20261120 12345678 8 10 20 30 40 50 60 70 80",
             "t_s,heading_deg,rudder_deg",
             "2026-11-20T14:03:05.2,123,45,6,10,20",
+            "12,123,2,1500",
+            "12,123,E,2,1500",
             "abc,def,123",
             "# one of them",
             "$HEHDT,350.0,T*2F",

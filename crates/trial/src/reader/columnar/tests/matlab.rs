@@ -91,7 +91,7 @@ fn cell_arrays_are_named() {
     let (head, other, note) = (head(false), cell("heading_rad"), cell("note"));
     let beside = [&head, time, &other, heading, &note, rudder];
     assert_plain(&beside.map(Vec::as_slice).concat());
-    assert_told(parse(&[head, note].concat()), &["without a table", "note (a cell array)"]);
+    assert_told(parse([head, note].concat().as_slice()), &["without a table", "note (a cell array)"]);
 }
 
 /// A variable of level 4: its digits, size, whether it is complex, and its numbers.
@@ -124,7 +124,7 @@ fn files_of_level_4_are_read_as_those_of_level_5() {
         assert_plain(&file);
     }
     assert_told(parse(&file[..file.len() - 9]), &["a MATLAB file", "last variable is incomplete"]);
-    assert_told(parse(&[file, vec![1; 40]].concat()), &["a MATLAB file", "contradicts itself"]);
+    assert_told(parse([file, vec![1; 40]].concat().as_slice()), &["a MATLAB file", "contradicts itself"]);
     let small = [
         variable4("a", 20, [2, 1], false, &[0xff, 0xff, 0xff, 0xff, 1, 0, 0, 0], false),
         variable4("b", 10, [1, 2], false, &[0.1_f32, f32::NAN].map(f32::to_le_bytes).concat(), false),
