@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use document::Warnings;
+use document::{Warning, Warnings};
 use predict::PredictDocument;
 use predict::turn::{self, Current};
 use report::Theme;
@@ -53,7 +53,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::make(&place)?;
     let text = documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
-    show(&folder, &predicted, &text, theme.as_ref(), common)
+    show(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
 }
 
 /// Draws a prediction into a folder and tells what it says; `text` is that of `predict.json`.
@@ -65,6 +65,7 @@ pub fn show(
     text: &str,
     theme: Option<&Theme>,
     common: &Common,
+    warnings: &[Warning],
 ) -> Result<(), Failure> {
     for (stem, table) in predict_curves::curves(predicted) {
         folder.write(&format!("{stem}.csv"), table)?;
@@ -78,7 +79,7 @@ pub fn show(
     let [before, behind] = [predict_page::words(predicted), predict_page::rest(predicted)];
     let table = predict_tables::figures(predicted);
     let output = CommandOutput { words: [&before, &behind], table: &table, notes: &notes, document: text };
-    screen::tell(common, &output, &predicted.warnings)
+    screen::tell(common, &output, warnings)
 }
 
 /// Where the results go unless a folder is named: after the folder of the model, which has the name of its record.

@@ -249,13 +249,18 @@ pub fn predict(
         hull: !mixture.first().hulls.is_empty(),
         load: taken.as_ref().map(|(.., load)| load.clone()),
         seen: mixture.first().seen,
-        warnings: warnings.ranked(),
+        warnings: of_models(warnings),
         ..PredictDocument::default()
     };
     if request.form {
         fill_form(&mut document, particulars, &records, &corrections, declared);
     }
     Ok(document)
+}
+
+/// What is said of files, the worst first; a record is read before, and says what it has to say then.
+fn of_models(warnings: &Warnings) -> Vec<Warning> {
+    warnings.ranked().into_iter().filter(|warning| matches!(warning.source, Source::File(_))).collect()
 }
 
 /// Models with earlier trials that they have not seen, and what is said of each; nothing where there are none of these.

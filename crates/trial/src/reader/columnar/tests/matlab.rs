@@ -134,6 +134,14 @@ fn files_of_level_4_are_read_as_those_of_level_5() {
     let kind = crate::reader::columnar::Kind::of(&small.concat()).expect("a MATLAB file");
     kind.text(small.concat()).expect("a table").read_to_string(&mut text).expect("UTF-8");
     assert_eq!(text, "a\tb\tc\n-1\t0.1\t3\n1\t\t255\n");
+    let small = small.concat();
+    for place in 0..small.len() {
+        for change in [0xff, 1 << (place % 8)] {
+            let mut bytes = small.clone();
+            bytes[place] ^= change;
+            let _ = (parse(&bytes), parse(&small[..place]));
+        }
+    }
     // What is no head is no such file: a text, UTF-16, other numbers.
     for other in [&b"t_s,heading_deg,rudder_deg\n"[..], b"t\0_\0s\0", &[0; 64], &[0x35, 0, 0, 0, 1, 0, 0, 0]] {
         assert_eq!(crate::reader::columnar::Kind::of(other), None);
