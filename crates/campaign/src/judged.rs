@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use ::trace::Analysis;
 use ::trace::comparison::before as of_base;
 use ::trace::record::PreparedRecord;
+use ::trace::replay_errors::{HORIZONS, ReplayDepth};
 use document::IdentifiedShip;
 use identify::Estimate;
 use predict::ShipMixture;
@@ -160,7 +161,9 @@ impl SharedTrials<'_> {
         let asked = TrialQuestion { trials: self.shown, key, reference: &reference, missing: &[], check: None };
         let (row, errors) = match &fit.answer {
             FitAnswer::Response(estimate) => {
-                let replayed = |judge| of_base(judge, &PreparedRecord::whole(judge), &estimate.response, true).ok();
+                let replayed = |judge| {
+                    of_base(judge, &PreparedRecord::whole(judge), &estimate.response, ReplayDepth::Windows).ok()
+                };
                 (asked.estimated(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
             }
             FitAnswer::StraightOn => (asked.straight_on(blank), None),
@@ -170,7 +173,7 @@ impl SharedTrials<'_> {
                 (asked.traced(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }
         };
-        let [_, windows] = errors.map_or([None; 2], |errors| errors.horizon);
+        let windows = errors.and_then(|errors| errors.within(HORIZONS[1]));
         let predicted = self.scenario.predictions.as_ref().map(|asked| match (&self.judges[trial], &fit.ship) {
             (Some([judge, _]), Some(ship)) => predicted(ship, judge, asked),
             _ => Box::default(),

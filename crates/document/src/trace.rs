@@ -21,7 +21,7 @@ pub use entries::{
     Dependence, DisturbanceEntry, Indices, LocatedEntry, MissingMomentEntry, PanelEntry, ParameterEntry, PrimeEntry,
     PrimeIndices, RecordEntry, RecordErrors, StairEntry, UnexplainedEntry,
 };
-pub use errors::{BeforeAfter, ErrorEntry, ErrorsEntry};
+pub use errors::{BeforeAfter, ErrorEntry, ErrorsEntry, HorizonEntry};
 
 /// Name of the schema.
 pub const SCHEMA: &str = "trace/4";
@@ -111,6 +111,9 @@ pub struct EffectEntry {
     pub parameters: BTreeMap<String, ParameterEntry>,
     /// Probability that it, or one of its group, is there.
     pub probability: f64,
+    /// The same with the prior odds of all effects times each of `prior.odds_factors`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probability_by_prior_odds: Vec<f64>,
     /// −2 log of the ratio of the evidence with it to that without: negative where it is better.
     pub delta_bic: f64,
     /// Probability of sizes as far from neutral by chance, beside all other candidates (χ²).
@@ -128,6 +131,10 @@ pub struct CandidateEntry {
     pub outcome: Outcome,
     /// Probability that it is there in any form and record.
     pub probability: f64,
+    /// The same with the prior odds of all effects times each of `prior.odds_factors`; nothing where no structure has
+    /// it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probability_by_prior_odds: Vec<f64>,
     /// As that of an effect, for the best form.
     pub delta_bic: Option<f64>,
     /// As that of an effect, for the best form.
@@ -184,6 +191,9 @@ pub struct PriorEntry {
     pub probability_of_time: f64,
     /// Probability from which an effect is named.
     pub named_from: f64,
+    /// Factors of the prior odds of all effects together, from small to large; one of them is 1.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub odds_factors: Vec<f64>,
     /// How structures were weighed.
     pub rule: String,
 }

@@ -81,6 +81,8 @@ pub enum Code {
     EarlierTrials,
     /// The records speak against the hull that another loading needs.
     NoLoading,
+    /// No K and T can be taken from the records of a model.
+    NotIdentified,
     /// A figure or a manoeuvre is missing from a prediction.
     Unpredicted,
     /// A correction to another loading is missing, or says little.

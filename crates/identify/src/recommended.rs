@@ -128,8 +128,89 @@ impl Identifier for Recommended {
 mod tests {
     use super::*;
     use crate::estimate::Uncertainty;
-    use crate::testing::Case;
-    use trial::Noise;
+    use crate::testing::{Case, record};
+    use document::{HeadingNoise, RandomMoment};
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
+    use ship::FirstOrder;
+    use trial::{Conditions, DeclaredWeather, Noise};
+
+    fn nearest(trials: &[Trial]) -> Estimate {
+        output_error::Settings::default().build().expect("defaults").identify(trials).expect("a fit")
+    }
+
+    /// The same answer with a random moment beside it.
+    fn in_gusts(own: &Estimate) -> Estimate {
+        let moment = RandomMoment::White { rudder_rad_root_s: 0.05 };
+        Estimate { noise: Some(HeadingNoise { heading_sd_rad: 0.001, moment }), ..own.clone() }
+    }
+
+    /// A zig-zag in a white moment, which no term of a ship explains.
+    fn windy() -> Trial {
+        let case = Case { noise_deg: 0.05, ..Case::default() };
+        let calm = case.trial();
+        let mut generator = ChaCha8Rng::seed_from_u64(3);
+        let [mut off, mut rate, step] = [0.0, 0.0, 0.1];
+        let heading = calm.heading().iter().map(|psi| {
+            let heading = psi + off;
+            for _ in 0..10 {
+                let moment = 0.3 * (generator.random::<f64>() - 0.5);
+                rate += step * (case.K * moment - rate) / case.T;
+                off += step * rate;
+            }
+            heading
+        });
+        record("windy", calm.time().to_vec(), heading.collect(), calm.rudder().to_vec())
+    }
+
+    /// Jumps that stay are counted by maximum likelihood alone; beside a random moment they are no reason.
+    #[test]
+    fn jumps_of_the_heading_are_a_reason_without_a_random_moment() {
+        let trials = [Case { noise_deg: 0.1, ..Case::default() }.trial()];
+        let own = nearest(&trials);
+        let reason = |other: &Estimate| Recommendation::of(&trials, Some(&own), Some(other)).reason;
+        let jumping = Estimate { warnings: vec![Code::HeadingJump.warning("it jumps")], ..own.clone() };
+        assert_eq!(reason(&own), Reason::NearestReplay);
+        assert_eq!(reason(&jumping), Reason::HeadingJumps);
+        assert_eq!(
+            Recommendation { reason: reason(&jumping), lack: None, is_calm: false }.method(),
+            "maximum-likelihood"
+        );
+        assert_eq!(reason(&in_gusts(&jumping)), Reason::NearestReplay);
+        let bare = Uncertainty::None { reason: "none" };
+        assert_eq!(reason(&Estimate { uncertainty: bare, ..jumping }), Reason::NearestReplay);
+    }
+
+    /// A replay may be 29 times as far as the nearest where the moment is random, and not 31 times.
+    #[test]
+    fn a_replay_thirty_times_farther_is_of_no_ship() {
+        let trials = [windy()];
+        let own = nearest(&trials);
+        let distance = |response: &FirstOrder| pooled(&trials, response).expect("a replay");
+        let biased = |by: f64| FirstOrder { rudder_bias: own.response.rudder_bias + by, ..own.response };
+        let ratio = |response: &FirstOrder| distance(response) / distance(&own.response);
+        // The heading is linear in the bias, and the nearest replay has the least square.
+        let unit = (ratio(&biased(1.0)).powi(2) - 1.0).sqrt();
+        let reason = |times: f64| {
+            let response = biased((times * times - 1.0).sqrt() / unit);
+            assert!((ratio(&response) / times - 1.0).abs() < 0.02, "{} is not {times}", ratio(&response));
+            Recommendation::of(&trials, Some(&own), Some(&Estimate { response, ..in_gusts(&own) })).reason
+        };
+        assert_eq!([5.0, 29.0, 31.0].map(reason), [Reason::RandomMoment, Reason::RandomMoment, Reason::NearestReplay]);
+    }
+
+    /// A moment that no term of a ship explains is random, unless the record declares a calm.
+    #[test]
+    fn in_a_declared_calm_no_random_moment_is_believed() {
+        let calm = Conditions { weather: Some(DeclaredWeather::Calm), ..Conditions::default() };
+        let said = |trial: Trial| {
+            let trials = [trial];
+            let own = nearest(&trials);
+            let said = Recommendation::of(&trials, Some(&own), Some(&in_gusts(&own)));
+            (said.reason, said.residual())
+        };
+        assert_eq!(said(windy()), (Reason::RandomMoment, Some(ResidualKind::Random)));
+        assert_eq!(said(windy().with_conditions(calm)), (Reason::NearestReplay, Some(ResidualKind::LacksEffect)));
+    }
 
     #[test]
     fn an_answer_without_intervals_is_not_taken() {

@@ -42,6 +42,8 @@ def test_a_trace_names_what_is_missing(traced):
     assert {one.id for one in traced.candidates if one.outcome == "added"} == {"nonlinear_damping"}
     fitted, held_out = traced.errors
     assert not fitted.held_out and held_out.held_out and held_out.after_deg < held_out.before_deg
+    assert fitted.horizons == () and held_out.horizons[-1].after_deg == held_out.after_deg
+    assert effect.probability_by_prior_odds[1.0] == pytest.approx(effect.probability)
     assert "zig-zag" in traced.next_trial
 
 

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 use std::sync::LazyLock;
 
 use crate::commands::{
-    bench, check, doctor, find, fit, list, predict, report, run, schema, score, shell, sidecar, simulate, trace,
+    bench, check, doctor, find, fit, inspect, list, predict, report, run, schema, score, shell, sidecar, simulate,
+    trace,
 };
 use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
 use crate::{failures, interrupt, threads};
@@ -53,6 +54,8 @@ enum Command {
     Predict(With<PredictRequest>),
     /// List the manoeuvres inside long logs: zig-zags, turning circles, pull-outs, spirals, straight pieces
     Find(With<FindRequest>),
+    /// Look at every channel of a log before anything is fitted: source, rate, gaps, steps, sign, scale, lag
+    Inspect(With<inspect::InspectRequest>),
     /// Write a first description of the columns of a table, NAME.trial.toml beside it, for a person to check
     Sidecar(With<sidecar::SidecarRequest>),
     /// Write simulated trials in the format `study fit` reads, the truth beside them
@@ -162,6 +165,7 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         Command::Bench(own) => own.work(bench::run),
         Command::Report(own) => own.work(report::run),
         Command::Find(own) => own.answer(find::run),
+        Command::Inspect(own) => own.answer(inspect::run),
         Command::Sidecar(own) => own.answer(sidecar::run),
         Command::Check(own) => own.answer(check::run),
         Command::List(own) => own.answer(list::run),

@@ -416,6 +416,8 @@ pub enum Described {
     Shard,
     /// What `find` says
     Find,
+    /// What `inspect` says
+    Inspect,
     /// What `check` says
     Check,
     /// What `list` says

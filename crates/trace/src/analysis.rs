@@ -28,6 +28,7 @@ use crate::model::Term;
 use crate::noise::CorrelatedNoise;
 use crate::record::PreparedRecord;
 use crate::remainder::{Innovations, Remainder, innovations, squares};
+use crate::replay_errors::ReplayDepth;
 use crate::report;
 use crate::rudder::{self, RudderError};
 use crate::selection::{EffectId, Selection};
@@ -256,12 +257,13 @@ fn fitted(
     time: f64,
 ) -> Result<(Vec<RecordComparison>, bool), TraceError> {
     let response = &base.estimate.response;
+    let depth = if thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
     let of = |(number, trial): (usize, &Trial)| {
         let record = PreparedRecord::whole(trial);
-        let before = before(trial, &record, response, thorough)?;
+        let before = before(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
         let after = AveragedModel { members, hulls, law, known: Some(number), time };
-        let mut after = after.on(trial, &record, &starts(trial, response), thorough)?;
+        let mut after = after.on(trial, &record, &starts(trial, response), depth)?;
         if is_base {
             // Nothing is added: the base stays what it is.
             let band = after.band;
@@ -355,6 +357,6 @@ impl Analysis {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
         let after = AveragedModel { law: &calm, ..self.unseen(&members) };
-        after.on(trial, &PreparedRecord::whole(trial), &[start], true).ok()
+        after.on(trial, &PreparedRecord::whole(trial), &[start], ReplayDepth::Windows).ok()
     }
 }

@@ -8,6 +8,7 @@ use ship::angle::to_deg;
 use ship::effects::{Effect, Formula, listed};
 use trial::{Conditions, DeclaredWeather, Trial};
 
+use crate::structures::WeighedStructure;
 use crate::testing::{TrialPlan, noisy, of_columns, record, ship, wandering};
 use crate::{Analysis, EffectId, Rule, Selection, Settings, Verdict, Watcher, trace, watched};
 
@@ -62,6 +63,95 @@ fn several_records_are_left_out_in_turn() {
         let [before, after] = [&fold.before, &fold.after].map(|on| on.errors.heading.to_degrees());
         assert!(before > 0.3 && after < 0.25 * before, "{before} and {after} deg");
     }
+}
+
+/// Root mean square of a residual from one beginning to the next less the heading and yaw rate that fit it best there:
+/// two replays of a first-order ship under one rudder differ by a + b exp(−t/T).
+fn less_two_solutions(residual: &[f64], rows: usize, time_constant: f64) -> f64 {
+    let square = |window: &[f64]| {
+        let column = |row: usize| [1.0, (-(row as f64) / time_constant).exp()];
+        let sum = |of: &dyn Fn([f64; 2], f64) -> f64| -> f64 {
+            window.iter().enumerate().map(|(row, e)| of(column(row), *e)).sum()
+        };
+        let [aa, ab, bb] = [sum(&|x, _| x[0] * x[0]), sum(&|x, _| x[0] * x[1]), sum(&|x, _| x[1] * x[1])];
+        let [ae, be] = [sum(&|x, e| x[0] * e), sum(&|x, e| x[1] * e)];
+        let (a, b) = ((bb * ae - ab * be) / (aa * bb - ab * ab), (aa * be - ab * ae) / (aa * bb - ab * ab));
+        sum(&|x, e| (e - a * x[0] - b * x[1]).powi(2))
+    };
+    let mut windows: Vec<&[f64]> = residual.chunks(rows).collect();
+    // A last piece of less than half a window belongs to the one before.
+    if windows.len() > 1 && 2 * (windows[windows.len() - 1].len() - 1) < rows {
+        windows.truncate(windows.len() - 2);
+        windows.push(&residual[windows.len() * rows..]);
+    }
+    (windows.into_iter().map(square).sum::<f64>() / residual.len() as f64).sqrt()
+}
+
+/// What has not been fitted is replayed ever farther ahead, up to the whole of it; what has been fitted is not.
+#[test]
+fn the_error_against_the_horizon_is_that_of_replays_begun_anew() {
+    let held_out = damped(TrialPlan { seed: 5, rudder_deg: 12.0, ..TrialPlan::default() });
+    let analysis = trace(&[damped(TrialPlan::default())], &[held_out], &Settings::default()).expect("a base");
+    let error = &analysis.document.error;
+    let horizons = &error.validation[0].horizons;
+    let lengths: Vec<f64> = horizons.iter().map(|entry| entry.horizon_s).collect();
+    assert_eq!(lengths, [5.0, 10.0, 20.0, 40.0, 60.0, 80.0, 160.0, 300.0]);
+    let (residual, base) = (&analysis.validation[0].before.replay.residual, analysis.base.response);
+    for entry in &horizons[..7] {
+        let expected = to_deg(less_two_solutions(residual, entry.horizon_s as usize, base.inverse_T.recip()));
+        assert!((entry.before_deg / expected - 1.0).abs() < 0.02, "{entry:?}: {expected}");
+    }
+    for (when, of) in [("before", &error.validation[0].before), ("after", &error.validation[0].after)] {
+        let own = |length: f64| {
+            let entry = horizons.iter().find(|entry| entry.horizon_s == length).expect("a horizon");
+            Some(if when == "before" { entry.before_deg } else { entry.after_deg })
+        };
+        assert_eq!([own(20.0), own(60.0)], ["20", "60"].map(|length| of.horizon_rmse_deg[length]), "{when}");
+        assert_eq!(own(300.0), Some(of.heading_rmse_deg), "{when}");
+    }
+    assert!(horizons[3..].iter().all(|entry| entry.after_deg < 0.5 * entry.before_deg), "{horizons:?}");
+    assert!(error.identification[0].horizons.is_empty());
+    let quick = Settings { thorough: false, ..Settings::default() };
+    let short = damped(TrialPlan { rows: 26, ..TrialPlan::default() });
+    let analysis = trace(&[damped(TrialPlan::default())], &[short], &quick).expect("a base");
+    let lengths: Vec<f64> =
+        analysis.document.error.validation[0].horizons.iter().map(|entry| entry.horizon_s).collect();
+    assert_eq!(lengths, [25.0], "no window of 20 s is less than the whole of 25 s");
+}
+
+/// The weights of the structures are their evidence times the prior odds of their terms: from these anew, with other
+/// odds, come the probabilities that the document has.
+#[test]
+fn probabilities_move_with_the_prior_odds() {
+    let damping: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
+    let trial = record(&ship(vec![(damping, vec![25.0])]), TrialPlan { noise_deg: 0.2, ..TrialPlan::default() });
+    let analysis = traced(std::slice::from_ref(&trial));
+    let (document, all) = (&analysis.document, &analysis.structures.all);
+    let of_other_laws = 1.0 - all.iter().map(|one| one.weight).sum::<f64>();
+    assert!(of_other_laws.abs() < 1e-12, "other laws of the noise have no part here: {of_other_laws}");
+    let weight = |one: &WeighedStructure, factor: f64| {
+        let odds = one.fit.structure.terms.iter().map(|term| term.log_odds + factor.ln()).sum::<f64>();
+        (one.fit.evidence + odds - all[0].fit.evidence).exp()
+    };
+    let mut moved = 0;
+    for candidate in document.candidates.iter().filter(|one| !one.probability_by_prior_odds.is_empty()) {
+        for (factor, probability) in document.prior.odds_factors.iter().zip(&candidate.probability_by_prior_odds) {
+            let has =
+                |one: &&WeighedStructure| one.fit.structure.terms.iter().any(|term| term.effect.id() == candidate.id);
+            let with: f64 = all.iter().filter(has).map(|one| weight(one, *factor)).sum();
+            let expected = with / all.iter().map(|one| weight(one, *factor)).sum::<f64>();
+            assert!((probability - expected).abs() < 1e-9, "{} × {factor}: {probability}, {expected}", candidate.id);
+        }
+        let own = &candidate.probability_by_prior_odds;
+        assert!((own[2] - candidate.probability).abs() < 1e-12, "{candidate:?}");
+        moved += usize::from(own[4] > own[0] + 0.1);
+    }
+    assert!(moved > 0 && document.prior.odds_factors[2] == 1.0, "{:?}", document.candidates);
+    // What is asked for is there whatever its odds.
+    let asked = Selection::only(vec![EffectId::find("nonlinear_damping").expect("on the list")]);
+    let asked = trace(&[trial], &[], &Settings { selection: asked, ..Settings::default() }).expect("a base").document;
+    let asked = &asked.effects[0];
+    assert!(asked.probability_by_prior_odds.iter().all(|own| (own - asked.probability).abs() < 1e-12), "{asked:?}");
 }
 
 /// The search is over when the folds begin: whoever does not wait for them has the same result without them.
@@ -149,6 +239,16 @@ fn a_document_is_read_as_it_was_written() {
     let text = serde_json::to_string(&analysis.document).expect("plain data");
     let again: crate::Document = serde_json::from_str(&text).expect("the same");
     assert_eq!(serde_json::to_string(&again).expect("plain data"), text);
+    // One that was written before the prior odds were moved has none.
+    let mut earlier = serde_json::to_value(&again).expect("plain data");
+    let remove = |from: &mut serde_json::Value, key: &str| from.as_object_mut().and_then(|all| all.remove(key));
+    for list in ["effects", "candidates"] {
+        let entries = earlier[list].as_array_mut().into_iter().flatten();
+        entries.for_each(|entry| drop(remove(entry, "probability_by_prior_odds")));
+    }
+    assert!(remove(&mut earlier["prior"], "odds_factors").is_some());
+    let earlier: crate::Document = serde_json::from_value(earlier).expect("an earlier document");
+    assert!(earlier.prior.odds_factors.is_empty() && earlier.effects[0].probability_by_prior_odds.is_empty());
 }
 
 /// Errors of the recorded rudder are noise of the instruments: nothing is named for them, nothing located, and nothing

@@ -7,7 +7,7 @@ use ship::ReplayedShip;
 
 use crate::fit::StructureFit;
 use crate::record::PreparedRecord;
-use crate::replay_errors::{HORIZONS, full, restarted};
+use crate::replay_errors::{ReplayDepth, WindowError, full, restarted, root_mean_square};
 use crate::weights::NoiseLaw;
 
 /// A replay this many times as far from the record as the median of all runs away.
@@ -41,8 +41,8 @@ pub struct AverageReplay {
     pub replay: Replay,
     /// The full replay of every member.
     pub members: Vec<Replay>,
-    /// Residual of the replays restarted every 20 and 60 s, rad.
-    pub windows: [Option<Vec<f64>>; HORIZONS.len()],
+    /// Errors of the replays restarted.
+    pub windows: Vec<WindowError>,
 }
 
 impl AverageReplay {
@@ -76,8 +76,9 @@ impl AveragedModel<'_> {
 }
 
 impl Average {
-    /// Replays every member from its best initial state near one of the `starts`. `None` when none is finite.
-    pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], with_windows: bool) -> Option<AverageReplay> {
+    /// Replays every member from its best initial state near one of the `starts`, and restarted in the windows of a
+    /// depth. `None` when none is finite.
+    pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], depth: ReplayDepth) -> Option<AverageReplay> {
         let found: Vec<(f64, &dyn ReplayedShip, Replay)> = self
             .members
             .iter()
@@ -92,17 +93,16 @@ impl Average {
         };
         let [heading, yaw_rate] = [of(|replay| &replay.heading), of(|replay| &replay.yaw_rate)];
         let residual = record.heading.iter().zip(&heading).map(|(measured, own)| measured - own).collect();
-        let windows = HORIZONS.map(|length| {
-            if !with_windows {
-                return None;
-            }
+        let within = |length: f64| {
             let all: Option<Vec<Vec<f64>>> =
                 found.iter().map(|(_, ship, replay)| restarted(*ship, record, replay.initial(), length)).collect();
             let all = all?;
             let columns: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
-            let mean = combine(&columns);
-            Some(record.heading.iter().zip(mean).map(|(measured, own)| measured - own).collect())
-        });
+            let residual = record.heading.iter().zip(combine(&columns)).map(|(measured, mean)| measured - mean);
+            root_mean_square(&residual.filter(|residual| residual.is_finite()).collect::<Vec<f64>>())
+        };
+        let lengths = depth.lengths(&record.time).into_iter();
+        let windows = lengths.map(|length| WindowError { length, heading: within(length) }).collect();
         let replay = Replay { time: record.time.clone(), heading, yaw_rate, residual };
         Some(AverageReplay { replay, members: found.into_iter().map(|(.., replay)| replay).collect(), windows })
     }

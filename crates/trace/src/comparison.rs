@@ -1,7 +1,7 @@
 //! Models against records: errors of the recorded rudder replayed, before and after, on the records that were fitted
 //! and on others. Nothing is fitted here but initial states, and moments of the record beside the plain errors.
 
-use document::trace::ErrorsEntry;
+use document::trace::{ErrorsEntry, HorizonEntry};
 use estimation::statistics::wilson;
 use identify::replay::{Replay, replay};
 use rayon::prelude::*;
@@ -13,7 +13,9 @@ use crate::average::{Average, AverageReplay, AveragedModel};
 use crate::band;
 use crate::record::PreparedRecord;
 use crate::record_moment::RecordMoment;
-use crate::replay_errors::{HORIZONS, ReplayErrors, overshoot_error, root_mean_square};
+use crate::replay_errors::{
+    HORIZONS, ReplayDepth, ReplayErrors, WindowError, duration, is_shorter, overshoot_error, root_mean_square,
+};
 use crate::settings::TraceError;
 
 /// A model on one record.
@@ -88,12 +90,12 @@ impl ReplayResult {
 impl From<&ReplayResult> for ErrorsEntry {
     fn from(on: &ReplayResult) -> Self {
         let errors = &on.errors;
-        let horizon = HORIZONS.iter().zip(errors.horizon);
+        let horizon = HORIZONS.map(|length| (format!("{length:.0}"), errors.within(length).map(to_deg)));
         Self {
             heading_rmse_deg: to_deg(errors.heading),
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
             overshoot_error_deg: errors.overshoot.map(to_deg),
-            horizon_rmse_deg: horizon.map(|(length, error)| (format!("{length:.0}"), error.map(to_deg))).collect(),
+            horizon_rmse_deg: horizon.into(),
             band_coverage_95: on.coverage().map(|own| own.share()),
             band_width_95_deg: on.width().map(to_deg),
             with_own_bias_deg: errors.with_moment.map(|with| to_deg(with.bias)),
@@ -111,6 +113,24 @@ pub struct RecordComparison {
     pub after: ReplayResult,
 }
 
+impl RecordComparison {
+    /// Heading errors against how far ahead the replays go: of the windows of which the record holds more than one,
+    /// then of the whole record.
+    pub fn horizons(&self) -> Vec<HorizonEntry> {
+        let [before, after] = [&self.before.errors, &self.after.errors];
+        let time = &self.before.replay.time;
+        let shorter = before.windows.iter().filter(|window| is_shorter(window.length, time));
+        let windows = shorter.filter_map(|window| Some((window.length, window.heading?, after.within(window.length)?)));
+        let all = windows.chain([(duration(time), before.heading, after.heading)]);
+        let entry = |(horizon_s, before, after)| HorizonEntry {
+            horizon_s,
+            before_deg: to_deg(before),
+            after_deg: to_deg(after),
+        };
+        all.map(entry).collect()
+    }
+}
+
 /// Heading (rad) and yaw rate (rad/s) with which a record may begin: as the base has it, without yaw rate, as measured.
 pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
     let Some(first) = trial.observed_rows().next() else { return Vec::new() };
@@ -126,27 +146,28 @@ pub fn before(
     trial: &Trial,
     record: &PreparedRecord,
     base: &FirstOrder,
-    thorough: bool,
+    depth: ReplayDepth,
 ) -> Result<ReplayResult, TraceError> {
     let refuse = || TraceError::Replay { trial: trial.name().to_owned() };
     let replay = replay(trial, base).ok_or_else(refuse)?;
     let average = Average { members: vec![(1.0, Box::new(Response::first_order_ship(*base)))] };
-    let windows = match thorough {
-        true => average.replay(record, &[replay.initial()], true).map(|replayed| replayed.windows),
-        false => None,
+    let windows = match depth {
+        ReplayDepth::Heading => None,
+        _ => average.replay(record, &[replay.initial()], depth).map(|replayed| replayed.windows),
     };
-    Ok(result(trial, replay, windows.unwrap_or_default(), thorough))
+    Ok(result(trial, replay, windows.unwrap_or_default(), depth))
 }
 
 impl AveragedModel<'_> {
-    /// Base and average on a record that neither was fitted to; where it is `thorough`, with moments of the record as
-    /// well.
+    /// Base and average on a record that neither was fitted to; where it is `thorough`, with moments of the record and
+    /// with the growth of the error as well.
     pub fn compared(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
         let record = PreparedRecord::whole(trial);
-        let mut before = before(trial, &record, base, true)?;
+        let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
+        let mut before = before(trial, &record, base, depth)?;
         let mut starts = starts(trial, base);
         starts.push(before.replay.initial());
-        let mut after = self.on(trial, &record, &starts, true)?;
+        let mut after = self.on(trial, &record, &starts, depth)?;
         if let Some(moment) = thorough.then(|| RecordMoment::new(&record, base)).flatten() {
             before.errors.with_moment = Some(moment.of_base(&before.replay));
             after.errors.with_moment = Some(moment.of_average(&self.average(), &after.replay));
@@ -170,7 +191,7 @@ impl AveragedModel<'_> {
         trial: &Trial,
         record: &PreparedRecord,
         starts: &[[f64; 2]],
-        thorough: bool,
+        depth: ReplayDepth,
     ) -> Result<ReplayResult, TraceError> {
         let refuse = || TraceError::Replay { trial: trial.name().to_owned() };
         let mut all = starts.to_vec();
@@ -178,14 +199,15 @@ impl AveragedModel<'_> {
             all.extend(self.members.iter().map(|(_, fit)| fit.initial[number]));
         }
         let AverageReplay { replay, windows, members } =
-            self.average().replay(record, &all, thorough).ok_or_else(refuse)?;
+            self.average().replay(record, &all, depth).ok_or_else(refuse)?;
         let band = band::of(self, trial, &replay, &members);
-        Ok(ReplayResult { band, ..result(trial, replay, windows, thorough) })
+        Ok(ReplayResult { band, ..result(trial, replay, windows, depth) })
     }
 }
 
 /// Errors of a replay.
-fn result(trial: &Trial, replay: Replay, windows: [Option<Vec<f64>>; HORIZONS.len()], thorough: bool) -> ReplayResult {
+fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: ReplayDepth) -> ReplayResult {
+    let thorough = depth != ReplayDepth::Heading;
     let first = trial.observed_rows().next().unwrap_or(0);
     let rows = replay.observed().count();
     let finite = |values: &[f64]| -> Vec<f64> { values.iter().copied().filter(|x| x.is_finite()).collect() };
@@ -199,7 +221,7 @@ fn result(trial: &Trial, replay: Replay, windows: [Option<Vec<f64>>; HORIZONS.le
         rows,
         yaw_rate,
         overshoot: if thorough { overshoot_error(trial, &replay) } else { None },
-        horizon: windows.map(|residual| root_mean_square(&finite(&residual?))),
+        windows,
         with_moment: None,
     };
     ReplayResult { replay, errors, band: None }

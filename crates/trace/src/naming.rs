@@ -26,6 +26,14 @@ pub struct EffectNaming {
     pub probability: f64,
 }
 
+impl EffectNaming {
+    /// Whether a term is a form of it, or of one of its group.
+    pub fn includes(&self, name: &TermName) -> bool {
+        let mut group = self.aliases.iter().chain([&self.term]);
+        group.any(|member| (member.0, member.2) == (name.0, name.2))
+    }
+}
+
 /// An effect with the one record in which it acts.
 type EffectKey = (&'static str, Option<usize>);
 

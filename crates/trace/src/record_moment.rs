@@ -11,7 +11,7 @@ use ship::{FirstOrder, Polyline};
 
 use crate::average::Average;
 use crate::record::PreparedRecord;
-use crate::replay_errors::MomentErrors;
+use crate::replay_errors::{MomentErrors, ReplayDepth};
 
 /// Evenly spaced instants between which a slow moment runs straight.
 const INSTANTS: usize = 5;
@@ -97,7 +97,7 @@ impl<'a> RecordMoment<'a> {
                 let next = std::array::from_fn(|k| moment[k] + share * step[k]);
                 let Some(rudder) = self.rudder(next) else { break };
                 record.rudder = rudder;
-                let replayed = average.replay(&record, &[best.initial()], false);
+                let replayed = average.replay(&record, &[best.initial()], ReplayDepth::Heading);
                 let Some(found) = replayed.filter(|all| !all.runs_away()).map(|all| all.replay) else { break };
                 if found.rms() < error {
                     (error, best, moment) = (found.rms(), found, next);
@@ -184,7 +184,7 @@ mod tests {
         for inverse_time in [BASE[0], -0.01] {
             let base = FirstOrder { inverse_T: inverse_time, K_over_T: BASE[1], rudder_bias: BASE[2] };
             let moment = RecordMoment::new(&record, &base).expect("enough headings");
-            let replay = before(&trial, &record, &base, false).expect("finite").replay;
+            let replay = before(&trial, &record, &base, ReplayDepth::Heading).expect("finite").replay;
             let average = Average { members: vec![(1.0, Box::new(Response::first_order_ship(base)))] };
             let [exact, replayed] = [moment.of_base(&replay), moment.of_average(&average, &replay)].map(deg);
             for (exact, replayed) in exact.into_iter().zip(replayed) {

@@ -1,5 +1,5 @@
 //! How far a response is from a record: the recorded rudder replayed from the fitted initial state over all of it, and
-//! replays restarted every 20 and 60 s. Only initial states are fitted here, never a parameter.
+//! replays restarted every so many seconds. Only initial states are fitted here, never a parameter.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -18,8 +18,14 @@ use crate::record::PreparedRecord;
 /// Steps of the solver per shortest time constant: the heading is then exact to 10⁻⁵ of the response.
 const SOLVER_STEPS: f64 = 4.0;
 
-/// Lengths of the windows after which a replay is restarted, s.
+/// Lengths of the windows after which a replay is restarted on every record, s.
 pub const HORIZONS: [f64; 2] = [20.0, 60.0];
+
+/// Shortest of the windows that show how the error grows, s; every further one is twice as long.
+const SHORTEST: f64 = 5.0;
+
+/// Share of a window below which a last piece belongs to the window before.
+const LAST_PIECE: f64 = 0.5;
 
 /// Fewest headings in a window: two are used up by its initial state.
 const FEWEST: usize = 4;
@@ -43,6 +49,15 @@ pub struct MomentErrors {
     pub slow: f64,
 }
 
+/// Error of replays that are restarted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WindowError {
+    /// Length of a window, s.
+    pub length: f64,
+    /// Root mean square heading error, rad; `None` when a window holds too few headings.
+    pub heading: Option<f64>,
+}
+
 /// Errors of a response on one record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReplayErrors {
@@ -54,11 +69,53 @@ pub struct ReplayErrors {
     pub yaw_rate: Option<f64>,
     /// Mean absolute error of the overshoot angles, rad, where both are a zig-zag.
     pub overshoot: Option<f64>,
-    /// Root mean square heading error of replays restarted every so many seconds, rad; `None` when the windows hold too
-    /// few headings.
-    pub horizon: [Option<f64>; HORIZONS.len()],
+    /// Errors of replays restarted every so many seconds, by the lengths of their windows.
+    pub windows: Vec<WindowError>,
     /// The heading error with a moment of the record fitted, on records that were not fitted.
     pub with_moment: Option<MomentErrors>,
+}
+
+impl ReplayErrors {
+    /// Root mean square heading error of replays restarted every so many seconds, rad.
+    pub fn within(&self, length: f64) -> Option<f64> {
+        self.windows.iter().find(|window| window.length == length)?.heading
+    }
+}
+
+/// What of a replay is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ReplayDepth {
+    /// The heading of the whole replay.
+    Heading,
+    /// Yaw rate, overshoots, and replays restarted after each of [`HORIZONS`] as well.
+    Windows,
+    /// Replays restarted after 5, 10, 20 s and so on as well, as long as the record holds more than one window.
+    Growth,
+}
+
+impl ReplayDepth {
+    /// Lengths of the windows on a record with headings at these instants, s, from short to long.
+    pub fn lengths(self, time: &[f64]) -> Vec<f64> {
+        let doubled = std::iter::successors(Some(SHORTEST), |length| Some(2.0 * length));
+        let mut lengths: Vec<f64> = match self {
+            Self::Heading => Vec::new(),
+            Self::Windows => HORIZONS.into(),
+            Self::Growth => doubled.take_while(|length| is_shorter(*length, time)).chain(HORIZONS).collect(),
+        };
+        lengths.sort_by(f64::total_cmp);
+        lengths.dedup();
+        lengths
+    }
+}
+
+/// Whether a record with headings at these instants holds more than one window of a length.
+pub fn is_shorter(length: f64, time: &[f64]) -> bool {
+    (1.0 + LAST_PIECE) * length <= duration(time)
+}
+
+/// Seconds from the first to the last of some instants.
+pub fn duration(time: &[f64]) -> f64 {
+    time.last().zip(time.first()).map_or(0.0, |(last, first)| last - first)
 }
 
 /// Replays a record whole from the best initial state near one of the `starts`. `None` when no replay is finite.
@@ -131,9 +188,8 @@ pub fn restarted(ship: &dyn ReplayedShip, record: &PreparedRecord, initial: [f64
     let mut from = 0;
     while from < count {
         let end = record.time[from] + length;
-        // A last piece that is no whole window belongs to the one before.
         let mut to = record.time.partition_point(|&t| t < end);
-        if record.time[count - 1] < end + 0.5 * length {
+        if record.time[count - 1] < end + LAST_PIECE * length {
             to = count;
         }
         // The window ends where the next one begins.

@@ -29,6 +29,7 @@ use crate::structures::Structures;
 use crate::words;
 
 mod left;
+mod prior_odds;
 
 /// Everything that is said something about.
 pub struct TraceParts<'a> {
@@ -102,6 +103,7 @@ impl TraceParts<'_> {
                 probability: PROBABILITY,
                 probability_of_time: PROBABILITY_OF_TIME,
                 named_from: self.settings.probability,
+                odds_factors: prior_odds::FACTORS.into(),
                 rule: self.settings.rule.as_str().into(),
             },
             unexplained: UnexplainedEntry {
@@ -230,6 +232,7 @@ impl TraceParts<'_> {
                 alias_forms,
                 parameters: self.of_term(one.term),
                 probability: one.probability,
+                probability_by_prior_odds: self.by_prior_odds(|name| one.includes(name)),
                 delta_bic: -2.0 * support.gain,
                 p_value: support.p_value,
                 evidence: words::evidence(one, support.gain, asked, self.trials),
@@ -260,7 +263,8 @@ impl TraceParts<'_> {
             aliases: Vec::new(),
             alias_forms: Vec::new(),
             parameters: parameters.collect(),
-            probability: 1.0 / (1.0 + (-0.5 * gain).exp() * (1.0 - PROBABILITY) / PROBABILITY),
+            probability: prior_odds::of_gain(0.5 * gain, 1.0),
+            probability_by_prior_odds: prior_odds::FACTORS.map(|factor| prior_odds::of_gain(0.5 * gain, factor)).into(),
             delta_bic: -gain,
             p_value: (-0.5 * gain).exp().min(1.0),
             evidence: words::waves(sd, sea.frequency),
@@ -302,6 +306,7 @@ impl TraceParts<'_> {
             id: id.into(),
             outcome,
             probability,
+            probability_by_prior_odds: self.by_prior_odds(|name| name.0 == id),
             delta_bic: best.and_then(|best| best.delta_bic),
             p_value: best.and_then(|best| best.p_value),
             reason: reason.map(String::from),
@@ -354,7 +359,9 @@ impl TraceParts<'_> {
             file: words::file_of(trial),
             before: (&one.before).into(),
             after: (&one.after).into(),
+            horizons: Vec::new(),
         };
+        let judged = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..of((trial, on)) };
         let left_out = self.trials.iter().zip(self.left_out).filter_map(|(trial, one)| Some((trial, one.as_ref()?)));
         ErrorEntry {
             kept_base: match (self.remainder.is_founded, self.no_nearer) {
@@ -362,8 +369,8 @@ impl TraceParts<'_> {
                 (true, no_nearer) => no_nearer.then(|| words::NO_NEARER.into()),
             },
             identification: self.trials.iter().zip(self.identification).map(of).collect(),
-            validation: self.validation.0.iter().zip(self.validation.1).map(of).collect(),
-            leave_one_out: left_out.map(of).collect(),
+            validation: self.validation.0.iter().zip(self.validation.1).map(judged).collect(),
+            leave_one_out: left_out.map(judged).collect(),
         }
     }
 

@@ -250,6 +250,7 @@ mod tests {
             alias_forms: Vec::new(),
             parameters: BTreeMap::new(),
             probability: 1.0,
+            probability_by_prior_odds: Vec::new(),
             delta_bic,
             p_value: 0.0,
             evidence: String::new(),
@@ -268,7 +269,7 @@ mod tests {
             with_own_bias_deg: None,
             with_own_moment_deg: None,
         };
-        BeforeAfter { file: String::new(), before: own(0), after: own(1) }
+        BeforeAfter { file: String::new(), before: own(0), after: own(1), horizons: Vec::new() }
     }
 
     fn sentence(effects: &[EffectEntry], error: &ErrorEntry) -> String {

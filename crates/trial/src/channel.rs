@@ -169,7 +169,7 @@ impl Channel {
     }
 
     /// What it is called in messages.
-    pub(crate) fn spoken(self) -> &'static str {
+    pub fn spoken(self) -> &'static str {
         match self {
             Channel::YawRate => "yaw rate",
             Channel::Rudder => "rudder angle",

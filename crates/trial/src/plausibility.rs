@@ -9,7 +9,7 @@ mod alternation;
 pub(crate) mod derivative;
 mod motion;
 pub(crate) mod readings;
-mod regression;
+pub(crate) mod regression;
 mod rudder;
 
 use document::{Code, Warning};

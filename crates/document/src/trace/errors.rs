@@ -28,6 +28,21 @@ pub struct BeforeAfter {
     pub before: ErrorsEntry,
     /// The average of the structures.
     pub after: ErrorsEntry,
+    /// Heading error against how far ahead a replay goes, the shortest first and the whole record last; nothing on
+    /// records that were fitted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub horizons: Vec<HorizonEntry>,
+}
+
+/// Root mean square heading errors of replays that begin anew every so many seconds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct HorizonEntry {
+    /// Seconds from one beginning to the next.
+    pub horizon_s: f64,
+    /// Of the best first-order response.
+    pub before_deg: f64,
+    /// Of the average of the structures.
+    pub after_deg: f64,
 }
 
 /// Errors of one model on one record.

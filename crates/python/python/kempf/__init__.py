@@ -25,7 +25,7 @@ from ._quantity import Quantity
 from ._record import Record, read
 from ._simulate import Indices, Motion, Simulated, Truth, simulate
 from ._study import StudyResult, run
-from ._trace import Candidate, Effect, Errors, Parameter, Structure, TraceResult, trace
+from ._trace import Candidate, Effect, Errors, Horizon, Parameter, Structure, TraceResult, trace
 
 __all__ = [
     "BenchResult",
@@ -37,6 +37,7 @@ __all__ = [
     "FindResult",
     "FitResult",
     "Found",
+    "Horizon",
     "Indices",
     "KempfError",
     "KempfWarning",

@@ -55,6 +55,8 @@ class Effect:
     #: −2 log of the ratio of the evidence with it to that without; negative where it is better.
     delta_bic: float
     p_value: float
+    #: The probability with the prior odds of all effects together multiplied, by the factor.
+    probability_by_prior_odds: Mapping[float, float]
     #: The evidence in a sentence.
     evidence: str
 
@@ -82,6 +84,16 @@ class Structure:
 
 
 @dataclass(frozen=True)
+class Horizon:
+    """Root mean square heading errors of replays that begin anew, deg."""
+
+    #: Seconds from one beginning to the next.
+    horizon_s: float
+    before_deg: float
+    after_deg: float
+
+
+@dataclass(frozen=True)
 class Errors:
     """Heading errors of a record before and after, deg; only the initial state is fitted to a held-out one."""
 
@@ -92,6 +104,8 @@ class Errors:
     before_deg: float
     #: The same with the average of the structures.
     after_deg: float
+    #: The errors against how far ahead a replay goes, up to the whole record; none of a record that was fitted.
+    horizons: tuple[Horizon, ...]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -219,12 +233,15 @@ def _result(native: _kempf.Trace) -> TraceResult:
     def terms(entries: Iterable[Mapping[str, Any]]) -> tuple[tuple[str, str], ...]:
         return tuple((one["id"], one["form"]) for one in entries)
 
+    factors = document["prior"]["odds_factors"]
+
     def effect(entry: Mapping[str, Any]) -> Effect:
         names = ("id", "form", "equation", "only", "probability", "delta_bic", "p_value", "evidence")
         return Effect(
             parameters={symbol: Parameter.of(value) for symbol, value in entry["parameters"].items()},
             aliases=tuple(entry["aliases"]),
             alias_forms=terms(entry["alias_forms"]),
+            probability_by_prior_odds=dict(zip(factors, entry.get("probability_by_prior_odds", ()))),
             **{name: entry[name] for name in names},
         )
 
@@ -234,7 +251,13 @@ def _result(native: _kempf.Trace) -> TraceResult:
     def errors(use: str) -> list[Errors]:
         rmse = "heading_rmse_deg"
         return [
-            Errors(one["file"], use == "validation", one["before"][rmse], one["after"][rmse])
+            Errors(
+                one["file"],
+                use == "validation",
+                one["before"][rmse],
+                one["after"][rmse],
+                tuple(Horizon(**entry) for entry in one.get("horizons", ())),
+            )
             for one in document["error"][use]
         ]
 

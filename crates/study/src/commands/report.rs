@@ -92,7 +92,7 @@ fn report(stored: &Path, request: &ReportRequest, common: &Common) -> Result<(),
             let (folder, theme) = (held()?, theme()?);
             let (document, text) = read_document(&stored.join(PREDICT), ::predict::document::SCHEMA)?;
             let predicted = PredictDocument::with_curves(document, read_json(&stored.join(CURVES), "predict")?.0);
-            predict::show(&folder, &predicted, &text, Some(&theme), common, &[])?
+            predict::show(&folder, &predicted, &text, Some(&theme), common, &predicted.warnings)?
         }
         () if has(BENCH) => bench::show(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?,
         () => rebuild(stored, style, common)?,

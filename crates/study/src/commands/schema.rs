@@ -23,6 +23,7 @@ use crate::documents::answers::{
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
 use crate::documents::fit_curves::FitCurves;
+use crate::documents::inspect::InspectAnswer;
 use crate::documents::truth::TruthDocument;
 use crate::options::{Common, Described};
 use crate::screen;
@@ -59,6 +60,7 @@ pub fn schema(what: Described) -> Schema {
         Described::Study => answer::<StudyAnswer>(),
         Described::Shard => answer::<ShardAnswer>(),
         Described::Find => answer::<FindAnswer>(),
+        Described::Inspect => answer::<InspectAnswer>(),
         Described::Check => answer::<CheckAnswer>(),
         Described::List => answer::<ListAnswer>(),
         Described::Simulate => answer::<SimulateAnswer>(),

@@ -8,6 +8,7 @@ pub mod curves;
 pub mod error;
 pub mod find;
 pub mod fit_curves;
+pub mod inspect;
 pub mod missing_moment;
 pub mod prior;
 pub mod truth;

@@ -18,7 +18,7 @@ use super::record_figures::{stability, steady_turns};
 use super::trace_figures as figures;
 use super::trace_hero;
 use super::trace_tables as tables;
-use super::{held_out, indices, overshoots, staircase};
+use super::{held_out, horizon, indices, overshoots, prior_odds, staircase};
 use crate::documents::curves::TraceCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
@@ -50,6 +50,7 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     behind += &odd(document);
     behind +=
         &document.earlier_trials.as_ref().map_or_else(String::new, |earlier| format!("\n{}", prior::sentence(earlier)));
+    behind += &prior_odds::sentence(document).map_or_else(String::new, |sentence| format!("\n{sentence}"));
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
@@ -187,12 +188,12 @@ fn placed(
         None => {}
     }
     placed.put("overshoots", overshoots::figure(document, curves));
-    placed.put(
-        "held out",
-        hero.into_iter().chain(held_out::residuals(document, curves)).chain(held_out::errors(document)),
-    );
-    placed.put("records", records);
+    placed.put("held out", hero);
+    placed.put("held out", held_out::residuals(document, curves));
+    placed.put("held out", horizon::figure(document));
+    placed.put("records", held_out::errors(document).into_iter().chain(records));
     placed.put("evidence", [figures::evidence(document)]);
+    placed.put("prior odds", prior_odds::figure(document));
     placed.put("innovations", figures::innovations(document, curves));
     placed.put("moments", figures::moments(document, curves));
     placed.put("further", turns.map(|(curves, seen)| {

@@ -80,13 +80,18 @@ impl StoredModel {
         calm: bool,
         warnings: &mut Warnings,
     ) -> Result<Self, Failure> {
-        let StoredAnswer { mut ships, verdict, records } = ships_of(shown, text)?;
+        let StoredAnswer { mut ships, verdict, disbelief, records } = ships_of(shown, text)?;
         // A trace has one answer.
         let asked = asked.filter(|_| !ships.contains_key(TRACE));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
         if asked.is_none() && ships.len() > 1 {
             let text = format!("the answer of {method} is used; --method names another");
             warnings.push(Code::Answer, Source::File(shown.to_owned()), text);
+        }
+        if let Some(because) = disbelief {
+            let text =
+                format!("no K and T can be taken from its records, so its predictions are worth nothing: {because}");
+            warnings.push(Code::NotIdentified, Source::File(shown.to_owned()), text);
         }
         let known = ships.remove(&method).expect("it was found there");
         if let Some(late) = known.rudder_logged_late() {
@@ -222,14 +227,10 @@ pub fn predict(
         return Err(Failure::about(&file, error));
     }
     let loading = OtherLoading::name(taken.as_ref().map(|(.., load)| load));
-    let (mut replays, mut corrections) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
     let replays_of = ReplayedModels { full: models, ballast, loading: &loading, scale, draws };
-    for (record, current) in &records {
-        let (replayed, correction) = replays_of.beside(record, *current, warnings)?;
-        replays.push(replayed);
-        corrections.push(correction);
-        steps.advance();
-    }
+    let replayed = records.iter().map(|(record, current)| replays_of.beside(record, *current, warnings));
+    let replayed: Result<Vec<_>, Failure> = replayed.inspect(|_| steps.advance()).collect();
+    let (replays, corrections): (Vec<_>, Vec<_>) = replayed?.into_iter().unzip();
     steps.finish();
     let weight = 1.0 / models.len() as f64;
     let mut document = PredictDocument {
@@ -248,12 +249,18 @@ pub fn predict(
         hull: !mixture.first().hulls.is_empty(),
         load: taken.as_ref().map(|(.., load)| load.clone()),
         seen: mixture.first().seen,
+        warnings: of_models(warnings),
         ..PredictDocument::default()
     };
     if request.form {
         fill_form(&mut document, particulars, &records, &corrections, declared);
     }
     Ok(document)
+}
+
+/// What is said of files, the worst first; a record is read before, and says what it has to say then.
+fn of_models(warnings: &Warnings) -> Vec<Warning> {
+    warnings.ranked().into_iter().filter(|warning| matches!(warning.source, Source::File(_))).collect()
 }
 
 /// Models with earlier trials that they have not seen, and what is said of each; nothing where there are none of these.

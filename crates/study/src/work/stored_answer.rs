@@ -23,6 +23,8 @@ pub struct StoredAnswer {
     pub ships: BTreeMap<String, IdentifiedShip>,
     /// The method of a fit to take.
     pub verdict: Option<String>,
+    /// Why no K and T can be taken from the records of a fit, where that is its verdict.
+    pub disbelief: Option<String>,
     /// The records that are in it, also by its own priors: their files by their SHA-256.
     pub records: BTreeMap<String, String>,
 }
@@ -62,7 +64,9 @@ pub fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
         _ => serde_json::from_value(known).map_err(unread)?,
     };
     let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id)).map(str::to_owned);
-    Ok(StoredAnswer { ships, verdict, records: records_of(&value, records) })
+    let because = value["verdict"]["because"].as_str().unwrap_or("its verdict does not say why");
+    let disbelief = (value["verdict"]["believe"] == "no").then(|| because.to_owned());
+    Ok(StoredAnswer { ships, verdict, disbelief, records: records_of(&value, records) })
 }
 
 /// The records that are in a document under `key`, and those of its priors: their files by their SHA-256.

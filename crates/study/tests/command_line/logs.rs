@@ -42,6 +42,26 @@ fn the_zig_zag_of_a_log_is_found_and_asked_for_where_there_are_two() {
     desk.run(&["fit", "day.csv", "day.csv", "--trial", "1"]).is_refused(2, &["--trial is for one record"]);
 }
 
+/// Every channel with its source and steps; a sign that is turned is shown where a fit is refused.
+#[test]
+fn a_log_is_inspected_before_anything_is_fitted() {
+    let desk = Desk::new();
+    let row = |line: &str| match line.split(',').collect::<Vec<&str>>()[..3] {
+        [t, psi, "rudder_deg"] => format!("{t},{psi},Ruder (Grad)\n"),
+        [t, psi, delta] => format!("{t},{psi},{}\n", -delta.parse::<f64>().expect("a number")),
+        _ => panic!("three columns"),
+    };
+    desk.file("run.csv", zig_zag_csv().lines().map(row).collect::<String>());
+    desk.run(&["fit", "run.csv"]).is_refused(2, &["sign looks flipped"]);
+    let run = desk.run(&["inspect", "run.csv"]);
+    assert!(run.is_done().err.contains("as one record it is refused: the rudder sign looks flipped"), "{}", run.err);
+    let rudder = run.out.lines().find(|line| line.starts_with("rudder angle")).expect("a row");
+    assert!(rudder.contains("Ruder (Grad)") && rudder.contains("  port"), "{rudder}");
+    let table = desk.run(&["inspect", "run.csv", "--format", "csv", "--quiet"]);
+    assert!(table.is_done().out.starts_with("channel,source,readings,every [s]"), "{}", table.out);
+    desk.run(&["inspect", "none.csv"]).is_refused(2, &["none.csv"]);
+}
+
 #[test]
 fn a_log_without_a_zig_zag_is_said_to_have_none() {
     let desk = Desk::new();

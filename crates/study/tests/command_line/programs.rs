@@ -51,6 +51,7 @@ method.integral-least-squares = {}
         (&["report", "a"], "study/1"),
         (&["check", &scenario, "--resolved"], "check/1"),
         (&["find", "run.csv"], "find/1"),
+        (&["inspect", "run.csv"], "inspect/1"),
         (&["sidecar", "other.csv"], "sidecar/1"),
         (&["simulate", "small.toml", "--replicate", "all", "--out", "r"], "simulate/1"),
         (&["list", "effects"], "list/1"),

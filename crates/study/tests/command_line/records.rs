@@ -63,6 +63,12 @@ fn no_answer_is_taken_from_a_heading_that_the_rudder_does_not_explain() {
     assert!(run.is_done().out.starts_with("No K and T can be taken from this "), "{}", run.out);
     let verdict = &desk.json("run-fit/fit.json")["verdict"];
     assert!(verdict["believe"] == "no" && verdict["because"].is_string(), "{verdict}");
+    let because = verdict["because"].as_str().expect("a reason");
+    let run = desk.run(&["predict", "run-fit/fit.json", "--draws", "60", "--figures", "none"]);
+    assert!(run.is_done().err.contains("no K and T can be taken from its records"), "{}", run.err);
+    let warning = &desk.json("run-fit-predict/predict.json")["warnings"][0];
+    assert_eq!((&warning["code"], &warning["severity"]), (&"not-identified".into(), &"doubt".into()));
+    assert!(warning["text"].as_str().is_some_and(|text| text.ends_with(because)), "{warning}");
 }
 
 #[test]

@@ -33,6 +33,8 @@ fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
     for effect in json["effects"].as_array().expect("a list") {
         assert!(["probability", "delta_bic", "p_value"].iter().all(|key| effect[*key].is_number()), "{effect}");
         assert!(effect["evidence"].as_str().is_some_and(|text| text.len() > 20));
+        let by_odds = effect["probability_by_prior_odds"].as_array().map(Vec::len);
+        assert_eq!(by_odds, json["prior"]["odds_factors"].as_array().map(Vec::len), "{effect}");
     }
     let structures = json["structures"].as_array().expect("a list");
     let weights: Vec<f64> = structures.iter().filter_map(|one| one["weight"].as_f64()).collect();
@@ -50,10 +52,17 @@ fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
         assert!(record["after"]["band_width_95_deg"].as_f64().is_some_and(|width| width > 0.0), "{record}");
     }
     for (key, is_unseen) in [(fitted, false), (judged, true)] {
-        let mut errors = json.pointer(key).and_then(Value::as_array).into_iter().flatten();
+        let errors = || json.pointer(key).and_then(Value::as_array).into_iter().flatten();
+        for on in errors() {
+            let error = on["horizons"].as_array().and_then(|all| all.iter().find(|error| error["horizon_s"] == 20.0));
+            let expected = is_unseen.then(|| on["after"]["horizon_rmse_deg"]["20"].as_f64());
+            assert_eq!(error.map(|error| error["after_deg"].as_f64()), expected, "{on}");
+        }
         let is_there = |name: &str, on: &Value| on[name].is_f64() == is_unseen;
         let names = ["with_own_bias_deg", "with_own_moment_deg"];
-        assert!(errors.all(|on| names.iter().all(|name| ["before", "after"].iter().all(|at| is_there(name, &on[at])))));
+        assert!(
+            errors().all(|on| names.iter().all(|name| ["before", "after"].iter().all(|at| is_there(name, &on[at]))))
+        );
     }
     assert!(json["next_trial"].as_str().is_some_and(|text| !text.is_empty()));
     assert!(json["model"]["parameters"].as_array().is_some_and(|all| all.len() >= 3));
@@ -157,9 +166,10 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     assert_eq!(
         shown.matches("<figure>").count(),
         5,
-        "what each effect carries, overshoots, and of held-out records examples, residuals and errors"
+        "what each effect carries, overshoots, and of held-out records examples, residuals and errors ahead"
     );
-    assert!(shown.matches("<table").count() == 1 && folded.contains(">Evidence</h2></summary>"));
+    assert!(report.contains("(horizon.png)") && report.contains("(prior-odds.png)"), "{report}");
+    assert!(shown.matches("<table").count() == 2 && folded.contains(">Evidence</h2></summary>"));
     let caption = "(a), (b): a record that was fitted.";
     assert_eq!((report.matches(caption).count(), page.matches(caption).count()), (1, 1));
     desk.draw(&["trace", "run.csv", "--out", "alone", "--quiet"]).is_done();

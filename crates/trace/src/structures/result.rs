@@ -107,9 +107,64 @@ impl Structures {
         there.map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
     }
 
+    /// The same with the prior odds of every term that `is_weighed` times a factor: the weight of a structure changes
+    /// by the factor for each of its terms. Structures that the search did not refit have no part in it.
+    pub fn of_any_with_odds(
+        &self,
+        factor: f64,
+        is_weighed: impl Fn(&TermName) -> bool,
+        is_one: impl Fn(&TermName) -> bool,
+    ) -> f64 {
+        let (mut there, mut all) = (0.0, 0.0);
+        for (weight, names) in self.weighed_names() {
+            let odds: f64 = names.iter().filter(|name| is_weighed(name)).map(|_| factor).product();
+            all += weight * odds;
+            there += if names.iter().any(&is_one) { weight * odds } else { 0.0 };
+        }
+        if all > 0.0 { (there / all).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
     /// Weights of all structures with the names of their terms.
     fn weighed_names(&self) -> impl Iterator<Item = (f64, Vec<TermName>)> + '_ {
         let own = self.all.iter().map(|one| (one.weight, names(&one.fit.structure)));
         own.chain(self.others.iter().cloned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DAMPING: TermName = ("nonlinear_damping", "r³", None);
+    const LAG: TermName = ("steering_lag", "dead time", None);
+
+    fn structures(others: &[(f64, &[TermName])]) -> Structures {
+        Structures {
+            all: Vec::new(),
+            probabilities: BTreeMap::new(),
+            visibility: BTreeMap::new(),
+            support: BTreeMap::new(),
+            others: others.iter().map(|(weight, names)| (*weight, names.to_vec())).collect(),
+        }
+    }
+
+    /// Alone, odds are multiplied: p' = f p/(1 − p + f p). Together every term counts: with weights 0.5, 0.2, 0.2 and
+    /// 0.1 of none, damping, lag and both, ten times the odds make 0.5, 2, 2 and 10 of them.
+    #[test]
+    fn prior_odds_move_the_weights_term_by_term() {
+        let with = |structures: &Structures, factor, asked: Option<TermName>| {
+            structures.of_any_with_odds(factor, |name| Some(*name) != asked, |name| *name == DAMPING)
+        };
+        let near = |value: f64, expected: f64| assert!((value - expected).abs() < 1e-15, "{value} {expected}");
+        let alone = structures(&[(0.7, &[]), (0.3, &[DAMPING])]);
+        for factor in [0.1, 1.0, 3.0, 10.0] {
+            near(with(&alone, factor, None), factor * 0.3 / (0.7 + factor * 0.3));
+        }
+        near(with(&alone, 10.0, Some(DAMPING)), 0.3);
+        let both = structures(&[(0.5, &[]), (0.2, &[DAMPING]), (0.2, &[LAG]), (0.1, &[DAMPING, LAG])]);
+        near(with(&both, 1.0, None), both.of_effect(DAMPING.0, None));
+        near(with(&both, 10.0, None), 12.0 / 14.5);
+        near(with(&both, 10.0, Some(LAG)), 3.0 / 3.7);
+        near(with(&structures(&[]), 10.0, None), 0.0);
     }
 }

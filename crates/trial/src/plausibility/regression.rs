@@ -10,7 +10,7 @@ const ROWS: usize = 2000;
 
 /// One signal explained by another after the same nuisance signals were taken out of both.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PartialSlope {
+pub(crate) struct PartialSlope {
     /// Change of the one per change of the other.
     pub value: f64,
     /// Share of the remaining sum of squares it explains, 0 to 1.
@@ -21,7 +21,7 @@ pub(super) struct PartialSlope {
 ///
 /// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ, over the rows with a heading; linear, so initial heading, initial yaw rate
 /// and rudder bias need not be known. `None` when nothing is left to explain, or numbers overflow.
-pub(super) fn rudder_on_heading(trial: &Trial) -> Option<PartialSlope> {
+pub(crate) fn rudder_on_heading(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let (mut once, mut twice) = (0.0, vec![0.0]);
     for i in 1..time.len() {
@@ -41,7 +41,7 @@ pub(super) fn rudder_on_heading(trial: &Trial) -> Option<PartialSlope> {
 
 /// K (1/s) of a ship that turns steadily, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a
 /// rudder.
-pub(super) fn turn_with_rudder(trial: &Trial) -> Option<PartialSlope> {
+pub(crate) fn turn_with_rudder(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let mut seen = (0..time.len()).filter(|&i| psi[i].is_finite());
     let (mut with, mut against, mut square) = (0.0, 0.0, 0.0);
@@ -76,14 +76,14 @@ pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<PartialSlope> {
 }
 
 /// Every n-th of some rows, so that at most [`ROWS`] are kept.
-fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterator<Item = usize> {
+pub(crate) fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterator<Item = usize> {
     let every = rows.clone().count() / ROWS + 1;
     rows.step_by(every)
 }
 
 /// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933): the last corner
 /// of R in the QR decomposition of the columns.
-fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<PartialSlope> {
+pub(crate) fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<PartialSlope> {
     let columns = DMatrix::from_row_iterator(rows.len(), N, rows.iter().flatten().copied());
     let before: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     if rows.len() <= N || !before.iter().all(|norm| norm.is_finite()) {

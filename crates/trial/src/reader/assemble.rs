@@ -92,7 +92,7 @@ pub(super) fn series(columns: Columns, offset: f64) -> Vec<Series> {
             .filter(|(_, value)| value.is_finite())
             .map(|(t, value)| (t + offset, value))
             .unzip();
-        Series { channel, time, values }
+        Series { channel, time, values, source: None }
     };
     channels.into_iter().map(readings).collect()
 }
@@ -191,7 +191,7 @@ mod tests {
     fn series_of(channel: Channel, first: f64, step: f64, count: usize, value: impl Fn(f64) -> f64) -> Series {
         let time: Vec<f64> = (0..count).map(|k| first + step * k as f64).collect();
         let values = time.iter().map(|&t| value(t)).collect();
-        Series { channel, time, values }
+        Series { channel, time, values, source: None }
     }
 
     #[test]

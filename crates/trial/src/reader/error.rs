@@ -126,6 +126,12 @@ pub enum Problem {
     /// A format that holds tables, and a file without one.
     #[error("this is {format} without a table: expected {wanted}, found {}; export the table as CSV", listed(found))]
     NoTable { format: &'static str, wanted: &'static str, found: Vec<String> },
+    /// A channel in a cell array of MATLAB.
+    #[error(
+        "column {column} is a cell array, which is no vector of numbers; make it one in MATLAB, `{column} = cell2mat({column})` (of \
+         texts `str2double({column})`), and save the file again"
+    )]
+    CellArray { column: String },
     /// A needed column without a unit.
     #[error(
         "line {line}: the {quantity} `{column}` has no unit, and its values (up to {largest}) fit more than one; name it {}, or write in \

@@ -82,6 +82,9 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
     const AS_CSV: &str = "export it as CSV";
     const MATLAB_7_3: &str = "an HDF5 file (MATLAB 7.3 writes these)";
     const AS_LEVEL_5: &str = "save it with the option `-v7`, or export it as CSV";
+    const CAN_FRAMES: &str = "a log of CAN frames in hexadecimal";
+    const DECODED: &str = "decode it: NMEA 2000 with canboat (`candump2analyzer` for a log of candump, then `analyzer -json`), \
+                           whose lines are read; another bus to a CSV with a column for each quantity";
     if let Some(kind) = Kind::of(&first) {
         let mut all = Vec::new();
         bytes.read_to_end(&mut all).map_err(FileError::from)?;
@@ -97,7 +100,10 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
             let text = String::from_utf8_lossy(start);
             let lines = text.lines().take(LOOKED_AT.1);
             let has_sentence = lines.clone().any(nmea::is_sentence);
-            let format = if has_sentence { None } else { messages::format(lines) };
+            let format = if has_sentence { None } else { messages::format(lines.clone()) };
+            if format.is_none() && !has_sentence && messages::is_can_log(lines) {
+                return refused(CAN_FRAMES, DECODED);
+            }
             let text = Text { bytes, on_disk, is_made: false };
             Ok(match format {
                 _ if has_sentence => Content::Sentences(text),

@@ -13,7 +13,7 @@ use super::lines::{self, Lines};
 use super::messages;
 use super::nmea;
 use super::rudder;
-use super::source::{Log, Series};
+use super::source::{ChannelReadings, Log, Series};
 use super::table;
 use crate::channel::Channel;
 use crate::cleaning;
@@ -100,6 +100,9 @@ impl Log {
         };
         let sha256 = on_disk.map_or(log.sha256, lines::Hash::finish);
         let mut log = Self { path: path.to_path_buf(), sidecar, sha256, ..log };
+        if log.readings.is_empty() {
+            log.readings = ChannelReadings::of_columns(&log.columns, &log.names);
+        }
         if whole {
             log.complete()?;
         }
@@ -134,6 +137,10 @@ impl Log {
         }));
         self.columns = columns(all);
         self.names.extend(joined.names);
+        let is_new =
+            |readings: &ChannelReadings| self.readings.iter().all(|earlier| earlier.channel != readings.channel);
+        let further: Vec<ChannelReadings> = joined.readings.into_iter().filter(is_new).collect();
+        self.readings.extend(further.into_iter().map(|readings| readings.later(offset)));
         self.sha256 = joined_hash(&self.sha256, &joined.sha256);
         self.rows += joined.rows;
         Ok(())
@@ -279,7 +286,7 @@ fn of_series(
 
 /// Channels with instants of their own, each cleaned by itself, and of them the part that the sidecar asks for.
 fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
-    let cleaned = series.into_iter().map(|Series { channel, time, mut values }| {
+    let cleaned = series.into_iter().map(|Series { channel, time, mut values, source }| {
         if channel == Channel::Heading {
             ship::angle::unwrap_heading(&mut values);
         }
@@ -288,9 +295,11 @@ fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
             log.warnings.extend(rudder::hold(&mut own));
             log.warnings.extend(cleaning::clean(&mut own, &mut log.rejected));
         }
-        Series { channel, values: own.channels.remove(&channel).unwrap_or_default(), time: own.time }
+        Series { channel, values: own.channels.remove(&channel).unwrap_or_default(), time: own.time, source }
     });
-    let mut columns = columns(cleaned.collect());
+    let cleaned: Vec<Series> = cleaned.collect();
+    log.readings = cleaned.iter().map(|series| ChannelReadings::of(series, sidecar.part())).collect();
+    let mut columns = columns(cleaned);
     let keep: Vec<bool> = columns.time.iter().map(|t| sidecar.part().contains(t)).collect();
     columns.retain(&keep);
     Log { columns, ..log }

@@ -2,6 +2,7 @@
 //! (JSON lines, or plain lines of hexadecimal bytes), and long tables of time, path, value and source as Signal K
 //! exports them. Every channel comes from one source; which, is said.
 
+mod can;
 mod canboat;
 mod message;
 mod table;
@@ -28,6 +29,8 @@ const SPARSE: f64 = 0.2;
 
 /// Largest rudder in radians, and largest heading, where no line says the unit.
 const LARGEST_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
+
+pub(super) use can::is_log as is_can_log;
 
 /// How the lines of a log are written.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +82,8 @@ impl MessageLog {
         self.messages += 1;
         for &(channel, class, value) in &message.readings {
             let source = MessageSource { channel, class, name: message.source.clone() };
-            let empty = || Series { channel, time: Vec::new(), values: Vec::new() };
+            let name = Some(message.source.clone());
+            let empty = || Series { channel, time: Vec::new(), values: Vec::new(), source: name };
             let signal = self.sources.entry(source).or_insert_with(empty);
             if value.is_finite() && signal.time.last().is_none_or(|last| at > *last) {
                 signal.time.push(at);

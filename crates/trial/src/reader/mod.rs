@@ -17,6 +17,7 @@ mod description;
 mod error;
 mod head;
 mod input;
+mod inspection;
 mod instants;
 mod layout;
 mod limits;
@@ -35,11 +36,12 @@ mod units;
 
 pub use description::describe;
 pub use error::{Problem, ReadError};
+pub use inspection::{ChannelInspection, ChannelRelation};
 pub use limits::{MAX_CELLS, MAX_ROWS, RECORD};
 pub use lines::LONGEST_LINE;
 pub use log::{ReadRecord, read, read_bytes, read_with};
 
-pub use source::Log;
+pub use source::{ChannelReadings, Log};
 
 pub use crate::cells::Separator;
 pub use crate::encoding::Encoding;

@@ -48,7 +48,7 @@ pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
     }
     let mut all = assemble::series(std::mem::take(columns), 0.0);
     for own in all.iter_mut().filter(|own| own.channel == channel) {
-        let mut held = Series { channel, time: Vec::new(), values: Vec::new() };
+        let mut held = Series { time: Vec::new(), values: Vec::new(), ..own.clone() };
         for (place, (&time, &value)) in own.time.iter().zip(&own.values).enumerate() {
             held.time.push(time);
             held.values.push(value);

@@ -1,7 +1,11 @@
-//! MATLAB files of level 5 (`save -v6`, `-v7`) as text: numeric variables of one length are the columns of a table.
-//! Texts, cells, structures, sparse and complex variables are left out, and so is what has more than two dimensions.
+//! MATLAB files of level 5 (`save -v6`, `-v7`) and level 4 (`save -v4`) as text: numeric variables of one length are
+//! the columns of a table. Texts, cells, structures, sparse and complex variables are left out, and so is what has more
+//! than two dimensions; a cell array with the name of a quantity that no other variable holds is refused.
 //!
 //! Source of the layout: MathWorks, "MAT-File Format", chapter 1 (level 5 MAT-files).
+
+mod level4;
+mod variable;
 
 use std::io::Read;
 
@@ -9,9 +13,12 @@ use flate2::read::ZlibDecoder;
 
 use super::text::{self, Written};
 use crate::file::FileError;
-use crate::names;
+use crate::names::{self, ColumnMeaning};
 use crate::reader::error::Problem;
 use crate::reader::{MAX_CELLS, RECORD};
+use variable::{CELL, COMPRESSED, OtherVariable, Scan, Variable, Variables, class_name, contradiction, damaged, size};
+
+pub use level4::starts as is_level4;
 
 /// Length of the head of a file, bytes.
 const HEAD: usize = 128;
@@ -19,77 +26,14 @@ const HEAD: usize = 128;
 /// Bytes of an unpacked variable up to the end of its flags.
 const UP_TO_FLAGS: usize = 24;
 
+/// Bytes of an unpacked variable that hold its name as well, whatever is in it.
+const UP_TO_NAME: usize = 192;
+
 /// Most bytes of all variables when they are unpacked.
 const MOST_UNPACKED: u64 = 8 * MAX_CELLS as u64;
 
-/// Kinds of data elements.
+/// Kind of a data element that holds a variable.
 const MATRIX: u32 = 14;
-const COMPRESSED: u32 = 15;
-
-/// Bytes of a number of a kind of data element; `None` for what is no number.
-fn size(kind: u32) -> Option<usize> {
-    Some(match kind {
-        1 | 2 => 1,
-        3 | 4 => 2,
-        5..=7 => 4,
-        9 | 12 | 13 => 8,
-        _ => return None,
-    })
-}
-
-/// A numeric variable.
-struct Variable {
-    name: String,
-    rows: usize,
-    columns: usize,
-    /// Kind of its numbers, and bytes of each.
-    stored: (u32, usize),
-    /// The numbers, column by column.
-    bytes: Vec<u8>,
-}
-
-/// What is said of other variables.
-const NO_NUMBERS: &str = "a variable without numbers";
-
-/// Bytes that are read from the front.
-struct Scan<'a> {
-    rest: &'a [u8],
-    big_endian: bool,
-}
-
-impl<'a> Scan<'a> {
-    fn take(&mut self, length: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.rest.split_at_checked(length)?;
-        self.rest = rest;
-        Some(taken)
-    }
-
-    fn word(&mut self) -> Option<u32> {
-        let bytes = self.take(4)?.try_into().ok()?;
-        Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
-    }
-
-    /// The next data element: its kind and its bytes. What fills it up to eight bytes is passed over.
-    fn element(&mut self) -> Option<(u32, &'a [u8])> {
-        let tag = self.word()?;
-        if tag >> 16 != 0 {
-            // Short elements stand in their own tag.
-            let data = self.take(4)?;
-            return Some((tag & 0xffff, data.get(..(tag >> 16) as usize)?));
-        }
-        let length = self.word()? as usize;
-        let data = self.take(length)?;
-        if tag != COMPRESSED {
-            let filling = (8 - length % 8) % 8;
-            self.rest = self.rest.get(filling..).unwrap_or_default();
-        }
-        Some((tag, data))
-    }
-}
-
-fn damaged(found: &str) -> Problem {
-    Problem::Damaged { format: "a MATLAB file", found: found.to_owned() }
-}
 
 /// Class of the numbers of a variable, and whether they are complex.
 fn flags(word: u32) -> (u32, bool) {
@@ -100,13 +44,15 @@ fn is_numeric(class: u32) -> bool {
     (6..=15).contains(&class)
 }
 
-/// Reads a variable, or the name and size of one without numbers; `None` where the bytes are none.
-fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, String>> {
+/// Reads a variable, or what one without numbers is; `None` where the bytes are none.
+fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, OtherVariable>> {
     let mut scan = Scan { rest: bytes, big_endian };
     let (_, own) = scan.element()?;
     let (class, complex) = flags(Scan { rest: own, big_endian }.word()?);
     if !is_numeric(class) {
-        return Some(Err(NO_NUMBERS.to_owned()));
+        let name = scan.element().and_then(|_| scan.element()).map(|(_, name)| String::from_utf8_lossy(name));
+        let name = name.map_or_else(String::new, |name| name.into_owned());
+        return Some(Err(OtherVariable { name, what: class_name(class).to_owned() }));
     }
     let mut sizes = Scan { rest: scan.element()?.1, big_endian };
     let mut dimensions = Vec::new();
@@ -117,18 +63,15 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, String>> 
     let sizes = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
     // What MATLAB keeps for objects is a variable of bytes without a name.
     if name.is_empty() || complex || dimensions.len() != 2 {
-        return Some(Err(format!("{name} ({sizes})")));
+        return Some(Err(OtherVariable { name, what: sizes }));
     }
     let (kind, data) = scan.element()?;
-    let stored = (kind, size(kind)?);
     let [rows, columns] = *dimensions.first_chunk()?;
-    (rows.checked_mul(columns)?.checked_mul(stored.1)? == data.len()).then_some(())?;
-    // A row is as good as a column.
-    let (rows, columns) = if rows == 1 { (columns, 1) } else { (rows, columns) };
-    Some(Ok(Variable { name, rows, columns, stored, bytes: data.to_vec() }))
+    (rows.checked_mul(columns)?.checked_mul(size(kind)?)? == data.len()).then_some(())?;
+    Some(Ok(Variable::new(name, [rows, columns], kind, data, big_endian)))
 }
 
-/// Unpacks a variable, with its tag; one that holds no numbers up to its flags alone.
+/// Unpacks a variable, with its tag; one that holds no numbers up to its name alone.
 fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, Problem> {
     let mut decoder = ZlibDecoder::new(packed);
     let mut bytes = Vec::new();
@@ -146,12 +89,14 @@ fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, 
         if read(&mut bytes, rest.min(MOST_UNPACKED))? == 0 {
             return Err(FileError::TooLarge { kind: RECORD, size: None }.into());
         }
+    } else {
+        read(&mut bytes, (UP_TO_NAME - UP_TO_FLAGS) as u64)?;
     }
     Ok(bytes)
 }
 
-/// The numeric variables of a file, and the names and sizes of all others.
-fn variables(bytes: &[u8]) -> Result<(Vec<Variable>, Vec<String>), Problem> {
+/// The variables of a file of level 5.
+fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
     let big_endian = match bytes.get(HEAD - 2..HEAD) {
         Some(b"IM") => false,
         Some(b"MI") => true,
@@ -162,20 +107,17 @@ fn variables(bytes: &[u8]) -> Result<(Vec<Variable>, Vec<String>), Problem> {
     let mut left = MOST_UNPACKED;
     while !scan.rest.is_empty() {
         let (kind, data) = scan.element().ok_or_else(|| damaged("its last variable is incomplete"))?;
-        let inner = match kind {
-            COMPRESSED => &unpacked(data, big_endian, &mut left)?,
-            _ => data,
-        };
-        let found = match kind {
-            COMPRESSED if inner.len() <= UP_TO_FLAGS => Some(Err(NO_NUMBERS.to_owned())),
-            COMPRESSED => Scan { rest: inner, big_endian }
-                .element()
-                .filter(|(kind, _)| *kind == MATRIX)
-                .and_then(|(_, data)| variable(data, big_endian)),
-            MATRIX => variable(data, big_endian),
+        let unpacked = match kind {
+            COMPRESSED => unpacked(data, big_endian, &mut left)?,
+            MATRIX => Vec::new(),
             _ => continue,
         };
-        match found.ok_or_else(|| damaged("a variable of it contradicts itself"))? {
+        let mut inner = Scan { rest: &unpacked, big_endian };
+        let content = match kind {
+            COMPRESSED => inner.word().zip(inner.word()).filter(|(kind, _)| *kind == MATRIX).map(|_| inner.rest),
+            _ => Some(data),
+        };
+        match content.and_then(|content| variable(content, big_endian)).ok_or_else(contradiction)? {
             Ok(variable) => numeric.push(variable),
             Err(other) => others.push(other),
         }
@@ -185,7 +127,19 @@ fn variables(bytes: &[u8]) -> Result<(Vec<Variable>, Vec<String>), Problem> {
 
 /// The text of a file: of the variables of one length with the most known names, or else the most numbers.
 pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
-    let (numeric, mut others) = variables(&bytes)?;
+    let (numeric, others) = if is_level4(&bytes) { level4::variables(&bytes)? } else { variables(&bytes)? };
+    let quantity = |name: &str| match names::meaning(name)? {
+        ColumnMeaning::Channel(channel, _) => Some(ColumnMeaning::Channel(channel, None)),
+        ColumnMeaning::Time(_) => Some(ColumnMeaning::Time(None)),
+        _ => None,
+    };
+    let is_lacking = |cell: &&OtherVariable| {
+        let of_cell = quantity(&cell.name);
+        cell.what == CELL && of_cell.is_some() && numeric.iter().all(|variable| quantity(&variable.name) != of_cell)
+    };
+    if let Some(cell) = others.iter().find(is_lacking) {
+        return Err(Problem::CellArray { column: cell.name.clone() });
+    }
     let worth = |rows: usize| {
         let of_length = || numeric.iter().filter(|variable| variable.rows == rows);
         let known = of_length().filter(|variable| names::meaning(&variable.name).is_some()).count();
@@ -196,12 +150,11 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     lengths.dedup();
     let Some(length) = lengths.into_iter().max_by_key(|&rows| worth(rows)) else {
         let sizes = numeric.iter().map(|Variable { name, rows, columns, .. }| format!("{name} ({rows}x{columns})"));
-        others.splice(0..0, sizes);
-        let wanted = "numeric variables of one length";
-        return Err(Problem::NoTable { format: "a MATLAB file", wanted, found: others });
+        let others = others.iter().map(|OtherVariable { name, what }| format!("{name} ({what})"));
+        let (wanted, found) = ("numeric variables of one length", sizes.chain(others).collect());
+        return Err(Problem::NoTable { format: "a MATLAB file", wanted, found });
     };
     let variables: Vec<Variable> = numeric.into_iter().filter(|variable| variable.rows == length).collect();
-    let big_endian = bytes.get(HEAD - 2) == Some(&b'M');
     let columns: Vec<(usize, usize)> = (variables.iter().enumerate())
         .flat_map(|(number, variable)| (0..variable.columns).map(move |column| (number, column)))
         .collect();
@@ -213,33 +166,10 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
             match line {
                 0 if variable.columns == 1 => text::words(text, &variable.name),
                 0 => text::words(text, &format!("{}_{}", variable.name, column + 1)),
-                line => variable.write(text, column * variable.rows + line - 1, big_endian),
+                line => variable.write(text, column * variable.rows + line - 1),
             }
         });
         Ok(text)
     };
     Ok(Box::new(Written::new((0..=length).map(line))))
-}
-
-impl Variable {
-    /// Writes a number by its place.
-    fn write(&self, text: &mut String, place: usize, big_endian: bool) {
-        let (kind, size) = self.stored;
-        let mut bytes = [0; 8];
-        let Some(own) = self.bytes.get(place * size..(place + 1) * size) else { return };
-        bytes[..size].copy_from_slice(own);
-        if big_endian {
-            bytes[..size].reverse();
-        }
-        let all = u64::from_le_bytes(bytes);
-        match kind {
-            1 => text::whole(text, all as i8),
-            3 => text::whole(text, all as i16),
-            5 => text::whole(text, all as i32),
-            12 => text::whole(text, all as i64),
-            7 => text::single(text, f32::from_bits(all as u32)),
-            9 => text::number(text, f64::from_bits(all)),
-            _ => text::whole(text, all),
-        }
-    }
 }

@@ -30,7 +30,7 @@ impl Kind {
         match start {
             [b'P', b'A', b'R', b'1', ..] => Some(Self::Parquet),
             [b'P', b'K', 3, 4, ..] => Some(Self::Spreadsheet),
-            start if start.starts_with(b"MATLAB 5.0") => Some(Self::Matlab),
+            start if start.starts_with(b"MATLAB 5.0") || matlab::is_level4(start) => Some(Self::Matlab),
             _ => None,
         }
     }

@@ -133,7 +133,8 @@ impl<'a> Choice<'a> {
 
     /// Adds a channel with the instants of an instrument.
     fn push(&mut self, channel: Channel, chosen: Offer, values: impl IntoIterator<Item = f64>) {
-        let mut series = Series { channel, time: Vec::new(), values: Vec::new() };
+        let source = Some(chosen.name().to_owned());
+        let mut series = Series { channel, time: Vec::new(), values: Vec::new(), source };
         for (&time, value) in chosen.instrument.at.iter().zip(values) {
             let time = rounded(time);
             // Two readings at one instant would be a step without time.

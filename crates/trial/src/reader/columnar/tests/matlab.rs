@@ -75,7 +75,77 @@ fn other_variables_are_left_out() {
     variables.extend(plain(240, false));
     assert_plain(&[head(false), variables.concat()].concat());
     let nothing = [head(false), variables[..3].concat(), doubles("cube", [1, 1], &[2.0], false)].concat();
-    assert_told(parse(&nothing), &["a MATLAB file without a table", "mass (1x1)", "cube (1x1)"]);
+    let told = ["a MATLAB file without a table", "mass (1x1)", "cube (1x1)", "ship (text)"];
+    assert_told(parse(&nothing), &told);
+}
+
+/// What is in a cell array is no column: the name of a channel is refused, one beside the same channel is left out.
+#[test]
+fn cell_arrays_are_named() {
+    let cell = |name: &str| variable(name, [240, 1], 1, 14, &element(14, &[0; 64], false), false);
+    let [time, heading, rudder] = &plain(240, false)[..] else { panic!("three variables") };
+    for cell in [cell("rudder_deg"), compressed(&cell("rudder_deg"))] {
+        let file = [&head(false), time, heading, &cell].map(Vec::as_slice).concat();
+        assert_told(parse(&file), &["column rudder_deg is a cell array", "cell2mat(rudder_deg)"]);
+    }
+    let (head, other, note) = (head(false), cell("heading_rad"), cell("note"));
+    let beside = [&head, time, &other, heading, &note, rudder];
+    assert_plain(&beside.map(Vec::as_slice).concat());
+    assert_told(parse([head, note].concat().as_slice()), &["without a table", "note (a cell array)"]);
+}
+
+/// A variable of level 4: its digits, size, whether it is complex, and its numbers.
+fn variable4(name: &str, digits: u32, size: [u32; 2], complex: bool, numbers: &[u8], big: bool) -> Vec<u8> {
+    let word = |value: u32| if big { value.to_be_bytes() } else { value.to_le_bytes() };
+    let digits = digits + if big { 1000 } else { 0 };
+    let head = [digits, size[0], size[1], u32::from(complex), name.len() as u32 + 1].map(word).concat();
+    [&head, name.as_bytes(), &[0], numbers].concat()
+}
+
+#[test]
+fn files_of_level_4_are_read_as_those_of_level_5() {
+    let doubles = |name: &str, size: [u32; 2], values: &[f64], big: bool| {
+        let bytes: Vec<u8> =
+            values.iter().flat_map(|value| if big { value.to_be_bytes() } else { value.to_le_bytes() }).collect();
+        variable4(name, 0, size, false, &bytes, big)
+    };
+    let [time, heading, rudder] = columns();
+    let mut file = Vec::new();
+    for big in [false, true] {
+        file = [
+            doubles("t_s", [240, 1], &time, big),
+            variable4("ship", 51, [1, 4], false, b"Esso", big),
+            variable4("waves", 0, [240, 1], true, &[0; 3840], big),
+            variable4("map", 2, [240, 3], false, &[0; 5760], big),
+            doubles("heading_deg", [1, 240], &heading, big),
+            doubles("rudder_deg", [240, 1], &rudder, big),
+        ]
+        .concat();
+        assert_plain(&file);
+    }
+    assert_told(parse(&file[..file.len() - 9]), &["a MATLAB file", "last variable is incomplete"]);
+    assert_told(parse([file, vec![1; 40]].concat().as_slice()), &["a MATLAB file", "contradicts itself"]);
+    let small = [
+        variable4("a", 20, [2, 1], false, &[0xff, 0xff, 0xff, 0xff, 1, 0, 0, 0], false),
+        variable4("b", 10, [1, 2], false, &[0.1_f32, f32::NAN].map(f32::to_le_bytes).concat(), false),
+        variable4("c", 50, [2, 1], false, &[3, 255], false),
+    ];
+    let mut text = String::new();
+    let kind = crate::reader::columnar::Kind::of(&small.concat()).expect("a MATLAB file");
+    kind.text(small.concat()).expect("a table").read_to_string(&mut text).expect("UTF-8");
+    assert_eq!(text, "a\tb\tc\n-1\t0.1\t3\n1\t\t255\n");
+    let small = small.concat();
+    for place in 0..small.len() {
+        for change in [0xff, 1 << (place % 8)] {
+            let mut bytes = small.clone();
+            bytes[place] ^= change;
+            let _ = (parse(&bytes), parse(&small[..place]));
+        }
+    }
+    // What is no head is no such file: a text, UTF-16, other numbers.
+    for other in [&b"t_s,heading_deg,rudder_deg\n"[..], b"t\0_\0s\0", &[0; 64], &[0x35, 0, 0, 0, 1, 0, 0, 0]] {
+        assert_eq!(crate::reader::columnar::Kind::of(other), None);
+    }
 }
 
 #[test]

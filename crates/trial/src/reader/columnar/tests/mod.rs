@@ -88,6 +88,11 @@ fn the_hash_is_that_of_the_bytes_on_the_disk() {
 #[test]
 fn what_is_not_read_is_named_with_a_cure() {
     assert_told(parse(b"MATLAB 7.3 MAT-file, Platform: GLNXA64"), &["HDF5", "-v7"]);
+    let candump = "(1436509052.249713) can0 09F1120A#FF1027FF7FFF7FFD\n".repeat(9);
+    let table = format!("Time,ID,DLC,Data\n{}", "0.01,0x9F1120A,8,FF 10 27 FF 7F FF 7F FD\n".repeat(9));
+    for frames in [candump, table] {
+        assert_told(parse(frames.as_bytes()), &["CAN frames in hexadecimal", "`candump2analyzer`", "`analyzer -json`"]);
+    }
     assert_told(parse(b"PARE and more"), &["encrypted"]);
     #[cfg(not(feature = "spreadsheets"))]
     assert_told(parse(b"PK\x03\x04 and more"), &["export it as CSV", "feature `spreadsheets`"]);

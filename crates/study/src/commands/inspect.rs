@@ -1,0 +1,85 @@
+//! `study inspect`: what a log holds, channel by channel, before anything is fitted.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use document::{Code, Warning, Warnings};
+use report::number::{MISSING, fixed, optional, significant};
+use report::{Table, TableHead};
+use trial::file::called;
+use trial::{Log, ReadError};
+
+use crate::documents;
+use crate::documents::inspect::{ChannelEntry, InspectAnswer};
+use crate::options::Common;
+use crate::records::{open, source};
+use crate::screen::{self, CommandOutput};
+use campaign::failure::Failure;
+
+/// What `study inspect` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct InspectRequest {
+    /// The log
+    #[arg(value_name = "LOG")]
+    pub log: PathBuf,
+    /// Description of the columns of the log (a sidecar), or a folder with a NAME.trial.toml for it
+    #[arg(long, value_name = "FILE.toml|DIR")]
+    pub columns: Option<PathBuf>,
+    /// Another file of the log, for example with its rudder; joined by time
+    #[arg(long, value_name = "FILE")]
+    pub with_columns: Vec<PathBuf>,
+}
+
+/// Prints every channel of the log, and what the reader warns of. A log that contradicts itself is shown all the same.
+///
+/// Fails when the log cannot be read.
+pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
+    let mut warnings = Warnings::default();
+    let log = open(&request.log, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
+    let file = called(&request.log);
+    warnings.extend(source(file).of(doubts(log.clone())));
+    let answer = InspectAnswer::of(file, &log, warnings.ranked());
+    let before = format!("{}: {} rows, {} s\n", answer.file, answer.rows, fixed(answer.duration_s, 1));
+    let text = documents::of(&answer)?;
+    let output = CommandOutput { words: [&before, ""], table: &table(&answer.channels), notes: "", document: &text };
+    screen::tell(common, &output, &answer.warnings)
+}
+
+/// What is said of the log as one record.
+fn doubts(log: Log) -> Vec<Warning> {
+    let refused = |problem: String| vec![Code::Implausible.warning(format!("as one record it is refused: {problem}"))];
+    match log.into_trial(None) {
+        Ok(read) => read.warnings,
+        Err(ReadError::Table { problem, .. }) => refused(problem.to_string()),
+        Err(other) => refused(other.to_string()),
+    }
+}
+
+fn table(channels: &[ChannelEntry]) -> Table {
+    let head = TableHead::default().texts(["channel", "source"]).numbers(["readings"]);
+    let head = head.numbers(["every", "longest gap", "from"]).unit("s").numbers(["lowest", "highest", "step"]);
+    let head = head.texts(["unit"]).numbers(["wraps"]).texts(["positive turns to", "held against"]);
+    let mut table = Table::new(head.numbers(["scale"]).numbers(["lag"]).unit("s"));
+    let text = |text: &Option<String>| text.clone().unwrap_or_else(|| MISSING.to_owned());
+    let three = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 3);
+    for entry in channels {
+        table.push([
+            entry.channel.clone(),
+            text(&entry.source),
+            entry.readings.to_string(),
+            three(entry.interval_s),
+            three(entry.longest_gap_s),
+            optional(entry.longest_gap_from_s, 1),
+            fixed(entry.lowest, 2),
+            fixed(entry.highest, 2),
+            significant(entry.step.unwrap_or(f64::NAN), 2),
+            entry.unit.replace("_s", "/s"),
+            entry.wraps.map_or_else(|| MISSING.to_owned(), |wraps| wraps.to_string()),
+            text(&entry.turns_to),
+            text(&entry.reference),
+            three(entry.scale),
+            optional(entry.lag_s, 2),
+        ]);
+    }
+    table
+}

@@ -1,0 +1,108 @@
+//! What a log holds, channel by channel, for other programs.
+
+use std::path::Path;
+
+use document::Warning;
+use schemars::JsonSchema;
+use serde::Serialize;
+use trial::reader::ChannelInspection;
+use trial::{Channel, Log};
+
+use super::answers::CommandAnswer;
+
+/// Time between two readings, in usual intervals, beyond which it is a gap.
+const GAP: f64 = 1.5;
+
+/// A log.
+#[derive(Serialize, JsonSchema)]
+pub struct InspectAnswer {
+    /// The file as it was named.
+    pub file: String,
+    /// Number of rows: instants at which heading, rudder or yaw rate was read.
+    pub rows: usize,
+    /// Length, s.
+    pub duration_s: f64,
+    /// Its channels.
+    pub channels: Vec<ChannelEntry>,
+    /// What the reader had to decide or doubts, the worst first.
+    pub warnings: Vec<Warning>,
+}
+
+impl CommandAnswer for InspectAnswer {
+    const SCHEMA: &'static str = "inspect/1";
+}
+
+/// A channel of a log.
+#[derive(Serialize, JsonSchema)]
+pub struct ChannelEntry {
+    /// What it is, such as `yaw rate`.
+    pub channel: String,
+    /// The column or instrument it comes from; none where it was made of others.
+    pub source: Option<String>,
+    /// Readings.
+    pub readings: usize,
+    /// Median time from one reading to the next.
+    pub interval_s: Option<f64>,
+    /// Longest time from one reading to the next, where it is longer than one and a half times that.
+    pub longest_gap_s: Option<f64>,
+    /// Where that begins.
+    pub longest_gap_from_s: Option<f64>,
+    /// Unit of the four numbers below.
+    pub unit: String,
+    /// Smallest reading; a heading goes on past north.
+    pub lowest: f64,
+    /// Largest reading.
+    pub highest: f64,
+    /// Smallest change from one reading to the next.
+    pub step: Option<f64>,
+    /// How often a heading crosses north.
+    pub wraps: Option<usize>,
+    /// Where positive values turn the ship, `starboard` or `port`; none where nobody can tell.
+    pub turns_to: Option<String>,
+    /// The channel that it is held against.
+    pub reference: Option<String>,
+    /// What it has to be multiplied with to be that: below zero where its sign is turned.
+    pub scale: Option<f64>,
+    /// How far it is behind that.
+    pub lag_s: Option<f64>,
+}
+
+impl From<&ChannelInspection> for ChannelEntry {
+    fn from(ChannelInspection { readings, to_starboard, relation }: &ChannelInspection) -> Self {
+        let unit = readings.channel.written_unit();
+        let shown = |value: f64| value / unit.to_si();
+        let side = |to_starboard: bool| if to_starboard { "starboard" } else { "port" };
+        let spoken = |channel: Channel| channel.spoken().replace('_', " ");
+        let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > GAP * usual));
+        Self {
+            channel: spoken(readings.channel),
+            source: readings.source.clone(),
+            readings: readings.count,
+            interval_s: readings.interval,
+            longest_gap_s: gap.map(|[_, way]| way),
+            longest_gap_from_s: gap.map(|[begin, _]| begin),
+            unit: unit.id().to_owned(),
+            lowest: shown(readings.range[0]),
+            highest: shown(readings.range[1]),
+            step: readings.step.map(shown),
+            wraps: readings.wraps,
+            turns_to: to_starboard.map(|to_starboard| side(to_starboard).to_owned()),
+            reference: relation.map(|relation| spoken(relation.reference)),
+            scale: relation.map(|relation| relation.scale),
+            lag_s: relation.and_then(|relation| relation.lag),
+        }
+    }
+}
+
+impl InspectAnswer {
+    /// A log with what was said of it.
+    pub fn of(file: &Path, log: &Log, warnings: Vec<Warning>) -> Self {
+        Self {
+            file: file.display().to_string(),
+            rows: log.time().len(),
+            duration_s: log.time().last().zip(log.time().first()).map_or(0.0, |(last, first)| last - first),
+            channels: log.inspect().iter().map(ChannelEntry::from).collect(),
+            warnings,
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! How the heading error grows with how far ahead a replay goes, on records that were not fitted.
+
+use document::trace::{HorizonEntry, TraceDocument};
+use report::figures::{Division, Layer, PanelRow, Panels, Pen, Ruler, Stack};
+use report::number::{counted, significant};
+use report::{CurveOrigin, PageFigure, PlotCurve};
+
+/// Records from which their range is a band; of fewer every one is a line.
+const MANY: usize = 5;
+
+/// Horizon that the finding says beside the whole record, s, where the records hold it.
+const SHOWN_S: f64 = 20.0;
+
+/// An error of one of the two models.
+type HorizonError = fn(&HorizonEntry) -> f64;
+
+/// The models with their errors.
+const MODELS: [(CurveOrigin, HorizonError); 2] =
+    [(CurveOrigin::Before, |entry| entry.before_deg), (CurveOrigin::After, |entry| entry.after_deg)];
+
+/// The horizons that at least half of the records have, each with the entries of those that have it; the last is of the
+/// whole records.
+fn common<'a>(records: &[&'a [HorizonEntry]]) -> Vec<Vec<&'a HorizonEntry>> {
+    let whole: Vec<&HorizonEntry> = records.iter().filter_map(|record| record.last()).collect();
+    let windows = || records.iter().flat_map(|record| record.split_last().map_or(&[][..], |(_, windows)| windows));
+    let mut lengths: Vec<f64> =
+        windows().map(|entry| entry.horizon_s).filter(|length| *length < place(&whole)).collect();
+    lengths.sort_by(f64::total_cmp);
+    lengths.dedup();
+    let of_length = |length: f64| windows().filter(|entry| entry.horizon_s == length).collect::<Vec<_>>();
+    let shared = lengths.into_iter().map(of_length).filter(|entries| 2 * entries.len() >= records.len());
+    shared.chain([whole.clone()]).collect()
+}
+
+/// Root mean square of an error over records.
+fn pooled(entries: &[&HorizonEntry], error: HorizonError) -> f64 {
+    (entries.iter().map(|entry| error(entry).powi(2)).sum::<f64>() / entries.len() as f64).sqrt()
+}
+
+/// Where a horizon of all records is drawn: their mean.
+fn place(entries: &[&HorizonEntry]) -> f64 {
+    entries.iter().map(|entry| entry.horizon_s).sum::<f64>() / entries.len() as f64
+}
+
+/// What the figure shows, in numbers.
+fn finding(horizons: &[Vec<&HorizonEntry>], records: &str) -> Option<String> {
+    let errors = |entries: &[&HorizonEntry]| {
+        let [before, after] = MODELS.map(|(_, error)| significant(pooled(entries, error), 2));
+        format!("{after}° instead of {before}°")
+    };
+    let (whole, windows) = horizons.split_last()?;
+    let shown = windows.iter().find(|entries| place(entries) == SHOWN_S).or(windows.first());
+    let ahead = shown.map_or_else(String::new, |entries| {
+        format!("{} s ahead {}, ", significant(place(entries), 2), errors(entries))
+    });
+    Some(format!("Heading error {ahead}over the whole record {} ({records})", errors(whole)))
+}
+
+/// The lines of one model: the range of the records or every one of them, and all together.
+fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: usize) -> Vec<Layer> {
+    let (origin, error) = &MODELS[number];
+    let (look, x) = (origin.look(), horizons.iter().map(|entries| place(entries)).collect::<Vec<f64>>());
+    let over = |of: &dyn Fn(&[&HorizonEntry]) -> f64| {
+        PlotCurve::new(x.as_slice(), horizons.iter().map(|entries| of(entries)).collect::<Vec<f64>>())
+    };
+    let end = |fold: fn(f64, f64) -> f64| {
+        over(&|entries| entries.iter().map(|entry| error(entry)).reduce(fold).unwrap_or(f64::NAN))
+    };
+    let mut layers = Vec::new();
+    if records.len() >= MANY {
+        layers.push(Layer::band("", [end(f64::min), end(f64::max)], look.colour, 0.15));
+    } else if records.len() > 1 {
+        layers.extend(records.iter().map(|record| {
+            let (x, y): (Vec<f64>, Vec<f64>) = record.iter().map(|entry| (entry.horizon_s, error(entry))).unzip();
+            let pen = Pen { width: 0.6, opacity: 0.5, ..Pen::of(origin) };
+            Layer::line("", PlotCurve::new(x, y), pen)
+        }));
+    }
+    let points = x.iter().zip(horizons).map(|(x, entries)| (*x, pooled(entries, *error), None)).collect();
+    layers.push(Layer::marks(origin.label(), look, points).joined(Pen::of(origin)));
+    layers
+}
+
+/// The figure; `None` where every record was fitted, and where the document does not hold the errors.
+pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
+    let (_, judged) = document.errors();
+    let records: Vec<&[HorizonEntry]> =
+        judged.iter().map(|record| record.errors.horizons.as_slice()).filter(|horizons| !horizons.is_empty()).collect();
+    let used = judged.iter().find(|record| !record.errors.horizons.is_empty())?.used;
+    let horizons = common(&records);
+    let layers = (0..MODELS.len()).flat_map(|number| layers(&records, &horizons, number)).collect();
+    let x = Ruler::new("horizon [s]", Division::Factors);
+    let row = PanelRow::new(Ruler::new("heading error, rms [°]", Division::Factors), 0.36);
+    let each = match records.len() {
+        1 => "",
+        2..MANY => " Thin: every record.",
+        _ => " Bands: the range of the records.",
+    };
+    let caption = format!(
+        "Root mean square heading error against how far ahead a replay goes, on records that were not fitted: it begins anew \
+         from the best heading and yaw rate so often, and the last point is the whole record. Marks: the records together, as \
+         far as half of them go.{each}"
+    );
+    let finding = finding(&horizons, &format!("{}, {used}", counted(records.len() as u64, "record")))?;
+    Some(PageFigure::new("horizon", finding, caption, Panels::of(Stack::over(x, vec![(row, layers)]))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(errors: &[[f64; 3]]) -> Vec<HorizonEntry> {
+        let entry = |&[horizon_s, before_deg, after_deg]: &[f64; 3]| HorizonEntry { horizon_s, before_deg, after_deg };
+        errors.iter().map(entry).collect()
+    }
+
+    /// A horizon is pooled over the records that have it, where these are half of all; the last is the mean length.
+    #[test]
+    fn records_are_pooled_over_the_horizons_that_half_of_them_have() {
+        let long = record(&[[10.0, 1.0, 0.1], [20.0, 3.0, 0.3], [40.0, 5.0, 1.0], [80.0, 9.0, 1.5], [90.0, 6.0, 2.0]]);
+        let short = record(&[[10.0, 7.0, 0.7], [20.0, 4.0, 0.4], [50.0, 8.0, 4.0]]);
+        let records = [long.as_slice(), &short];
+        let horizons = common(&records);
+        let places = |horizons: &[Vec<&HorizonEntry>]| horizons.iter().map(|all| place(all)).collect::<Vec<f64>>();
+        assert_eq!(places(&horizons), [10.0, 20.0, 40.0, 70.0]);
+        assert_eq!(places(&common(&[&long, &short, &short])), [10.0, 20.0, 190.0 / 3.0]);
+        assert_eq!(MODELS.map(|(_, error)| (1e9 * pooled(&horizons[0], error)).round()), [5e9, 5e8]);
+        let expected =
+            "Heading error 20 s ahead 0.35° instead of 3.5°, over the whole record 3.2° instead of 7.1° (two)";
+        assert_eq!(finding(&horizons, "two").as_deref(), Some(expected));
+        let whole = record(&[[12.0, 2.0, 1.0]]);
+        let expected = "Heading error over the whole record 1.0° instead of 2.0° (one)";
+        assert_eq!(finding(&common(&[&whole]), "one").as_deref(), Some(expected));
+        // Fewer than five records are lines, five or more a band, and one is itself alone.
+        let count = |records: &[&[HorizonEntry]]| layers(records, &common(records), 0).len();
+        assert_eq!([count(&[&long]), count(&records), count(&[long.as_slice(); 5])], [1, 3, 2]);
+    }
+}

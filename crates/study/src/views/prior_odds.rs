@@ -1,0 +1,155 @@
+//! How the probabilities of effects move with their prior odds.
+
+use document::names;
+use document::trace::{Outcome, TraceDocument};
+use report::PageFigure;
+use report::figures::{Division, Layer, PanelRow, Panels, Pen, Ruler, Stack};
+use report::number::{fixed, significant};
+use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID};
+
+/// Probability that an effect without a name reaches at some odds to be drawn.
+const DRAWN: f64 = 0.05;
+
+/// Most lines of the figure.
+const MOST: usize = 8;
+
+/// Change of a probability that is said.
+const MOVES: f64 = 0.1;
+
+const COLOURS: [RGBColor; 6] = [HEADING, RUDDER, DIMENSION, BEFORE, INK, RECORD];
+const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up];
+
+/// An effect, or a group that the records cannot tell apart, with its probability for every factor.
+struct OddsLine<'a> {
+    name: String,
+    is_named: bool,
+    probability: &'a [f64],
+}
+
+impl OddsLine<'_> {
+    fn ends(&self) -> [f64; 2] {
+        let fold = |by: fn(f64, f64) -> f64| self.probability.iter().copied().reduce(by).unwrap_or(f64::NAN);
+        [fold(f64::min), fold(f64::max)]
+    }
+
+    fn change(&self) -> f64 {
+        let [lowest, highest] = self.ends();
+        highest - lowest
+    }
+}
+
+/// The named effects, then the others that may be there, the most probable first.
+fn lines(document: &TraceDocument) -> Vec<OddsLine<'_>> {
+    let trace = &document.trace;
+    let is_whole = |probability: &[f64]| !probability.is_empty() && probability.len() == trace.prior.odds_factors.len();
+    let named = trace.effects.iter().filter(|effect| is_whole(&effect.probability_by_prior_odds)).map(|effect| {
+        let group = [&effect.id].into_iter().chain(&effect.aliases).map(|id| names::effect(id));
+        let only = effect.only.as_ref().map_or_else(String::new, |only| format!(", in {}", names::record(only)));
+        let name = group.collect::<Vec<_>>().join(" or ") + &only;
+        OddsLine { name, is_named: true, probability: &effect.probability_by_prior_odds }
+    });
+    let is_other = |outcome| matches!(outcome, Outcome::Rejected | Outcome::NotObservable);
+    let unnamed = trace.candidates.iter().filter(|candidate| is_other(candidate.outcome));
+    let unnamed = unnamed.filter(|candidate| is_whole(&candidate.probability_by_prior_odds));
+    let unnamed = unnamed.map(|candidate| OddsLine {
+        name: names::effect(&candidate.id),
+        is_named: false,
+        probability: &candidate.probability_by_prior_odds,
+    });
+    let mut unnamed: Vec<OddsLine> = unnamed.filter(|line| line.ends()[1] >= DRAWN).collect();
+    unnamed.sort_by(|first, second| second.ends()[1].total_cmp(&first.ends()[1]));
+    let mut lines: Vec<OddsLine> = named.chain(unnamed).collect();
+    lines.truncate(MOST);
+    lines
+}
+
+/// The names that move and those that do not, in numbers.
+fn finding(lines: &[OddsLine], named_from: f64) -> String {
+    let joined = |lines: &[&OddsLine]| lines.iter().map(|line| line.name.as_str()).collect::<Vec<_>>().join(", ");
+    let lowest = |line: &OddsLine| line.ends()[0];
+    let (named, unnamed): (Vec<&OddsLine>, Vec<&OddsLine>) = lines.iter().partition(|line| line.is_named);
+    let (safe, weak): (Vec<&OddsLine>, Vec<&OddsLine>) = named.into_iter().partition(|line| lowest(line) >= named_from);
+    let mut parts = Vec::new();
+    if !safe.is_empty() {
+        // Rounded down: no probability is below what is said.
+        let least = (1e3 * safe.iter().map(|line| lowest(line)).fold(1.0, f64::min)).floor() / 1e3;
+        parts.push(format!("{} at {} or more", joined(&safe), fixed(least, 3)));
+    }
+    let moves = |line: &OddsLine| {
+        let [lowest, highest] = line.ends().map(|end| fixed(end, 2));
+        format!("{} from {lowest} to {highest}", line.name)
+    };
+    parts.extend(weak.iter().map(|line| moves(line)));
+    let most = unnamed.into_iter().max_by(|first, second| first.change().total_cmp(&second.change()));
+    match most {
+        Some(line) if line.change() >= MOVES => parts.push(moves(line)),
+        Some(line) => parts.push(format!("no other above {}", fixed((1e2 * line.ends()[1]).ceil() / 1e2, 2))),
+        None => parts.push(format!("no other above {}", fixed(DRAWN, 2))),
+    }
+    parts.join("; ")
+}
+
+/// The named effects that fewer odds leave without a name, in a sentence; `None` where there are none.
+pub fn sentence(document: &TraceDocument) -> Option<String> {
+    let prior = &document.trace.prior;
+    let least = prior.odds_factors.first()?;
+    let fallen: Vec<String> = lines(document)
+        .iter()
+        .filter(|line| line.is_named && line.probability[0] < prior.named_from)
+        .map(|line| format!("{} ({})", line.name, fixed(line.probability[0], 2)))
+        .collect();
+    (!fallen.is_empty()).then(|| {
+        format!(
+            "With {} of the prior odds not named, from a probability of {}: {}.",
+            significant(*least, 1),
+            significant(prior.named_from, 2),
+            fallen.join(", ")
+        )
+    })
+}
+
+/// The figure; `None` where the document does not hold the probabilities.
+pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
+    let prior = &document.trace.prior;
+    let lines = lines(document);
+    let [least, .., most] = prior.odds_factors[..] else { return None };
+    let layer = |(number, line): (usize, &OddsLine)| {
+        let colour = COLOURS[number % COLOURS.len()];
+        let dash = if line.is_named { SOLID } else { DASHED };
+        let look = Look { colour, marker: MARKERS[number % MARKERS.len()], dash, hollow: !line.is_named };
+        let points = prior.odds_factors.iter().zip(line.probability).map(|(x, y)| (*x, *y, None)).collect();
+        Layer::marks(line.name.as_str(), look, points).joined(Pen { dash, ..Pen::new(colour) })
+    };
+    let layers = lines.iter().enumerate().map(layer).collect();
+    let row = PanelRow { levels: vec![prior.named_from], ..PanelRow::zeroed(Ruler::decimal("probability"), 0.32) };
+    let x = Ruler::new("prior odds of every effect, times", Division::Factors);
+    let [least, most] = [least, most].map(|factor| significant(factor, 1));
+    let caption = format!(
+        "Probability of every effect with the prior odds of all of them together {least} to {most} times the usual; solid: \
+         named. Dashed level: an effect is named from there. Structures that the search did not fit have no part in it."
+    );
+    let finding = format!("Prior odds × {least} to × {most}: {}", finding(&lines, prior.named_from));
+    let plot = Panels::of(Stack::over(x, vec![(row, layers)]));
+    (!lines.is_empty()).then(|| PageFigure::new("prior-odds", finding, caption, plot))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_do_not_move_are_safe() {
+        let line = |name: &str, is_named, probability| OddsLine { name: name.into(), is_named, probability };
+        let lines = [
+            line("sway", true, &[0.972_9, 0.99, 1.0]),
+            line("damping", true, &[0.98, 1.0, 1.0]),
+            line("speed loss", true, &[0.7, 0.96, 0.99]),
+            line("lag", false, &[0.1, 0.4, 0.8]),
+            line("dead band", false, &[0.0, 0.0, 0.06]),
+        ];
+        let expected = "sway, damping at 0.972 or more; speed loss from 0.70 to 0.99; lag from 0.10 to 0.80";
+        assert_eq!(finding(&lines, 0.95), expected);
+        assert_eq!(finding(&lines[..1], 0.95), "sway at 0.972 or more; no other above 0.05");
+        assert_eq!(finding(&lines[4..], 0.95), "no other above 0.06");
+    }
+}

@@ -1,0 +1,126 @@
+//! Variables of MATLAB files of either level, and their bytes.
+
+use crate::reader::columnar::text;
+use crate::reader::error::Problem;
+
+/// Kind of a data element that holds a packed one.
+pub const COMPRESSED: u32 = 15;
+
+/// Bytes of a number of a kind of data element; `None` for what is no number.
+pub fn size(kind: u32) -> Option<usize> {
+    Some(match kind {
+        1 | 2 => 1,
+        3 | 4 => 2,
+        5..=7 => 4,
+        9 | 12 | 13 => 8,
+        _ => return None,
+    })
+}
+
+/// A numeric variable.
+pub struct Variable {
+    pub name: String,
+    pub rows: usize,
+    pub columns: usize,
+    /// Kind of its numbers.
+    kind: u32,
+    /// The numbers, column by column.
+    bytes: Vec<u8>,
+    big_endian: bool,
+}
+
+/// A variable that is no column: its name, and what it is.
+pub struct OtherVariable {
+    pub name: String,
+    pub what: String,
+}
+
+/// A file's variables that are columns, and those that are none.
+pub type Variables = (Vec<Variable>, Vec<OtherVariable>);
+
+/// What a cell array is.
+pub const CELL: &str = "a cell array";
+
+/// What a class without numbers is.
+pub fn class_name(class: u32) -> &'static str {
+    match class {
+        1 => CELL,
+        2 => "a structure",
+        4 => "text",
+        5 => "a sparse matrix",
+        _ => "a variable without numbers",
+    }
+}
+
+/// Bytes that are read from the front.
+pub struct Scan<'a> {
+    pub rest: &'a [u8],
+    pub big_endian: bool,
+}
+
+impl<'a> Scan<'a> {
+    pub fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.rest.split_at_checked(length)?;
+        self.rest = rest;
+        Some(taken)
+    }
+
+    pub fn word(&mut self) -> Option<u32> {
+        let bytes = self.take(4)?.try_into().ok()?;
+        Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
+    }
+
+    /// The next data element: its kind and its bytes. What fills it up to eight bytes is passed over.
+    pub fn element(&mut self) -> Option<(u32, &'a [u8])> {
+        let tag = self.word()?;
+        if tag >> 16 != 0 {
+            // Short elements stand in their own tag.
+            let data = self.take(4)?;
+            return Some((tag & 0xffff, data.get(..(tag >> 16) as usize)?));
+        }
+        let length = self.word()? as usize;
+        let data = self.take(length)?;
+        if tag != COMPRESSED {
+            let filling = (8 - length % 8) % 8;
+            self.rest = self.rest.get(filling..).unwrap_or_default();
+        }
+        Some((tag, data))
+    }
+}
+
+pub fn damaged(found: &str) -> Problem {
+    Problem::Damaged { format: "a MATLAB file", found: found.to_owned() }
+}
+
+pub fn contradiction() -> Problem {
+    damaged("a variable of it contradicts itself")
+}
+
+impl Variable {
+    /// A variable of so many rows and columns; a row is as good as a column.
+    pub fn new(name: String, size: [usize; 2], kind: u32, numbers: &[u8], big_endian: bool) -> Self {
+        let [rows, columns] = if size[0] == 1 { [size[1], 1] } else { size };
+        Self { name, rows, columns, kind, bytes: numbers.to_vec(), big_endian }
+    }
+
+    /// Writes a number by its place.
+    pub fn write(&self, text: &mut String, place: usize) {
+        let size = size(self.kind).unwrap_or(0);
+        let mut bytes = [0; 8];
+        let Some(stored) = self.bytes.get(place * size..(place + 1) * size) else { return };
+        bytes[..size].copy_from_slice(stored);
+        if self.big_endian {
+            bytes[..size].reverse();
+        }
+        let all = u64::from_le_bytes(bytes);
+        match self.kind {
+            1 => text::whole(text, all as i8),
+            3 => text::whole(text, all as i16),
+            5 => text::whole(text, all as i32),
+            12 => text::whole(text, all as i64),
+            7 => text::single(text, f32::from_bits(all as u32)),
+            9 => text::number(text, f64::from_bits(all)),
+            _ => text::whole(text, all),
+        }
+    }
+}
