@@ -103,7 +103,7 @@ fn a_turning_circle_gives_what_it_can() {
     let run = desk.run(&["fit", "turn.csv"]);
     assert!(run.is_done().out.contains("failed: "), "{}", run.out);
     assert!(run.out.contains("characteristic-points failed: needs at least"), "{}", run.out);
-    assert!(run.out.contains("not a zig-zag"), "{}", run.out);
+    assert!(run.out.contains("a turning circle to starboard with 35.0° of rudder: without positions"), "{}", run.out);
     let fit = desk.json("turn-fit/fit.json");
     let status = |id: &str| {
         fit["methods"].as_array().expect("methods").iter().find(|m| m["method"] == id).expect(id)["status"].clone()
