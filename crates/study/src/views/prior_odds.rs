@@ -92,17 +92,18 @@ fn finding(lines: &[OddsLine], named_from: f64) -> String {
 /// The named effects that fewer odds leave without a name, in a sentence; `None` where there are none.
 pub fn sentence(document: &TraceDocument) -> Option<String> {
     let prior = &document.trace.prior;
-    let least = prior.odds_factors.first()?;
-    let fallen: Vec<String> = lines(document)
-        .iter()
-        .filter(|line| line.is_named && line.probability[0] < prior.named_from)
-        .map(|line| format!("{} ({})", line.name, fixed(line.probability[0], 2)))
-        .collect();
+    unnamed_below(&lines(document), *prior.odds_factors.first()?, prior.named_from)
+}
+
+/// The same for the least factor of the odds.
+fn unnamed_below(lines: &[OddsLine], least: f64, named_from: f64) -> Option<String> {
+    let fallen = lines.iter().filter(|line| line.is_named && line.probability[0] < named_from);
+    let fallen: Vec<String> = fallen.map(|line| format!("{} ({})", line.name, fixed(line.probability[0], 2))).collect();
     (!fallen.is_empty()).then(|| {
         format!(
             "With {} of the prior odds not named, from a probability of {}: {}.",
-            significant(*least, 1),
-            significant(prior.named_from, 2),
+            significant(least, 1),
+            significant(named_from, 2),
             fallen.join(", ")
         )
     })
@@ -151,5 +152,8 @@ mod tests {
         assert_eq!(finding(&lines, 0.95), expected);
         assert_eq!(finding(&lines[..1], 0.95), "sway at 0.972 or more; no other above 0.05");
         assert_eq!(finding(&lines[4..], 0.95), "no other above 0.06");
+        let expected = "With 0.1 of the prior odds not named, from a probability of 0.95: speed loss (0.70).";
+        assert_eq!(unnamed_below(&lines, 0.1, 0.95).as_deref(), Some(expected));
+        assert_eq!(unnamed_below(&lines[..2], 0.1, 0.95), None);
     }
 }
