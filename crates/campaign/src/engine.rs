@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use ::trace::comparison::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use document::names;
-use document::trace::{EffectEntry, LocatedEntry};
+use document::trace::LocatedEntry;
 use identify::replay::pooled;
 use identify::{Estimate, StopReason};
 use ship::FirstOrder;
@@ -20,7 +20,7 @@ use trial::{Quantity, Trial};
 use crate::known::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
-use crate::rows::{EffectSize, LocatedMoment, NamedEffect, StudyRow, TraceAnswer};
+use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceAnswer};
 use crate::scenario::{Method, Procedure, Scenario, Specification, TrialSpecification};
 use crate::statistics::Moments;
 use crate::summary::effect_ids;
@@ -275,7 +275,7 @@ impl TrialQuestion<'_> {
             predicted: self.check.as_ref().map(|check| check.figures(known)),
             traced: Some(Box::new(TraceAnswer {
                 verdict: document.verdict,
-                named: document.effects.iter().map(named).collect(),
+                named: document.effects.iter().map(NamedEffect::of).collect(),
                 located: document.located.iter().map(|entry| located(entry, end)).collect(),
                 probabilities: effect_ids()
                     .map(|id| (Box::from(id), (DIGITS * probability(id)).round() / DIGITS))
@@ -288,17 +288,6 @@ impl TrialQuestion<'_> {
             })),
             ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
         }
-    }
-}
-
-fn named(effect: &EffectEntry) -> NamedEffect {
-    let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
-    let time = effect.parameters.values().find(|parameter| ["t_c", "t_0"].contains(&parameter.key.as_str()));
-    NamedEffect {
-        id: effect.id.as_str().into(),
-        aliases: aliases.map(|id| id.as_str().into()).collect(),
-        time_s: time.map(|parameter| parameter.quantity.value),
-        sizes: effect.parameters.values().map(EffectSize::of).collect(),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ::trace::Verdict;
-use document::trace::{Dependence, ParameterEntry};
+use document::trace::{Dependence, EffectEntry, ParameterEntry};
 
 /// An effect that a trace named.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -39,6 +39,18 @@ impl EffectSize {
 }
 
 impl NamedEffect {
+    /// That of a trace.
+    pub fn of(effect: &EffectEntry) -> Self {
+        let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
+        let time = effect.parameters.values().find(|parameter| ["t_c", "t_0"].contains(&parameter.key.as_str()));
+        Self {
+            id: effect.id.as_str().into(),
+            aliases: aliases.map(|id| id.as_str().into()).collect(),
+            time_s: time.map(|parameter| parameter.quantity.value),
+            sizes: effect.parameters.values().map(EffectSize::of).collect(),
+        }
+    }
+
     /// Whether an effect is this one, or one that cannot be told from it.
     pub fn holds(&self, id: &str) -> bool {
         *self.id == *id || self.aliases.iter().any(|alias| **alias == *id)

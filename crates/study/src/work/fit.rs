@@ -126,8 +126,7 @@ pub fn fit(
     warnings.extend(records.iter().filter_map(|trial| late_begin(trial, &ZigZag::of(trial).ok()?)));
     let records: Vec<TrialEntry> = records.iter().map(trial_entry).collect();
     let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
-    warnings.extend(no_track(&shown));
-    warnings.extend(no_loading(trials, &shown));
+    warnings.extend(no_track(&shown).into_iter().chain(no_loading(trials, &shown)));
     let earlier_trials = earlier::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     warnings.extend(answers.iter().flat_map(of_answer));
