@@ -10,9 +10,11 @@
 //! | what a trace says | [`trace`] |
 //! | what people call effects, records and figures of merit | [`names`] |
 //! | what a reader should know beside the numbers | [`warning`] |
+//! | what an error is about, for programs | [`ErrorCode`] |
 
 pub mod earlier_trials;
 pub mod error;
+mod error_code;
 pub mod fit;
 pub mod identified_ship;
 pub mod method;
@@ -26,6 +28,7 @@ pub mod trace;
 pub mod warning;
 
 pub use error::IdentifiedShipError;
+pub use error_code::ErrorCode;
 pub use identified_ship::{IdentifiedShip, KnownGear, StoredEffect, ValidityRange, WeightedStructure};
 pub use noise::{HeadingNoise, Moment, RandomMoment};
 pub use quantity::Quantity;

@@ -12,6 +12,7 @@ use crate::earlier_trials::EarlierTrials;
 use crate::identified_ship::IdentifiedShip;
 use crate::names;
 use crate::noise::Moment;
+use crate::warning::Warning;
 
 mod entries;
 mod errors;
@@ -320,6 +321,9 @@ pub struct TraceDocument {
     /// How records of several scales were brought to one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<String>,
+    /// Warnings of records and analysis, the worst first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
 }
 
 impl TraceDocument {

@@ -1,6 +1,7 @@
 //! The document of a prediction and the curves beside it: what files hold, pages and figures are made from, and Python
 //! gets.
 
+use document::Warning;
 use document::identified_ship::ValidityRange;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -60,6 +61,9 @@ pub struct PredictDocument {
     /// Where the ship was seen.
     #[serde(default)]
     pub seen: ValidityRange,
+    /// Warnings of models, records and manoeuvres, the worst first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
 }
 
 /// A loading that hulls are taken to by the formulas of particulars.

@@ -231,10 +231,10 @@ pub fn predict(
         steps.advance();
     }
     steps.finish();
-    let weight = 1.0 / models.len() as f64;
     let mut document = PredictDocument {
+        warnings: warnings.ranked(),
         schema: SCHEMA.into(),
-        models: files(models).into_iter().map(|file| ModelWeight { file, weight }).collect(),
+        models: files(models).into_iter().map(|file| ModelWeight { file, weight: 1.0 / models.len() as f64 }).collect(),
         draws,
         calm: request.calm,
         length_m: particulars.map(|own| own.length),
