@@ -31,11 +31,16 @@ pub struct ErrorEntry<'a> {
     pub parts: &'a FailureParts,
 }
 
+impl<'a> ErrorEntry<'a> {
+    /// What a failure says.
+    pub fn of(Failure { blame, message, parts }: &'a Failure) -> Self {
+        Self { severity: "error", blame: *blame, message, parts }
+    }
+}
+
 /// The document of a failure in one line. Fails where it cannot be written as JSON.
 pub fn text(failure: &Failure) -> Result<String, serde_json::Error> {
-    let Failure { blame, message, parts } = failure;
-    let exit_code = screen::exit_code(*blame);
-    let error = ErrorEntry { severity: "error", blame: *blame, message, parts };
-    let document = ErrorDocument { schema: "error/1", error, exit_code };
+    let exit_code = screen::exit_code(failure.blame);
+    let document = ErrorDocument { schema: "error/1", error: ErrorEntry::of(failure), exit_code };
     serde_json::to_string(&document)
 }

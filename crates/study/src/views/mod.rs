@@ -7,6 +7,7 @@ pub mod blind_spots_table;
 pub mod charts;
 pub mod coverage_table;
 pub mod curve_tables;
+pub mod each_table;
 pub mod findings;
 pub mod fit_figures;
 pub mod fit_page;
