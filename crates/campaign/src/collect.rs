@@ -255,7 +255,7 @@ fn run_all(
         let written = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         observer.end();
         let stopped = || {
-            Failure::work(format!(
+            Failure::interrupted(format!(
                 "stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there, \
                  without --restart",
                 progress.before + computed,

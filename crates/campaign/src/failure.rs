@@ -7,6 +7,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use document::ErrorCode;
 use serde::Serialize;
 
 /// What stands before the message of a failure.
@@ -15,7 +16,7 @@ const ERROR: &str = "error: ";
 /// A failure as the user sees it.
 #[derive(Debug)]
 pub struct Failure {
-    /// Whether the input or the work is at fault.
+    /// Whether the input or the work is at fault, or somebody asked to stop.
     pub blame: Blame,
     /// The whole message, without the word "error" before it.
     pub message: String,
@@ -26,6 +27,8 @@ pub struct Failure {
 /// The parts of a message; what a failure does not say is missing.
 #[derive(Debug, Default, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 pub struct FailureParts {
+    /// What it is about.
+    pub code: ErrorCode,
     /// The file it is about.
     pub file: Option<String>,
     /// The line of the file, from 1.
@@ -40,7 +43,7 @@ pub struct FailureParts {
     pub help: Option<String>,
 }
 
-/// Who has to act.
+/// Why it was not done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Blame {
@@ -48,6 +51,8 @@ pub enum Blame {
     Input,
     /// The work could not be done: a full disk, a folder that cannot be written.
     Work,
+    /// Somebody asked to stop: Ctrl-C, or a signal to end.
+    Interrupted,
 }
 
 impl Failure {
@@ -70,7 +75,19 @@ impl Failure {
 
     /// The work could not be done.
     pub fn work(message: impl fmt::Display) -> Self {
-        Self { blame: Blame::Work, ..Self::input(message) }
+        Self { blame: Blame::Work, ..Self::input(message) }.with_code(ErrorCode::Work)
+    }
+
+    /// Somebody asked to stop.
+    pub fn interrupted(message: impl fmt::Display) -> Self {
+        Self { blame: Blame::Interrupted, ..Self::input(message) }.with_code(ErrorCode::Interrupted)
+    }
+
+    /// The same with what it is about.
+    #[must_use]
+    pub fn with_code(mut self, code: ErrorCode) -> Self {
+        self.parts.code = code;
+        self
     }
 
     /// The input is wrong at a place of a text file: the line is shown, the place underlined with what was `expected`
@@ -86,6 +103,7 @@ impl Failure {
         let shown = Renderer::plain().render(&[group]);
         let before = text.get(..start).unwrap_or_default();
         let parts = FailureParts {
+            code: ErrorCode::Scenario,
             line: Some(before.matches('\n').count() + 1),
             column: Some(before.rsplit('\n').next().unwrap_or_default().chars().count() + 1),
             problem: found.to_string(),
@@ -175,6 +193,7 @@ mod tests {
     fn a_failure_has_the_parts_that_it_tells() {
         let at = Failure::at(Path::new("a.toml"), "x = 1\nß = -1\n", 11..13, "no such thing", "more", "change it");
         let parts = FailureParts {
+            code: ErrorCode::Scenario,
             file: Some("a.toml".into()),
             line: Some(2),
             column: Some(5),
@@ -187,7 +206,7 @@ mod tests {
         assert_eq!((about.parts.file.as_deref(), about.parts.problem.as_str()), (Some("b.csv"), "it is empty"));
         assert_eq!(about.message, "b.csv: it is empty");
         let io = Err::<(), _>(std::io::Error::other("full")).on("write", Path::new("c")).expect_err("it failed");
-        assert_eq!((io.blame, io.parts.file.as_deref()), (Blame::Work, Some("c")));
+        assert_eq!((io.blame, io.parts.code, io.parts.file.as_deref()), (Blame::Work, ErrorCode::Work, Some("c")));
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::earlier_trials::EarlierTrials;
 use crate::form::ImoFormEntry;
 use crate::identified_ship::IdentifiedShip;
 use crate::method::MethodEntry;
+use crate::quantity::Quantity;
 use crate::scales::ScalesEntry;
 use crate::single_records::{Amplitude, SingleRecords};
 use crate::warning::{Code, Source, Warning};
@@ -239,6 +240,12 @@ pub struct VerdictEntry {
     pub because: Option<String>,
     /// The method whose answer is to be taken; where none is, the nearest one.
     pub method: String,
+    /// K of that answer, 1/s; absent where `believe` is `no`.
+    #[serde(rename = "K_per_s", default, skip_serializing_if = "Option::is_none")]
+    pub k_per_s: Option<Quantity>,
+    /// T of that answer, s; absent where `believe` is `no`.
+    #[serde(rename = "T_s", default, skip_serializing_if = "Option::is_none")]
+    pub t_s: Option<Quantity>,
     /// Why.
     pub reason: Reason,
     /// What the residual of output error looks like, where that has an answer.

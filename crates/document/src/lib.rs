@@ -10,9 +10,11 @@
 //! | what a trace says | [`trace`] |
 //! | what people call effects, records and figures of merit | [`names`] |
 //! | what a reader should know beside the numbers | [`warning`] |
+//! | what an error is about, for programs | [`ErrorCode`] |
 
 pub mod earlier_trials;
 pub mod error;
+mod error_code;
 pub mod fit;
 mod form;
 pub mod identified_ship;
@@ -28,6 +30,7 @@ pub mod trace;
 pub mod warning;
 
 pub use error::IdentifiedShipError;
+pub use error_code::ErrorCode;
 pub use form::ImoFormEntry;
 pub use identified_ship::{IdentifiedShip, KnownGear, StoredEffect, ValidityRange, WeightedStructure};
 pub use noise::{HeadingNoise, Moment, RandomMoment};

@@ -13,6 +13,7 @@ use crate::identified_ship::IdentifiedShip;
 use crate::names;
 use crate::noise::Moment;
 use crate::single_records::{Amplitude, SingleRecords};
+use crate::warning::Warning;
 
 mod entries;
 mod errors;
@@ -337,6 +338,9 @@ pub struct TraceDocument {
     /// How records of several scales were brought to one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<String>,
+    /// Warnings of records and analysis, the worst first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
 }
 
 impl TraceDocument {

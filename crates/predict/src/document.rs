@@ -61,7 +61,7 @@ pub struct PredictDocument {
     /// Where the ship was seen.
     #[serde(default)]
     pub seen: ValidityRange,
-    /// What a reader should know of the models, the worst first.
+    /// Warnings of models, records and manoeuvres, the worst first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
 }

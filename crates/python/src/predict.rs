@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use campaign::failure::Failure;
-use document::Warnings;
+use document::{Warning, Warnings};
 use pyo3::prelude::*;
 use study::documents;
 use study::options::PredictRequest;
@@ -11,7 +11,7 @@ use study::work::predict::{self as work, PredictInput, StoredModel};
 
 use crate::asked::request;
 use crate::earlier::{ModelText, earlier};
-use crate::record::{PyRecord, sentences, trials};
+use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
 
 /// The document of a prediction and the warnings. `models` are names of files, with the text of those that are none;
@@ -24,6 +24,8 @@ pub fn predict(
     words: Vec<String>,
     priors: Vec<ModelText>,
 ) -> PyResult<(String, Vec<String>)> {
+    // The document has what reading warned of, as that of the command; Python has been told before.
+    let told: Vec<Warning> = read_warnings(&replay).collect();
     let records = trials(&replay);
     patiently(py, move || {
         let names = models.iter().map(|(name, _)| name.clone());
@@ -35,10 +37,12 @@ pub fn predict(
             None => StoredModel::of_file(Path::new(name), &asked, &mut warnings),
         };
         let models: Vec<StoredModel> = models.iter().map(read).collect::<Result<_, _>>()?;
+        warnings.extend(told.iter().cloned());
         let earlier = earlier(&priors)?;
         let input =
             PredictInput { models: &models, earlier: &earlier, ballast: &[], records, current: None, declared: None };
         let predicted = work::predict(&asked, input, true, &mut warnings)?;
-        Ok((documents::text(&predicted).map_err(Failure::work)?, sentences(&warnings.ranked())))
+        let warnings = sentences(predicted.warnings.iter().filter(|warning| !told.contains(warning)));
+        Ok((documents::text(&predicted).map_err(Failure::work)?, warnings))
     })
 }

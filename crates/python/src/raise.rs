@@ -24,6 +24,6 @@ create_exception!(
 pub fn raised(failure: Failure) -> PyErr {
     match failure.blame {
         Blame::Input => KempfError::new_err(failure.message),
-        Blame::Work => WorkError::new_err(failure.message),
+        Blame::Work | Blame::Interrupted => WorkError::new_err(failure.message),
     }
 }

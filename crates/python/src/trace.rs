@@ -1,7 +1,7 @@
 //! `trace`: what a first-order ship lacks.
 
 use campaign::failure::Failure;
-use document::Warnings;
+use document::{Warning, Warnings};
 use pyo3::prelude::*;
 use study::documents::{self, curves::TracedRecord};
 use study::options::TraceRequest;
@@ -11,7 +11,7 @@ use study::work;
 use crate::asked::request;
 use crate::curve::{ReplayArrays, curve};
 use crate::earlier::{ModelText, earlier};
-use crate::record::{PyRecord, sentences, trials};
+use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
 
 /// What came out, with what its figures are made from.
@@ -47,13 +47,15 @@ pub fn trace(
     words: Vec<String>,
     priors: Vec<ModelText>,
 ) -> PyResult<PyTrace> {
+    // The document has what reading warned of, as that of the command; Python has been told before.
+    let told: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
     let (records, others) = (trials(&records), trials(&validate));
     patiently(py, move || {
         // The records are here already; the command line asks for the name of one.
         let asked: TraceRequest = request([words, vec![String::from("record")]].concat())?;
         let (records, others) = (work::trace::without(&asked, records), work::trace::without(&asked, others));
         let mut warnings = Warnings::default();
-        warnings.extend(repetitions(&records, &others));
+        warnings.extend(told.iter().cloned().chain(repetitions(&records, &others)));
         let traced = work::trace::trace(
             [&records, &others],
             &work::trace::settings(&asked)?,
@@ -63,6 +65,7 @@ pub fn trace(
         )?;
         let text = documents::text(&traced.document).map_err(Failure::work)?;
         let records = traced.curves()?.records;
-        Ok(PyTrace { text, warnings: sentences(&warnings.ranked()), records })
+        let warnings = sentences(traced.document.warnings.iter().filter(|warning| !told.contains(warning)));
+        Ok(PyTrace { text, warnings, records })
     })
 }

@@ -22,6 +22,7 @@ def steady(record):
 def test_the_best_answer_is_that_of_the_verdict(fitted):
     assert fitted.best is not None and fitted.best.method == fitted.document["verdict"]["method"]
     assert fitted.best is fitted[fitted.best.method]
+    assert fitted.best.T_s.value == fitted.document["verdict"]["T_s"]["value"]
 
 
 def test_results_have_their_warnings(fitted, traced, first_order, tmp_path):

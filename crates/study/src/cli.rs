@@ -15,6 +15,7 @@ use campaign::failure::Failure;
 use campaign::scenario::problem::suggestion;
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use document::ErrorCode;
 
 /// What `--version` tells.
 static VERSION: LazyLock<String> = LazyLock::new(campaign::manifest::version);
@@ -94,7 +95,8 @@ impl<R: Args> With<R> {
     }
 }
 
-/// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong.
+/// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong, 130
+/// Ctrl-C.
 pub fn main() -> ExitCode {
     interrupt::of_program();
     let words: Vec<OsString> = std::env::args_os().collect();
@@ -121,7 +123,8 @@ fn parse(words: &[OsString]) -> Result<Cli, Failure> {
         let advice = suggestion(&name, &known);
         return Err(Failure::input(format!(
             "there is no command `{name}`, and no scenario file of that name; {advice}"
-        )));
+        ))
+        .with_code(ErrorCode::Usage));
     }
     Cli::try_parse_from(words).map_err(|usage| match usage.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
@@ -138,7 +141,7 @@ pub fn misused(usage: &clap::Error) -> Failure {
     let said = usage.to_string();
     let (said, _) = said.split_once("\n\nUsage:").unwrap_or((&said, ""));
     let (said, _) = said.split_once("\n\nFor more information").unwrap_or((said, ""));
-    Failure::input(said.trim().trim_start_matches("error: "))
+    Failure::input(said.trim().trim_start_matches("error: ")).with_code(ErrorCode::Usage)
 }
 
 /// A first argument that is a single word, and neither a command nor the path of anything.

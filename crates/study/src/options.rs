@@ -161,6 +161,10 @@ pub struct FitRequest {
     /// Records of one ship, identified together; a folder stands for all its records
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
+    /// Fit every record alone: a row each, or with --format json a line of JSON each, on standard output and nowhere
+    /// else; a record that cannot be read is a row
+    #[arg(long, conflicts_with_all = ["validate", "priors", "with_columns", "trial", "from", "until", "out"])]
+    pub each: bool,
     /// Records on which the identified responses are replayed; only their initial state is fitted
     #[arg(long, value_name = "TRIAL")]
     pub validate: Vec<PathBuf>,
@@ -426,6 +430,8 @@ pub enum Described {
     Simulate,
     /// What `sidecar` says
     SidecarAnswer,
+    /// A line of what `fit --each` says
+    FitEach,
     /// What every command says on standard error when it fails
     Error,
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use document::{Code, Source, Warning, Warnings};
+use document::{Code, ErrorCode, Source, Warning, Warnings};
 use estimation::statistics::upper_median;
 use report::number::fixed;
 use ship::angle::KNOT;
@@ -89,7 +89,8 @@ pub fn source(path: &Path) -> Source {
 
 /// Why a file is no record, with the file told apart.
 fn refused(error: ReadError) -> Failure {
-    match error {
+    let code = error.code();
+    let failure = match error {
         ReadError::Table { file, problem } => Failure::about(&file, problem),
         ReadError::Sidecar(error) => {
             let SidecarError { file, line, problem } = &error;
@@ -97,7 +98,8 @@ fn refused(error: ReadError) -> Failure {
             let parts = FailureParts { file, line: *line, problem, ..FailureParts::default() };
             Failure { parts: Box::new(parts), ..Failure::input(&error) }
         }
-    }
+    };
+    failure.with_code(code)
 }
 
 /// Reads the records that are to be identified: of each the part that was asked for, or its zig-zag.
@@ -250,6 +252,7 @@ fn ask(log: &Log, path: &Path, several: &[(usize, &FoundManoeuvre)]) -> Failure 
     };
     let lines: String = several.iter().map(line).collect();
     Failure::about(path, format!("there are {} zig-zags in this log; say which one{lines}", several.len()))
+        .with_code(ErrorCode::SeveralManoeuvres)
 }
 
 /// A time of a log for people: seconds, and what the clock shows.

@@ -122,6 +122,7 @@ pub fn exit_code(blame: Blame) -> u8 {
     match blame {
         Blame::Work => 1,
         Blame::Input => 2,
+        Blame::Interrupted => 130,
     }
 }
 

@@ -30,7 +30,8 @@ fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
 /// Fails when a log cannot be read.
 pub fn found(request: &FindRequest, warnings: &mut Warnings) -> Result<FindAnswer, Failure> {
     let one = |file: &PathBuf| entry(file, request, warnings);
-    Ok(FindAnswer { logs: files(request)?.iter().map(one).collect::<Result<_, Failure>>()? })
+    let logs = files(request)?.iter().map(one).collect::<Result<_, Failure>>()?;
+    Ok(FindAnswer { logs, warnings: warnings.ranked() })
 }
 
 fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<LogEntry, Failure> {

@@ -7,6 +7,7 @@ use document::fit::FitDocument;
 use document::{Warning, Warnings};
 use report::Theme;
 
+use super::fit_each;
 use crate::documents::fit_curves::FitCurves;
 use crate::documents::{self, FIT, folder_for_records};
 use crate::options::{Common, FitRequest};
@@ -21,6 +22,9 @@ use crate::work::fit::{fit, methods};
 ///
 /// Fails when a record cannot be read, and when no method can identify the records.
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
+    if request.each {
+        return fit_each::run(request, common);
+    }
     let methods = methods(&request.methods, common.seed)?;
     let priors = EarlierModel::of_files(&request.priors)?;
     let mut warnings = Warnings::default();

@@ -6,6 +6,7 @@ pub mod check;
 pub mod doctor;
 pub mod find;
 pub mod fit;
+pub mod fit_each;
 pub mod inspect;
 pub mod list;
 pub mod predict;

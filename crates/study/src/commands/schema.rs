@@ -20,6 +20,7 @@ use crate::documents;
 use crate::documents::answers::{
     CheckAnswer, CommandAnswer, ListAnswer, ShardAnswer, SidecarAnswer, SimulateAnswer, StudyAnswer, Versioned,
 };
+use crate::documents::each::LogFitEntry;
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
 use crate::documents::fit_curves::FitCurves;
@@ -65,6 +66,7 @@ pub fn schema(what: Described) -> Schema {
         Described::List => answer::<ListAnswer>(),
         Described::Simulate => answer::<SimulateAnswer>(),
         Described::SidecarAnswer => answer::<SidecarAnswer>(),
+        Described::FitEach => of::<LogFitEntry>(),
         Described::Error => of::<ErrorDocument>(),
     }
 }

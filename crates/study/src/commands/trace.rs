@@ -36,7 +36,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let folder = ResultFolder::make(&place)?;
     let text = traced.write(&folder)?;
     show(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
-    if interrupt::is_asked() { Err(Failure::work(STOPPED)) } else { Ok(()) }
+    if interrupt::is_asked() { Err(Failure::interrupted(STOPPED)) } else { Ok(()) }
 }
 
 /// Draws a trace into a folder and tells what it says; `text` is that of `trace.json`.

@@ -12,14 +12,17 @@ pub struct ErrorDocument<'a> {
     pub schema: &'static str,
     /// What went wrong.
     pub error: ErrorEntry<'a>,
-    /// Exit code of the program: 1 where the work could not be done, 2 where the input is wrong.
+    /// Exit code of the program: 1 where the work could not be done, 2 where the input is wrong, 130 after Ctrl-C.
     pub exit_code: u8,
 }
 
 /// What went wrong.
 #[derive(Serialize, schemars::JsonSchema)]
 pub struct ErrorEntry<'a> {
-    /// Whether the input is wrong or the work could not be done.
+    /// `error`: there is no answer, whatever the `severity` of warnings.
+    #[schemars(extend("const" = "error"))]
+    pub severity: &'static str,
+    /// Whether the input is wrong, the work could not be done, or somebody asked to stop.
     pub blame: Blame,
     /// The whole message, as a person reads it.
     pub message: &'a str,
@@ -28,10 +31,16 @@ pub struct ErrorEntry<'a> {
     pub parts: &'a FailureParts,
 }
 
+impl<'a> ErrorEntry<'a> {
+    /// What a failure says.
+    pub fn of(Failure { blame, message, parts }: &'a Failure) -> Self {
+        Self { severity: "error", blame: *blame, message, parts }
+    }
+}
+
 /// The document of a failure in one line. Fails where it cannot be written as JSON.
 pub fn text(failure: &Failure) -> Result<String, serde_json::Error> {
-    let Failure { blame, message, parts } = failure;
-    let exit_code = screen::exit_code(*blame);
-    let document = ErrorDocument { schema: "error/1", error: ErrorEntry { blame: *blame, message, parts }, exit_code };
+    let exit_code = screen::exit_code(failure.blame);
+    let document = ErrorDocument { schema: "error/1", error: ErrorEntry::of(failure), exit_code };
     serde_json::to_string(&document)
 }

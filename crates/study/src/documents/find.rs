@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use document::Warning;
 use schemars::JsonSchema;
 use serde::Serialize;
 use ship::angle::to_deg;
@@ -15,6 +16,8 @@ use super::answers::CommandAnswer;
 pub struct FindAnswer {
     /// The logs in the order they were named.
     pub logs: Vec<LogEntry>,
+    /// Warnings of the reader, the worst first.
+    pub warnings: Vec<Warning>,
 }
 
 impl CommandAnswer for FindAnswer {

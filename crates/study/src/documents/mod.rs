@@ -5,6 +5,7 @@
 pub mod answers;
 pub mod columns;
 pub mod curves;
+pub mod each;
 pub mod error;
 pub mod find;
 pub mod fit_curves;
@@ -20,6 +21,7 @@ use campaign::disk;
 use campaign::failure::{Failure, OnPath};
 use campaign::files::MANIFEST;
 use campaign::folder::ResultFolder;
+use document::ErrorCode;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -144,7 +146,8 @@ pub fn read_document<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<(
     let (stated, text): (Stated, String) = read_json(path, command)?;
     if stated.schema != schema {
         let what = format!("schema = {:?}, expected {schema:?}", stated.schema);
-        return Err(Failure::about(path, format!("{what}; make it again with `study {command}`")));
+        let problem = format!("{what}; make it again with `study {command}`");
+        return Err(Failure::about(path, problem).with_code(ErrorCode::Document));
     }
     let document = serde_json::from_str(&text).map_err(|error| unread(path, error, command))?;
     Ok((document, text))
@@ -152,7 +155,8 @@ pub fn read_document<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<(
 
 /// Why a document is none of this program.
 fn unread(path: &Path, error: serde_json::Error, command: &str) -> Failure {
-    Failure::about(path, format!("{error}; make it again with `study {command}`"))
+    let problem = format!("{error}; make it again with `study {command}`");
+    Failure::about(path, problem).with_code(ErrorCode::Document)
 }
 
 /// Most bytes of a document or a table of curves.

@@ -254,8 +254,9 @@ const MOST_COLUMNS: usize = 4;
 /// A ratio of the ends of an axis above which it is divided by factors.
 const WIDE: f64 = 12.0;
 
-/// Charts of a measure over the last axis that is a number, else over the names of the last axis; points of the other
-/// axes side by side where they are few, else one chart each, with the names of these points. Nothing where there is no
+/// Charts of a measure over the last axis that is a number and leaves few points of the other axes, else over the last
+/// number, else over the names of the last axis; points of the other axes side by side where they are few, else one
+/// chart each, with the names of these points. Nothing where there is no
 /// axis or nothing to show. With each the name of its points and what a person should see.
 pub fn over_axes(
     design: &Design,
@@ -265,7 +266,9 @@ pub fn over_axes(
     let is_number = |axis: &usize| design.cells.iter().all(|cell| cell.values[*axis].is_some());
     let has_several =
         |axis: &usize| design.cells.iter().any(|cell| cell.labels[*axis] != design.cells[0].labels[*axis]);
-    let number = (0..design.axes.len()).rev().filter(has_several).find(is_number);
+    let numbers: Vec<usize> = (0..design.axes.len()).rev().filter(has_several).filter(is_number).collect();
+    let leaves_few = |axis: &&usize| groups(design, **axis).len() <= MOST_COLUMNS;
+    let number = numbers.iter().find(leaves_few).or(numbers.first()).copied();
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
     // A chart without a value, or without a single failure, says nothing.
     let says_something = |record: &Performance| {

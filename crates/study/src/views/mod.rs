@@ -8,6 +8,7 @@ pub mod charts;
 pub mod circle;
 pub mod coverage_table;
 pub mod curve_tables;
+pub mod each_table;
 pub mod findings;
 pub mod fit_figures;
 pub mod fit_page;

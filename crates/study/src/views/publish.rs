@@ -118,7 +118,7 @@ pub fn put(
     if let Some(brief) = &brief {
         folder.write("summary.md", brief.to_markdown())?;
     }
-    folder.write("summary.tex", tables::for_paper(&summary, stored).to_latex())?;
+    folder.write("summary.tex", for_paper(&summary, stored))?;
     let figures = study_figures::of(stored, &summary, figures);
     // The figure of an earlier scenario must not stand for this one.
     if figures.iter().all(|(place, _)| *place != FigurePlace::Key) {
@@ -130,6 +130,15 @@ pub fn put(
     curve_tables::write_showcases(stored, &figures, folder)?;
     write_page(folder, page(stored, &summary, brief, figures), Some(theme))?;
     Ok(summary)
+}
+
+/// `summary.tex`: the methods over all cells, and each beside the reference method on the same trials.
+fn for_paper(summary: &Summary, stored: &StoredStudy) -> String {
+    let overall = tables::for_paper(summary, stored).to_latex();
+    match summary.pairs.is_empty() || stored.design.cells.len() > LISTED_CELLS {
+        true => overall,
+        false => format!("{overall}\n{}", tables::pairs_for_paper(summary, stored).to_latex()),
+    }
 }
 
 const SUMMARY: &str = "summary.csv";

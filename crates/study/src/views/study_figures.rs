@@ -60,7 +60,9 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
     let known = names(figures.iter().map(|(_, figure)| &figure.stem));
     figures.iter_mut().zip(&known).for_each(|((_, figure), stem)| figure.stem.clone_from(stem));
     let warn = |key: &str, name: &str| {
-        screen::warn(&format!("warning: `output.{key}`: there is no figure {name:?}; there are: {}", known.join(", ")));
+        let there =
+            if known.is_empty() { String::from("there is none") } else { format!("there are: {}", known.join(", ")) };
+        screen::warn(&format!("warning: `output.{key}`: there is no figure {name:?}; {there}"));
     };
     let key = words.figure.as_ref().and_then(|stem| {
         let found = figures.iter().find(|(_, figure)| figure.stem == *stem);

@@ -65,6 +65,8 @@ struct StudyPage<'a> {
     /// The cells one by one, where a person may read them all.
     brief: Option<Table>,
     cells: usize,
+    /// What errors of K and T are relative to.
+    relative: &'static str,
     times: Vec<String>,
     failures: Vec<String>,
     figures: PlacedFigures<FigurePlace>,
@@ -116,6 +118,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
         overall: (design.cells.len() > 1).then(|| tables::overall(summary, design)),
         brief,
         cells: design.cells.len(),
+        relative: tables::relative_to(design),
         times: design.methods.iter().enumerate().filter_map(time).collect(),
         failures: tables::failures(summary, design),
         figures,

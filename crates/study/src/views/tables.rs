@@ -4,8 +4,8 @@ use campaign::stored_figures::Reference;
 use report::number::{self, MISSING};
 use report::{Table, TableHead};
 
-use campaign::design::Design;
-use campaign::scenario::MethodName;
+use campaign::design::{CellFacts, Design};
+use campaign::scenario::{MethodName, TRACE};
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
 use campaign::store::StoredStudy;
@@ -119,7 +119,7 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
         cells.extend(validated.then(|| supported(line.record.validation_rmse_deg)));
         table.push(cells);
     }
-    table
+    with_reference(table, design)
 }
 
 fn brief(record: &Performance) -> Vec<String> {
@@ -132,6 +132,30 @@ fn brief(record: &Performance) -> Vec<String> {
         cells.push(fixed(errors.sd_over_bound, 2));
     }
     cells
+}
+
+/// What errors of K and T are relative to. A trace is held against the ship's own K and T.
+pub fn relative_to(design: &Design) -> &'static str {
+    let is_nearest = |cell: &CellFacts| cell.is_nearest;
+    match () {
+        () if design.methods.iter().all(|method| method.id == TRACE) => TRUTH,
+        () if design.cells.iter().all(is_nearest) => "the nearest first-order response",
+        () if design.cells.iter().any(is_nearest) => {
+            "the truth, and of ships that are not first order to the nearest first-order response"
+        }
+        () => TRUTH,
+    }
+}
+
+/// What errors of K and T of first-order ships are relative to.
+const TRUTH: &str = "the truth";
+
+/// A table of errors, with what they are relative to over it where that is not the truth alone.
+fn with_reference(table: Table, design: &Design) -> Table {
+    match relative_to(design) {
+        TRUTH => table,
+        reference => table.titled(format!("Errors of K and T relative to {reference}")),
+    }
 }
 
 /// One row per method over all cells.
@@ -153,7 +177,7 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
         cells.push(supported(record.validation_rmse_deg));
         table.push(cells);
     }
-    table
+    with_reference(table, design)
 }
 
 /// [`overall`] with the caption and the label it has in a paper: `summary.tex`.
@@ -161,11 +185,39 @@ pub fn for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
     let (name, cells) = (&stored.manifest.name, stored.design.cells.len());
     let of = if cells == 1 { name.clone() } else { format!("{name}, all {cells} cells together") };
     let caption = format!(
-        "Errors of K and T in {of}: trials that failed, median of the size of the relative error with its 95 % \
+        "Errors of K and T in {of}, relative to {}: trials that failed, median of the size of the error with its 95 % \
          bootstrap interval, 90 % quantile of this size, share of the quoted 95 % intervals that hold the truth, and \
-         median error of the heading on a manoeuvre no method has seen."
+         median error of the heading on a manoeuvre no method has seen.",
+        relative_to(&stored.design)
     );
     overall(summary, &stored.design).titled(caption).labelled(name.as_str())
+}
+
+/// Every method against the reference on the same trials, with caption and label: the second table of `summary.tex`.
+pub fn pairs_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
+    let (design, name) = (&stored.design, &stored.manifest.name);
+    let mut head = head(design).counts(["trials"]);
+    for index in ["K", "T"] {
+        head = head.numbers([format!("{index} rms ratio")]).interval();
+        head = head.numbers([format!("{index} closer")]).unit("%").interval();
+    }
+    let mut table = Table::new(head);
+    for line in &summary.pairs {
+        let mut cells = place(design, line.cell, line.method);
+        cells.push(line.trials.to_string());
+        for comparison in [&line.k, &line.t] {
+            for figure in [comparison.rms_ratio, comparison.closer.map(|share| share.times(100.0))] {
+                cells.extend([supported(figure), interval(figure)]);
+            }
+        }
+        table.push(cells);
+    }
+    let caption = format!(
+        "Each method of {name} against {} on the same trials, those in which both gave an answer: ratio of the rms errors, \
+         and share of the trials in which the method is closer to the truth, with 95 % intervals.",
+        design.methods[summary.reference].label
+    );
+    table.titled(caption).labelled(format!("{name}-pairs"))
 }
 
 /// Every method against the reference on the same trials: `pairs.csv`.

@@ -6,7 +6,7 @@ use campaign::stored_figures::Replays;
 use document::fit::{CircleEntry, CriterionEntry, FitDocument, SCHEMA, TrialEntry, VerdictEntry, ZigZagEntry};
 use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
-use document::{Code, ImoFormEntry, Source, Warning, Warnings};
+use document::{Code, ErrorCode, ImoFormEntry, Source, Warning, Warnings};
 use identify::estimate::Uncertainty;
 use identify::replay::replay;
 use identify::suspicion::suspicion;
@@ -293,7 +293,7 @@ fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[Warning]) -> Fa
     if entries.iter().any(|entry| entry.failure.as_deref() != Some("not-excited")) {
         message += "\nhelp: give a zig-zag, or a record in which the rudder is put to both sides for as long as the ship needs to answer";
     }
-    Failure::about(file_of(record).0, message)
+    Failure::about(file_of(record).0, message).with_code(ErrorCode::NoAnswer)
 }
 
 fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {

@@ -1,5 +1,6 @@
 //! What a command works out before anything is drawn, written or said; what a program that calls this crate asks for.
 
+pub mod each;
 pub mod earlier;
 pub mod every_scale;
 pub mod fit;

@@ -232,10 +232,10 @@ pub fn predict(
     let replayed: Result<Vec<_>, Failure> = replayed.inspect(|_| steps.advance()).collect();
     let (replays, corrections): (Vec<_>, Vec<_>) = replayed?.into_iter().unzip();
     steps.finish();
-    let weight = 1.0 / models.len() as f64;
     let mut document = PredictDocument {
+        warnings: warnings.ranked(),
         schema: SCHEMA.into(),
-        models: files(models).into_iter().map(|file| ModelWeight { file, weight }).collect(),
+        models: files(models).into_iter().map(|file| ModelWeight { file, weight: 1.0 / models.len() as f64 }).collect(),
         draws,
         calm: request.calm,
         length_m: particulars.map(|own| own.length),
@@ -249,18 +249,12 @@ pub fn predict(
         hull: !mixture.first().hulls.is_empty(),
         load: taken.as_ref().map(|(.., load)| load.clone()),
         seen: mixture.first().seen,
-        warnings: of_models(warnings),
         ..PredictDocument::default()
     };
     if request.form {
         fill_form(&mut document, particulars, &records, &corrections, declared);
     }
     Ok(document)
-}
-
-/// What is said of files, the worst first; a record is read before, and says what it has to say then.
-fn of_models(warnings: &Warnings) -> Vec<Warning> {
-    warnings.ranked().into_iter().filter(|warning| matches!(warning.source, Source::File(_))).collect()
 }
 
 /// Models with earlier trials that they have not seen, and what is said of each; nothing where there are none of these.

@@ -98,8 +98,7 @@ pub fn trace(
     let analysis = ::trace::watched(&together.trials, &together.others, settings, &watch);
     watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
-    let scales = together.sentence();
-    let RescaledRecords { trials, others: held_out, .. } = together;
+    let (scales, RescaledRecords { trials, others: held_out, .. }) = (together.sentence(), together);
     let shown = RecordFacts::of(&trials).with_motion(Some(&analysis), &settings.earlier);
     warnings.extend(no_track(&shown));
     warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
@@ -137,6 +136,7 @@ pub fn trace(
         scales,
         next_trial: next_trial(&analysis, &trials),
         trace: analysis.document,
+        warnings: warnings.ranked(),
     };
     Ok(TraceResult { document, tables })
 }

@@ -32,7 +32,10 @@ pub fn of_answers(
     let [nearest, likely] = USUAL.map(of);
     let mut verdict = taken(&Recommendation::of(trials, nearest, likely), entries, straight)?;
     verdict.because = disbelief(&verdict, entries, straight);
-    verdict.believe = if verdict.because.is_some() { Belief::No } else { Belief::Yes };
+    if verdict.because.is_some() {
+        verdict.believe = Belief::No;
+        (verdict.k_per_s, verdict.t_s) = (None, None);
+    }
     Some(verdict)
 }
 
@@ -99,6 +102,8 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
         believe: Belief::Yes,
         because: None,
         method: taken.method.clone(),
+        k_per_s: taken.parameters.map(|parameters| parameters.k_per_s),
+        t_s: taken.parameters.map(|parameters| parameters.t_s),
         reason,
         residual: recommendation.residual(),
         residual_deg: degrees(|lack| lack.residual),

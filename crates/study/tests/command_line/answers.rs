@@ -23,6 +23,10 @@ fn fit_asks_the_usual_methods_and_all_on_request() {
     assert_eq!(usual, USUAL);
     assert!(all.starts_with(&usual) && all.len() == registry::defaults().len(), "{all:?}");
     assert!(["method", "reason", "residual", "residual_deg"].iter().all(|key| verdict[*key] == with_all[*key]));
+    let fit = desk.json("all/fit.json");
+    let taken = fit["methods"].as_array().into_iter().flatten().find(|own| own["method"] == verdict["method"]);
+    let parameters = &taken.expect("the method of the verdict")["parameters"];
+    assert!(["K_per_s", "T_s"].iter().all(|key| verdict[*key] == parameters[*key] && verdict[*key]["ci95"].is_array()));
     let (asked, _) = fitted(&["--method", "srivc", "--method", "output-error"], "asked");
     assert_eq!(asked, ["output-error", "srivc"]);
     desk.run(&["fit", "run.csv", "--method", "al"]).is_refused(2, &["--method al", "use all, or one of output-error"]);

@@ -1,6 +1,9 @@
 //! Logs as they are, to the answer: what is found in them, which part is used, what a person can say.
 
-use crate::desk::{Desk, zig_zag_csv};
+use serde_json::Value;
+
+use crate::desk::{Desk, with_column, zig_zag_csv};
+use crate::schemas;
 
 /// Rows of time, heading and rudder: a straight piece, a zig-zag, twice, and a straight end.
 fn long_log() -> String {
@@ -76,6 +79,45 @@ fn a_log_without_a_zig_zag_is_said_to_have_none() {
     desk.file("turn.csv", text);
     let run = desk.run(&["fit", "turn.csv", "--method", "output-error"]);
     assert!(run.is_done().err.contains("no zig-zag is recognised"), "{}", run.err);
+}
+
+/// Every log has its row, in the order of the command line, whether it has an answer or none.
+#[test]
+fn every_log_is_fitted_alone_and_is_a_row() {
+    let desk = Desk::new();
+    desk.file("logs/good.csv", zig_zag_csv());
+    let swung = |row: usize, psi: f64| (psi + 9.0 * (row as f64 / 5.0).sin()).to_string();
+    desk.file("logs/swung.csv", with_column(&zig_zag_csv(), "heading_deg", swung));
+    desk.file("logs/bad.csv", "t_s,heading_deg\n0,1\n");
+    desk.file("logs/notes.md", "no log");
+    let run = |logs: &[&str], options: &[&str]| {
+        desk.run(&[&["fit", "--each", "--method", "output-error"], logs, options].concat())
+    };
+    let all = ["missing.csv", "logs"];
+    let lines = run(&all, &["--format", "json", "--quiet"]);
+    let entries: Vec<Value> =
+        lines.is_done().out.lines().map(|line| serde_json::from_str(line).expect("a document a line")).collect();
+    entries.iter().for_each(|entry| schemas::hold("fit-each", &desk.path("lines"), entry));
+    let files: Vec<&str> = entries.iter().filter_map(|entry| entry["file"].as_str()).collect();
+    assert_eq!(files, ["missing.csv", "logs/bad.csv", "logs/good.csv", "logs/swung.csv"]);
+    assert_eq!([0, 1].map(|row| &entries[row]["error"]["code"]), ["not-found", "missing-channel"]);
+    assert!(entries[1]["verdict"].is_null() && entries[2]["error"].is_null(), "{}", lines.out);
+    let (good, swung) = (&entries[2]["verdict"], &entries[3]["verdict"]);
+    assert!(swung["believe"] == "no" && swung.get("K_per_s").is_none(), "{swung}");
+    desk.run(&["fit", "logs/good.csv", "--method", "output-error", "--out", "alone"]).is_done();
+    assert_eq!(*good, desk.json("alone/fit.json")["verdict"]);
+
+    let table = run(&all, &["--format", "csv", "--threads", "1"]);
+    let rows: Vec<&str> = table.is_done().out.lines().collect();
+    assert!(rows[0].starts_with("file,method,K [1/s],K lower 95 [1/s],K upper 95 [1/s],T [s]"), "{}", rows[0]);
+    assert!(rows[0].ends_with("believe,residual,warnings,codes,reason") && rows.len() == 5, "{}", table.out);
+    assert!(rows[1].contains("not-found: there is no such file") && rows[4].contains("output-error"), "{}", table.out);
+    assert_eq!(table.out, run(&all, &["--format", "csv", "--threads", "2"]).out);
+    assert!(run(&all, &[]).is_done().out.contains("logs/swung.csv"));
+    assert!(!desk.path("good-fit").exists(), "rows are all there is");
+    let none = run(&["logs/bad.csv", "missing.csv"], &[]);
+    assert!(none.code == Some(2) && none.err.contains("none of 2 logs could be read"), "{}", none.err);
+    run(&["logs"], &["--out", "folder"]).is_refused(2, &["--out"]);
 }
 
 #[test]

@@ -101,6 +101,7 @@ fn a_trace_predicts_and_its_own_record_is_inside() {
     assert!(run.is_done().err.contains("t/trace.json is fitted to it; the error on it validates nothing"));
     let json = desk.json("p/predict.json");
     keeps_the_contract(&json);
+    assert!(json["warnings"].as_array().into_iter().flatten().any(|own| own["code"] == "repetition"), "{json}");
     assert_eq!(json["manoeuvres"].as_array().map(Vec::len), Some(5));
     let criteria = criteria(&json);
     assert_eq!(criteria, ["initial turning", "20/20 first overshoot"]);

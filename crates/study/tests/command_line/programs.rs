@@ -1,8 +1,11 @@
 //! What programs see: one JSON document on standard output, a record on standard input, tables of numbers.
 
+use std::io::Write;
+use std::process::Stdio;
+
 use serde_json::Value;
 
-use crate::desk::{Desk, of_repository, zig_zag_csv};
+use crate::desk::{Desk, interrupted, of_repository, with_column, zig_zag_csv};
 use crate::schemas;
 
 /// The one document on standard output, which `--quiet` does not silence.
@@ -75,6 +78,8 @@ method.integral-least-squares = {}
     assert!(line["K rms error [%]"].as_f64().is_some_and(|error| error > 0.0), "{line}");
     let found = document(&desk, &["find", "run.csv"]);
     assert_eq!(found["logs"][0]["manoeuvres"][0]["kind"], "zig-zag 10/10");
+    let faulty = of_repository("tests/logs/frozen.csv").display().to_string();
+    assert_eq!(document(&desk, &["find", &faulty])["warnings"][0]["severity"], "mended");
     let checked = document(&desk, &["check", &scenario, "--resolved"]);
     assert!(checked["scenarios"][0]["resolved"]["steering-gear"]["rate-deg-s"].is_number(), "{checked}");
     assert_eq!(
@@ -89,6 +94,7 @@ fn error(desk: &Desk, arguments: &[&str]) -> Value {
     let document: Value = serde_json::from_str(&run.err).unwrap_or_else(|fault| panic!("{fault}: {}", run.err));
     schemas::hold("error", &desk.path("error"), &document);
     assert_eq!(document["exit_code"].as_i64(), run.code.map(i64::from), "{document}");
+    assert_eq!(document["error"]["severity"], "error", "{document}");
     document["error"].clone()
 }
 
@@ -99,19 +105,28 @@ fn what_goes_wrong_is_an_object_for_programs() {
     desk.file("bad.toml", "question = \"Why?\"\nseed = -1\n");
     let missing = error(&desk, &["fit", "none.csv"]);
     assert!(missing["file"] == "none.csv" && missing["blame"] == "input", "{missing}");
+    assert_eq!(missing["code"], "not-found");
     assert!(!missing["problem"].as_str().expect("words").contains("none.csv"), "{missing}");
-    assert_eq!(error(&desk, &["fit", "bad.csv"])["file"], "bad.csv");
+    let short = error(&desk, &["fit", "bad.csv"]);
+    assert_eq!((&short["file"], &short["code"]), (&"bad.csv".into(), &"missing-channel".into()));
+    for (file, scale, code) in [("per-cent.csv", 12.0, "angle-scale"), ("flipped.csv", -1.0, "rudder-sign")] {
+        desk.file(file, with_column(&zig_zag_csv(), "rudder_deg", |_, delta| (scale * delta).to_string()));
+        assert_eq!(error(&desk, &["fit", file])["code"], code);
+    }
     let place = error(&desk, &["bad.toml"]);
     assert_eq!((&place["file"], &place["line"], &place["column"]), (&"bad.toml".into(), &2.into(), &8.into()));
     assert!(place["expected"].is_string() && place["help"].is_string(), "{place}");
+    assert_eq!(place["code"], "scenario");
     desk.file("bad.trial.toml", "[table]\nheadr = false\n");
     let sidecar = error(&desk, &["fit", "bad.csv"]);
     assert_eq!((&sidecar["file"], &sidecar["line"]), (&"bad.trial.toml".into(), &2.into()), "{sidecar}");
+    assert_eq!(sidecar["code"], "sidecar");
     let full = error(&desk, &["doctor", "--out", "bad.csv"]);
-    assert!(full["message"].as_str().expect("words").contains("bad.csv"), "{full}");
+    assert!(full["message"].as_str().expect("words").contains("bad.csv") && full["code"] == "work", "{full}");
     // Options, too: what is wrong without how the command is used.
     let option = error(&desk, &["fit", "bad.csv", "--draws", "1"]);
     assert!(option["problem"].as_str().expect("words").contains("--draws"), "{option}");
+    assert_eq!(option["code"], "usage");
     assert!(!option["message"].as_str().expect("words").contains("Usage"), "{option}");
     let command = error(&desk, &["fti"]);
     assert!(command["problem"].as_str().expect("words").contains("no command `fti`"), "{command}");
@@ -119,6 +134,24 @@ fn what_goes_wrong_is_an_object_for_programs() {
     desk.run(&["fit", "none.csv"]).is_refused(2, &["none.csv"]);
     desk.run(&["check", "bad.toml", "--format", "text"]).is_refused(2, &["seed"]);
     desk.run(&["fit", "bad.csv", "--draws", "1"]).is_refused(2, &["--draws", "Usage: study fit"]);
+}
+
+/// A command that waits for the rest of its input ends by Ctrl-C, with the exit code that shells give.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_is_exit_code_130_in_every_command() {
+    let desk = Desk::new();
+    let rows: String = (0..50_000).map(|row| format!("{row},0,0\n")).collect();
+    let table = format!("t_s,heading_deg,rudder_deg\n{rows}");
+    for command in ["fit", "trace", "find", "predict"] {
+        let mut child = desk.command(&[command, "-"]);
+        let mut run = child.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+        let mut input = run.stdin.take().expect("it is piped");
+        // More than a pipe holds: when all is written, some has been read.
+        input.write_all(table.as_bytes()).expect("it reads");
+        let (run, _) = interrupted(run);
+        assert_eq!((run.code, run.err.as_str()), (Some(130), ""), "{command}");
+    }
 }
 
 /// Quiet is about people: notes and warnings go, and so does the table, unless a form of it was asked for.

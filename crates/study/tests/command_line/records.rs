@@ -63,6 +63,7 @@ fn no_answer_is_taken_from_a_heading_that_the_rudder_does_not_explain() {
     assert!(run.is_done().out.starts_with("No K and T can be taken from this "), "{}", run.out);
     let verdict = &desk.json("run-fit/fit.json")["verdict"];
     assert!(verdict["believe"] == "no" && verdict["because"].is_string(), "{verdict}");
+    assert!(verdict.get("K_per_s").is_none() && verdict.get("T_s").is_none(), "{verdict}");
     let because = verdict["because"].as_str().expect("a reason");
     let run = desk.run(&["predict", "run-fit/fit.json", "--draws", "60", "--figures", "none"]);
     assert!(run.is_done().err.contains("no K and T can be taken from its records"), "{}", run.err);

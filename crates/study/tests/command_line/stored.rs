@@ -124,7 +124,7 @@ fn ctrl_c_does_not_wait_for_a_trial() {
     let run = desk.start_until(&["slow.toml", "--out", "slow", "--quiet", "--threads", "2"], || begun.exists());
     std::thread::sleep(Duration::from_millis(100));
     let (run, waited) = interrupted(run);
-    run.is_refused(1, &["error: stopped after 0 of 8 trials"]);
+    run.is_refused(130, &["error: stopped after 0 of 8 trials"]);
     // Half a second on a machine with nothing else to do.
     assert!(waited < Duration::from_secs(2), "{waited:?}");
     desk.run(&["report", "slow"]).is_refused(2, &["slow", "no rows"]);
@@ -162,6 +162,10 @@ fn figures_are_chosen() {
     let run = desk.run(&["study.toml", "--out", "named", "--quiet"]);
     assert!(run.is_done().err.contains("there is no figure \"eror\"; there are: errors"), "{}", run.err);
     assert_eq!(figures("named"), ["coverage.png", "hero.png"]);
+    let (head, _) = STUDY.split_once("[[sweep]]").expect("a sweep");
+    desk.file("single.toml", format!("{head}{output}"));
+    let run = desk.run(&["single.toml", "--out", "single", "--quiet"]);
+    assert!(run.is_done().err.contains("there is no figure \"errors\"; there is none"), "{}", run.err);
     let page = desk.text("named/report.md");
     assert!(
         page.contains("](hero.png)") && page.contains("](coverage.png)") && !page.contains("](errors.png)"),
@@ -209,6 +213,51 @@ points = [
     assert!(desk.text("out/report.md").contains("error of K and T over the Cramér–Rao"));
     assert!(desk.path("out/coverage-first-order.png").exists() && !desk.path("out/coverage-cubic.png").exists());
     assert!(drawn("indices").contains(" of the 5/5") && !desk.path("out/ranking.png").exists());
+    // Tables say it over themselves, as the axes do.
+    let some = "relative to the truth, and of ships that are not first order to the nearest first-order response";
+    let page = desk.text("out/report.md");
+    assert_eq!(page.matches(some).count(), 3, "two tables and the sentence below them\n{page}");
+    assert!(desk.text("out/summary.md").contains(some) && desk.text("out/summary.tex").contains(some));
+    let cubic = noisy.replacen("seed", "effect = [{ nonlinear_damping = { n3-s2-per-deg2 = 0.4 } }]\nseed", 1);
+    desk.file("cubic.toml", cubic);
+    let run = desk.run(&["cubic.toml", "--out", "cubic"]);
+    let all = "Errors of K and T relative to the nearest first-order response";
+    assert!(run.is_done().out.contains(all) && desk.text("cubic/summary.md").contains(all), "{}", run.out);
+}
+
+/// Methods are compared on the same trials in a table of their own, where there are several.
+#[test]
+fn the_table_for_a_paper_has_the_paired_comparison() {
+    let desk = desk();
+    let paper = desk.text("whole/summary.tex");
+    let (all, paired) =
+        paper.split_once("% Needs").and_then(|(_, rest)| rest.split_once("% Needs")).expect("two tables");
+    assert!(all.contains("relative to the truth:") && paired.contains("\\label{tab:study-pairs}"), "{paper}");
+    assert!(
+        paired.contains("against integral-least-squares on the same trials") && paired.contains("closer"),
+        "{paired}"
+    );
+    let (one, _) = STUDY.rsplit_once("[[identifier]]").expect("a second method");
+    desk.file("one.toml", one);
+    desk.run(&["one.toml", "--out", "one", "--quiet"]).is_done();
+    assert_eq!(desk.text("one/summary.tex").matches("% Needs").count(), 1);
+}
+
+/// Five points by two are lines over the five, side by side for the two, whichever axis is named first.
+#[test]
+fn an_axis_of_two_numbers_is_two_panels() {
+    let desk = Desk::new();
+    let (head, _) = STUDY.split_once("[[sweep]]").expect("a sweep");
+    let noise =
+        "[[sweep]]\nname = \"noise\"\nkey = \"sensor.heading-noise-deg\"\nvalues = [0.05, 0.1, 0.2, 0.3, 0.5]\n";
+    let step = "[[sweep]]\nname = \"step\"\nkey = \"recording.sampling-s\"\nvalues = [1.0, 2.0]\n";
+    for (name, sweeps) in [("five-by-two", [noise, step]), ("two-by-five", [step, noise])] {
+        desk.file("study.toml", format!("{head}{}", sweeps.concat()));
+        desk.run(&["study.toml", "--out", name, "--quiet"]).is_done();
+        let errors = desk.text(&format!("{name}/errors.svg"));
+        assert!(["step = 1", "step = 2", "noise"].iter().all(|part| errors.contains(part)), "{name}");
+        assert!(!errors.contains("noise = "), "{name}: the five points are the axis");
+    }
 }
 
 /// Where manoeuvres are predicted, how often the intervals hold is a table and a figure.

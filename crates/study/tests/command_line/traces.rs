@@ -81,6 +81,8 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     assert!(run.err.contains("validates nothing"), "the same record twice is worth a warning: {}", run.err);
     let json = desk.json("run-trace/trace.json");
     keeps_the_contract(&json, 1, 1);
+    let codes: Vec<&Value> = json["warnings"].as_array().into_iter().flatten().map(|own| &own["code"]).collect();
+    assert!(codes.contains(&&"repetition".into()), "{codes:?}");
     assert_eq!(json["verdict"], "traced");
     assert_eq!(json["effects"][0]["id"], "second_order");
     assert!(json["effects"][0]["delta_bic"].as_f64().is_some_and(|change| change < -10.0));

@@ -1,0 +1,54 @@
+//! `study fit --each`: every log alone, a row or a line of JSON each on standard output, and no folder.
+
+use campaign::failure::Failure;
+use rayon::prelude::*;
+
+use crate::documents::each::LogFitEntry;
+use crate::documents::error::ErrorEntry;
+use crate::options::{Common, FitRequest, Format};
+use crate::records::expand;
+use crate::views::each_table;
+use crate::work::each::LogFit;
+use crate::work::fit::methods;
+use crate::{progress, screen};
+
+/// Logs that are fitted before lines of JSON are written.
+const AT_ONCE: usize = 64;
+
+/// Identifies every log alone and prints a row for it, in the order in which they were named.
+///
+/// Fails when no log can be read; a log that cannot be read is a row.
+pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
+    let methods = methods(&request.methods, common.seed)?;
+    let files = expand(&request.trials)?;
+    let bar = progress::of("logs", files.len() as u64, common.quiet);
+    let one = |file| {
+        let fit = LogFit::of(file, &methods, &request.reading);
+        bar.inc(1);
+        fit
+    };
+    let mut fits: Vec<LogFit> = Vec::with_capacity(files.len());
+    for part in files.chunks(AT_ONCE) {
+        let done: Vec<LogFit> = part.par_iter().map(|file| one(file)).collect();
+        if common.format == Format::Json {
+            bar.suspend(|| done.iter().try_for_each(|fit| screen::say_document(&line(fit)?)))?;
+        }
+        fits.extend(done);
+    }
+    bar.finish_and_clear();
+    if common.format != Format::Json && !common.is_silent() {
+        screen::say(common.format.render(&each_table::table(&fits)).trim_end())?;
+    }
+    match fits.iter().find_map(|fit| fit.error.as_ref()).filter(|_| !fits.iter().any(|fit| fit.is_read)) {
+        Some(first) => Err(Failure::input(format!("none of {} logs could be read; {}", fits.len(), first.message))),
+        None => Ok(()),
+    }
+}
+
+/// A log as a line of JSON. Fails where it cannot be written so.
+fn line(LogFit { file, verdict, warnings, error, .. }: &LogFit) -> Result<String, Failure> {
+    let error = error.as_ref().map(ErrorEntry::of);
+    let (file, verdict) = (file.display().to_string(), verdict.as_ref());
+    let entry = LogFitEntry { schema: "fit-each/1", file, verdict, warnings, error };
+    serde_json::to_string(&entry).map_err(Failure::work)
+}

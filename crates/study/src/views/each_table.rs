@@ -1,0 +1,56 @@
+//! The table of logs that were fitted one by one: the answer to take of each, or why there is none.
+
+use campaign::failure::Failure;
+use report::number::MISSING;
+use report::{Table, TableHead};
+use serde::Serialize;
+use serde_json::Value;
+use trial::Quantity;
+
+use super::method_table::estimate;
+use crate::work::each::LogFit;
+
+/// A row a log.
+pub fn table(fits: &[LogFit]) -> Table {
+    let head = TableHead::default().texts(["file", "method"]);
+    let head = head.numbers(["K"]).unit("1/s").interval().numbers(["T"]).unit("s").interval();
+    let head = head.texts(["believe", "residual"]).counts(["warnings"]).texts(["codes", "reason"]);
+    let mut table = Table::new(head);
+    for LogFit { file, verdict, warnings, error, .. } in fits {
+        let verdict = verdict.as_ref();
+        let number = |quantity: Option<Quantity>| match quantity {
+            Some(quantity) => estimate(&quantity),
+            None => [MISSING, MISSING].map(str::to_owned),
+        };
+        let mut codes: Vec<String> = warnings.iter().map(|warning| word(&warning.code)).collect();
+        codes.dedup();
+        let mut cells = vec![file.display().to_string(), verdict.map_or_else(missing, |own| own.method.clone())];
+        cells.extend(number(verdict.and_then(|own| own.k_per_s)));
+        cells.extend(number(verdict.and_then(|own| own.t_s)));
+        cells.push(verdict.map_or_else(missing, |own| word(&own.believe)));
+        cells.push(verdict.and_then(|own| own.residual).map_or_else(missing, |own| word(&own)));
+        cells.extend([warnings.len().to_string(), codes.join(" ")]);
+        cells.push(match error {
+            // What to do about it is in the line of JSON.
+            Some(Failure { parts, .. }) => {
+                let problem = parts.problem.split(['\n', ';']).next().unwrap_or_default();
+                format!("{}: {problem}", word(&parts.code))
+            }
+            None => verdict.and_then(|own| own.because.clone()).unwrap_or_default(),
+        });
+        table.push(cells);
+    }
+    table
+}
+
+fn missing() -> String {
+    MISSING.to_owned()
+}
+
+/// The word that stands for a value in JSON.
+fn word(value: &impl Serialize) -> String {
+    match serde_json::to_value(value) {
+        Ok(Value::String(word)) => word,
+        _ => missing(),
+    }
+}
