@@ -34,6 +34,7 @@ mod judged;
 pub mod known;
 pub mod manifest;
 pub mod observer;
+pub mod parquet_table;
 pub mod plan;
 mod prediction_check;
 mod reference;

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::correction::{Correction, FULL_LOAD};
+use crate::drawn_parameters::DrawnParameters;
 use crate::form::ImoFormEntry;
 use crate::imo::PredictedCriterion;
 use crate::prediction::{Bands, ManoeuvreCurves, Prediction};
@@ -61,6 +62,9 @@ pub struct PredictDocument {
     /// Where the ship was seen.
     #[serde(default)]
     pub seen: ValidityRange,
+    /// The drawn ships, where they were asked for.
+    #[serde(skip)]
+    pub drawn: Vec<DrawnParameters>,
     /// Warnings of models, records and manoeuvres, the worst first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,

@@ -74,9 +74,14 @@ impl DrawableHull {
         self.with(&self.known.values()).expect("it was made once")
     }
 
-    /// A hull by the covariance of its coefficients, within their ends; what makes no ship is drawn again. At another
+    /// The hull of coefficients that make one; else that of the known ones.
+    pub fn made_of(&self, values: &[f64]) -> ScaledHull {
+        self.with(values).unwrap_or_else(|| self.most_probable())
+    }
+
+    /// Coefficients by their covariance, within their ends; what makes no ship is drawn again. At another
     /// loading `rng` draws the hull of the trials, which this one follows, and `rest` what that does not tell of it.
-    pub fn drawn(&self, rng: &mut impl rand::Rng, rest: &mut impl rand::Rng) -> ScaledHull {
+    pub fn drawn(&self, rng: &mut impl rand::Rng, rest: &mut impl rand::Rng) -> Vec<f64> {
         let known = DVector::from(self.known.values());
         let values = match &self.from {
             None => self.values(rng, &known),
@@ -86,7 +91,7 @@ impl DrawableHull {
                 self.values(rest, &(known + gain * step))
             }
         };
-        self.with(values.as_slice()).unwrap_or_else(|| self.most_probable())
+        values.as_slice().to_vec()
     }
 
     /// Values about some, within their ends; the known ones where none are found.

@@ -156,6 +156,7 @@ mod tests {
         let ship = DrawnShip {
             response: ship::Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0)),
             hull: None,
+            coefficients: Vec::new(),
             gear: SteeringGear::with_rate(from_deg(2.5)),
             disturbances: Disturbances::default(),
             yaw_rate: 0.0,

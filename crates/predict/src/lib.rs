@@ -7,7 +7,7 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | ships drawn from it | [`mixture`] |
+//! | ships drawn from it | [`mixture`], [`drawn_parameters`] |
 //! | the manoeuvres, and what ends them | [`standard`] |
 //! | figures of merit | [`figures`] |
 //! | a manoeuvre predicted | [`prediction`] |
@@ -24,6 +24,7 @@
 pub mod correction;
 pub mod document;
 pub mod drawable_hull;
+pub mod drawn_parameters;
 pub mod error;
 pub mod figures;
 pub mod form;
@@ -43,6 +44,7 @@ mod testing;
 pub mod turn;
 
 pub use document::PredictDocument;
+pub use drawn_parameters::DrawnParameters;
 pub use error::PredictError;
 pub use interval::PredictionInterval;
 pub use mixture::{ShipMixture, UncertaintySource};

@@ -55,18 +55,18 @@ const WHITE: f64 = 0.05;
 /// One structure with the square root of its covariance; of a file with hulls, one of these beside the most probable
 /// structure.
 #[derive(Debug, Clone)]
-struct DrawableStructure {
+pub(crate) struct DrawableStructure {
     /// Probability among all.
-    weight: f64,
+    pub weight: f64,
     model: ResponseModel,
     known: WeightedStructure,
     root: DMatrix<f64>,
     /// Places of dead times among the parameters.
     dead_times: Vec<usize>,
     /// The hull that takes its place.
-    hull: Option<DrawableHull>,
+    pub hull: Option<DrawableHull>,
     /// The file it is from.
-    file: usize,
+    pub file: usize,
 }
 
 /// Everything that is known of a ship from one or several files, ready to be drawn from.
@@ -92,6 +92,8 @@ pub struct DrawnShip {
     pub response: Response,
     /// The hull, where one was fitted; it takes the place of the response.
     pub hull: Option<ScaledHull>,
+    /// The coefficients of the hull.
+    pub coefficients: Vec<f64>,
     /// Its steering gear.
     pub gear: SteeringGear,
     /// What acts on it.
@@ -184,10 +186,11 @@ impl ShipMixture {
         // A hull at another loading has the draws of the hull of the trials, and some of its own.
         let of_trial = StreamKey { seed: u64::from(self.apart && !self.follows), ..key };
         let mut rng = of_trial.indexed(Purpose::Specification, 2);
-        let hull = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
+        let coefficients = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
             true => hull.drawn(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
-            false => hull.most_probable(),
+            false => hull.known.values(),
         });
+        let hull = part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, values)| hull.made_of(values));
         let approach = doubt(UncertaintySource::InitialState, of_rate * known.approach_yaw_rate_rad_s);
         let of_hull = part.hull.as_ref().map_or(0.0, |hull| hull.known.beginning_yaw_rate_rad_s);
         let error = doubt(UncertaintySource::ProcessNoise, of_beginning * of_hull);
@@ -196,6 +199,7 @@ impl ShipMixture {
         DrawnShip {
             response: part.model.clone().with(values),
             hull,
+            coefficients: coefficients.unwrap_or_default(),
             gear,
             disturbances: self.disturbances(moment, part.hull.is_some()),
             yaw_rate: approach + error,
@@ -228,7 +232,7 @@ impl ShipMixture {
 
     /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of a
     /// mixture that is apart follow √2, which has nothing in common with it.
-    fn chosen(&self, number: u64) -> &DrawableStructure {
+    pub(crate) fn chosen(&self, number: u64) -> &DrawableStructure {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let step = if self.apart && !self.follows { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
         let mut left = (0.5 + number as f64 * step).fract();

@@ -365,6 +365,9 @@ pub struct PredictRequest {
     /// Ships that are drawn
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(DRAWS))]
     pub draws: u32,
+    /// Also write the drawn ships, their parameters and their figures, a row each, as draws.parquet
+    #[arg(long)]
+    pub draws_file: bool,
     /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each; its ship is
     /// the scale that is predicted for, unless --length-m says otherwise
     #[arg(long, value_name = "FILE.toml|DIR")]

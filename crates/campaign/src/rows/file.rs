@@ -6,19 +6,20 @@ use std::sync::Arc;
 use bytes::Bytes;
 use parquet::basic::Compression;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::data_type::{ByteArray, DataType};
 use parquet::file::metadata::{FileMetaData, KeyValue};
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
-use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::ColumnPath;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use trial::decoder::{CheckedPages, PageHead};
 
-use super::layout::{RowLayout, Values};
+use super::layout::RowLayout;
 use super::row::StudyRow;
 use crate::block::Block;
+use crate::parquet_table::{self, Values};
 use crate::scenario::hex;
 
 /// Key of the label in the metadata of the file, and that of the SHA-256 of the label.
@@ -108,38 +109,15 @@ fn written(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> parquet
     for name in layout.names().filter(|name| !RowLayout::repeats(name)) {
         properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![name]), false);
     }
-    let mut file = SerializedFileWriter::new(Vec::new(), Arc::new(layout.schema()), Arc::new(properties.build()))?;
+    let mut file = SerializedFileWriter::new(Vec::new(), layout.schema(), Arc::new(properties.build()))?;
     let columns: Vec<Values> = layout.take(rows).collect();
     let label = SealedLabel { label: label.clone(), rows: rows.len(), values_sha256: sha256_of(&columns) };
-    let mut group = file.next_row_group()?;
-    for values in columns {
-        let mut target = group.next_column()?.expect("the file has the columns of its layout");
-        match values {
-            Values::Counts(values) => write::<Int64Type>(&mut target, values),
-            Values::Numbers(values) => write::<DoubleType>(&mut target, values),
-            Values::Texts(values) => {
-                let bytes = |text: String| ByteArray::from(text.into_bytes());
-                write::<ByteArrayType>(&mut target, values.into_iter().map(|text| text.map(bytes)).collect())
-            }
-        }?;
-        target.close()?;
-    }
-    group.close()?;
+    parquet_table::write_group(&mut file, columns)?;
     let label = serde_json::to_string(&label).expect("texts and numbers");
     let sha256 = hex(&Sha256::digest(&label));
     file.append_key_value_metadata(KeyValue::new(LABEL.to_owned(), label));
     file.append_key_value_metadata(KeyValue::new(LABEL_SHA256.to_owned(), sha256));
     file.into_inner()
-}
-
-/// Writes the values of a column; those that are missing have level 0.
-fn write<T: DataType>(
-    target: &mut SerializedColumnWriter<'_>,
-    values: Vec<Option<T::T>>,
-) -> parquet::errors::Result<usize> {
-    let present: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
-    let values: Vec<T::T> = values.into_iter().flatten().collect();
-    target.typed::<T>().write_batch(&values, Some(&present), None)
 }
 
 /// The rows of a block: those of whole trials, from the first of the block on.
@@ -168,7 +146,7 @@ fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Resul
         return Err(Damage::Foreign(label));
     }
     let schema = file.metadata().file_metadata().schema_descr_ptr();
-    if *schema.root_schema() != layout.schema() || file.num_row_groups() != 1 {
+    if *schema.root_schema() != *layout.schema() || file.num_row_groups() != 1 {
         return Err("its columns are not those of this study".to_owned().into());
     }
     let group = file.metadata().row_group(0);

@@ -5,22 +5,15 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
-use parquet::schema::types::Type;
+use parquet::schema::types::TypePtr;
 
 use super::columns::{
     Access, COLUMNS, LOCATED_COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS,
 };
 use super::row::StudyRow;
 use crate::design::{Design, JudgedRecord};
+use crate::parquet_table::{self, Values};
 use crate::scenario::TRACE;
-
-/// Values of one column for several rows.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Values {
-    Counts(Vec<Option<i64>>),
-    Numbers(Vec<Option<f64>>),
-    Texts(Vec<Option<String>>),
-}
 
 /// What the rows of one study look like: the fixed columns, its axes and its draws.
 pub struct RowLayout {
@@ -94,7 +87,7 @@ impl RowLayout {
     }
 
     /// The schema of the file.
-    pub(super) fn schema(&self) -> Type {
+    pub(super) fn schema(&self) -> TypePtr {
         let fields = self.columns().map(|(name, source)| {
             let (physical, repetition, logical) = match source {
                 ColumnSource::Fixed(RowColumn { access: Access::Count(..), .. }) => {
@@ -105,13 +98,9 @@ impl RowLayout {
                 | ColumnSource::Record(..) => (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
                 _ => (Physical::DOUBLE, Repetition::OPTIONAL, None),
             };
-            let field = Type::primitive_type_builder(&name, physical)
-                .with_repetition(repetition)
-                .with_logical_type(logical)
-                .build();
-            Arc::new(field.expect("kinds and logical types fit together"))
+            parquet_table::field(&name, physical, repetition, logical)
         });
-        Type::group_type_builder("rows").with_fields(fields.collect()).build().expect("a group of columns")
+        parquet_table::schema(fields.collect())
     }
 
     /// Whether the values of a column repeat so often that a dictionary of them pays: estimates hardly ever do.

@@ -10,7 +10,7 @@ use report::Theme;
 use trial::file::called;
 use trial::{Sidecar, Trial};
 
-use crate::documents::{self, PREDICT, folder_for};
+use crate::documents::{self, PREDICT, draws, folder_for};
 use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
 use crate::screen::{self, CommandOutput};
@@ -53,6 +53,9 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::make(&place)?;
     let text = documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
+    if request.draws_file {
+        draws::keep(&folder, &predicted)?;
+    }
     show(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
 }
 

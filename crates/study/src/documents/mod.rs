@@ -5,6 +5,7 @@
 pub mod answers;
 pub mod columns;
 pub mod curves;
+pub mod draws;
 pub mod each;
 pub mod error;
 pub mod find;

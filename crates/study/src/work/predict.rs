@@ -218,8 +218,7 @@ pub fn predict(
     let mixture = mixture_of(models, scale)?;
     let particulars = mixture.particulars();
     warnings.extend(particulars.and_then(unusual_froude_number));
-    let file = files(models).join(", ");
-    let kinds = manoeuvres(request);
+    let (file, kinds) = (files(models).join(", "), manoeuvres(request));
     let steps = ProgressSteps::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
     let (predictions, lost) =
         SteeredShips { mixture: &mixture, draws, file: &file }.predictions(&kinds, &steps, warnings)?;
@@ -237,6 +236,7 @@ pub fn predict(
         schema: SCHEMA.into(),
         models: files(models).into_iter().map(|file| ModelWeight { file, weight: 1.0 / models.len() as f64 }).collect(),
         draws,
+        drawn: (0..draws as u64).filter(|_| request.draws_file).map(|number| mixture.parameters(number)).collect(),
         calm: request.calm,
         length_m: particulars.map(|own| own.length),
         speed_m_s: particulars.map(|own| own.speed),

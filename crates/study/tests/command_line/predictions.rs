@@ -1,5 +1,10 @@
 //! Predictions: `study predict` on what `fit` and `trace` leave.
 
+use std::collections::BTreeMap;
+
+use bytes::Bytes;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
 use serde_json::Value;
 
 use crate::desk::{Desk, Run, of_repository};
@@ -357,4 +362,39 @@ fn a_model_is_replayed_as_a_model_and_told_as_a_ship() {
     let [measured, told] = [("starboard", "value"), ("port", "median")]
         .map(|(side, key)| entry(&json, turning, side)[key].as_f64().expect("a number"));
     assert!((measured / told - 1.0).abs() < 0.15, "{measured} {told}");
+}
+
+/// Every drawn ship is a row: what she is, and what she did. The rows make the medians of the document.
+#[test]
+fn the_drawn_ships_are_a_table_on_request() {
+    let desk = with_fit();
+    let words = "f/fit.json --draws 60 --manoeuvre zig-zag:10/10 --manoeuvre spiral:15 --quiet --out";
+    predict(&desk, &format!("{words} plain")).is_done();
+    assert!(!desk.path("plain/draws.parquet").exists());
+    predict(&desk, &format!("{words} p --draws-file")).is_done();
+    predict(&desk, &format!("{words} again --draws-file --threads 1")).is_done();
+    assert!(desk.bytes("p/draws.parquet") == desk.bytes("again/draws.parquet"), "one number is one ship");
+    assert_eq!(desk.bytes("p/predict.json"), desk.bytes("plain/predict.json"));
+    let file = SerializedFileReader::new(Bytes::from(desk.bytes("p/draws.parquet"))).expect("a Parquet file");
+    let rows = file.get_row_iter(None).expect("rows").map(|row| row.expect("a row").into_columns());
+    let rows: Vec<BTreeMap<String, Field>> = rows.map(|row| row.into_iter().collect()).collect();
+    let number = |row: &BTreeMap<String, Field>, name: &str| match row[name] {
+        Field::Double(value) => value,
+        ref other => panic!("{name}: {other:?}"),
+    };
+    assert_eq!(rows.len(), 60);
+    assert!(rows.iter().zip(0..).all(|(row, number)| row["draw"] == Field::Long(number)));
+    let [model, structure] = ["f/fit.json", "first_order"].map(|text| Field::Str(text.into()));
+    assert!(rows.iter().all(|row| row["model"] == model && row["structure"] == structure), "{:?}", rows[0]);
+    assert!(rows.iter().all(|row| number(row, "weight") == 1.0));
+    let json = desk.json("p/predict.json");
+    for (kind, name) in [("zig-zag 10/10", "first_overshoot_deg"), ("spiral 15", "rate_starboard_deg_s")] {
+        let mut values: Vec<f64> = rows.iter().map(|row| number(row, &format!("figure.{kind}.{name}"))).collect();
+        values.sort_by(f64::total_cmp);
+        let median = figure(&json, kind, name)["median"].as_f64().expect("a number");
+        assert!(values[29] <= median && median <= values[30], "{name}: {median} {values:?}");
+    }
+    let gains: Vec<f64> = rows.iter().map(|row| number(row, "parameter.K_over_T")).collect();
+    let mean = gains.iter().sum::<f64>() / 60.0;
+    assert!((mean / (0.1 / 16.3) - 1.0).abs() < 0.01 && gains[0] != gains[1], "{mean}");
 }
