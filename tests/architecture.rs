@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// The crates from the ground up: each may use those before it.
 const FLOORS: [&str; 13] = [
@@ -89,6 +90,21 @@ fn dependencies(name: &str) -> Vec<String> {
     let own = list.lines().take_while(|line| !line.starts_with('['));
     let keys = own.filter_map(|line| line.split(['.', ' ', '=']).next());
     keys.filter(|key| FLOORS.contains(key)).map(str::to_owned).collect()
+}
+
+/// Methods build without figures, the command line and files of other programs.
+#[test]
+fn methods_take_no_figures_command_line_or_parquet() {
+    for package in ["kempf-identify", "kempf-trace"] {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["tree", "--offline", "--package", package, "--edges", "normal", "--prefix", "none"]);
+        let tree = cargo.current_dir(root()).output().expect("cargo runs");
+        let tree = String::from_utf8(tree.stdout).expect("names of packages");
+        assert!(tree.starts_with(&format!("{package} v")), "{package}: {tree}");
+        for heavy in ["parquet v", "plotters v", "clap v", "askama v", "kempf-simulate v"] {
+            assert!(tree.lines().all(|line| !line.starts_with(heavy)), "{package} takes {heavy}");
+        }
+    }
 }
 
 #[test]

@@ -24,6 +24,7 @@ pub mod channel;
 mod cleaning;
 pub mod clock;
 pub mod conditions;
+#[cfg(feature = "parquet")]
 pub mod decoder;
 pub mod degrees;
 mod encoding;

@@ -1,15 +1,19 @@
-//! Files that are tables and no text: Parquet, MATLAB variables, and spreadsheets with the feature `spreadsheets`.
+//! Files that are tables and no text: MATLAB variables, Parquet with the feature `parquet`, and spreadsheets with the
+//! feature `spreadsheets`.
 //!
 //! Each becomes the text of a table, a line at a time, and goes the way of every other table from there: names, units,
 //! stamps and sidecars are no matter of this module, and nothing is chosen or left out here but what no table can
 //! hold (columns inside columns, variables of other lengths).
 
 mod matlab;
+#[cfg(feature = "parquet")]
 mod parquet;
 #[cfg(feature = "spreadsheets")]
 mod spreadsheet;
 #[cfg(test)]
+#[cfg_attr(not(feature = "parquet"), allow(unused, reason = "files that Parquet packs"))]
 mod tests;
+#[cfg_attr(not(feature = "parquet"), allow(dead_code, reason = "kinds of values that Parquet alone has"))]
 mod text;
 
 use std::io::Read;
@@ -40,7 +44,13 @@ impl Kind {
     /// Fails when the file is damaged, packed in a way that is not read, or holds no table.
     pub fn text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         match self {
+            #[cfg(feature = "parquet")]
             Self::Parquet => parquet::text(bytes),
+            #[cfg(not(feature = "parquet"))]
+            Self::Parquet => Err(Problem::Format {
+                format: "a Parquet file",
+                cure: "export it as CSV, or use a build with the feature `parquet`",
+            }),
             #[cfg(feature = "spreadsheets")]
             Self::Spreadsheet => spreadsheet::text(bytes),
             #[cfg(not(feature = "spreadsheets"))]

@@ -1,6 +1,7 @@
 //! Files that are no text give the record that their table gives as CSV, and damaged ones a message.
 
 mod matlab;
+#[cfg(feature = "parquet")]
 mod parquet;
 #[cfg(feature = "spreadsheets")]
 mod spreadsheet;
@@ -71,6 +72,7 @@ fn assert_sound(file: &[u8], format: &str) {
     }
 }
 
+#[cfg(feature = "parquet")]
 #[test]
 fn the_hash_is_that_of_the_bytes_on_the_disk() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -94,6 +96,8 @@ fn what_is_not_read_is_named_with_a_cure() {
         assert_told(parse(frames.as_bytes()), &["CAN frames in hexadecimal", "`candump2analyzer`", "`analyzer -json`"]);
     }
     assert_told(parse(b"PARE and more"), &["encrypted"]);
+    #[cfg(not(feature = "parquet"))]
+    assert_told(parse(b"PAR1 and more"), &["export it as CSV", "feature `parquet`"]);
     #[cfg(not(feature = "spreadsheets"))]
     assert_told(parse(b"PK\x03\x04 and more"), &["export it as CSV", "feature `spreadsheets`"]);
 }
