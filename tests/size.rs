@@ -9,8 +9,8 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 67_421,
-    tests: 30_419,
+    code: 67_423,
+    tests: 30_445,
     long_functions: 0,
     shared_types: 8,
     packages: 298,
