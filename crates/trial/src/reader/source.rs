@@ -82,7 +82,7 @@ impl ChannelReadings {
         let changes = read.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs()).filter(|change| *change > ROUNDING);
         let (low, high) = extremes(read.iter().map(|(_, value)| *value));
         let turns = |value: f64| (value / std::f64::consts::TAU).floor();
-        let crossings = || read.windows(2).map(|pair| (turns(pair[1].1) - turns(pair[0].1)).abs() as usize).sum();
+        let crossings = || read.windows(2).filter(|pair| turns(pair[0].1) != turns(pair[1].1)).count();
         Self {
             channel: *channel,
             source: source.clone(),
@@ -108,5 +108,19 @@ impl ChannelReadings {
     /// The same on a clock that shows so many seconds more.
     pub(super) fn later(self, offset: f64) -> Self {
         Self { longest: self.longest.map(|[begin, way]| [begin + offset, way]), ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A damaged file may hold any number.
+    #[test]
+    fn headings_of_any_size_pass_north_once_a_row() {
+        let values = vec![6.2, 6.4, 1e300, -1e300, 1e300];
+        let time = (0..values.len()).map(|row| row as f64).collect();
+        let series = Series { channel: Channel::Heading, time, values, source: None };
+        assert_eq!(ChannelReadings::of(&series, 0.0..=9.0).wraps, Some(4));
     }
 }
