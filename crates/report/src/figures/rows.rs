@@ -62,13 +62,15 @@ pub struct RowItem {
     pub soft: bool,
     /// A number written at the right end of the row.
     pub text: Option<String>,
+    /// A number written beside a mark.
+    pub number: Option<String>,
 }
 
 impl RowItem {
     /// Something in the middle of its row that sets the axis.
     pub fn new(name: impl Into<String>, kind: RowKind) -> Self {
         let name = Some(name.into()).filter(|name| !name.is_empty());
-        Self { name, kind, place: RowPlace::Aside(0.0), soft: false, text: None }
+        Self { name, kind, place: RowPlace::Aside(0.0), soft: false, text: None, number: None }
     }
 
     /// A row that is a heading.
@@ -360,13 +362,18 @@ fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alo
     let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
     let place = chart.reach(value.clamp(-f64::MAX, f64::MAX), y);
     let Some((x, height)) = place.filter(|place| !chart.rect.contains(*place)) else {
-        return chart.marker(item.name.as_deref(), value, y, theme.marker, look).map(|()| false);
+        chart.marker(item.name.as_deref(), value, y, theme.marker, look)?;
+        if let (Some(number), Some((x, height))) = (&item.number, place) {
+            let number = TextLine::new(number, theme.small_font, HPos::Left);
+            chart.canvas.text_on_ground((x + 1.6 * theme.marker, height), &number)?;
+        }
+        return Ok(false);
     };
     let (edge, side) = if x > chart.rect.x { (chart.rect.right(), 1.0) } else { (chart.rect.x, -1.0) };
     let size = 0.65 * theme.small_font;
     let tip = edge - side * 0.2 * theme.small_font;
     chart.canvas.head((tip, height), (side, 0.0), size, look.colour)?;
-    if is_alone && value.abs() < f64::MAX {
+    if is_alone && !item.soft && value.abs() < f64::MAX {
         let anchor = if side > 0.0 { HPos::Right } else { HPos::Left };
         let label = TextLine::new(significant(value, 3), theme.small_font, anchor);
         chart.canvas.text_on_ground((tip - side * 1.3 * size, height), &label)?;

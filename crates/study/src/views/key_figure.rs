@@ -134,26 +134,18 @@ fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) 
     }
 }
 
-/// Pales the rows that a figure is not about, and writes the values of each other row beside it.
+/// Pales the rows that a figure is not about, and writes the values of all others beside their marks.
 fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String]) {
     column.room = ROOM;
     for (row, name) in column.rows.iter_mut().zip(names) {
         let is_quiet = !about.contains(name);
-        let marks = row.iter_mut().filter_map(|item| match &mut item.kind {
-            RowKind::Mark(look, value, _) => Some((look, *value, &mut item.text)),
-            _ => None,
-        });
-        let (mut values, mut first) = (Vec::new(), None);
-        for (look, value, text) in marks {
+        for item in row {
+            let RowKind::Mark(look, value, _) = &mut item.kind else { continue };
             if is_quiet || look.colour == QUIET {
                 look.colour = QUIET;
-                continue;
+            } else {
+                item.number = Some(significant(*value, 2));
             }
-            values.push(significant(value, 2));
-            first = first.or(Some(text));
-        }
-        if let Some(text) = first {
-            *text = Some(values.join(", "));
         }
     }
 }
@@ -234,7 +226,7 @@ mod tests {
         let highlight = Highlight { rows: vec![String::from("20/20")], ..Highlight::default() };
         let Plot::Rows(data) = of_chart(rows.into(), &highlight) else { panic!() };
         let shown = |row: usize| match &data.columns[0].rows[row][0] {
-            RowItem { kind: RowKind::Mark(look, ..), text, .. } => (look.colour == QUIET, text.as_deref()),
+            RowItem { kind: RowKind::Mark(look, ..), number, .. } => (look.colour == QUIET, number.as_deref()),
             _ => panic!(),
         };
         assert_eq!((shown(0), shown(1)), ((true, None), (false, Some("2.0"))));

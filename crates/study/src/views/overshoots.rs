@@ -77,8 +77,8 @@ pub fn errors(document: &TraceDocument, curves: &TraceCurves, held_out: bool) ->
 pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let all = overshoots(document, curves);
     // One mark above the other, so that neither hides the other.
-    let mark = |origin: CurveOrigin, aside: f64, value: Option<f64>| {
-        let item = RowItem::new(origin.label(), RowKind::Mark(origin.look(), value?, None)).softly();
+    let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>| {
+        let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).softly();
         Some(RowItem { place: RowPlace::Aside(aside), ..item })
     };
     let row = |overshoot: &ReplayedOvershoot| -> Vec<RowItem> {
@@ -86,8 +86,8 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         let items = [
             Some(RowItem::new("measured", RowKind::Bar(measured, overshoot.measured))),
             overshoot.limit.map(|limit| RowItem::new("IMO limit", RowKind::Limit(limit))),
-            mark(CurveOrigin::Before, -0.16, overshoot.replayed[0]),
-            mark(CurveOrigin::After, 0.16, overshoot.replayed[1]),
+            mark("K and T alone", CurveOrigin::Before, -0.16, overshoot.replayed[0]),
+            mark("traced", CurveOrigin::After, 0.16, overshoot.replayed[1]),
         ];
         items.into_iter().flatten().collect()
     };
@@ -113,10 +113,11 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         0 => String::new(),
         records => format!(" of {} that no model has seen", counted(records as u64, "record")),
     };
-    let finding =
-        format!("{count} overshoots{of_records} are {before} with K and T alone{no_before}, {after} traced{no_after}");
-    let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of IMO \
+    let finding = format!(
+        "{count} overshoots{of_records} are {before} with K and T alone{no_before}, {after} traced{no_after}, medians"
+    );
+    let caption = "Overshoots of the records and of the replays of their rudder by K and T alone and by the traced model, with the limits of IMO \
                    MSC.137(76) where one is for this zig-zag and for a ship of this length. Without a mark: that \
-                   replay has no such overshoot, which counts as missing. Distances are medians.";
+                   replay has no such overshoot, which counts as missing.";
     (!all.is_empty()).then(|| PageFigure::new("overshoots", finding, caption, data))
 }
