@@ -11,7 +11,7 @@
 //! | which method has which colour, marker and dash | [`palette`] |
 //! | SVG and PNG files | [`figure`] |
 //! | tables for terminal, Markdown, CSV and LaTeX | [`table`] |
-//! | a page of words, tables and figures | [`page`] |
+//! | a page of words, tables and figures | [`Page`] |
 //! | a page for a browser, of the Markdown of a report and its figures | [`html`] |
 //! | values with uncertainty, intervals, missing values | [`number`] |
 //! | text of others on its way into a page or a file | [`markdown`], [`printable`] |
