@@ -211,6 +211,13 @@ for (const svg of document.querySelectorAll(".plot svg")) {
     }
     return best;
   };
+  // Where keys begin to read: at the left end of what has most places to go to.
+  const begin = () => {
+    const places = new Map();
+    for (const one of all()) places.set(one.name, (places.get(one.name) || new Set()).add(Math.round(one.place[0])));
+    const [name] = [...places].reduce((most, own) => own[1].size > most[1].size ? own : most, [undefined, new Set()]);
+    return nearest(all().filter(one => one.name === name), one => one.place[0]);
+  };
   svg.addEventListener("pointermove", event => {
     const at = place(event);
     const panel = panels.find(panel => inside(panel, at));
@@ -224,7 +231,7 @@ for (const svg of document.querySelectorAll(".plot svg")) {
     if (step === undefined || event.target !== box || event.ctrlKey || event.altKey || event.metaKey) return;
     if (!read && step === 0) return;
     event.preventDefault();
-    const start = read && all().some(one => one.name === read.name) ? read : all()[0];
+    const start = read && all().some(one => one.name === read.name) ? read : begin();
     if (!start) return;
     if (!read || start !== read) return tell(start);
     if (step) {
