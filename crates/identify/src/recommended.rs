@@ -5,10 +5,10 @@
 //! and no random moment is needed beside that, it estimates the jumps. Where maximum likelihood finds a random
 //! yaw moment that the terms of a ship cannot explain ([`LackOfFit`]), it is the answer, too: output error takes the
 //! work of gusts for that of the rudder. Records that declare a calm have no such moment. Where terms of a ship explain
-//! the residual, the model lacks one of them. A
-//! random moment then stands for it, and K, T of maximum likelihood are those of small and fast motions. An answer of
-//! maximum likelihood without an interval of K is never taken: its random moment explains the manoeuvre itself. A
-//! replay far worse than that of output error is no such sign: under strong random moments the true ship has one, too.
+//! the residual, the model lacks one of them. A random moment then stands for it, and K, T of maximum likelihood are
+//! those of small and fast motions. An answer of maximum likelihood without an interval of K is never taken: its random
+//! moment explains the manoeuvre itself. A replay far worse than that of output error is no such sign: under strong
+//! random moments the true ship has one, too.
 //!
 //! As a method of its own it makes both fits and returns the one that the rule names, so that a study can hold the
 //! rule.

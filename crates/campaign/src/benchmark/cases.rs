@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::benchmark::statistics::ratio;
+
 /// A task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -198,6 +200,11 @@ impl BenchCase {
     pub fn cluster(&self) -> (&str, String) {
         let own = self.trial.map_or_else(|| self.scored.clone().unwrap_or_default(), |trial| trial.to_string());
         (&self.set, own)
+    }
+
+    /// The score of a method over that of another; `None` where one of them was not asked.
+    pub fn ratio_of(&self, method: &str, reference: &str) -> Option<f64> {
+        Some(ratio(self.score_of(method)?, self.score_of(reference)?))
     }
 
     /// The score of a method: worse than any where it has no answer, `None` where it was not asked.

@@ -31,6 +31,9 @@ pub const Z95: f64 = 1.959_963_984_540_054;
 /// Fewest values of which an interval is given: no pair of order statistics of fewer covers the median in 95 %.
 pub const FEWEST: u64 = 6;
 
+/// Values from which a median or a range stands for them; fewer are shown one by one.
+pub const MIN_SUMMARISED: usize = 5;
+
 /// A share with Wilson's interval (1927); `None` of nothing.
 pub fn share(count: u64, of: u64) -> Option<Statistic> {
     if of == 0 {

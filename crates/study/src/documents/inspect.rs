@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use document::Warning;
+use document::{Warning, names};
 use schemars::JsonSchema;
 use serde::Serialize;
 use trial::reader::ChannelInspection;
@@ -72,7 +72,7 @@ impl From<&ChannelInspection> for ChannelEntry {
         let unit = readings.channel.written_unit();
         let shown = |value: f64| value / unit.to_si();
         let side = |to_starboard: bool| if to_starboard { "starboard" } else { "port" };
-        let spoken = |channel: Channel| channel.spoken().replace('_', " ");
+        let spoken = |channel: Channel| names::plain(channel.spoken());
         let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > GAP * usual));
         Self {
             channel: spoken(readings.channel),

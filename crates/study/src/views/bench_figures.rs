@@ -4,6 +4,7 @@ use campaign::benchmark::board::{Board, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
 use campaign::scenario::{STRAIGHT_ON, TRACE};
+use campaign::statistics::MIN_SUMMARISED;
 use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
 use report::palette::Look;
 use report::{CurveOrigin, PageFigure};
@@ -19,9 +20,6 @@ pub fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
-
-/// Cases from which a median stands for them.
-const MIN_CASES: usize = 5;
 
 /// The figures, one for every kind of record.
 pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
@@ -95,12 +93,12 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let column = |board: &&Board| {
         let points = |method: &str| -> Vec<RowItem> {
             let cases = results.cases.iter().filter(|case| case.task == board.task && case.field == board.field);
-            let ratios = cases.filter_map(|case| Some(case.score_of(method)? / case.score_of(&results.reference)?));
+            let ratios = cases.filter_map(|case| case.ratio_of(method, &results.reference));
             let look = Look { hollow: true, ..origin(method).look() };
             ratios.map(|ratio| RowItem::new("", RowKind::Mark(look, ratio.max(f64::MIN_POSITIVE), None))).collect()
         };
         let row = |method: &&String| {
-            if board.cases < MIN_CASES {
+            if board.cases < MIN_SUMMARISED {
                 return points(method);
             }
             let standing = board.standings.iter().find(|standing| standing.method == **method);
@@ -121,7 +119,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         names: others.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
         note: Some(format!(
-            "Score: rms heading error; of K and T the larger error. Left of the line a method is better than {}. Medians over the cases, hollow: single cases of fewer than {MIN_CASES}; bars: 95 % intervals, \
+            "Score: rms heading error; of K and T the larger error. Left of the line a method is better than {}. Medians over the cases, hollow: single cases of fewer than {MIN_SUMMARISED}; bars: 95 % intervals, \
              from six independent records on.",
             results.reference
         )),

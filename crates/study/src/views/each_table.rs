@@ -18,10 +18,7 @@ pub fn table(fits: &[LogFit]) -> Table {
     let mut table = Table::new(head);
     for LogFit { file, verdict, warnings, error, .. } in fits {
         let verdict = verdict.as_ref();
-        let number = |quantity: Option<Quantity>| match quantity {
-            Some(quantity) => estimate(&quantity),
-            None => [MISSING, MISSING].map(str::to_owned),
-        };
+        let number = |own: Option<Quantity>| own.map_or_else(|| [missing(), missing()], |own| estimate(&own));
         let mut codes: Vec<String> = warnings.iter().map(|warning| word(&warning.code)).collect();
         codes.dedup();
         let mut cells = vec![file.display().to_string(), verdict.map_or_else(missing, |own| own.method.clone())];

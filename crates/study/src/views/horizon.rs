@@ -1,12 +1,10 @@
 //! How the heading error grows with how far ahead a replay goes, on records that were not fitted.
 
+use campaign::statistics::MIN_SUMMARISED;
 use document::trace::{HorizonEntry, TraceDocument};
 use report::figures::{Division, Layer, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure, PlotCurve};
-
-/// Records from which their range is a band; of fewer every one is a line.
-const MANY: usize = 5;
 
 /// Horizon that the finding says beside the whole record, s, where the records hold it.
 const SHOWN_S: f64 = 20.0;
@@ -67,7 +65,7 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
         over(&|entries| entries.iter().map(|entry| error(entry)).reduce(fold).unwrap_or(f64::NAN))
     };
     let mut layers = Vec::new();
-    if records.len() >= MANY {
+    if records.len() >= MIN_SUMMARISED {
         layers.push(Layer::band("", [end(f64::min), end(f64::max)], look.colour, 0.15));
     } else if records.len() > 1 {
         layers.extend(records.iter().map(|record| {
@@ -93,7 +91,7 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let row = PanelRow::new(Ruler::new("heading error, rms [°]", Division::Factors), 0.36);
     let each = match records.len() {
         1 => "",
-        2..MANY => " Thin: every record.",
+        2..MIN_SUMMARISED => " Thin: every record.",
         _ => " Bands: the range of the records.",
     };
     let caption = format!(

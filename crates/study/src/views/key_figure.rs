@@ -84,12 +84,11 @@ fn of_panels(data: &mut Panels, about: &[String]) {
             said.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {what}.")));
         }
     }
-    let note = data.note.take().unwrap_or_default();
     let others = distinct(others).len();
     if others > 0 {
         said.push(format!("Pale: {}.", counted(others as u64, "other method")));
     }
-    said.insert(0, note.trim().to_owned());
+    said.insert(0, data.note.take().unwrap_or_default());
     data.note = Some(said.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
 }
 

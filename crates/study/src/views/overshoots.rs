@@ -14,7 +14,7 @@ use trial::{ZigZag, imo};
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
 /// The first or the second overshoot of a record, which are those that have a limit, degrees.
-struct ReplayedOvershoot<'a> {
+pub struct ReplayedOvershoot<'a> {
     record: &'a RecordEntry,
     word: &'static str,
     measured: f64,
@@ -26,7 +26,7 @@ struct ReplayedOvershoot<'a> {
 }
 
 /// The overshoots of all records, those with the least rudder first.
-fn overshoots<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<ReplayedOvershoot<'a>> {
+pub fn all<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<ReplayedOvershoot<'a>> {
     let mut all = Vec::new();
     for (record, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
         let Ok(zigzag) = ZigZag::of(trial) else { continue };
@@ -61,21 +61,19 @@ pub struct OvershootError {
 }
 
 /// The errors of the overshoots of both replays, of records that were held out or of fitted ones.
-pub fn errors(document: &TraceDocument, curves: &TraceCurves, held_out: bool) -> [OvershootError; 2] {
-    let mut all = overshoots(document, curves);
-    all.retain(|overshoot| overshoot.record.held_out == held_out);
+pub fn errors(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] {
+    let judged = || all.iter().filter(|overshoot| overshoot.record.held_out == held_out);
     [0, 1].map(|model| {
         let distance = |own: &ReplayedOvershoot| Some((own.replayed[model]? - own.measured).abs());
-        let mut distances: Vec<f64> = all.iter().filter_map(distance).collect();
-        let missing = all.len() - distances.len();
-        OvershootError { median_deg: median(&mut distances), measured: all.len(), missing }
+        let mut distances: Vec<f64> = judged().filter_map(distance).collect();
+        let (measured, replayed) = (judged().count(), distances.len());
+        OvershootError { median_deg: median(&mut distances), measured, missing: measured - replayed }
     })
 }
 
 /// The first two overshoots of every zig-zag with those of both replays, on a ground where the rudder is no larger than
 /// in the fitted records; `None` where no record is a zig-zag.
-pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
-    let all = overshoots(document, curves);
+pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
     // One mark above the other, so that neither hides the other.
     let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>| {
         let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).softly();
@@ -108,7 +106,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         let missing = if error.missing > 0 { format!(" ({} missing)", error.missing) } else { String::new() };
         (format!("{off} off"), missing, error.measured)
     };
-    let [(before, no_before, count), (after, no_after, _)] = errors(document, curves, held_out > 0).map(said);
+    let [(before, no_before, count), (after, no_after, _)] = errors(all, held_out > 0).map(said);
     let of_records = match held_out {
         0 => String::new(),
         records => format!(" of {} that no model has seen", counted(records as u64, "record")),

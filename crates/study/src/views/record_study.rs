@@ -9,7 +9,7 @@ use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
 use campaign::rows::StudyRow;
 use campaign::scenario::Words;
-use campaign::statistics::Statistic;
+use campaign::statistics::{MIN_SUMMARISED, Statistic};
 use campaign::store::StoredStudy;
 use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
 use document::names;
@@ -126,9 +126,6 @@ fn effects(rows: &[StudyRow], design: &Design) -> Table {
     table
 }
 
-/// Trials from which a median stands for them.
-const MIN_TRIALS: usize = 5;
-
 /// The heading error of every method on every record that judges, a line each.
 fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFigure {
     let mut names = Vec::new();
@@ -143,7 +140,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
             .filter_map(|row| row.validation_rmse_deg)
             .map(|error| RowItem::new("", RowKind::Mark(pale, error, None)).softly())
             .collect();
-        let median = line.judged_deg.filter(|_| items.len() >= MIN_TRIALS);
+        let median = line.judged_deg.filter(|_| items.len() >= MIN_SUMMARISED);
         items.extend(median.map(|own| RowItem::new("", RowKind::Mark(look, own.value, own.ci95))));
         items
     });

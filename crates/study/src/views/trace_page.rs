@@ -14,6 +14,7 @@ use ship::angle::to_deg;
 use ship::vessel::prime::meaning;
 use trial::ZigZag;
 
+use super::overshoots::ReplayedOvershoot;
 use super::record_figures::{stability, steady_turns};
 use super::trace_figures as figures;
 use super::trace_hero;
@@ -153,12 +154,12 @@ struct TracePage<'a> {
 /// `report.md` with its figures; `turns` are the steady turns of the model. The finding, the figure that shows it and
 /// what it is worth on other records come first; what they rest on is folded.
 pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
-    let prior = &document.trace.prior;
+    let (prior, overshoots) = (&document.trace.prior, overshoots::all(document, curves));
     let page = TracePage {
         document,
         title: title(document, curves),
         physics: physics(document),
-        glance: glance(document, curves),
+        glance: glance(document, &overshoots),
         limits: limits(document),
         noise: noise(document),
         located: located(document, "`").collect(),
@@ -168,7 +169,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
         model: model(document),
         odds: [prior.probability, prior.probability_of_time, prior.named_from].map(|share| significant(share, 2)),
         prior,
-        figures: placed(document, curves, turns),
+        figures: placed(document, curves, &overshoots, turns),
     };
     Page::new(page.render(), page.figures)
 }
@@ -177,6 +178,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
 fn placed(
     document: &TraceDocument,
     curves: &TraceCurves,
+    overshoots: &[ReplayedOvershoot],
     turns: Option<&(Vec<SteadyCurve>, ValidityRange)>,
 ) -> PlacedFigures<&'static str> {
     let mut placed = PlacedFigures::default();
@@ -187,7 +189,7 @@ fn placed(
         None if hero.is_none() => placed.put("first", records.next()),
         None => {}
     }
-    placed.put("overshoots", overshoots::figure(document, curves));
+    placed.put("overshoots", overshoots::figure(document, overshoots));
     placed.put("held out", hero);
     placed.put("held out", held_out::residuals(document, curves));
     placed.put("held out", horizon::figure(document));
@@ -227,7 +229,7 @@ fn physics(document: &TraceDocument) -> Vec<String> {
 }
 
 /// Errors of the heading and of the overshoots without and with the effects, on fitted records and on others.
-fn glance(document: &TraceDocument, curves: &TraceCurves) -> Table {
+fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
     let head =
         TableHead::default().texts(["records"]).numbers(["heading error by K and T", "with effects"]).unit("deg");
     let mut table = Table::new(head.numbers(["overshoot error by K and T", "with effects"]).unit("deg"));
@@ -235,7 +237,7 @@ fn glance(document: &TraceDocument, curves: &TraceCurves) -> Table {
     let rows = [("fitted", &error.identification, false), ("not fitted", &error.validation, true)];
     for (used, errors, held_out) in rows.into_iter().filter(|(_, errors, _)| !errors.is_empty()) {
         let headings = figures::rms(errors.iter());
-        let overshoots = overshoots::errors(document, curves, held_out).map(|error| error.median_deg);
+        let overshoots = overshoots::errors(all, held_out).map(|error| error.median_deg);
         let numbers = headings.map(Some).into_iter().chain(overshoots);
         let numbers = numbers.map(|number| number.map_or_else(|| MISSING.to_owned(), |number| significant(number, 2)));
         table.push(std::iter::once(format!("{} {used}", errors.len())).chain(numbers));

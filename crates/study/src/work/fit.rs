@@ -80,7 +80,7 @@ impl FitResult {
                 replays: replay_curves(trial, &self.answers, |method| CurveOrigin::Method(method.to_owned())),
             },
             rudder: curve(trial.time(), trial.rudder()),
-            circle: MeasuredCircle::of(trial).and_then(|circle| circle.track).map(|track| {
+            circle: (!validation).then(|| MeasuredCircle::of(trial)?.track).flatten().map(|track| {
                 let (x, y): (Vec<f64>, Vec<f64>) = track.into_iter().map(|[north, east]| (east, north)).unzip();
                 PlotCurve { x, y }
             }),
@@ -123,8 +123,7 @@ pub fn fit(
     }
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|own| own.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| suspicion(estimate, ship, records)));
-    warnings.extend(records.iter().filter_map(|trial| late_begin(trial, &ZigZag::of(trial).ok()?)));
-    let records: Vec<TrialEntry> = records.iter().map(trial_entry).collect();
+    let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &mut warnings)).collect();
     let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
     warnings.extend(no_track(&shown).into_iter().chain(no_loading(trials, &shown)));
     let earlier_trials = earlier::entry(priors, trials, &shown);
@@ -156,9 +155,10 @@ pub fn fit(
     Ok(FitResult { together, answers, document })
 }
 
-/// The entry of a record.
-fn trial_entry(trial: &Trial) -> TrialEntry {
+/// The entry of a record, and the warning of one whose first overshoot cannot be read.
+fn trial_entry(trial: &Trial, warnings: &mut Warnings) -> TrialEntry {
     let ((file, sha256), zigzag) = (file_of(trial), ZigZag::of(trial));
+    warnings.extend(zigzag.as_ref().ok().and_then(|zigzag| late_begin(trial, zigzag)));
     TrialEntry {
         file: file.into(),
         sha256: sha256.into(),
