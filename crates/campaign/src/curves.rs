@@ -57,7 +57,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     ZigzagTrial {
         heading: curve(trial.time(), trial.heading()),
         // What is left of a thinned record are its extremes: as points they would be taken for the record.
-        heading_as_points: trial.len() <= PlotCurve::MOST_PAIRS
+        heading_as_points: trial.len() <= PlotCurve::MAX_PAIRS
             && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
         rudder: curve(trial.time(), trial.rudder()),
         truth: None,

@@ -17,7 +17,7 @@ const ZERO_SLOT: f64 = 0.21;
 const ZERO_AT: f64 = 0.08;
 const BREAK_AT: f64 = 0.155;
 /// Largest magnitude on a linear axis.
-const LARGEST: f64 = 1e100;
+const MAX_MAGNITUDE: f64 = 1e100;
 /// Lengths of the axis beyond its ends where all that lies farther off is drawn: lines run the same way, and whole
 /// numbers would overflow.
 const FAR: f64 = 20.0;
@@ -26,7 +26,7 @@ pub(crate) const MAX_TICKS: usize = 10;
 /// Room for labels right of an axis, in font sizes.
 const MARGIN: f64 = 1.3;
 /// Decades of a logarithmic axis, up to which it has lines between them.
-const MOST_DECADES: i32 = 6;
+const MAX_TICKED_DECADES: i32 = 6;
 
 /// How an axis is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -94,7 +94,7 @@ impl Axis {
             (false, false) => (0.0, 1.0),
         };
         // Beyond the largest the arithmetic of ticks overflows, below the smallest all values are one to plotters.
-        let (lo, hi) = (lo.clamp(-LARGEST, LARGEST), hi.clamp(-LARGEST, LARGEST));
+        let (lo, hi) = (lo.clamp(-MAX_MAGNITUDE, MAX_MAGNITUDE), hi.clamp(-MAX_MAGNITUDE, MAX_MAGNITUDE));
         let smallest = (1e-9 * lo.abs().max(hi.abs())).max(1e-15);
         let half = if lo.abs() < smallest { 1.0 } else { 0.05 * lo.abs() };
         let (lo, hi) = if hi - lo > smallest { (lo, hi) } else { (lo - half, hi + half) };
@@ -111,7 +111,7 @@ impl Axis {
     pub(crate) fn log_covering(values: &[f64]) -> Self {
         let positive = range(values.iter().copied().filter(|v| *v > 0.0));
         let (lo, hi) = positive.unwrap_or((0.1, 10.0));
-        let [lo, hi] = [lo, hi].map(|end| end.clamp(LARGEST.recip(), LARGEST));
+        let [lo, hi] = [lo, hi].map(|end| end.clamp(MAX_MAGNITUDE.recip(), MAX_MAGNITUDE));
         let widen = 10f64.powf(((hi / lo).log10() * 0.06).max(0.05));
         Self::new(lo / widen, hi * widen, AxisScale::Log { zero: values.contains(&0.0) })
     }
@@ -274,9 +274,9 @@ impl Axis {
         let fewest = usize::from(decades < 2 || decades == 2 && count >= 5);
         let sparse = (1..=every).rev().map(|every| (every, LEADING[fewest]));
         let dense = LEADING.iter().skip(fewest + 1).map(|leading| (1, *leading));
-        let found = sparse.chain(dense).map(ticks).find(|ticks| ticks.len() > 1);
-        let found = found.unwrap_or_else(|| self.linear_ticks(count, Division::Decimal));
-        zero.then(|| (0.0, String::from("0"))).into_iter().chain(found).collect()
+        let marked = sparse.chain(dense).map(ticks).find(|ticks| ticks.len() > 1);
+        let marked = marked.unwrap_or_else(|| self.linear_ticks(count, Division::Decimal));
+        zero.then(|| (0.0, String::from("0"))).into_iter().chain(marked).collect()
     }
 }
 
@@ -313,7 +313,7 @@ impl Ranged for Axis {
             return Vec::new();
         }
         let (first, last) = (self.lo.log10().floor() as i32, self.hi.log10().ceil() as i32);
-        let exponents = (first..last).filter(|_| last - first <= MOST_DECADES);
+        let exponents = (first..last).filter(|_| last - first <= MAX_TICKED_DECADES);
         let digits = exponents.flat_map(|power| (1..10).map(move |digit| f64::from(digit) * 10f64.powi(power)));
         digits.filter(|value| *value > self.lo && *value < self.hi).collect()
     }

@@ -338,9 +338,9 @@ impl DrawingBackend for Svg {
                 true => format!("<tspan font-style=\"italic\">{}</tspan>", escaped(run)),
                 false => escaped(run),
             };
-            let words: String = runs(line).into_iter().map(run).collect();
+            let spans: String = runs(line).into_iter().map(run).collect();
             let attributes = format!("x=\"{x}\" y=\"{base}\" font-size=\"{font}\" fill=\"{fill}\"{anchor}{bold}{turn}");
-            document.put(&format!("<text {attributes}>\n{words}\n</text>\n"));
+            document.put(&format!("<text {attributes}>\n{spans}\n</text>\n"));
         }
         Ok(())
     }

@@ -22,8 +22,8 @@ pub(crate) fn colour(text: &str) -> Option<RGBColor> {
 
 impl Changes {
     /// The colour in whose place this one stands.
-    pub(crate) fn of(&self, own: RGBColor) -> RGBColor {
-        self.colours.iter().find(|(old, _)| *old == own).map_or(own, |(_, new)| *new)
+    pub(crate) fn of(&self, colour: RGBColor) -> RGBColor {
+        self.colours.iter().find(|(old, _)| *old == colour).map_or(colour, |(_, new)| *new)
     }
 
     /// The axis of a title with the ends that are given for it. A list of names stays, as does a logarithmic axis that

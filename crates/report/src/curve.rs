@@ -30,27 +30,27 @@ const CORNERS: usize = 96;
 
 impl PlotCurve {
     /// Most pairs of a curve.
-    pub const MOST_PAIRS: usize = 4000;
+    pub const MAX_PAIRS: usize = 4000;
 
     /// A curve from its two columns.
     ///
-    /// One with more than [`Self::MOST_PAIRS`] pairs is thinned to what can be seen of it: of every run of neighbours,
+    /// One with more than [`Self::MAX_PAIRS`] pairs is thinned to what can be seen of it: of every run of neighbours,
     /// all as long, the first, the lowest, the highest and the last, and a gap where there is one.
     pub fn new(x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Self {
         let curve = Self { x: x.into(), y: y.into() };
-        if curve.x.len().min(curve.y.len()) > Self::MOST_PAIRS { curve.thinned() } else { curve }
+        if curve.x.len().min(curve.y.len()) > Self::MAX_PAIRS { curve.thinned() } else { curve }
     }
 
     fn thinned(&self) -> Self {
         let length = self.x.len().min(self.y.len());
-        let mut thin = Self { x: Vec::with_capacity(Self::MOST_PAIRS), y: Vec::with_capacity(Self::MOST_PAIRS) };
-        let run = length.div_ceil(Self::MOST_PAIRS / KEPT_OF_RUN);
+        let mut thin = Self { x: Vec::with_capacity(Self::MAX_PAIRS), y: Vec::with_capacity(Self::MAX_PAIRS) };
+        let run = length.div_ceil(Self::MAX_PAIRS / KEPT_OF_RUN);
         for start in (0..length).step_by(run) {
             let rows = start..length.min(start + run);
             let is_gap = |row: &usize| !(self.x[*row].is_finite() && self.y[*row].is_finite());
             let gap = rows.clone().find(is_gap);
             let drawn = || rows.clone().filter(|row| !is_gap(row));
-            let by_height = |one: &usize, other: &usize| self.y[*one].total_cmp(&self.y[*other]);
+            let by_height = |a: &usize, b: &usize| self.y[*a].total_cmp(&self.y[*b]);
             let kept = [drawn().next(), drawn().min_by(by_height), drawn().max_by(by_height), drawn().next_back(), gap];
             let mut kept: Vec<usize> = kept.into_iter().flatten().collect();
             kept.sort_unstable();
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn a_curve_that_can_be_shown_is_kept_to_the_bit() {
-        let x: Vec<f64> = (0..PlotCurve::MOST_PAIRS).map(|k| 0.1 * k as f64).collect();
+        let x: Vec<f64> = (0..PlotCurve::MAX_PAIRS).map(|k| 0.1 * k as f64).collect();
         let y: Vec<f64> = x.iter().map(|x| x.sin()).collect();
         assert_eq!(PlotCurve::new(x.as_slice(), y.as_slice()), PlotCurve { x, y });
     }
@@ -127,7 +127,7 @@ mod tests {
         y[500_000] = f64::NAN;
         let thin = PlotCurve::new(x.as_slice(), y.as_slice());
         assert!(
-            thin.x.len() <= PlotCurve::MOST_PAIRS && thin.x.len() > PlotCurve::MOST_PAIRS / 4,
+            thin.x.len() <= PlotCurve::MAX_PAIRS && thin.x.len() > PlotCurve::MAX_PAIRS / 4,
             "{} pairs",
             thin.x.len()
         );
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn a_dense_curve_of_gaps_alone_draws_nothing() {
         assert_eq!(
-            PlotCurve::new(vec![f64::NAN; 2 * PlotCurve::MOST_PAIRS], vec![0.0; 2 * PlotCurve::MOST_PAIRS])
+            PlotCurve::new(vec![f64::NAN; 2 * PlotCurve::MAX_PAIRS], vec![0.0; 2 * PlotCurve::MAX_PAIRS])
                 .finite()
                 .count(),
             0

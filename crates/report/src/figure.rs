@@ -14,7 +14,7 @@ use crate::indexed::IndexedImage;
 const POINTS_PER_INCH: f64 = 72.0;
 const METRES_PER_INCH: f64 = 0.0254;
 /// No side of an image may be longer, pixels.
-const LONGEST_SIDE: u32 = 20_000;
+const MAX_SIDE_PX: u32 = 20_000;
 
 /// How hard PNGs are packed: the hardest.
 const LEVEL: u8 = 9;
@@ -55,7 +55,7 @@ impl Drawing {
     pub fn png(&self) -> Result<Vec<u8>, ReportError> {
         let (width_px, height_px) = self.pixels();
         let too_large = || ReportError::TooLarge { width_px, height_px };
-        if width_px.max(height_px) > LONGEST_SIDE {
+        if width_px.max(height_px) > MAX_SIDE_PX {
             return Err(too_large());
         }
         let options = Options { fontdb: fonts::database(), ..Options::default() };

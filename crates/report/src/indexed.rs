@@ -5,7 +5,7 @@ use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 
 /// Most colours of a palette whose places are bytes.
-const MOST: usize = 256;
+const MAX_COLOURS: usize = 256;
 
 /// Colours that are never joined: those of the largest areas.
 const FLAT: usize = 128;
@@ -29,13 +29,14 @@ impl IndexedImage {
     pub fn of(rgba: &[u8]) -> Self {
         let (pixels, _) = rgba.as_chunks::<4>();
         let runs =
-            || pixels.chunk_by(|one, next| one == next).map(|run| ([run[0][0], run[0][1], run[0][2]], run.len()));
+            || pixels.chunk_by(|pixel, next| pixel == next).map(|run| ([run[0][0], run[0][1], run[0][2]], run.len()));
         // An area has neighbours of the same colour, an edge has few.
         let mut areas: HashMap<Rgb, usize> = HashMap::new();
         runs().for_each(|(colour, length)| *areas.entry(colour).or_default() += length - 1);
         let mut colours: Vec<Rgb> = areas.keys().copied().collect();
         colours.sort_unstable_by_key(|colour| (Reverse(areas[colour]), *colour));
-        let palette = (2..=8).rev().map(|bits| palette(&colours, (1 << bits) - 1)).find(|own| own.len() <= MOST);
+        let palette =
+            (2..=8).rev().map(|bits| palette(&colours, (1 << bits) - 1)).find(|palette| palette.len() <= MAX_COLOURS);
         let palette = palette.expect("two bits a channel make 64 colours beside the flat ones");
         let places: HashMap<Rgb, u8> = colours.iter().map(|colour| (*colour, nearest(&palette, *colour))).collect();
         let pixels = runs().flat_map(|(colour, length)| std::iter::repeat_n(places[&colour], length)).collect();
@@ -46,16 +47,17 @@ impl IndexedImage {
 /// The flat colours, and of the others the first on each of some levels a channel.
 fn palette(colours: &[Rgb], levels: u32) -> Vec<Rgb> {
     let level = |channel: u8| (u32::from(channel) * levels + 127) / 255;
-    let mut known = HashSet::new();
-    let mut is_kept = |place, colour: &Rgb| known.insert(colour.map(level)) || place < FLAT;
+    let mut levels_seen = HashSet::new();
+    let mut is_kept = |place, colour: &Rgb| levels_seen.insert(colour.map(level)) || place < FLAT;
     let kept = colours.iter().enumerate().filter(|(place, colour)| is_kept(*place, colour));
     kept.map(|(_, colour)| *colour).collect()
 }
 
 /// Place of the nearest colour.
 fn nearest(palette: &[Rgb], colour: Rgb) -> u8 {
-    let distance = |own: &Rgb| (0..3).map(|k| u32::from(own[k].abs_diff(colour[k])).pow(2)).sum::<u32>();
-    let place = palette.iter().enumerate().min_by_key(|(_, own)| distance(own)).map_or(0, |(place, _)| place);
+    let distance = |candidate: &Rgb| (0..3).map(|k| u32::from(candidate[k].abs_diff(colour[k])).pow(2)).sum::<u32>();
+    let place =
+        palette.iter().enumerate().min_by_key(|(_, candidate)| distance(candidate)).map_or(0, |(place, _)| place);
     place as u8
 }
 
@@ -76,7 +78,11 @@ mod tests {
         let areas = [[201, 33, 77, 255], [201, 34, 77, 255]].map(|pixel| pixel.repeat(1000)).concat();
         let rgba: Vec<u8> = ramp.chain(areas).collect();
         let IndexedImage { palette, pixels } = IndexedImage::of(&rgba);
-        assert!(palette.len() <= 3 * MOST && palette[..6] == [201, 33, 77, 201, 34, 77], "{}", palette.len() / 3);
+        assert!(
+            palette.len() <= 3 * MAX_COLOURS && palette[..6] == [201, 33, 77, 201, 34, 77],
+            "{}",
+            palette.len() / 3
+        );
         let of = |place: &u8| &palette[3 * usize::from(*place)..][..3];
         let apart = |(place, own): (&u8, &[u8])| (0..3).map(|k| of(place)[k].abs_diff(own[k])).max();
         let farthest = pixels.iter().zip(rgba.chunks_exact(4)).filter_map(apart).max();

@@ -15,27 +15,27 @@ pub(crate) fn balanced(text: &str, size: f64, bold: bool, width: f64) -> Vec<Str
 
 /// The words of a text; a unit in brackets is one.
 fn words(text: &str) -> Vec<String> {
-    let mut words: Vec<String> = Vec::new();
+    let mut parts: Vec<String> = Vec::new();
     // Not at every white space: a no-break space keeps a symbol and its value together.
     for word in text.split(' ').filter(|word| !word.is_empty()) {
-        match words.last_mut().filter(|last| last.starts_with('[') && !last.contains(']')) {
+        match parts.last_mut().filter(|last| last.starts_with('[') && !last.contains(']')) {
             Some(unit) => *unit = format!("{unit} {word}"),
-            None => words.push(word.to_owned()),
+            None => parts.push(word.to_owned()),
         }
     }
-    words
+    parts
 }
 
 /// Splits a text at (breaking) spaces into lines of at most `width` points; a unit in brackets and a per cent sign stay
 /// with the word before them. A longer word is broken, after a mark such as a dot where it has one.
 pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    let mut words = words(text).into_iter().peekable();
-    while let Some(word) = words.next() {
-        let unit = words.peek().filter(|next| next.starts_with(['[', '%']));
+    let mut parts = words(text).into_iter().peekable();
+    while let Some(word) = parts.next() {
+        let unit = parts.peek().filter(|next| next.starts_with(['[', '%']));
         let with_unit = unit.map(|unit| format!("{word} {unit}")).filter(|both| text_width(both, size, bold) <= width);
         if with_unit.is_some() {
-            words.next();
+            parts.next();
         }
         let word = with_unit.as_deref().unwrap_or(&word);
         let longer = lines.last().map(|line| format!("{line} {word}"));

@@ -9,11 +9,11 @@ pub fn text(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 8);
     let mut before = None;
     for (at, c) in text.char_indices() {
-        let rest = &text[at + c.len_utf8()..];
+        let after = &text[at + c.len_utf8()..];
         let is_mark = match c {
             '\\' | '|' | '*' | '_' | '`' | '~' => true,
-            '<' => opens_tag(rest),
-            '&' => rest.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '#'),
+            '<' => opens_tag(after),
+            '&' => after.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '#'),
             // What makes a link of brackets; alone they may be those of an interval.
             '(' | '[' => before == Some(']'),
             _ => false,
@@ -33,8 +33,8 @@ pub fn prose(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 8);
     let mut is_escaped = false;
     for (at, c) in text.char_indices() {
-        let rest = &text[at + c.len_utf8()..];
-        if c == '<' && !is_escaped && opens_tag(rest) && !LINKS.iter().any(|link| rest.starts_with(link)) {
+        let after = &text[at + c.len_utf8()..];
+        if c == '<' && !is_escaped && opens_tag(after) && !LINKS.iter().any(|link| after.starts_with(link)) {
             out.push('\\');
         }
         if is_printable(c) || is_layout(c) {
@@ -53,8 +53,8 @@ pub fn is_layout(c: char) -> bool {
 }
 
 /// Whether `<` before this begins a tag, a comment or a link.
-fn opens_tag(rest: &str) -> bool {
-    rest.starts_with(|c: char| c.is_ascii_alphabetic() || matches!(c, '/' | '!' | '?'))
+fn opens_tag(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_alphabetic() || matches!(c, '/' | '!' | '?'))
 }
 
 #[cfg(test)]

@@ -110,9 +110,9 @@ impl Style {
     ///
     /// Fails when a value is out of its range or names nothing.
     pub fn on(&self, theme: Theme) -> Result<Theme, StyleError> {
-        let share = |key: &'static str, value: Option<f64>, own: f64, range: [f64; 2]| match value {
+        let share = |key: &'static str, value: Option<f64>, usual: f64, range: [f64; 2]| match value {
             Some(found) if !(range[0]..=range[1]).contains(&found) => Err(StyleError::Size { key, found, range }),
-            value => Ok(value.map_or(1.0, |value| value / own)),
+            value => Ok(value.map_or(1.0, |value| value / usual)),
         };
         let font = share("font-size-pt", self.font_size_pt, theme.label_font, FONT)?;
         let line = share("line-width-pt", self.line_width_pt, theme.line, LINE)?;
@@ -134,30 +134,30 @@ impl Style {
     }
 
     fn colours(&self) -> Result<Vec<(RGBColor, RGBColor)>, StyleError> {
-        let mut found: Vec<(&str, RGBColor, RGBColor)> = Vec::new();
+        let mut changes: Vec<(&str, RGBColor, RGBColor)> = Vec::new();
         for (name, text) in &self.colours {
-            let Some((_, old)) = coloured().find(|(known, _)| known == name) else {
-                let known: Vec<&str> = coloured().map(|(known, _)| known).collect();
-                return Err(StyleError::Name { name: name.clone(), known: known.join(", ") });
+            let Some((_, old)) = coloured().find(|(id, _)| id == name) else {
+                let ids: Vec<&str> = coloured().map(|(id, _)| id).collect();
+                return Err(StyleError::Name { name: name.clone(), known: ids.join(", ") });
             };
             let wrong = || StyleError::Colour { name: name.clone(), found: text.clone() };
             let new = colour(text).ok_or_else(wrong)?;
-            match found.iter().find(|(_, other, _)| *other == old) {
+            match changes.iter().find(|(_, other, _)| *other == old) {
                 Some((other, _, another)) if *another != new => {
                     let (name, found, other) = (name.clone(), text.clone(), (*other).to_owned());
                     return Err(StyleError::Shared { name, found, other });
                 }
                 Some(_) => {}
-                None => found.push((name, old, new)),
+                None => changes.push((name, old, new)),
             }
         }
-        Ok(found.into_iter().map(|(_, old, new)| (old, new)).collect())
+        Ok(changes.into_iter().map(|(_, old, new)| (old, new)).collect())
     }
 
     fn limits(&self) -> Result<&BTreeMap<String, [f64; 2]>, StyleError> {
         let wrong = self.limits.iter().find(|(_, [lo, hi])| !(lo.is_finite() && hi.is_finite() && lo < hi));
         match wrong {
-            Some((title, found)) => Err(StyleError::Limits { title: title.clone(), found: *found }),
+            Some((title, ends)) => Err(StyleError::Limits { title: title.clone(), found: *ends }),
             None => Ok(&self.limits),
         }
     }

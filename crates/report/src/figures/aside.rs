@@ -32,7 +32,7 @@ fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
         true => Some((chart.across(x)?, chart.rect.y)),
         false => chart.inside(x, y),
     };
-    layer.curve.pairs().filter_map(place).max_by(|one, other| one.0.total_cmp(&other.0))
+    layer.curve.pairs().filter_map(place).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// Writes the names right of the last panel of every row of `count`; returns those without a point in the frame, with
@@ -62,7 +62,7 @@ fn names<'a>(chart: &Chart, theme: &Theme, layers: &'a [Layer]) -> Plotted<Vec<&
         .partition(|(_, anchor)| anchor.is_some());
     let mut labels: Vec<(PagePoint, &Layer)> =
         named.into_iter().filter_map(|(layer, anchor)| Some((anchor?, layer))).collect();
-    labels.sort_by(|one, other| one.0.1.total_cmp(&other.0.1));
+    labels.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
     let line = 1.2 * theme.small_font;
     let wanted: Vec<f64> = labels.iter().map(|(at, _)| at.1).collect();
     let middles = spread(&wanted, line, [chart.rect.y - 0.5 * line, chart.rect.bottom() + 0.5 * line]);

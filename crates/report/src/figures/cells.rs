@@ -68,7 +68,7 @@ pub struct CellMap {
 }
 
 /// Smallest type that can be read, points.
-const SMALLEST: f64 = 6.5;
+const MIN_FONT_PT: f64 = 6.5;
 
 /// Height that the rows of a wide figure take, as a share of its width, by being higher, up to so many times as high.
 const HEIGHT: f64 = 0.28;
@@ -218,7 +218,7 @@ impl Shading {
 
 /// The interval of a share of the trials that is not none.
 fn bracket(cell: &MapCell) -> Option<String> {
-    let [low, high] = cell.interval.filter(|_| cell.value.is_some_and(|own| own > 0.0))?;
+    let [low, high] = cell.interval.filter(|_| cell.value.is_some_and(|value| value > 0.0))?;
     Some(format!("{low:.0}–{high:.0}"))
 }
 
@@ -275,7 +275,7 @@ impl PlacedCell<'_> {
         if value.width() > width - if is_shares { 2.8 * theme.line } else { 0.0 } {
             return Ok(());
         }
-        let interval = bracket(&self.cell).map(|text| number(text, (0.8 * theme.small_font).max(SMALLEST)));
+        let interval = bracket(&self.cell).map(|text| number(text, (0.8 * theme.small_font).max(MIN_FONT_PT)));
         match interval.filter(|text| text.width() < 0.96 * width && !theme.is_narrow()) {
             Some(interval) => {
                 chart.canvas.text((x, y - 0.46 * theme.small_font), &value)?;

@@ -68,7 +68,7 @@ fn fitted(data: &Panels, theme: &Theme) -> Panels {
 /// The stacks in rows: half ones two by two, unless the figure is narrow.
 fn side_by_side<'a>(data: &'a Panels, theme: &Theme) -> impl Iterator<Item = &'a [Stack]> {
     let across = if theme.is_narrow() { 1 } else { 2 };
-    let rows = data.stacks.chunk_by(|one, other| one.is_half && other.is_half);
+    let rows = data.stacks.chunk_by(|left, right| left.is_half && right.is_half);
     rows.flat_map(move |row| row.chunks(if row[0].is_half { across } else { 1 }))
 }
 
@@ -217,7 +217,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
     let columns: Vec<AxisSide> = (0..count.min(stack.x.len() * count)).map(&mut column).collect();
     let mut row = |(number, row): (usize, &PanelRow)| {
         let mut data = extents(layers(&|index| index / count == number).into_iter(), &row.y, true);
-        data.fixed.extend(row.levels.iter().copied().chain(row.reference.iter().flat_map(|own| own.values())));
+        data.fixed.extend(row.levels.iter().copied().chain(row.reference.iter().flat_map(|reference| reference.values())));
         let (axis, cut) = row.y.axis(&data, PAD);
         is_cut |= cut;
         let (lo, hi) = axis.ends();
@@ -379,9 +379,9 @@ fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> Plott
 fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> Plotted {
     let Marks { look, intervals, joined, apart } = marks;
     let (name, curve, rect) = (layer.name.as_deref(), &layer.curve, chart.rect);
-    let own: Vec<Option<f64>> = curve.x.iter().map(|x| chart.across(*x)).collect();
-    let across = if *apart { asides(&own, 2.0 * theme.marker) } else { own.clone() };
-    outside.apart |= own != across;
+    let middles: Vec<Option<f64>> = curve.x.iter().map(|x| chart.across(*x)).collect();
+    let across = if *apart { asides(&middles, 2.0 * theme.marker) } else { middles.clone() };
+    outside.apart |= middles != across;
     // A value without bound has a place far beyond.
     let up = |y: &f64| chart.up(y.clamp(-f64::MAX, f64::MAX));
     let places: Vec<Option<PagePoint>> = across.iter().zip(&curve.y).map(|(x, y)| (*x).zip(up(y))).collect();

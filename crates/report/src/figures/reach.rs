@@ -81,7 +81,7 @@ impl Extents {
         let middles = self.core.iter().map(|(lo, hi)| 0.5 * (lo + hi));
         let centre = centre.or_else(|| upper_median(middles)).unwrap_or(0.0);
         let extents = self.core.iter().map(|(lo, hi)| (lo - centre).abs().max((hi - centre).abs()));
-        let usual = upper_median(extents.filter(|own| *own > 0.0)).unwrap_or(f64::INFINITY);
+        let usual = upper_median(extents.filter(|extent| *extent > 0.0)).unwrap_or(f64::INFINITY);
         let room = times * usual.max(LEAST_USUAL * centre.abs());
         let (least, most) = (centre - room, centre + room);
         let near = self.core.iter().filter(|(lo, hi)| *lo <= most && *hi >= least);

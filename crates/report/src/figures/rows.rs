@@ -258,9 +258,9 @@ fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
     let ground = Stroke { opacity: GROUND, ..Stroke::solid(HEADING, theme.tick_font) };
     let shaded = data.shaded.iter().map(|(name, _)| KeyEntry::new(KeySample::Line(ground), name));
     for entry in lines.chain(items).chain(shaded) {
-        match entries.iter_mut().find(|known| known.label == entry.label) {
+        match entries.iter_mut().find(|listed| listed.label == entry.label) {
             // A range is of the mark that bears its name.
-            Some(known) if matches!(entry.sample, KeySample::Marker(_)) => *known = entry,
+            Some(listed) if matches!(entry.sample, KeySample::Marker(_)) => *listed = entry,
             Some(_) => {}
             None => entries.push(entry),
         }

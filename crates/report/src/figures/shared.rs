@@ -51,9 +51,9 @@ pub(super) fn record_sample(theme: &Theme, heading: &PlotCurve) -> KeySample {
 pub(super) fn asides(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
     let mut order: Vec<(usize, f64)> =
         places.iter().enumerate().filter_map(|(k, place)| Some((k, (*place)?))).collect();
-    order.sort_by(|one, other| one.1.total_cmp(&other.1));
+    order.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut moved = places.to_vec();
-    for group in order.chunk_by(|one, other| other.1 - one.1 < gap) {
+    for group in order.chunk_by(|a, b| b.1 - a.1 < gap) {
         let middle = group.iter().map(|(_, place)| place).sum::<f64>() / group.len() as f64;
         for (rank, (k, _)) in group.iter().enumerate().filter(|_| group.len() > 1) {
             moved[*k] = Some(middle + (rank as f64 - 0.5 * (group.len() - 1) as f64) * gap);

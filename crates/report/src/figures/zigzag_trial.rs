@@ -76,7 +76,7 @@ pub struct ZigzagTrial {
 }
 
 /// Most executes that are marked: of more than that neither lines nor figures could be told apart.
-const MOST_MARKED: usize = 60;
+const MAX_MARKED: usize = 60;
 
 const EXECUTE: Look = Look { colour: INK, marker: Marker::Diamond, dash: SOLID, hollow: false };
 const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: SOLID, hollow: true };
@@ -88,7 +88,7 @@ const HEIGHT: f64 = 0.36;
 /// without its characteristic quantities, and a note says so.
 pub(super) fn zigzag_trial(data: &ZigzagTrial, finding: &str, theme: &Theme) -> Plotted<Drawing> {
     let count = data.executes.len();
-    if count <= MOST_MARKED {
+    if count <= MAX_MARKED {
         return layers::annotated(&data.panels(theme), finding, theme, &|chart| data.annotate(chart, theme));
     }
     let curves = ZigzagTrial {

@@ -228,6 +228,6 @@ impl<'m> BodyReader<'_, 'm> {
 
 /// Where a link leads: a place in the net, or a file beside the page; never a script.
 fn target(url: &str) -> String {
-    let known = LINKS.iter().any(|link| url.starts_with(link));
-    if known || !url.contains(':') { escaped(url) } else { String::from("#") }
+    let is_link = LINKS.iter().any(|link| url.starts_with(link));
+    if is_link || !url.contains(':') { escaped(url) } else { String::from("#") }
 }

@@ -9,10 +9,10 @@ use base64::engine::general_purpose::STANDARD;
 use super::escape::escaped;
 
 /// Largest drawing that stands in a page as shapes, bytes: beyond it browsers become slow, and pixels are smaller.
-const LARGEST_DRAWING: usize = 300_000;
+const MAX_DRAWING_BYTES: usize = 300_000;
 
 /// Most bytes of a file that is looked at for a figure.
-const LARGEST_FILE: u64 = 1 << 26;
+const MAX_FILE_BYTES: u64 = 1 << 26;
 
 /// Bytes that all figures of a page have together: the whole page stays below 2 MB.
 const ROOM: usize = 1_850_000;
@@ -33,7 +33,7 @@ impl Images {
         let file = |kind: &str| {
             let path = folder.join(format!("{stem}.{kind}"));
             // A pipe would be waited for without an end.
-            let is_figure = path.metadata().is_ok_and(|about| about.is_file() && about.len() <= LARGEST_FILE);
+            let is_figure = path.metadata().is_ok_and(|about| about.is_file() && about.len() <= MAX_FILE_BYTES);
             is_figure.then(|| fs::read(path).ok())?
         };
         Self { svg: file("svg").and_then(|bytes| String::from_utf8(bytes).ok()), png: file("png") }
@@ -55,7 +55,7 @@ impl Room {
     pub(super) fn figure(&mut self, file: &str, [name, caption]: [&str; 2], images: &Images) -> String {
         let id = format!("caption-{}", self.figures + 1);
         let drawn = images.svg.as_deref().and_then(|svg| inline(svg, &id));
-        let drawn = drawn.filter(|drawn| drawn.len() <= LARGEST_DRAWING);
+        let drawn = drawn.filter(|drawn| drawn.len() <= MAX_DRAWING_BYTES);
         let (file, name, caption) = (escaped(file), escaped(name), escaped(caption));
         let name = if name == caption { "" } else { &name };
         let pixels = || {

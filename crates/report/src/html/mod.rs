@@ -37,7 +37,8 @@ struct Page<'a> {
 /// Fails with [`ReportError::Page`] when the page cannot be filled in.
 pub fn page(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> Images) -> Result<String, ReportError> {
     let body = body::of(markdown, folded, images);
-    let contents: Vec<PageHeading> = body.headings.iter().filter(|one| matches!(one.level, 2 | 3)).cloned().collect();
+    let contents: Vec<PageHeading> =
+        body.headings.iter().filter(|heading| matches!(heading.level, 2 | 3)).cloned().collect();
     let title = body.headings.first().map_or("Report", |first| &first.text);
     let page = Page { title, style: STYLE, script: SCRIPT, contents: &contents, body: &body.html };
     Ok(page.render()?)

@@ -173,8 +173,9 @@ fn head(set: &[LatexColumn]) -> String {
     let lines = set.iter().map(|column| column.heading.len()).max().unwrap_or(0);
     let mut out = String::from("    \\toprule\n");
     for line in 0..lines {
-        let own = |column: &LatexColumn| (line + column.heading.len()).checked_sub(lines);
-        let cell = |column: &LatexColumn| own(column).map_or_else(String::new, |line| column.heading[line].clone());
+        let heading_line = |column: &LatexColumn| (line + column.heading.len()).checked_sub(lines);
+        let cell =
+            |column: &LatexColumn| heading_line(column).map_or_else(String::new, |line| column.heading[line].clone());
         out += &format!("    {} \\\\\n", set.iter().map(cell).collect::<Vec<_>>().join(" & "));
     }
     out + "    \\midrule\n"

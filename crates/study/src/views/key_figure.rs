@@ -2,14 +2,18 @@
 //! is about in colour and everything else pale.
 
 use campaign::scenario::Highlight;
-use report::CurveOrigin;
 use report::figures::{
-    Layer, LayerKind, LayeredPanel, NamedRows, Panels, Plot, RowItem, RowKind, RowPlace, RowsColumn, Stack,
+    CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, NamedRows, Panels, Pen, Plot, RowItem, RowKind, RowPlace,
+    RowsColumn, Stack,
 };
 use report::number::{counted, significant};
 use report::palette::{Look, Marker, QUIET, SOLID};
+use report::{CurveOrigin, PlotCurve};
 
-use campaign::statistics::distinct;
+use campaign::statistics::{distinct, grouped};
+
+use super::charts::CUT_NOTE;
+use super::pooled_charts::{ALL, HEAD_END};
 
 /// How a method is drawn that the figure is not about.
 const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
@@ -23,9 +27,9 @@ const ROOM: f64 = 0.12;
 /// A chart as the figure that stands for a study.
 pub fn of_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
     match &mut plot {
-        Plot::Panels(data) => of_panels(data, &highlight.series),
+        Plot::Panels(data) => of_panels(data, highlight),
         Plot::Rows(data) => of_rows(data, highlight),
-        Plot::Cells(data) => data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), &highlight.series)),
+        Plot::Cells(data) => of_cells(data, highlight),
         Plot::ZigZag(_) => {}
     }
     plot
@@ -33,7 +37,9 @@ pub fn of_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
 
 fn is_quiet(name: Option<&String>, about: &[String]) -> bool {
     let is_method = |name: &String| name != CurveOrigin::Bound.label();
-    !about.is_empty() && name.is_some_and(|name| is_method(name) && !about.contains(name))
+    // A line of rules is named by what their labels begin with.
+    let is_of = |label: &String, name: &String| label == name || label.starts_with(&format!("{name}, "));
+    !about.is_empty() && name.is_some_and(|name| is_method(name) && !about.iter().any(|label| is_of(label, name)))
 }
 
 /// A layer that the figure is not about.
@@ -43,10 +49,10 @@ fn paled(layer: Layer) -> Layer {
         LayerKind::Line(pen) => pen.colour = QUIET,
         LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
         LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour = QUIET,
-        LayerKind::Marks(marks) => {
-            (marks.look.colour, marks.intervals) = (QUIET, Vec::new());
-            marks.joined.iter_mut().for_each(|pen| pen.colour = QUIET);
+        LayerKind::Marks(Marks { joined: Some(pen), .. }) => {
+            kind = LayerKind::Line(Pen { colour: QUIET, ..pen.width(0.7) });
         }
+        LayerKind::Marks(marks) => (marks.look.colour, marks.intervals) = (QUIET, Vec::new()),
         LayerKind::Record => {}
     }
     Layer { name: None, kind, ..layer }.within(ASIDE)
@@ -57,23 +63,26 @@ fn is_of_k(title: &str) -> bool {
     title.contains(" K ")
 }
 
-fn of_panels(data: &mut Panels, about: &[String]) {
+fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
+    let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
     let (mut others, mut said) = (Vec::new(), Vec::new());
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
         if stack.across.is_some() {
             // Small multiples are of one method each.
-            stack.panels.retain(|panel| !is_quiet(panel.head.as_ref(), about));
+            let name = |head: &String| head.split(HEAD_END).next().unwrap_or_default().to_owned();
+            stack.panels.retain(|panel| !is_quiet(panel.head.as_ref().map(name).as_ref(), about));
             continue;
         }
         data.names_aside = true;
         keep_t(stack);
         for panel in &mut stack.panels {
-            let (quiet, mut shown): (Vec<Layer>, Vec<Layer>) =
+            let (quiet, shown): (Vec<Layer>, Vec<Layer>) =
                 panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
             others.extend(quiet.iter().filter_map(|layer| layer.name.clone()));
             panel.layers = quiet.into_iter().map(paled).collect();
-            panel.layers.append(&mut shown);
+            let values = point_values(&shown, &points);
+            panel.layers.extend(shown.into_iter().chain(values));
         }
         let own = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
         let all = distinct(stack.panels.iter().flat_map(own));
@@ -88,8 +97,32 @@ fn of_panels(data: &mut Panels, about: &[String]) {
     if others > 0 {
         said.push(format!("Pale: {}.", counted(others as u64, "other method")));
     }
-    said.insert(0, data.note.take().unwrap_or_default());
+    let is_arrow = |layer: &Layer| marks(layer).is_some() && layer.curve.y.contains(&f64::INFINITY);
+    let has_arrows = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers).any(is_arrow);
+    let note = data.note.take().unwrap_or_default();
+    said.insert(0, if has_arrows { note } else { note.replace(CUT_NOTE, "").trim().to_owned() });
     data.note = Some(said.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
+}
+
+/// Values of marks at points of the axis, written beside them; of two that read alike the first.
+fn point_values(layers: &[Layer], points: &[f64]) -> Vec<Layer> {
+    let mut written: Vec<(f64, String)> = Vec::new();
+    let mut values = Vec::new();
+    for layer in layers {
+        let LayerKind::Marks(Marks { look, .. }) = &layer.kind else { continue };
+        let mut texts = Vec::new();
+        let mut curve = PlotCurve::default();
+        for (x, y) in layer.curve.finite().filter(|(x, _)| points.contains(x)) {
+            let text = (x, significant(y, 2));
+            if !written.contains(&text) {
+                (texts.push(text.1.clone()), curve.x.push(x), curve.y.push(y));
+                written.push(text);
+            }
+        }
+        let is_above = values.len() % 2 == 0;
+        values.push(Layer::new("", curve, LayerKind::Words(look.colour, is_above, texts)));
+    }
+    values
 }
 
 /// Leaves the rows of K out, and hands their heads on.
@@ -104,13 +137,50 @@ fn keep_t(stack: &mut Stack) {
     stack.rows.iter_mut().for_each(|row| row.height = 0.34);
 }
 
+/// Keeps the panels that the figure is about, and the rows; the others are one row, the mean of those whose names
+/// begin alike up to a colon.
+fn of_cells(data: &mut CellMap, Highlight { series: about, rows }: &Highlight) {
+    data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), about));
+    if rows.is_empty() {
+        return;
+    }
+    let kind = |name: &str| name.split_once(": ").map_or(name, |(kind, _)| kind).to_owned();
+    let is_about = |name: &String| rows.contains(name) || rows.iter().any(|row| name.ends_with(&format!(": {row}")));
+    let mut groups = grouped(0..data.rows.len(), |&row| (kind(&data.rows[row]), is_about(&data.rows[row])));
+    groups.sort_by_key(|((_, is_about), _)| *is_about);
+    let mut parts: Vec<(String, Vec<usize>)> = Vec::new();
+    for ((kind, is_about), members) in groups {
+        match is_about {
+            true => parts.extend(members.into_iter().map(|row| (data.rows[row].clone(), vec![row]))),
+            false => parts.push((format!("{kind} ({})", counted(members.len() as u64, "kind")), members)),
+        }
+    }
+    for (_, panel) in &mut data.panels {
+        *panel = parts.iter().map(|(_, members)| mean_row(panel, members)).collect();
+    }
+    data.rows = parts.into_iter().map(|(name, _)| name).collect();
+}
+
+/// The mean of rows of a map, column by column; of one row the row itself.
+fn mean_row(panel: &[Vec<MapCell>], members: &[usize]) -> Vec<MapCell> {
+    let [first, others @ ..] = members else { return Vec::new() };
+    let mean = |column: usize| {
+        let values = members.iter().filter_map(|&row| panel[row][column].value).collect::<Vec<_>>();
+        let value = (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
+        MapCell { value, interval: None, ..panel[*first][column] }
+    };
+    if others.is_empty() { panel[*first].clone() } else { (0..panel[*first].len()).map(mean).collect() }
+}
+
 fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) {
     data.columns.retain(|column| !is_of_k(&column.x.title));
     for column in &mut data.columns {
-        let own = column.rows.iter().zip(&data.names).filter(|(_, name)| about.contains(name)).flat_map(|(row, _)| row);
-        let densities =
-            own.filter_map(|item| if let RowKind::Violin(_, own, _) = &item.kind { Some(own) } else { None });
-        column.reached = densities.flat_map(|own| own.iter().map(|(value, _)| *value)).collect();
+        let rows = column.rows.iter_mut().zip(&data.names).filter(|(_, name)| about.contains(name));
+        for item in rows.flat_map(|(row, _)| row) {
+            let RowKind::Violin(_, density, quantiles) = &item.kind else { continue };
+            column.reached.extend(density.iter().map(|(value, _)| *value));
+            item.text = Some(format!("median {}", significant(quantiles[2], 2)));
+        }
     }
     for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
         // The others share a line, and have no ranges.
@@ -137,12 +207,13 @@ fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) 
 fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String]) {
     column.room = ROOM;
     for (row, name) in column.rows.iter_mut().zip(names) {
-        let is_quiet = !about.contains(name);
+        let is_quiet = name != ALL && !about.contains(name);
         for item in row {
             let RowKind::Mark(look, value, _) = &mut item.kind else { continue };
-            if is_quiet || look.colour == QUIET {
-                look.colour = QUIET;
-            } else {
+            if is_quiet {
+                // The key has the looks of the rows that the figure is about.
+                (look.colour, item.name) = (QUIET, None);
+            } else if look.colour != QUIET {
                 item.number = Some(significant(*value, 2));
             }
         }
@@ -229,5 +300,61 @@ mod tests {
             _ => panic!(),
         };
         assert_eq!((shown(0), shown(1)), ((true, None), (false, Some("2.0"))));
+    }
+
+    #[test]
+    fn points_of_curves_have_their_values_once() {
+        let layer = |id: &str, y: f64| {
+            let pen = Pen::new(method(id).1.colour);
+            Layer::marks(id, method(id).1, vec![(2.0, y, None), (5.0, 3.0 * y, None)]).joined(pen)
+        };
+        let layers = vec![layer("output-error", 0.125), layer("maximum-likelihood", 0.1251), layer("srivc", 9.0)];
+        let stack =
+            Stack::over(Ruler::decimal("executes"), vec![(PanelRow::new(Ruler::decimal("T [%]"), 0.2), layers)]);
+        let about = ["output-error", "maximum-likelihood"].map(String::from).to_vec();
+        let highlight = Highlight { series: about, rows: vec![String::from("2")] };
+        let data = Panels { note: Some(format!("Marks. {CUT_NOTE}")), ..Panels::of(stack) };
+        let Plot::Panels(data) = of_chart(data.into(), &highlight) else { panic!() };
+        let layers = &data.stacks[0].panels[0].layers;
+        let words = layers.iter().filter_map(|layer| match &layer.kind {
+            LayerKind::Words(.., words) => Some((layer.curve.x.clone(), words.clone())),
+            _ => None,
+        });
+        let words: Vec<_> = words.collect();
+        assert_eq!(words, [(vec![2.0], vec![String::from("0.12")]), (vec![2.0], vec![String::from("0.13")])]);
+        assert!(matches!(layers[0].kind, LayerKind::Line(Pen { colour: QUIET, .. })));
+        assert_eq!(data.note.as_deref(), Some("Marks. Pale: 1 other method."));
+    }
+
+    #[test]
+    fn rows_of_a_map_that_are_alike_are_one() {
+        let row = |value: f64| vec![MapCell { value: Some(value), ..MapCell::default() }];
+        let map = CellMap {
+            titles: Default::default(),
+            columns: vec!["right".into()],
+            rows: ["known: a", "unknown: b", "known: c", "unknown: tug"].map(String::from).to_vec(),
+            shades: report::figures::Shades::Shares,
+            panels: vec![(None, vec![row(90.0), row(80.0), row(100.0), row(62.0)])],
+            note: None,
+        };
+        let highlight = Highlight { rows: vec![String::from("tug")], ..Highlight::default() };
+        let Plot::Cells(data) = of_chart(map.into(), &highlight) else { panic!() };
+        assert_eq!(data.rows, ["known (2 kinds)", "unknown (1 kind)", "unknown: tug"]);
+        let values: Vec<_> = data.panels[0].1.iter().map(|row| row[0].value).collect();
+        assert_eq!(values, [Some(95.0), Some(80.0), Some(62.0)]);
+    }
+
+    #[test]
+    fn the_median_of_a_distribution_stands_in_its_row() {
+        let violin = |median: f64| {
+            let kind = RowKind::Violin(method("srivc").1, vec![(0.0, 1.0)], [-30.0, -25.0, median, -10.0, 5.0]);
+            vec![RowItem::new("", kind)]
+        };
+        let column = RowsColumn { rows: vec![violin(-20.2), violin(1.0)], ..RowsColumn::default() };
+        let rows = NamedRows { names: vec!["srivc".into(), "b".into()], columns: vec![column], ..NamedRows::default() };
+        let highlight = Highlight { series: vec![String::from("srivc")], ..Highlight::default() };
+        let Plot::Rows(data) = of_chart(rows.into(), &highlight) else { panic!() };
+        let text = |row: usize| data.columns[0].rows[row][0].text.as_deref();
+        assert_eq!((text(0), text(1)), (Some("median −20"), None));
     }
 }

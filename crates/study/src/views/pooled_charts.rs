@@ -9,6 +9,7 @@ use report::figures::{
     CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind,
     RowPlace, RowsColumn, Ruler, Shades, Stack,
 };
+use report::number::significant;
 use report::palette::{DASHED, DOTTED, INK};
 use report::{CurveOrigin, PlotCurve, symbol};
 
@@ -99,6 +100,9 @@ const REACH: f64 = 2.2;
 /// Ellipses beyond this many times the middle one have no panel: it would be empty.
 const FAR: f64 = 3.0;
 
+/// What ends the name of a method in the head of its panel.
+pub const HEAD_END: &str = ": ";
+
 /// Clouds of errors in the cells whose detail was asked for, and whether there is a bound.
 pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
@@ -116,7 +120,12 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
             let pen = Pen { dash: DOTTED, ..Pen::of(&CurveOrigin::Bound) };
             let name = "Cramér–Rao bound, 95 %";
             layers.extend(bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).within(REACH)));
-            LayeredPanel { head: Some(design.methods[method].label.clone()), layers }
+            let sd_over_bound = design.cells[detail.cell].bound_percent2.zip(cloud);
+            let sd_over_bound = sd_over_bound.map(|(bound, cloud)| (cloud.covariance[1][1] / bound[1][1]).sqrt());
+            let scatter = sd_over_bound.map_or_else(String::new, |ratio| {
+                format!("{HEAD_END}T scatters {} times the bound", significant(ratio, 3))
+            });
+            LayeredPanel { head: Some(format!("{}{scatter}", design.methods[method].label)), layers }
         };
         let spread = |own: &MethodDetail| {
             own.cloud.as_ref().map_or(0.0, |own| (own.covariance[0][0] + own.covariance[1][1]).sqrt())
@@ -186,12 +195,29 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
     Some((rows, design.methods[summary.reference].label.clone()))
 }
 
-/// How often 90 % intervals of predictions hold, cell by cell and method by method, and how wide they are: the mean
+/// Name of the row of all cells together.
+pub const ALL: &str = "all";
+
+/// Most rows of predictions of single cells; of more cells the points of the longest axis are the rows.
+const MAX_ROWS: usize = 10;
+
+/// Cells that are one row of predictions, with the name of the row.
+fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
+    let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].as_str())).len();
+    let longest = (0..design.axes.len()).max_by_key(|&axis| labels(axis));
+    grouped(0..design.cells.len(), |&cell| match longest.filter(|_| design.cells.len() > MAX_ROWS) {
+        Some(axis) => design.cells[cell].labels[axis].clone(),
+        None => design.cells[cell].labels.join(", "),
+    })
+}
+
+/// How often 90 % intervals of predictions hold, row by row and method by method, and how wide they are: the mean
 /// share and the median width over the predicted values, on the range from the lowest to the highest share and of the
 /// middle half of the widths; nothing without predictions.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
-    let several = design.cells.len() > 1;
+    let rows = prediction_rows(design);
+    let several = rows.len() > 1;
     let column = |x: Ruler, of: Of, outer: usize, lines: Vec<(String, Pen, f64)>| {
         // Mean or median, and the ends of what lies around it.
         let summed = |mut values: Vec<f64>| {
@@ -213,21 +239,25 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
                 let mark = RowItem::new(origin.label(), RowKind::Mark(look, value, None));
                 vec![range, RowItem { place: RowPlace::Beside, ..mark }]
             };
-            let is_of = |line: &&PredictionSummary, cell| (line.cell, line.method) == (cell, method);
-            let of_cell = |cell| summed(summary.predictions.iter().filter(|line| is_of(line, cell)).map(of).collect());
-            let cells: Vec<_> = (0..design.cells.len()).map(of_cell).collect();
-            // The first row is of the marks of all others.
-            let all = summed(cells.iter().flatten().map(|(value, _)| *value).collect()).filter(|_| several);
+            let is_of =
+                |line: &&PredictionSummary, cells: &[usize]| line.method == method && cells.contains(&line.cell);
+            let of_cells = |cells: &[usize]| {
+                summed(summary.predictions.iter().filter(|line| is_of(line, cells)).map(of).collect())
+            };
+            // The first row is of the marks of all cells.
+            let cells = (0..design.cells.len()).filter_map(|cell| of_cells(&[cell]));
+            let all = summed(cells.map(|(value, _)| value).collect());
             let all = several.then(|| all.map_or_else(Vec::new, |(value, _)| item((value, [value; 2]))));
-            all.into_iter().chain(cells.into_iter().map(|cell| cell.map_or_else(Vec::new, item))).collect()
+            let rows = rows.iter().map(|(_, cells)| of_cells(cells).map_or_else(Vec::new, item));
+            all.into_iter().chain(rows).collect()
         };
         let columns: Vec<_> = (0..design.methods.len()).map(of_method).collect();
         let row = |row: usize| columns.iter().flat_map(|column| column[row].clone()).collect();
-        let rows = (0..design.cells.len() + usize::from(several)).map(row).collect();
+        let rows = (0..rows.len() + usize::from(several)).map(row).collect();
         RowsColumn { x, rows, lines, ..RowsColumn::default() }
     };
-    let names = design.cells.iter().map(|cell| cell.labels.join(", "));
-    let names = several.then(|| String::from("all")).into_iter().chain(names).collect();
+    let names = rows.iter().map(|(name, _)| name.clone());
+    let names = several.then(|| String::from(ALL)).into_iter().chain(names).collect();
     let inside = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
     let width = |line: &PredictionSummary| 100.0 * line.width() / line.truth().abs();
     (!summary.predictions.is_empty()).then(|| NamedRows {

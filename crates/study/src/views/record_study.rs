@@ -19,7 +19,6 @@ use report::number::{self, MISSING, significant};
 use report::palette::Look;
 use report::{CurveOrigin, Page, PageFigure, PlacedFigures, Table, Theme};
 
-use super::bench_figures::capital;
 use super::page_files::write_page;
 use super::study_figures::{self, FigurePlace, StudyFigure};
 use super::{coverage_table, tables};
@@ -141,7 +140,10 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
             .map(|error| RowItem::new("", RowKind::Mark(pale, error, None)).softly())
             .collect();
         let median = line.judged_deg.filter(|_| items.len() >= MIN_SUMMARISED);
-        items.extend(median.map(|own| RowItem::new("", RowKind::Mark(look, own.value, own.ci95))));
+        items.extend(median.map(|median| RowItem {
+            number: Some(degrees(median.value)),
+            ..RowItem::new("", RowKind::Mark(look, median.value, median.ci95))
+        }));
         items
     });
     let column = RowsColumn {
@@ -163,6 +165,11 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     PageFigure::new(JUDGED, finding(lines, design), caption, Plot::from(plot))
 }
 
+/// An angle as it stands at a mark.
+fn degrees(value: f64) -> String {
+    format!("{}°", significant(value, 2))
+}
+
 /// Cells that a finding names one by one.
 const NAMED_CELLS: usize = 3;
 
@@ -181,21 +188,23 @@ fn finding(lines: &[RecordSummary], design: &Design) -> String {
     let Some(best) = methods.min_by(|one, other| mean(one).total_cmp(&mean(other))) else {
         return format!("Heading error of {first} on records that were not fitted");
     };
-    let shares = ratios(best);
-    let share = |(cell, ratio): &(usize, f64)| {
+    let method = &design.methods[best].label;
+    let median = |cell: usize, method: usize| {
+        let line = lines.iter().find(|line| (line.cell, line.method) == (cell, method));
+        line.and_then(|line| line.judged_deg).map_or(f64::NAN, |median| median.value)
+    };
+    let ratios = ratios(best);
+    if ratios.len() > NAMED_CELLS {
+        let end = |pick: fn(f64, f64) -> f64| ratios.iter().map(|(_, ratio)| *ratio).reduce(pick).unwrap_or(f64::NAN);
+        let [least, most] = [f64::min, f64::max].map(|pick| significant(end(pick), 2));
+        return format!("On records not fitted the error of {method} is {least} to {most} of that of {first}");
+    }
+    let errors = ratios.iter().map(|(cell, _)| {
         let labels = design.cells[*cell].labels.join(", ");
         let of = if labels.is_empty() { String::new() } else { format!(" ({labels})") };
-        format!("{}{of}", significant(*ratio, 2))
-    };
-    let shares = match shares.len() {
-        0..=NAMED_CELLS => shares.iter().map(share).collect::<Vec<_>>().join(", "),
-        _ => {
-            let end = |pick: fn(f64, f64) -> f64| shares.iter().map(|(_, own)| *own).reduce(pick).unwrap_or(f64::NAN);
-            format!("{} to {}", significant(end(f64::min), 2), significant(end(f64::max), 2))
-        }
-    };
-    let method = &design.methods[best].label;
-    format!("{} foretells records that it has not seen at {shares} of the error of {first}", capital(method))
+        format!("{} → {}{of}", degrees(median(*cell, 0)), degrees(median(*cell, best)))
+    });
+    format!("On records not fitted {first} → {method}: {}", errors.collect::<Vec<_>>().join(", "))
 }
 
 /// What a person sees.

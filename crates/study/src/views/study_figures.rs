@@ -71,7 +71,7 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
         }
         found.map(|(place, figure)| {
             let mut plot = figure.plot.clone();
-            if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials) {
+            if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials | FigurePlace::Traces) {
                 plot = key_figure::of_chart(plot, &words.highlight);
             }
             let finding = words.title.clone().unwrap_or_else(|| figure.finding.clone());

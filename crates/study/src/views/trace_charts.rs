@@ -164,18 +164,18 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
     for (number, (kind, own)) in grouped(rules.iter().zip(&parts), |(_, (kind, _))| *kind).iter().enumerate() {
         let (colour, marker) = (COLOURS[number % COLOURS.len()], MARKERS[number % MARKERS.len()]);
         let pen = Pen::new(colour);
-        for ((_, wrong, exact), _) in own {
-            let level = PlotCurve::new(wrong.ci95.unwrap_or([wrong.value; 2]), [exact.value; 2]);
-            layers.push(Layer::line("", level, pen.width(0.7)).within(1.0));
-        }
         let points = || own.iter().map(|((_, wrong, exact), _)| (wrong.value, exact.value, exact.ci95));
         let look = Look { colour, marker, dash: SOLID, hollow: false };
         layers.push(Layer::marks(*kind, look, points().collect()).joined(pen));
+        for ((_, wrong, exact), _) in own {
+            let level = PlotCurve::new(wrong.ci95.unwrap_or([wrong.value; 2]), [exact.value; 2]);
+            layers.push(Layer::line(*kind, level, pen.width(0.7)).within(1.0));
+        }
         let (x, y): (Vec<f64>, Vec<f64>) = points().map(|(x, y, _)| (x, y)).unzip();
         // The words before the last are those of all.
         let words = own.iter().map(|(_, (_, variant))| variant.rsplit(' ').next().unwrap_or(variant).to_owned());
         let words = LayerKind::Words(colour, number % 2 == 0, words.collect());
-        layers.push(Layer::new("", PlotCurve::new(x, y), words));
+        layers.push(Layer::new(*kind, PlotCurve::new(x, y), words));
     }
     let row = PanelRow::new(Ruler::decimal("trials named exactly [%]"), 0.42);
     let stack =
