@@ -92,10 +92,10 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
     };
     let coefficients = FORMULAS.iter().map(coefficient).collect();
     let assumed = PARTICULARS.iter().filter_map(|particular| {
-        let value = |form: &HullDimensions| particular.of_form.map_or(f64::NAN, |of_form| of_form(form));
+        let dimension = |form: &HullDimensions| particular.of_form.map_or(f64::NAN, |of_form| of_form(form));
         let formula = RATIOS.iter().find(|ratio| ratio.fills == particular.key)?.text();
-        let missing = particular.get(given).is_none() && particular.of_form.is_some();
-        missing.then(|| Assumed { key: particular.key, value: value(&form), sd: variance(&value).sqrt(), formula })
+        let (value, missing) = (dimension(&form), particular.get(given).is_none() && particular.of_form.is_some());
+        missing.then(|| Assumed { key: particular.key, value, sd: variance(&dimension).sqrt(), formula })
     });
     Ok(HullPrior { parameters, assumed: assumed.collect(), coefficients, deviations })
 }
