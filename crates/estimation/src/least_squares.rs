@@ -44,8 +44,8 @@ pub struct LeastSquares {
 impl LeastSquares {
     /// Solution by singular values of the scaled columns; every column has as many rows as `y`.
     ///
-    /// Fails with [`Unsolvable::TooFewRows`] for fewer rows than columns, and with [`Unsolvable::Singular`]
-    /// when the condition number of the scaled columns exceeds `condition_limit`.
+    /// Fails with [`Unsolvable::TooFewRows`] for fewer rows than columns, and with
+    /// [`Unsolvable::Singular`] when the condition number of the scaled columns exceeds `condition_limit`.
     pub fn solve(columns: &[&[f64]], y: &[f64], condition_limit: f64) -> Result<Self, Unsolvable> {
         let (rows, width) = (y.len(), columns.len());
         if rows < width {
