@@ -1,19 +1,21 @@
 //! Sums over columns of numbers. Every sum runs in eight lanes that are added up pairwise at the end: the lanes are
-//! independent, so a processor can work on them side by side.
+//! independent, so a processor can work on them side by side, and pairwise sums lose fewer digits.
+//!
+//! Source: Higham (2002), Accuracy and Stability of Numerical Algorithms, second edition, chapter 4.
 
 use crate::lanes::{Kernel, run};
 
-/// Partial sums side by side.
+/// Number of partial sums side by side.
 const LANES: usize = 8;
 
-/// Adds up lanes pairwise.
+/// Pairwise sum of the lanes.
 #[inline(always)]
 fn total(lanes: [f64; LANES]) -> f64 {
     let [a, b, c, d, e, f, g, h] = lanes;
     ((a + b) + (c + d)) + ((e + f) + (g + h))
 }
 
-/// Products Σ xᵢ xⱼ of `N` columns of one length, symmetric.
+/// Gram matrix Σ xᵢ xⱼ of `N` columns; columns of different length are cut to the shortest.
 pub fn gram<const N: usize>(columns: [&[f64]; N]) -> [[f64; N]; N] {
     run(Gram(columns))
 }
@@ -56,7 +58,7 @@ impl<const N: usize> Kernel for Gram<'_, N> {
     }
 }
 
-/// The part of a column along the constant and along a unit column.
+/// Projection of a column on the constant and on a unit column.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Removed {
     /// Mean.
@@ -65,7 +67,8 @@ pub struct Removed {
     pub share: f64,
 }
 
-/// Takes the constant and `unit` (of unit length, zero mean) out of a column of the same length.
+/// Removes from a column, in place, its projection on the constant and on `unit` (unit length, zero mean, as many
+/// rows).
 pub fn project(unit: &[f64], column: &mut [f64]) -> Removed {
     run(Project { unit, column })
 }
@@ -93,54 +96,54 @@ impl Kernel for Project<'_> {
     }
 }
 
-/// Σ x y.
+/// Scalar product Σ x y over the rows that both columns have.
 #[inline(always)]
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     let rows = x.len().min(y.len());
-    let ((x, x_rest), (y, y_rest)) = (x[..rows].as_chunks::<LANES>(), y[..rows].as_chunks::<LANES>());
+    let ((x, x_tail), (y, y_tail)) = (x[..rows].as_chunks::<LANES>(), y[..rows].as_chunks::<LANES>());
     let mut sums = [0.0; LANES];
     for (x, y) in x.iter().zip(y) {
         for lane in 0..LANES {
             sums[lane] += x[lane] * y[lane];
         }
     }
-    for (sum, (x, y)) in sums.iter_mut().zip(x_rest.iter().zip(y_rest)) {
+    for (sum, (x, y)) in sums.iter_mut().zip(x_tail.iter().zip(y_tail)) {
         *sum += x * y;
     }
     total(sums)
 }
 
-/// Σ x.
+/// Sum Σ x.
 #[inline(always)]
 pub fn sum(x: &[f64]) -> f64 {
-    let (blocks, rest) = x.as_chunks::<LANES>();
+    let (blocks, tail) = x.as_chunks::<LANES>();
     let mut sums = [0.0; LANES];
     for x in blocks {
         for lane in 0..LANES {
             sums[lane] += x[lane];
         }
     }
-    for (sum, x) in sums.iter_mut().zip(rest) {
+    for (sum, x) in sums.iter_mut().zip(tail) {
         *sum += x;
     }
     total(sums)
 }
 
-/// Smallest and largest number, (∞, −∞) of nothing; what is not a number is passed over.
+/// Smallest and largest value of a column. NaN is ignored; an empty column gives (∞, −∞).
 #[inline]
 pub fn extremes(x: &[f64]) -> (f64, f64) {
-    let (blocks, rest) = x.as_chunks::<LANES>();
+    let (blocks, tail) = x.as_chunks::<LANES>();
     let (mut lo, mut hi) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-    let mut take = |lane: usize, x: f64| {
+    let mut include = |lane: usize, x: f64| {
         lo[lane] = if x < lo[lane] { x } else { lo[lane] };
         hi[lane] = if x > hi[lane] { x } else { hi[lane] };
     };
     for block in blocks {
         for (lane, &x) in block.iter().enumerate() {
-            take(lane, x);
+            include(lane, x);
         }
     }
-    rest.iter().for_each(|&x| take(0, x));
+    tail.iter().for_each(|&x| include(0, x));
     (lo.into_iter().fold(f64::INFINITY, f64::min), hi.into_iter().fold(f64::NEG_INFINITY, f64::max))
 }
 
@@ -183,8 +186,8 @@ mod tests {
         let removed = project(&unit, &mut projected);
         assert_relative_eq!(sum(&projected), 0.0, epsilon = 1e-12);
         assert_relative_eq!(dot(&unit, &projected), 0.0, epsilon = 1e-12);
-        for (row, (whole, rest)) in column.iter().zip(&projected).enumerate() {
-            assert_relative_eq!(*whole, rest + removed.mean + removed.share * unit[row], epsilon = 1e-12);
+        for (row, (whole, residual)) in column.iter().zip(&projected).enumerate() {
+            assert_relative_eq!(*whole, residual + removed.mean + removed.share * unit[row], epsilon = 1e-12);
         }
     }
 
@@ -193,13 +196,13 @@ mod tests {
         for rows in [5, 8, 271, 1201] {
             let [x, y, z] = columns(rows);
             let products = on_every_set(|| Gram([&x, &y, &z]));
-            assert!(products.iter().all(|(_, found)| found == &products[0].1), "{products:?}");
+            assert!(products.iter().all(|(_, output)| output == &products[0].1), "{products:?}");
             let projected = on_every_set(|| Projected { unit: &x, column: z.clone() });
-            assert!(projected.iter().all(|(_, found)| found == &projected[0].1), "{projected:?}");
+            assert!(projected.iter().all(|(_, output)| output == &projected[0].1), "{projected:?}");
         }
     }
 
-    /// Hands out the column as well.
+    /// [`Project`] that returns the projected column, too.
     struct Projected<'a> {
         unit: &'a [f64],
         column: Vec<f64>,

@@ -1,4 +1,6 @@
-//! Covariance of scores that are correlated in time.
+//! Long-run covariance of scores that are correlated in time (heteroskedasticity and autocorrelation consistent).
+//!
+//! Sources: Newey and West (1987), Econometrica 55:703-708; Andrews (1991), Econometrica 59:817-858.
 
 use nalgebra::DMatrix;
 
@@ -6,11 +8,9 @@ use crate::column::{dot, gram};
 
 /// Long-run covariance Σ_k w_k Γ_k of scores with Bartlett weights, summed over records.
 ///
-/// `scores[record][unknown]` is the column of residual times Jacobian. The lag grows with the first-order
-/// autocorrelation of the scores (Andrews 1991) up to a quarter of the record. The Bartlett sum equals the mean square
-/// of sums over all windows of one length, which needs one pass.
-///
-/// Sources: Newey and West (1987); Andrews (1991).
+/// `scores[record][unknown]` is the column of residual times Jacobian; the result has one row and column per unknown.
+/// The lag grows with the first-order autocorrelation of the scores (Andrews 1991) up to a quarter of the record. The
+/// Bartlett sum equals the mean square of sums over all windows of one length, which needs one pass.
 pub fn newey_west<S: AsRef<[Vec<f64>]>>(scores: &[S]) -> DMatrix<f64> {
     let unknowns = scores.first().map_or(0, |record| record.as_ref().len());
     let mut sum = DMatrix::zeros(unknowns, unknowns);
@@ -18,7 +18,7 @@ pub fn newey_west<S: AsRef<[Vec<f64>]>>(scores: &[S]) -> DMatrix<f64> {
         let length = bandwidth(record);
         let windows: Vec<Vec<f64>> = record.iter().map(|column| window_sums(column, length)).collect();
         if let [x, y, z] = &windows[..] {
-            // The usual number, in one pass.
+            // Three unknowns are the usual case; all products in one pass.
             let products = gram([x, y, z]);
             sum += DMatrix::from_fn(3, 3, |i, j| products[i][j] / length as f64);
             continue;
@@ -36,19 +36,19 @@ pub fn newey_west<S: AsRef<[Vec<f64>]>>(scores: &[S]) -> DMatrix<f64> {
 /// Window length (lags plus one) from the autocorrelation of the scores, the largest over the unknowns.
 fn bandwidth(scores: &[Vec<f64>]) -> usize {
     let rows = scores.first().map_or(0, Vec::len);
-    let longest = (rows / 4).max(1);
-    let of_column = |column: &Vec<f64>| {
+    let max_length = (rows / 4).max(1);
+    let column_length = |column: &Vec<f64>| {
         let square = dot(column, column);
         let cross = dot(column.get(1..).unwrap_or(&[]), column);
         let rho = if square > 0.0 { (cross / square).clamp(-0.999, 0.999) } else { 0.0 };
         let alpha = 4.0 * rho * rho / ((1.0 - rho).powi(2) * (1.0 + rho).powi(2));
         (1.1447 * (alpha * rows as f64).cbrt()).ceil() as usize + 1
     };
-    scores.iter().map(of_column).max().unwrap_or(1).min(longest)
+    scores.iter().map(column_length).max().unwrap_or(1).min(max_length)
 }
 
-/// Sums of a column over all windows of `length` rows, those that overlap an end only partly included; an empty column
-/// has none.
+/// Moving sums of a column over windows of `length` rows, including windows that overlap an end; empty for an empty
+/// column.
 fn window_sums(column: &[f64], length: usize) -> Vec<f64> {
     let mut sums = Vec::with_capacity(column.len() + length);
     let mut window = 0.0;
@@ -61,7 +61,7 @@ fn window_sums(column: &[f64], length: usize) -> Vec<f64> {
         window += entering - leaving;
         window
     }));
-    // The last row never leaves alone.
+    // The window that holds only the last row is the last one.
     sums.extend(column[column.len() - full..].iter().take(full.saturating_sub(1)).map(|leaving| {
         window -= leaving;
         window

@@ -1,10 +1,11 @@
-//! The Kalman filter of a linear system that is read in a known order: gains and variances do not depend on what is
-//! read, so the filter is a linear map that makes columns of readings white.
+//! Kalman filter of a linear system whose readings come in a fixed order. Gains and variances do not depend on the
+//! values read, so the filter is a linear map that whitens columns of readings.
 //!
-//! x ← F x + w before a reading, cov w = Q; a sensor sees the sum of one or two states and white noise. With one kind
-//! of reading at even times the gain settles; from there on no covariance is computed.
+//! x ← F x + w before a reading, cov w = Q; a sensor reads one state or the sum of two, with white noise. With one kind
+//! of reading at even times the gain becomes stationary; from there on no covariance is computed.
 //!
-//! Source: Harvey (1989) for the prediction error decomposition.
+//! Sources: Kalman (1960), Journal of Basic Engineering 82:35-45; Harvey (1989), Forecasting, Structural Time Series
+//! Models and the Kalman Filter, for the prediction error decomposition.
 
 mod matrix;
 pub mod smoother;
@@ -13,16 +14,16 @@ pub use matrix::{identity, product, sandwich, sum};
 
 use crate::lanes::{Kernel, run};
 
-/// Most states of a [`Whitener`].
+/// Largest number of states of a [`Whitener`].
 pub const MOST: usize = 5;
 
-/// Longest pattern of readings that repeats itself: that of two sensors in turn.
-const PATTERN: usize = 2;
+/// Longest period of a repeating sequence of readings: two sensors in turn.
+const MAX_PERIOD: usize = 2;
 
-/// A gain that changes by less than this share has settled.
-const SETTLED: f64 = 1e-10;
+/// Relative change below which a gain is stationary.
+const GAIN_TOLERANCE: f64 = 1e-10;
 
-/// Transition F and added covariance Q over a step of time.
+/// Time step of a linear system: transition matrix F and process-noise covariance Q.
 #[derive(Debug, Clone, Copy)]
 pub struct Step<const N: usize> {
     /// F.
@@ -32,32 +33,32 @@ pub struct Step<const N: usize> {
 }
 
 impl<const N: usize> Step<N> {
-    /// This step and then another one.
+    /// This step followed by `next`.
     pub fn then(&self, next: &Self) -> Self {
         Self { transition: product(&next.transition, &self.transition), added: next.propagate(&self.added) }
     }
 
-    /// The covariance after the step: F P Fᵀ + Q.
+    /// Covariance after the step, F P Fᵀ + Q.
     pub fn propagate(&self, covariance: &[[f64; N]; N]) -> [[f64; N]; N] {
         sum(&self.added, &sandwich(&self.transition, covariance))
     }
 }
 
-/// What a sensor reads: a state, or the sum of two, and white noise of this variance.
+/// Sensor: reads a state, or the sum of two states, with white noise.
 #[derive(Debug, Clone, Copy)]
 pub struct Sensor {
-    /// Place of the state.
+    /// Index of the state.
     pub state: usize,
-    /// Place of the state that is added.
+    /// Index of a second state that is added.
     pub beside: Option<usize>,
     /// Variance of the noise.
     pub variance: f64,
 }
 
 impl Sensor {
-    /// What it makes of states, or of states side by side.
+    /// Reading without noise, for several state vectors side by side.
     #[inline(always)]
-    fn of<const N: usize, const COLUMNS: usize>(&self, x: &[[f64; COLUMNS]; N]) -> [f64; COLUMNS] {
+    fn observe<const N: usize, const COLUMNS: usize>(&self, x: &[[f64; COLUMNS]; N]) -> [f64; COLUMNS] {
         match self.beside {
             Some(beside) => std::array::from_fn(|k| x[self.state % N.max(1)][k] + x[beside % N.max(1)][k]),
             None if N == 0 => [0.0; COLUMNS],
@@ -66,121 +67,121 @@ impl Sensor {
     }
 }
 
-/// A reading.
+/// One reading: the time step before it, and its sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reading {
-    /// The kind of step that leads to it; `None` when no time passes.
+    /// Index of the time step before it; `None` when no time passes.
     pub step: Option<usize>,
-    /// The sensor.
+    /// Index of the sensor.
     pub sensor: usize,
 }
 
-/// A system and the order in which it is read.
+/// Linear system with the sequence of its readings.
 #[derive(Debug, Clone)]
 pub struct System<const N: usize> {
-    /// Kinds of steps.
+    /// Different time steps.
     pub steps: Vec<Step<N>>,
-    /// Sensors.
+    /// Different sensors.
     pub sensors: Vec<Sensor>,
-    /// Readings in their order.
+    /// Readings in the order of time.
     pub readings: Vec<Reading>,
     /// Covariance of the state before the first reading.
     pub initial: [[f64; N]; N],
 }
 
 impl<const N: usize> System<N> {
-    /// A system of which every row is read once: its first state, or the sum of it and the one `beside`, with noise of
-    /// a variance of its own; `of_row` has the step before every row, which counts from the second on.
+    /// System with one reading per row: the first state, or its sum with the state `beside`, with the noise variance of
+    /// that row. `row_steps` has the index of the time step before every row; that of the first row is ignored.
     pub fn of_rows(
         steps: Vec<Step<N>>,
         initial: [[f64; N]; N],
-        of_row: &[usize],
+        row_steps: &[usize],
         variances: &[f64],
         beside: Option<usize>,
     ) -> Self {
         let mut sensors: Vec<Sensor> = Vec::new();
         let reading = |(row, (&step, &variance)): (usize, (&usize, &f64))| {
-            let known = sensors.iter().position(|sensor| sensor.variance == variance);
-            let sensor = known.unwrap_or_else(|| {
+            let index = sensors.iter().position(|sensor| sensor.variance == variance);
+            let sensor = index.unwrap_or_else(|| {
                 sensors.push(Sensor { state: 0, beside, variance });
                 sensors.len() - 1
             });
             Reading { step: (row > 0).then_some(step), sensor }
         };
-        let readings = of_row.iter().zip(variances).enumerate().map(reading).collect();
+        let readings = row_steps.iter().zip(variances).enumerate().map(reading).collect();
         Self { steps, sensors, readings, initial }
     }
 }
 
-/// What the filter does with a reading.
+/// Kalman gain of a reading, with the variance of its innovation.
 #[derive(Debug, Clone, Copy)]
 struct Gain<const N: usize> {
     gain: [f64; N],
-    /// Predicted variance S of the reading.
+    /// Variance S of the innovation.
     variance: f64,
 }
 
-/// Gains of all readings, each kind once.
+/// Kalman filter: the gains of all readings, equal gains stored once.
 #[derive(Debug, Clone)]
 pub struct Filter<const N: usize> {
     system: System<N>,
     gains: Vec<Gain<N>>,
-    /// One over √S of every gain.
+    /// 1/√S of every gain.
     weights: Vec<f64>,
-    /// Gain of every reading.
-    of: Vec<u32>,
+    /// Index of the gain of every reading.
+    gain_of: Vec<u32>,
 }
 
 impl<const N: usize> Filter<N> {
-    /// The filter of a system.
+    /// Filter of a system, with the default tolerance for stationary gains.
     pub fn new(system: System<N>) -> Self {
-        Self::settling(system, SETTLED)
+        Self::with_tolerance(system, GAIN_TOLERANCE)
     }
 
-    /// The same, whose gains count as settled when they change by less than this share.
-    pub fn settling(system: System<N>, share: f64) -> Self {
-        Self::visiting(system, share, |_| ())
+    /// Filter whose gains count as stationary when their relative change is below `tolerance`.
+    pub fn with_tolerance(system: System<N>, tolerance: f64) -> Self {
+        Self::visiting(system, tolerance, |_| ())
     }
 
-    /// The same, visiting the predicted covariance of every new gain.
-    fn visiting(system: System<N>, share: f64, mut visit: impl FnMut(&[[f64; N]; N])) -> Self {
+    /// Filter that passes the predicted covariance of every new gain to `visit`.
+    fn visiting(system: System<N>, tolerance: f64, mut visit: impl FnMut(&[[f64; N]; N])) -> Self {
         let readings = &system.readings;
         let mut filter = (Vec::<Gain<N>>::new(), Vec::<u32>::with_capacity(readings.len()));
-        let (gains, of) = (&mut filter.0, &mut filter.1);
-        // Covariances after the last readings, by their place in a pattern.
-        let mut after = [system.initial; PATTERN];
-        let mut alike = 0;
+        let (gains, gain_of) = (&mut filter.0, &mut filter.1);
+        // Covariances after the last readings, by their position in the period.
+        let mut after = [system.initial; MAX_PERIOD];
+        let mut stationary = 0;
         for (number, reading) in readings.iter().enumerate() {
-            let repeats = number >= PATTERN && readings[number - PATTERN] == *reading;
-            if repeats && alike >= PATTERN {
-                of.push(of[number - PATTERN]);
+            let repeats = number >= MAX_PERIOD && readings[number - MAX_PERIOD] == *reading;
+            if repeats && stationary >= MAX_PERIOD {
+                gain_of.push(gain_of[number - MAX_PERIOD]);
                 continue;
             }
-            let before = &after[(number + PATTERN - 1) % PATTERN];
+            let before = &after[(number + MAX_PERIOD - 1) % MAX_PERIOD];
             let mut covariance = reading.step.map_or(*before, |step| system.steps[step].propagate(before));
             visit(&covariance);
             let gain = correct(&mut covariance, &system.sensors[reading.sensor]);
-            after[number % PATTERN] = covariance;
-            let settled = repeats && {
-                let before = &gains[of[number - PATTERN] as usize];
-                gain.gain.iter().zip(&before.gain).all(|(now, before)| (now - before).abs() <= share * now.abs())
+            after[number % MAX_PERIOD] = covariance;
+            let is_stationary = repeats && {
+                let before = &gains[gain_of[number - MAX_PERIOD] as usize];
+                gain.gain.iter().zip(&before.gain).all(|(now, before)| (now - before).abs() <= tolerance * now.abs())
             };
-            alike = if settled { alike + 1 } else { 0 };
-            of.push(gains.len() as u32);
+            stationary = if is_stationary { stationary + 1 } else { 0 };
+            gain_of.push(gains.len() as u32);
             gains.push(gain);
         }
-        let (gains, of) = filter;
+        let (gains, gain_of) = filter;
         let weights = gains.iter().map(|gain| gain.variance.sqrt().recip()).collect();
-        Self { system, gains, weights, of }
+        Self { system, gains, weights, gain_of }
     }
 
-    /// Σ log S.
+    /// Sum Σ log S over the readings.
     pub fn log_variance(&self) -> f64 {
         let logs: Vec<f64> = self.gains.iter().map(|gain| gain.variance.ln()).collect();
-        self.of.iter().map(|&of| logs[of as usize]).sum()
+        self.gain_of.iter().map(|&gain| logs[gain as usize]).sum()
     }
 
-    /// The filter for any number of states.
+    /// Whitener of the filter, independent of the number of states at compile time.
     pub fn whitener(&self) -> Whitener {
         let wide = |row: &[f64; N]| -> [f64; MOST] { std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0)) };
         let matrix =
@@ -190,13 +191,13 @@ impl<const N: usize> Filter<N> {
             transitions: self.system.steps.iter().map(|step| matrix(&step.transition)).collect(),
             sensors: self.system.sensors.clone(),
             gains: self.gains.iter().zip(&self.weights).map(|(gain, &weight)| (wide(&gain.gain), weight)).collect(),
-            readings: self.system.readings.iter().copied().zip(self.of.iter().copied()).collect(),
+            readings: self.system.readings.iter().copied().zip(self.gain_of.iter().copied()).collect(),
             log_variance: self.log_variance(),
         }
     }
 }
 
-/// Takes a reading into account.
+/// Corrects the covariance by a reading and returns its gain.
 fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &Sensor) -> Gain<N> {
     let seen: [f64; N] = std::array::from_fn(|i| match sensor.beside {
         Some(beside) => covariance[i][sensor.state] + covariance[i][beside],
@@ -217,7 +218,7 @@ fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &Sensor) -> G
     Gain { gain, variance }
 }
 
-/// Picks the number of states when the program runs.
+/// Runs an expression with the number of states as a constant, chosen at run time.
 #[macro_export]
 macro_rules! with_states {
     ($states:expr, $N:ident => $body:expr) => {
@@ -236,29 +237,28 @@ macro_rules! with_states {
     }};
 }
 
-/// A filter that makes columns of readings white: innovations in units of their standard deviation.
+/// Whitening filter: turns columns of readings into innovations in units of their standard deviation.
 #[derive(Debug, Clone)]
 pub struct Whitener {
     states: usize,
     transitions: Vec<[[f64; MOST]; MOST]>,
     sensors: Vec<Sensor>,
-    /// Gain and one over the predicted standard deviation.
+    /// Gains, each with 1/√S.
     gains: Vec<([f64; MOST], f64)>,
-    /// Every reading with its gain.
+    /// Every reading with the index of its gain.
     readings: Vec<(Reading, u32)>,
-    /// Σ log S.
+    /// Sum Σ log S over the readings.
     pub log_variance: f64,
 }
 
 impl Whitener {
-    /// log S of every reading.
+    /// Log variance log S of every innovation.
     pub fn log_variances(&self) -> Vec<f64> {
         let logs: Vec<f64> = self.gains.iter().map(|(_, weight)| -2.0 * weight.ln()).collect();
         self.readings.iter().map(|&(_, gain)| logs[gain as usize]).collect()
     }
 
-    /// Makes columns white in place, several at once: the filter waits for the last reading of each, but not for the
-    /// other columns.
+    /// Whitens columns in place, several at once: the recursion within a column is serial, the columns are independent.
     pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
         with_states!(self.states, N => {
             for columns in columns.chunks_mut(COLUMNS) {
@@ -270,7 +270,7 @@ impl Whitener {
         });
     }
 
-    /// The states that are predicted before every reading of a column, from the readings before it.
+    /// Predicted states before every reading of a column, given the earlier readings.
     pub fn predicted(&self, column: &[f64]) -> Vec<[f64; MOST]> {
         let mut x = [[0.0]; MOST];
         let predict = |(&value, &(Reading { step, sensor }, gain)): (&f64, &(Reading, u32))| {
@@ -278,7 +278,7 @@ impl Whitener {
                 x = advanced(&self.transitions[step], &x);
             }
             let before = x.map(|[state]| state);
-            let [seen] = if self.states == 0 { [0.0] } else { self.sensors[sensor].of(&x) };
+            let [seen] = if self.states == 0 { [0.0] } else { self.sensors[sensor].observe(&x) };
             let (gain, _) = &self.gains[gain as usize];
             x.iter_mut().zip(gain).for_each(|(state, gain)| state[0] += gain * (value - seen));
             before
@@ -286,7 +286,8 @@ impl Whitener {
         column.iter().zip(&self.readings).map(predict).collect()
     }
 
-    /// Applies the transpose of what makes a column white, so that both together are Σ⁻¹ of the noise.
+    /// Applies the transpose Wᵀ of the whitening W to a column in place; WᵀW = Σ⁻¹, the inverse covariance of the
+    /// noise.
     pub fn apply_transposed(&self, column: &mut [f64]) {
         let mut later = [0.0; MOST];
         for (value, &(Reading { step, sensor }, gain)) in column.iter_mut().zip(&self.readings).rev() {
@@ -302,11 +303,11 @@ impl Whitener {
     }
 }
 
-/// Columns that are made white side by side, and rows that are laid side by side for it at a time.
+/// Number of columns whitened side by side, and of rows copied side by side for it at a time.
 const COLUMNS: usize = 8;
 const ROWS: usize = 64;
 
-/// Makes up to so many columns white.
+/// Whitening of up to `COLUMNS` columns.
 struct Whitening<'a, 'b, const N: usize, const COLUMNS: usize> {
     whitener: &'a Whitener,
     columns: &'a mut [&'b mut Vec<f64>],
@@ -319,7 +320,7 @@ impl<const N: usize, const COLUMNS: usize> Kernel for Whitening<'_, '_, N, COLUM
     fn call(self) {
         let Whitener { transitions, sensors, gains, readings, .. } = self.whitener;
         let mut x = [[0.0; COLUMNS]; N];
-        // A column that is not there holds zeros.
+        // A missing column holds zeros.
         let mut block = [[0.0; COLUMNS]; ROWS];
         for (number, readings) in readings.chunks(ROWS).enumerate() {
             let rows = number * ROWS..number * ROWS + readings.len();
@@ -331,7 +332,7 @@ impl<const N: usize, const COLUMNS: usize> Kernel for Whitening<'_, '_, N, COLUM
                     x = advanced(&transitions[step], &x);
                 }
                 let (gain, weight) = &gains[gain as usize];
-                let seen = sensors[sensor].of(&x);
+                let seen = sensors[sensor].observe(&x);
                 let mut innovation = [0.0; COLUMNS];
                 for k in 0..COLUMNS {
                     innovation[k] = values[k] - seen[k];
@@ -350,7 +351,7 @@ impl<const N: usize, const COLUMNS: usize> Kernel for Whitening<'_, '_, N, COLUM
     }
 }
 
-/// F x of states side by side.
+/// Product F x for several state vectors side by side.
 #[inline(always)]
 fn advanced<const N: usize, const COLUMNS: usize>(
     f: &[[f64; MOST]; MOST],

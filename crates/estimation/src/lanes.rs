@@ -1,12 +1,12 @@
-//! Arithmetic side by side. A [`Kernel`] is a loop over arrays of independent numbers; [`run`] has it compiled for
-//! every instruction set of the family of processors and picks the widest that the machine has when the program runs.
+//! Vector arithmetic. A [`Kernel`] is a loop over arrays of independent numbers; [`run`] has it compiled for every
+//! instruction set of the family of processors and picks the widest that the machine has when the program runs.
 //!
 //! The bits do not depend on the choice: every lane does the operations of the source in their order, additions across
 //! lanes are written out, and a compiler that honours IEEE 754 neither reorders nor fuses them. A machine without wide
 //! registers takes the same steps with narrow ones. [`on_every_set`] is for the tests that prove it.
 
 use pulp::Arch;
-/// A loop over lanes: `call` has to be `#[inline(always)]`, or it stays compiled for the narrowest registers.
+/// Loop over lanes: `call` has to be `#[inline(always)]`, or it stays compiled for the narrowest registers.
 pub use pulp::NullaryFnOnce as Kernel;
 
 /// Runs a kernel with the widest registers of this machine.
@@ -15,7 +15,7 @@ pub fn run<K: Kernel>(kernel: K) -> K::Output {
     Arch::new().dispatch(kernel)
 }
 
-/// The widest registers of this machine, by the name of their instruction set.
+/// Name of the widest instruction set of this machine.
 pub fn set() -> &'static str {
     struct Nothing;
     impl Kernel for Nothing {
@@ -23,7 +23,7 @@ pub fn set() -> &'static str {
 
         fn call(self) {}
     }
-    // The last one is the widest.
+    // The widest comes last.
     on_every_set(|| Nothing)
         .into_iter()
         .filter(|(name, ())| *name != "chosen")
@@ -32,15 +32,15 @@ pub fn set() -> &'static str {
         .unwrap_or("plain")
 }
 
-/// Runs a kernel once as plain code and once with every instruction set that this machine has, with the name of each.
+/// Outputs of a kernel as plain code and with every instruction set of this machine, with the name of each.
 pub fn on_every_set<K: Kernel>(kernel: impl Fn() -> K) -> Vec<(&'static str, K::Output)> {
     #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "only one family has several sets"))]
-    let mut found = vec![("plain", kernel().call()), ("chosen", run(kernel()))];
+    let mut outputs = vec![("plain", kernel().call()), ("chosen", run(kernel()))];
     #[cfg(target_arch = "x86_64")]
     {
         use pulp::x86::{V3, V4};
-        found.extend(V3::try_new().map(|set| ("x86-64-v3", set.vectorize(kernel()))));
-        found.extend(V4::try_new().map(|set| ("x86-64-v4", set.vectorize(kernel()))));
+        outputs.extend(V3::try_new().map(|set| ("x86-64-v3", set.vectorize(kernel()))));
+        outputs.extend(V4::try_new().map(|set| ("x86-64-v4", set.vectorize(kernel()))));
     }
-    found
+    outputs
 }

@@ -1,12 +1,14 @@
 //! Linear least squares with scaled columns, a covariance and a condition number.
+//!
+//! Source: Golub and Van Loan (2013), Matrix Computations, fourth edition, chapter 5.
 
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-/// Why equations have no solution.
+/// Error of a linear least-squares problem without a unique solution.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum Unsolvable {
-    /// There are fewer rows than columns.
+    /// Fewer rows than columns.
     #[error("needs at least {needed} equations, found {found}")]
     TooFewRows {
         /// Columns.
@@ -14,22 +16,22 @@ pub enum Unsolvable {
         /// Rows.
         found: usize,
     },
-    /// The columns are parallel, or one of them is zero or not finite.
+    /// Parallel columns, or a column that is zero or not finite.
     #[error("the equations are singular (condition number {condition:.1e}, limit {limit:.0e})")]
     Singular {
         /// Condition number of the scaled columns.
         condition: f64,
-        /// Largest accepted.
+        /// Largest condition number accepted.
         limit: f64,
     },
 }
 
-/// The solution of min ‖y − X θ‖².
+/// Solution of min ‖y − X θ‖².
 #[derive(Debug, Clone)]
 pub struct LeastSquares {
-    /// θ, one value per column.
+    /// Estimate θ, one value per column.
     pub parameters: DVector<f64>,
-    /// (XᵀX)⁻¹; times a noise variance it is the covariance of θ.
+    /// Unscaled covariance (XᵀX)⁻¹; times a noise variance it is the covariance of θ.
     pub unscaled_covariance: DMatrix<f64>,
     /// Residual sum of squares.
     pub rss: f64,
@@ -40,9 +42,10 @@ pub struct LeastSquares {
 }
 
 impl LeastSquares {
-    /// Solves by singular values of the scaled columns, which have equal length, that of `y`.
+    /// Solution by singular values of the scaled columns; every column has as many rows as `y`.
     ///
-    /// Fails with [`Unsolvable::Singular`] when the condition number of the scaled columns exceeds `condition_limit`.
+    /// Fails with [`Unsolvable::TooFewRows`] for fewer rows than columns, and with
+    /// [`Unsolvable::Singular`] when the condition number of the scaled columns exceeds `condition_limit`.
     pub fn solve(columns: &[&[f64]], y: &[f64], condition_limit: f64) -> Result<Self, Unsolvable> {
         let (rows, width) = (y.len(), columns.len());
         if rows < width {
@@ -83,7 +86,7 @@ impl LeastSquares {
         })
     }
 
-    /// Noise variance rss/(rows − columns); `None` when nothing is left to estimate it from.
+    /// Noise variance rss/(rows − columns); `None` without degrees of freedom.
     pub fn variance(&self) -> Option<f64> {
         (self.degrees_of_freedom > 0.0).then(|| self.rss / self.degrees_of_freedom)
     }
@@ -97,9 +100,9 @@ mod tests {
     #[test]
     fn recovers_a_line_over_columns_of_very_different_size() {
         let x: Vec<f64> = (0..50).map(|i| 1e6 * i as f64).collect();
-        let one = vec![1e-3; 50];
+        let constant = vec![1e-3; 50];
         let y: Vec<f64> = x.iter().map(|x| 2.0 + 3e-6 * x).collect();
-        let fit = LeastSquares::solve(&[&one, &x], &y, 1e6).expect("well conditioned");
+        let fit = LeastSquares::solve(&[&constant, &x], &y, 1e6).expect("well conditioned");
         assert_relative_eq!(fit.parameters[0], 2000.0, max_relative = 1e-10);
         assert_relative_eq!(fit.parameters[1], 3e-6, max_relative = 1e-10);
         assert!(fit.rss < 1e-20);

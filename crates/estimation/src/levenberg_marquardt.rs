@@ -1,104 +1,107 @@
-//! Least squares between bounds by damped Gauss–Newton steps (Levenberg 1944; Marquardt 1963; Moré 1978).
+//! Nonlinear least squares between bounds by damped Gauss–Newton steps.
 //!
-//! J(θ) = Σ e², with terms of what is expected of θ where there are any. The caller knows e and its exact derivatives;
-//! here are the steps. Every unknown is measured in units in which its second derivative is one; an unknown at its
-//! bound whose gradient points beyond stays there. Work space is allocated once a search.
+//! J(θ) = Σ e², plus prior terms in θ where the caller has them. The caller computes e and its exact derivatives; this
+//! module makes the steps. Unknowns are scaled so that the second derivatives are one; an unknown at its bound whose
+//! gradient points outwards stays there. Work space is allocated once a search.
+//!
+//! Sources: Levenberg (1944), Quarterly of Applied Mathematics 2:164-168; Marquardt (1963), Journal of the Society for
+//! Industrial and Applied Mathematics 11:431-441; Moré (1978).
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// What is minimised.
+/// Objective function J(θ) with its bounds and normal equations.
 pub trait Objective {
-    /// Least and largest value of an unknown.
+    /// Lower and upper bound of an unknown.
     fn bounds(&self, unknown: usize) -> [f64; 2];
 
-    /// J at a point; anything but a finite number where the model has no answer.
+    /// Value of J at a point; not finite where the model fails.
     fn value(&mut self, at: &[f64]) -> f64;
 
-    /// Fills in the normal equations, and returns J. It is asked for at the start and at every accepted point, then
-    /// straight after [`value`](Self::value), so that what was computed there can be used.
+    /// Writes the normal equations at a point and returns J. Called at the start and at every accepted point, there
+    /// straight after [`value`](Self::value), so that intermediate results of that call can be reused.
     fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64;
 }
 
 /// Normal equations at a point.
 #[derive(Debug, Clone)]
 pub struct Normal {
-    /// XᵀX with X = −∂e/∂θ: second derivatives of J/2.
+    /// Matrix XᵀX with X = −∂e/∂θ: second derivatives of J/2 (Gauss–Newton).
     pub matrix: DMatrix<f64>,
-    /// Xᵀe: first derivatives of −J/2.
+    /// Right-hand side Xᵀe: first derivatives of −J/2.
     pub gradient: DVector<f64>,
 }
 
-/// How damping follows the success of steps, and when a search ends.
+/// Settings of a search: damping schedule and stopping rules.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
-    /// Most accepted steps.
+    /// Maximum number of accepted steps.
     pub steps: usize,
-    /// First damping, as a share of the second derivatives.
+    /// Initial damping λ, relative to the second derivatives.
     pub damping: f64,
-    /// Factor of the damping after a step that lowers J by more than `trusted` of what it promised.
+    /// Factor on the damping after a step whose decrease of J is at least `trusted` times the predicted decrease.
     pub shrink: f64,
-    /// See [`Self::shrink`].
+    /// Smallest ratio of actual to predicted decrease at which the damping shrinks.
     pub trusted: f64,
-    /// Factor of the damping after a step that does not lower J.
+    /// Factor on the damping after a step that does not lower J.
     pub grow: f64,
-    /// Least damping after success, and after failure.
+    /// Lower bound of the damping after an accepted step, and after a rejected one.
     pub least: [f64; 2],
-    /// Dampings in a row without a lower J that end a search.
+    /// Number of rejected steps in a row that ends a search.
     pub tries: usize,
-    /// Promised decrease of J that is not worth a step.
+    /// Predicted decrease of J below which a search has converged.
     pub promise: f64,
-    /// Decrease of J that is too little to go on for: this much, and this share of J.
+    /// Absolute and relative tolerance for a small decrease of J.
     pub enough: [f64; 2],
-    /// Steps in a row of so little use that end a search.
+    /// Number of steps in a row with such a small decrease that ends a search.
     pub in_a_row: usize,
 }
 
-/// Why a search ended.
+/// Reason why a search stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// Steps had become of no use.
+    /// Converged: steps no longer lower J.
     Settled,
-    /// However short a step, J did not become lower: a minimum to rounding, or a kink near one.
+    /// No step lowers J, however short: a minimum to rounding, or a kink near one.
     Stalled,
-    /// The steps were used up.
+    /// Maximum number of steps reached.
     StepLimit,
-    /// J or its derivatives were no numbers.
+    /// J or its derivatives were not finite.
     NotFinite,
 }
 
-/// Where a search ended.
+/// Result of a search: the point where it stopped.
 #[derive(Debug, Clone)]
 pub struct Minimum {
-    /// θ.
+    /// Estimate θ.
     pub at: DVector<f64>,
-    /// J.
+    /// Value of J.
     pub value: f64,
-    /// The normal equations there.
+    /// Normal equations at θ.
     pub normal: Normal,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: usize,
-    /// Why it ended.
+    /// Stopping reason.
     pub end: End,
 }
 
-/// Share of the second derivatives that keeps a step finite without damping.
+/// Ridge, relative to the second derivatives, that keeps a step finite without damping.
 const RIDGE: f64 = 1e-11;
 
 impl Normal {
-    /// Normal equations of some unknowns, all zero.
+    /// Normal equations of this many unknowns, all zero.
     pub fn zeros(unknowns: usize) -> Self {
         Self { matrix: DMatrix::zeros(unknowns, unknowns), gradient: DVector::zeros(unknowns) }
     }
 
-    /// Whether an unknown lies at an end of its range and would leave it.
+    /// `true` if an unknown lies at a bound and its gradient points outwards.
     pub fn is_held(&self, unknown: usize, value: f64, [low, high]: [f64; 2]) -> bool {
         (value <= low && self.gradient[unknown] < 0.0) || (value >= high && self.gradient[unknown] > 0.0)
     }
 }
 
 /// Work space of a search.
-struct Steps {
-    /// One over the roots of the second derivatives; one where nothing depends on an unknown.
+struct StepWorkspace {
+    /// Inverse square roots of the second derivatives; one where J does not depend on an unknown.
     scale: DVector<f64>,
     held: Vec<bool>,
     right: DVector<f64>,
@@ -106,14 +109,14 @@ struct Steps {
     step: DVector<f64>,
 }
 
-impl Steps {
+impl StepWorkspace {
     fn new(unknowns: usize) -> Self {
         let zeros = || DVector::zeros(unknowns);
         let (held, damped) = (vec![false; unknowns], DMatrix::zeros(unknowns, unknowns));
         Self { scale: zeros(), held, right: zeros(), damped, step: zeros() }
     }
 
-    /// Takes the normal equations at a point.
+    /// Scales the normal equations at a point.
     fn prepare(&mut self, problem: &impl Objective, at: &DVector<f64>, normal: &Normal) {
         for k in 0..at.len() {
             let curvature = normal.matrix[(k, k)];
@@ -123,8 +126,8 @@ impl Steps {
         }
     }
 
-    /// Computes a damped step and returns the decrease of J that it promises.
-    fn damp(&mut self, normal: &Normal, damping: f64) -> Option<f64> {
+    /// Computes a damped step and returns the predicted decrease of J; `None` where the step is not finite.
+    fn damped_step(&mut self, normal: &Normal, damping: f64) -> Option<f64> {
         let unknowns = self.right.len();
         for j in 0..unknowns {
             for i in 0..unknowns {
@@ -149,14 +152,14 @@ impl Steps {
     }
 }
 
-/// Searches the least J between the bounds, from a start.
+/// Minimises J between the bounds, from a starting point.
 pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Rules) -> Minimum {
     let unknowns = start.len();
     let (mut at, mut next) = (start, DVector::zeros(unknowns));
     let mut normal = Normal::zeros(unknowns);
     let mut value = problem.linearise(at.as_slice(), &mut normal);
-    let mut work = Steps::new(unknowns);
-    let (mut damping, mut useless) = (rules.damping, 0);
+    let mut work = StepWorkspace::new(unknowns);
+    let (mut damping, mut small_steps) = (rules.damping, 0);
     let mut end = if value.is_finite() { End::StepLimit } else { End::NotFinite };
     let mut steps = 0;
     'search: while steps < rules.steps && end == End::StepLimit {
@@ -168,7 +171,7 @@ pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Rules
                 break 'search;
             }
             tries += 1;
-            if let Some(promise) = work.damp(&normal, damping) {
+            if let Some(promise) = work.damped_step(&normal, damping) {
                 if promise < rules.promise {
                     end = End::Settled;
                     break 'search;
@@ -177,23 +180,23 @@ pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Rules
                     let [low, high] = problem.bounds(k);
                     next[k] = if work.held[k] { at[k] } else { (at[k] + work.step[k]).clamp(low, high) };
                 }
-                let found = problem.value(next.as_slice());
-                if found <= value {
-                    if value - found >= rules.trusted * promise {
+                let trial = problem.value(next.as_slice());
+                if trial <= value {
+                    if value - trial >= rules.trusted * promise {
                         damping = (damping * rules.shrink).max(rules.least[0]);
                     }
-                    break found;
+                    break trial;
                 }
             }
             damping = (damping * rules.grow).max(rules.least[1]);
         };
         std::mem::swap(&mut at, &mut next);
-        useless = if value - lower <= rules.enough[0] + rules.enough[1] * value { useless + 1 } else { 0 };
+        small_steps = if value - lower <= rules.enough[0] + rules.enough[1] * value { small_steps + 1 } else { 0 };
         value = problem.linearise(at.as_slice(), &mut normal);
         steps += 1;
         if !value.is_finite() {
             end = End::NotFinite;
-        } else if useless == rules.in_a_row {
+        } else if small_steps == rules.in_a_row {
             end = End::Settled;
         }
     }
@@ -220,12 +223,12 @@ mod tests {
 
     /// Rosenbrock's valley as the squares of 10 (y − x²) and 1 − x, with a bound on x.
     struct Valley {
-        most: f64,
+        max_x: f64,
     }
 
     impl Objective for Valley {
         fn bounds(&self, unknown: usize) -> [f64; 2] {
-            [[-2.0, self.most], [f64::NEG_INFINITY, f64::INFINITY]][unknown]
+            [[-2.0, self.max_x], [f64::NEG_INFINITY, f64::INFINITY]][unknown]
         }
 
         fn value(&mut self, at: &[f64]) -> f64 {
@@ -244,23 +247,23 @@ mod tests {
     #[test]
     fn a_curved_valley_is_followed_to_its_end_and_to_a_bound() {
         let start = || DVector::from_vec(vec![-1.2, 1.0]);
-        let found = minimise(&mut Valley { most: 5.0 }, start(), &RULES);
-        assert_relative_eq!(found.at, DVector::from_vec(vec![1.0, 1.0]), epsilon = 1e-8);
-        let found = minimise(&mut Valley { most: 0.5 }, start(), &RULES);
-        assert_relative_eq!(found.at, DVector::from_vec(vec![0.5, 0.25]), epsilon = 1e-8);
-        assert!(found.normal.is_held(0, found.at[0], [-2.0, 0.5]));
+        let minimum = minimise(&mut Valley { max_x: 5.0 }, start(), &RULES);
+        assert_relative_eq!(minimum.at, DVector::from_vec(vec![1.0, 1.0]), epsilon = 1e-8);
+        let minimum = minimise(&mut Valley { max_x: 0.5 }, start(), &RULES);
+        assert_relative_eq!(minimum.at, DVector::from_vec(vec![0.5, 0.25]), epsilon = 1e-8);
+        assert!(minimum.normal.is_held(0, minimum.at[0], [-2.0, 0.5]));
     }
 
     #[test]
     fn a_search_says_why_it_ended() {
         let start = DVector::from_vec(vec![-1.2, 1.0]);
         assert_eq!(
-            minimise(&mut Valley { most: 5.0 }, start.clone(), &Rules { steps: 3, ..RULES }).end,
+            minimise(&mut Valley { max_x: 5.0 }, start.clone(), &Rules { steps: 3, ..RULES }).end,
             End::StepLimit
         );
         let eager = Rules { promise: 1e9, ..RULES };
-        assert_eq!(minimise(&mut Valley { most: 5.0 }, start, &eager).end, End::Settled);
+        assert_eq!(minimise(&mut Valley { max_x: 5.0 }, start, &eager).end, End::Settled);
         let nowhere = DVector::from_vec(vec![f64::NAN, 1.0]);
-        assert_eq!(minimise(&mut Valley { most: 5.0 }, nowhere, &RULES).end, End::NotFinite);
+        assert_eq!(minimise(&mut Valley { max_x: 5.0 }, nowhere, &RULES).end, End::NotFinite);
     }
 }

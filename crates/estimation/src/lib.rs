@@ -1,20 +1,20 @@
-//! The numerics of estimation, each once. Nothing here knows of ships or records.
+//! Numerical methods of estimation, independent of ships and records.
 //!
 //! | for | read |
 //! |---|---|
 //! | sums over columns of numbers, with the same bits on every machine | [`mod@column`], [`lanes`] |
-//! | the Fourier transform | [`transform`] |
+//! | the discrete Fourier transform | [`transform`] |
 //! | the Kalman filter with its smoother | [`kalman`] |
-//! | exact steps of such systems in time, and sample paths | [`stochastic`] |
-//! | numbers that carry their derivatives | [`number`] |
+//! | exact discretisation of such systems, and sample paths | [`stochastic`] |
+//! | dual numbers, which carry derivatives | [`number`] |
 //! | linear least squares with covariance and condition number | [`least_squares`] |
 //! | nonlinear least squares between bounds | [`levenberg_marquardt`] |
-//! | the lowest point of a function of one number | [`minimum`](fn@minimum::minimum) |
+//! | the minimum of a function of one variable | [`minimum`](fn@minimum::minimum) |
 //! | covariances of scores that are correlated in time | [`covariance`] |
-//! | medians and quantiles | [`statistics`] |
-//! | mixtures of normal laws, and ratios over them | [`mixture`] |
-//! | the evidence of every subset of some terms | [`subsets`] |
-//! | whether a residual is white, and its spectrum | [`residuals`] |
+//! | medians, quantiles and intervals of proportions | [`statistics`] |
+//! | mixtures of normal distributions, and ratios over them | [`mixture`] |
+//! | the evidence of every subset of terms | [`subsets`] |
+//! | whiteness and spectrum of a residual | [`residuals`] |
 
 pub mod column;
 pub mod covariance;

@@ -1,32 +1,35 @@
-//! The lowest point of a function of one number.
+//! Minimum of a function of one variable.
+//!
+//! Source: Kiefer (1953), Proceedings of the American Mathematical Society 4:502-506, for the golden section.
 
-/// Smallest value on a range: a grid, then golden sections about its lowest point.
+/// Argument and value of the minimum on [lo, hi]: a grid of `points` intervals, then six golden sections about the
+/// lowest grid point.
 pub fn minimum(lo: f64, hi: f64, points: usize, mut value: impl FnMut(f64) -> f64) -> (f64, f64) {
     let at = |k: usize| lo + (hi - lo) * k as f64 / points as f64;
     let heights: Vec<f64> = (0..=points).map(|k| value(at(k))).collect();
     let best = (0..=points).min_by(|&i, &j| heights[i].total_cmp(&heights[j])).unwrap_or(0);
     let (mut left, mut right) = (at(best.saturating_sub(1)), at((best + 1).min(points)));
-    let mut found = (at(best), heights[best]);
+    let mut lowest = (at(best), heights[best]);
     let golden = 0.5 * (5f64.sqrt() - 1.0);
-    let (mut one, mut two) = (right - golden * (right - left), left + golden * (right - left));
-    let (mut f_one, mut f_two) = (value(one), value(two));
+    let (mut inner_left, mut inner_right) = (right - golden * (right - left), left + golden * (right - left));
+    let (mut value_left, mut value_right) = (value(inner_left), value(inner_right));
     for _ in 0..6 {
-        for candidate in [(one, f_one), (two, f_two)] {
-            if candidate.1 < found.1 {
-                found = candidate;
+        for candidate in [(inner_left, value_left), (inner_right, value_right)] {
+            if candidate.1 < lowest.1 {
+                lowest = candidate;
             }
         }
-        if f_one < f_two {
-            (right, two, f_two) = (two, one, f_one);
-            one = right - golden * (right - left);
-            f_one = value(one);
+        if value_left < value_right {
+            (right, inner_right, value_right) = (inner_right, inner_left, value_left);
+            inner_left = right - golden * (right - left);
+            value_left = value(inner_left);
         } else {
-            (left, one, f_one) = (one, two, f_two);
-            two = left + golden * (right - left);
-            f_two = value(two);
+            (left, inner_left, value_left) = (inner_left, inner_right, value_right);
+            inner_right = left + golden * (right - left);
+            value_right = value(inner_right);
         }
     }
-    found
+    lowest
 }
 
 #[cfg(test)]

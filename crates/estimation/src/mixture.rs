@@ -1,31 +1,35 @@
-//! Quantities that are averages over models: each model has a normal law, and a weight.
+//! Mixtures of normal distributions: averages over models, each with a weight (Bayesian model averaging).
+//!
+//! Sources: Hoeting, Madigan, Raftery and Volinsky (1999), Statistical Science 14:382-417, for the average over models;
+//! Fieller (1954) for the ratio.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Halvings of an interval in which a quantile lies.
-const HALVINGS: usize = 100;
+/// Number of bisections for a quantile.
+const BISECTIONS: usize = 100;
 
-/// A number, and where it is known its standard deviation with the interval between its 2.5 % and 97.5 % quantiles.
+/// Mean, and where they exist the standard deviation and the interval from the 2.5 % to the 97.5 % quantile.
 pub type MixtureSummary = (f64, Option<(f64, [f64; 2])>);
 
-/// Normal laws with their weights, which sum to one.
+/// Mixture of normal distributions; weights need not sum to one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalMixture {
-    /// Weight, mean and standard deviation.
+    /// Weight, mean and standard deviation of every component.
     pub parts: Vec<(f64, f64, f64)>,
 }
 
 impl NormalMixture {
-    /// Mean and standard deviation of the mixture with its interval. Without an error where one of the parts has none.
+    /// Mean, standard deviation and 95 % interval of the mixture; the mean alone where a component has no finite
+    /// standard deviation.
     pub fn summary(&self) -> MixtureSummary {
         let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
         let mean = self.parts.iter().map(|(weight, mean, _)| weight * mean).sum::<f64>() / total;
-        let square = |(weight, own, sd): &(f64, f64, f64)| weight * (sd * sd + (own - mean).powi(2));
+        let square = |(weight, component, sd): &(f64, f64, f64)| weight * (sd * sd + (component - mean).powi(2));
         let sd = (self.parts.iter().map(square).sum::<f64>() / total).sqrt();
         (mean, sd.is_finite().then(|| (sd, [0.025, 0.975].map(|probability| self.quantile(probability)))))
     }
 
-    /// Value below which the mixture lies with a probability.
+    /// Quantile of the mixture at a probability.
     pub fn quantile(&self, probability: f64) -> f64 {
         let reach = |sign: f64| move |(_, mean, sd): &(f64, f64, f64)| mean + sign * 10.0 * sd;
         let low = self.parts.iter().map(reach(-1.0)).fold(f64::INFINITY, f64::min);
@@ -33,7 +37,7 @@ impl NormalMixture {
         bisect(low, high, |x| self.below(x) < probability)
     }
 
-    /// Probability of less than `x`.
+    /// Distribution function of the mixture, P(X < x).
     pub fn below(&self, x: f64) -> f64 {
         let law = Normal::standard();
         let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
@@ -46,25 +50,25 @@ impl NormalMixture {
     }
 }
 
-/// The place at which `is_below` ends.
+/// Argument at which `is_below` turns false, by bisection.
 fn bisect(mut low: f64, mut high: f64, is_below: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..HALVINGS {
+    for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
         if is_below(middle) { low = middle } else { high = middle }
     }
     0.5 * (low + high)
 }
 
-/// A pair (denominator, numerator) in one model: weight, values, variances and covariance.
+/// Normal pair (denominator, numerator) of one model, with the weight of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalPair {
-    /// Weight.
+    /// Weight of the model.
     pub weight: f64,
-    /// Denominator and its variance.
+    /// Mean and variance of the denominator.
     pub denominator: (f64, f64),
-    /// Numerator and its variance.
+    /// Mean and variance of the numerator.
     pub numerator: (f64, f64),
-    /// Their covariance.
+    /// Covariance of both.
     pub covariance: f64,
 }
 
@@ -75,28 +79,29 @@ impl NormalPair {
     }
 }
 
-/// The ratio numerator over denominator of the most probable model, with the interval over all of them.
+/// Ratio of numerator to denominator in the most probable model, with standard deviation and 95 % interval over all
+/// models.
 ///
-/// P(b/a < k) is that of b − k a < 0, which is normal in every model (Fieller 1954). There is no interval where the
-/// denominator may be zero: where its own 95 % interval holds zero.
+/// P(b/a < k) = P(b − k a < 0), and b − k a is normal in every model (Fieller 1954). Without an interval where the 95 %
+/// interval of the denominator contains zero.
 pub fn ratio(pairs: &[NormalPair]) -> MixtureSummary {
-    let best = pairs.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));
+    let best = pairs.iter().max_by(|left, right| left.weight.total_cmp(&right.weight));
     let Some(best) = best else { return (f64::NAN, None) };
     let value = best.numerator.0 / best.denominator.0;
-    let of = |part: &dyn Fn(&NormalPair) -> (f64, f64)| NormalMixture {
+    let mixture = |part: &dyn Fn(&NormalPair) -> (f64, f64)| NormalMixture {
         parts: pairs.iter().map(|pair| (pair.weight, part(pair).0, part(pair).1)).collect(),
     };
-    let below = of(&|pair| (pair.denominator.0, pair.denominator.1.max(0.0).sqrt())).below(0.0);
+    let below = mixture(&|pair| (pair.denominator.0, pair.denominator.1.max(0.0).sqrt())).below(0.0);
     if (0.025..=0.975).contains(&below) || pairs.iter().any(|pair| !pair.denominator.1.is_finite()) {
         return (value, None);
     }
     let sign = if below < 0.5 { 1.0 } else { -1.0 };
     let is_below = |k: f64| {
-        of(&|pair| (sign * (pair.numerator.0 - k * pair.denominator.0), pair.variance_at(k).sqrt())).below(0.0)
+        mixture(&|pair| (sign * (pair.numerator.0 - k * pair.denominator.0), pair.variance_at(k).sqrt())).below(0.0)
     };
     let spread = |pair: &NormalPair| {
-        let own = pair.numerator.0 / pair.denominator.0;
-        (own, pair.variance_at(own).sqrt() / pair.denominator.0.abs())
+        let ratio = pair.numerator.0 / pair.denominator.0;
+        (ratio, pair.variance_at(ratio).sqrt() / pair.denominator.0.abs())
     };
     let total: f64 = pairs.iter().map(|pair| pair.weight).sum();
     let mean = pairs.iter().map(|pair| pair.weight * spread(pair).0).sum::<f64>() / total;

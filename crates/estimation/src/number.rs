@@ -1,13 +1,14 @@
-//! The numbers that equations are written in: plain values, and values that carry their derivatives, so that one replay
-//! gives a heading and how it changes with several parameters, exactly (forward differentiation; Wengert 1964).
+//! Number types of the equations: plain values, and dual numbers, which carry derivatives. One replay in dual numbers
+//! gives the heading and its exact sensitivities to several parameters (forward automatic differentiation).
 //!
-//! Equations are written once, for any [`Real`]; a value alone takes the same path through them as a value with
-//! derivatives.
+//! Equations are written once, for any [`Real`]; the values are computed by the same operations in both types.
+//!
+//! Source: Wengert (1964), Communications of the ACM 7:463-464.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number that an equation can be written in. Comparisons are those of the values.
+/// Number type of an equation: a value, or a value with derivatives. Comparisons use the values.
 pub trait Real:
     Copy
     + Debug
@@ -27,16 +28,16 @@ pub trait Real:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
-    /// The value alone.
+    /// Value without derivatives.
     fn value(self) -> f64;
 
-    /// A function of this number, from its value and its derivative there.
+    /// Function of this number, from its value and its derivative (chain rule).
     fn chained(self, value: f64, slope: f64) -> Self;
 
-    /// A function of two numbers, from its value and its derivative by those of both.
+    /// Function of two numbers, from its value and its total differential `by(dx, dy)`.
     fn joined(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self;
 
-    /// A power of a positive number.
+    /// Power of a positive number.
     fn powf(self, exponent: Self) -> Self;
 
     /// Sine and cosine.
@@ -46,7 +47,7 @@ pub trait Real:
         (self.chained(sin, cos), self.chained(cos, -sin))
     }
 
-    /// The angle of the point (x, y), of which this number is y.
+    /// Angle of the point (x, y), where this number is y.
     #[inline]
     fn atan2(self, x: Self) -> Self {
         let square = (self.value() * self.value() + x.value() * x.value()).max(f64::MIN_POSITIVE);
@@ -54,7 +55,7 @@ pub trait Real:
         self.joined(x, self.value().atan2(x.value()), |dy, dx| by_y * dy + by_x * dx)
     }
 
-    /// √(x² + y²), not zero.
+    /// Root √(x² + y²), which must not be zero.
     #[inline]
     fn hypot(self, other: Self) -> Self {
         let root = self.value().hypot(other.value());
@@ -69,27 +70,27 @@ pub trait Real:
         self.chained(tanh, 1.0 - tanh * tanh)
     }
 
-    /// The exponential.
+    /// Exponential.
     #[inline]
     fn exp(self) -> Self {
         let exp = self.value().exp();
         self.chained(exp, exp)
     }
 
-    /// The natural logarithm of a positive number.
+    /// Natural logarithm of a positive number.
     #[inline]
     fn ln(self) -> Self {
         self.chained(self.value().ln(), self.value().recip())
     }
 
-    /// The square root of a positive number.
+    /// Square root of a positive number.
     #[inline]
     fn sqrt(self) -> Self {
         let root = self.value().sqrt();
         self.chained(root, 0.5 / root)
     }
 
-    /// A whole power.
+    /// Integer power.
     #[inline]
     fn powi(self, exponent: i32) -> Self {
         if exponent == 0 {
@@ -103,12 +104,12 @@ pub trait Real:
         if self.value() < 0.0 { -self } else { self }
     }
 
-    /// The larger of the number and a constant; at the constant, the number.
+    /// Maximum of the number and a constant; the number at equality.
     fn at_least(self, least: f64) -> Self {
         if self.value() >= least { self } else { Self::from(least) }
     }
 
-    /// The number between two others, of which the first is not the larger one.
+    /// Number clamped to [least, most].
     fn between(self, least: Self, most: Self) -> Self {
         if self.value() < least.value() {
             least
@@ -147,17 +148,17 @@ impl Real for f64 {
     }
 }
 
-/// A value and its derivatives in some directions.
+/// Dual number: a value with its derivatives in `DIRECTIONS` directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual<const DIRECTIONS: usize> {
-    /// The value.
+    /// Value.
     pub value: f64,
-    /// Its derivatives.
+    /// Derivatives.
     pub by: [f64; DIRECTIONS],
 }
 
 impl<const N: usize> Dual<N> {
-    /// A variable of this value whose derivative in one direction is `slope`.
+    /// Variable with this value, whose derivative in one direction is `slope` and zero in the others.
     pub fn variable(value: f64, direction: usize, slope: f64) -> Self {
         let mut by = [0.0; N];
         by[direction] = slope;
@@ -205,7 +206,7 @@ impl<const N: usize> Sub for Dual<N> {
     }
 }
 
-#[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of the product")]
+#[expect(clippy::suspicious_arithmetic_impl, reason = "product rule")]
 impl<const N: usize> Mul for Dual<N> {
     type Output = Self;
 
@@ -215,7 +216,7 @@ impl<const N: usize> Mul for Dual<N> {
     }
 }
 
-#[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of the quotient")]
+#[expect(clippy::suspicious_arithmetic_impl, reason = "quotient rule")]
 impl<const N: usize> Div for Dual<N> {
     type Output = Self;
 
@@ -281,7 +282,7 @@ impl<const N: usize> Real for Dual<N> {
     fn powf(self, exponent: Self) -> Self {
         let power = self.value.powf(exponent.value);
         let by_base = exponent.value * power / self.value;
-        // A logarithm costs as much as the power: an exponent that is no variable needs none.
+        // A logarithm costs as much as the power; a constant exponent needs none.
         let by_exponent = if exponent.by == [0.0; N] { 0.0 } else { power * self.value.ln() };
         self.joined(exponent, power, |x, y| by_base * x + by_exponent * y)
     }
@@ -305,13 +306,13 @@ mod tests {
     fn derivatives_are_those_of_the_value() {
         let h = 1e-6;
         for (x, y) in [(0.7, 1.3), (-0.4, 0.2), (2.0, -0.6)] {
-            let found = expression(Dual::<4>::variable(x, 0, 1.0), Dual::variable(y, 3, 1.0));
-            assert_eq!(found.value, expression(x, y));
+            let dual = expression(Dual::<4>::variable(x, 0, 1.0), Dual::variable(y, 3, 1.0));
+            assert_eq!(dual.value, expression(x, y));
             let by_x = (expression(x + h, y) - expression(x - h, y)) / (2.0 * h);
             let by_y = (expression(x, y + h) - expression(x, y - h)) / (2.0 * h);
-            assert_relative_eq!(found.by[0], by_x, max_relative = 1e-7, epsilon = 1e-9);
-            assert_relative_eq!(found.by[3], by_y, max_relative = 1e-7, epsilon = 1e-9);
-            assert_eq!(found.by[1..3], [0.0; 2]);
+            assert_relative_eq!(dual.by[0], by_x, max_relative = 1e-7, epsilon = 1e-9);
+            assert_relative_eq!(dual.by[3], by_y, max_relative = 1e-7, epsilon = 1e-9);
+            assert_eq!(dual.by[1..3], [0.0; 2]);
         }
     }
 }

@@ -1,27 +1,30 @@
-//! What can be said of a residual alone: whether it is white and of one variance, and its spectrum. Values may be
-//! missing.
+//! Diagnostics of a residual: whiteness, constant variance and spectrum. Values may be missing.
+//!
+//! Sources: Ljung and Box (1978), Biometrika 65:297-303; Stoffer and Toloi (1992); Lomb (1976), Astrophysics and Space
+//! Science 39:447-462; Scargle (1982), Astrophysical Journal 263:835-853; Brown, Durbin and Evans (1975), Journal of
+//! the Royal Statistical Society B 37:149-192.
 
 use crate::transform::{Complex, power, transform};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
-/// A residual with the steps of an even clock at which its values stand; steps without a value are holes.
+/// Series of residuals on an even time grid with gaps: values, each with its grid index.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GappedSeries {
-    /// Time between steps, s: the usual one between headings.
+    /// Grid spacing, s: the usual time between headings.
     pub spacing: f64,
-    /// Step of every value, the first 0.
+    /// Grid index of every value; the first is 0.
     steps: Vec<usize>,
-    /// Values.
+    /// Residuals, in the unit of the caller.
     pub values: Vec<f64>,
 }
 
 impl GappedSeries {
-    /// Takes a residual, NaN where there is none, at times (s) whose rows are usually `period` seconds apart.
+    /// Series of a residual (NaN where missing) at times in s, which are usually `period` seconds apart.
     pub fn new(time: &[f64], residual: &[f64], period: f64) -> Self {
         let rows: Vec<usize> = (0..time.len()).filter(|&row| residual[row].is_finite()).collect();
         let intervals = || rows.windows(2).map(|pair| (time[pair[1]] - time[pair[0]]) / period);
         let mut sorted: Vec<f64> = intervals().collect();
-        // The lower quartile: headings may be missing at random, or recorded in every tenth row.
+        // Lower quartile: headings may be missing at random, or recorded in every tenth row.
         let quarter = sorted.len() / 4;
         let usual = match sorted.len() {
             0 => 1.0,
@@ -37,46 +40,47 @@ impl GappedSeries {
         Self { spacing: period * usual, steps, values: rows.iter().map(|&row| residual[row]).collect() }
     }
 
-    /// Number of steps from the first value to the last, both included.
+    /// Number of grid points from the first value to the last, both included.
     fn span(&self) -> usize {
         self.steps.last().map_or(0, |last| last.saturating_add(1))
     }
 }
 
-/// Whiteness of a residual.
+/// Result of the whiteness test of Ljung and Box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Whiteness {
     /// Lag-1 autocorrelation, pooled over records.
     pub lag1: f64,
-    /// Probability that a white residual has autocorrelations as large (Ljung and Box 1978), pooled over records.
+    /// p-value: probability of autocorrelations as large as these in white noise, pooled over records.
     pub p_value: f64,
 }
 
-/// Largest lag of the whiteness test.
-const LAGS: usize = 20;
+/// Largest lag of the whiteness test, in grid steps.
+const MAX_LAG: usize = 20;
 
-/// Lags of the whiteness test of so many residuals.
+/// Number of lags of the whiteness test of `count` residuals.
 pub fn whiteness_lags(count: usize) -> usize {
-    LAGS.min(count / 4)
+    MAX_LAG.min(count / 4)
 }
 
-/// Tests the residuals of several records together.
+/// Whiteness test of the residuals of several records together.
 ///
-/// Q = n (n + 2) Σ ρ²/(n − k); where values are missing, every ρ counts by its pairs (Stoffer and Toloi 1992).
+/// Q = n (n + 2) Σ ρ²/(n − k) (Ljung and Box 1978); with missing values every ρ is weighted by its number of pairs
+/// (Stoffer and Toloi 1992).
 pub fn whiteness(residuals: &[GappedSeries]) -> Whiteness {
     let (mut square, mut cross, mut statistic, mut freedom) = (0.0, 0.0, 0.0, 0.0);
     for residual in residuals {
         let n = residual.values.len();
         let correlations = autocorrelation(residual, whiteness_lags(n));
-        let own: f64 = residual.values.iter().map(|e| e * e).sum();
-        square += own;
-        cross += correlations.iter().find(|one| one.lag == 1).map_or(0.0, |one| one.value) * own;
+        let sum_of_squares: f64 = residual.values.iter().map(|e| e * e).sum();
+        square += sum_of_squares;
+        cross += correlations.iter().find(|rho| rho.lag == 1).map_or(0.0, |rho| rho.value) * sum_of_squares;
         let (n, span) = (n as f64, residual.span() as f64);
         statistic += correlations
             .iter()
-            .map(|one| {
-                let share = (span - one.lag as f64) * n / span;
-                n * (n + 2.0) * one.value * one.value / (share * share / one.pairs as f64)
+            .map(|rho| {
+                let share = (span - rho.lag as f64) * n / span;
+                n * (n + 2.0) * rho.value * rho.value / (share * share / rho.pairs as f64)
             })
             .sum::<f64>();
         freedom += correlations.len() as f64;
@@ -88,17 +92,17 @@ pub fn whiteness(residuals: &[GappedSeries]) -> Whiteness {
 /// Autocorrelation at one lag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Autocorrelation {
-    /// Lag in steps of the series.
+    /// Lag, in grid steps.
     pub lag: usize,
     /// Autocorrelation about zero.
     pub value: f64,
-    /// Pairs of values that are so far apart.
+    /// Number of pairs of values at this lag.
     pub pairs: usize,
 }
 
-/// Autocorrelations at lags 1, 2, …, `lags` that occur: products of values at their true distance in time.
+/// Autocorrelations at lags 1, 2, …, `lags`; a lag without a pair of values is left out.
 ///
-/// ρ_k = Σ x_i x_j / Σ x²; with n values on N steps and m pairs times n (N − k)/(N m), which is 1 without holes.
+/// ρ_k = Σ x_i x_j / Σ x²; with n values on N grid points and m pairs, times n (N − k)/(N m), which is 1 without gaps.
 pub fn autocorrelation(series: &GappedSeries, lags: usize) -> Vec<Autocorrelation> {
     let GappedSeries { steps, values, .. } = series;
     let square: f64 = values.iter().map(|e| e * e).sum();
@@ -114,33 +118,33 @@ pub fn autocorrelation(series: &GappedSeries, lags: usize) -> Vec<Autocorrelatio
         .filter(|&k| pairs[k] > 0)
         .map(|k| {
             let lag = k + 1;
-            let holes = (n * (span - lag as f64)) / (span * pairs[k] as f64);
-            let value = if square > 0.0 { cross[k] / square * holes } else { 0.0 };
+            let gap_factor = (n * (span - lag as f64)) / (span * pairs[k] as f64);
+            let value = if square > 0.0 { cross[k] / square * gap_factor } else { 0.0 };
             Autocorrelation { lag, value, pairs: pairs[k] }
         })
         .collect()
 }
 
-/// One line of a spectrum.
+/// Line of a periodogram.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectralLine {
     /// Frequency, Hz.
     pub frequency: f64,
-    /// Share of the mean square.
+    /// Share of the mean square, from 0 to 1.
     pub share: f64,
 }
 
-/// A series with more than this many steps for a value is no longer looked at.
-const SPARSEST: usize = 16;
+/// Largest number of grid points per value for which a spectrum is computed.
+const MAX_POINTS_PER_VALUE: usize = 16;
 
-/// Periodogram: the share of the mean square that every multiple of the lowest frequency has.
+/// Periodogram: the share of the mean square at every multiple of the lowest frequency.
 ///
-/// Where values are missing it is that of Lomb (1976) and Scargle (1982), the share that a sine at the values alone
-/// explains. All its sums are Fourier transforms, of the values and of where they stand, because the clock is even.
-/// Empty for fewer than four values and when nearly all steps are holes.
+/// With missing values it is the periodogram of Lomb (1976) and Scargle (1982): the share explained by a least-squares
+/// sine. On an even grid its sums are Fourier transforms of the values and of the pattern of gaps. Empty for fewer than
+/// four values, and when nearly all grid points are gaps.
 pub fn spectrum(series: &GappedSeries) -> Vec<SpectralLine> {
     let (n, span) = (series.values.len(), series.span());
-    if n < 4 || span > SPARSEST * n {
+    if n < 4 || span > MAX_POINTS_PER_VALUE * n {
         return Vec::new();
     }
     let frequency = |k: usize| k as f64 / (span as f64 * series.spacing);
@@ -162,15 +166,15 @@ pub fn spectrum(series: &GappedSeries) -> Vec<SpectralLine> {
     let (sums, window) = (transform(&mut values), transform(&mut present));
     (1..sums.len())
         .map(|k| {
-            // Σ cos 2ωt − i Σ sin 2ωt; beyond the last frequency it is that of the mirror image.
+            // Σ cos 2ωt − i Σ sin 2ωt; above the Nyquist frequency by symmetry.
             let twice = if 2 * k < window.len() { window[2 * k] } else { window[span - 2 * k].conj() };
             line(k, explained(sums[k], twice, n as f64), total)
         })
         .collect()
 }
 
-/// Sum of squares that a sine explains: from Σ x e^(−iωt), Σ e^(−2iωt) and the number of values. In the phase in which
-/// its cosine and sine are orthogonal, these have the squares (n ± |Σ e^(−2iωt)|)/2.
+/// Sum of squares explained by a sine, from Σ x e^(−iωt), Σ e^(−2iωt) and the number of values. At the phase at which
+/// cosine and sine are orthogonal, their squared norms are (n ± |Σ e^(−2iωt)|)/2.
 fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
     let length = twice.norm();
     let half_angle = 0.5 * (-twice.im).atan2(twice.re);
@@ -180,26 +184,26 @@ fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
     part(by_cos * cos + by_sin * sin, 0.5 * (n + length)) + part(by_sin * cos - by_cos * sin, 0.5 * (n - length))
 }
 
-/// Probability that normal numbers of one variance have sums of squares that stray as far from a straight line (Brown,
-/// Durbin and Evans 1975), or one number as large among them.
+/// p-value of constant variance: normal numbers with one variance have a cumulative sum of squares as far from a
+/// straight line (CUSUM of squares, Brown, Durbin and Evans 1975), or a single number as large, with this probability.
 pub fn evenness(numbers: &[f64]) -> f64 {
     let n = numbers.len() as f64;
     let total: f64 = numbers.iter().map(|x| x * x).sum();
     if total <= 0.0 || !total.is_finite() {
         return 1.0;
     }
-    let (mut sum, mut strays, mut largest) = (0.0, 0.0_f64, 0.0_f64);
+    let (mut sum, mut deviation, mut largest) = (0.0, 0.0_f64, 0.0_f64);
     for (k, x) in numbers.iter().enumerate() {
         sum += x * x;
-        strays = strays.max((sum / total - (k + 1) as f64 / n).abs());
+        deviation = deviation.max((sum / total - (k + 1) as f64 / n).abs());
         largest = largest.max(x.abs());
     }
-    let stray = kolmogorov(strays * (0.5 * n).sqrt());
-    let single = n * 2.0 * Normal::standard().sf(largest / (total / n).sqrt());
-    (2.0 * stray.min(single)).min(1.0)
+    let cusum = kolmogorov(deviation * (0.5 * n).sqrt());
+    let outlier = n * 2.0 * Normal::standard().sf(largest / (total / n).sqrt());
+    (2.0 * cusum.min(outlier)).min(1.0)
 }
 
-/// Probability that a Brownian bridge strays further than x anywhere: 2 Σ (−1)^(k+1) exp(−2 k² x²).
+/// Kolmogorov distribution: probability that a Brownian bridge exceeds ±x, 2 Σ (−1)^(k+1) exp(−2 k² x²).
 fn kolmogorov(x: f64) -> f64 {
     if x < 0.3 {
         return 1.0;
@@ -249,10 +253,10 @@ mod tests {
     fn lags_are_those_of_the_clock() {
         for (number, pattern) in patterns().into_iter().enumerate() {
             let series = sine(pattern);
-            for one in autocorrelation(&series, 40) {
-                let lag = one.lag as f64 * series.spacing;
+            for rho in autocorrelation(&series, 40) {
+                let lag = rho.lag as f64 * series.spacing;
                 let full = (600.0 - lag) / 600.0;
-                assert!((one.value - full * (TAU * lag / 20.0).cos()).abs() < 0.06, "{number}: {one:?}");
+                assert!((rho.value - full * (TAU * lag / 20.0).cos()).abs() < 0.06, "{number}: {rho:?}");
             }
         }
     }

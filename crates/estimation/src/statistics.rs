@@ -1,9 +1,11 @@
-//! The middle and the quantiles of a few values.
+//! Medians, quantiles and intervals of proportions.
+//!
+//! Sources: Hyndman and Fan (1996), The American Statistician 50:361-365; Wilson (1927), Journal of the American
+//! Statistical Association 22:209-212.
 
-/// Median; the mean of the two middle values where their number is even, so that a mirrored set has the mirrored
-/// median. Found in linear time.
+/// Median; of an even number of values the mean of the two middle ones, so that a mirrored set has the mirrored median.
 ///
-/// `None` for an empty set. The values are reordered and must not be NaN.
+/// `None` for an empty set. Linear time; the values are reordered and must not be NaN.
 pub fn median(values: &mut [f64]) -> Option<f64> {
     let even = values.len().is_multiple_of(2);
     let middle = values.len() / 2;
@@ -12,20 +14,18 @@ pub fn median(values: &mut [f64]) -> Option<f64> {
     Some(lower.map_or(upper, |lower| 0.5 * (lower + upper)))
 }
 
-/// The middle one of the finite values, the upper of two where their number is even; found in linear time, for very
-/// many values.
+/// Upper median of the finite values: of an even number of values the upper of the two middle ones.
 ///
-/// `None` without any.
+/// `None` without a finite value. Linear time, for very many values.
 pub fn upper_median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7), of which some may be
-/// infinite. NaN of nothing.
+/// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7).
 ///
-/// `sorted` ascends; `share` is from 0 to 1.
+/// `sorted` ascends and may contain infinities; `share` is from 0 to 1. NaN for an empty set.
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = share * last as f64;
@@ -35,15 +35,15 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     if part == 0.0 || low == high { low } else { low + part * (high - low) }
 }
 
-/// Interval of a share that was seen in `of` independent cases (Wilson 1927); `quantile` is that of the standard normal
-/// distribution, 1.96 for 95 %. From 0 to 1 of nothing.
-pub fn wilson(share: f64, of: f64, quantile: f64) -> [f64; 2] {
-    if of <= 0.0 {
+/// Score interval of a proportion observed in `cases` independent cases (Wilson 1927); `quantile` is that of the
+/// standard normal distribution, 1.96 for 95 %. [0, 1] without cases.
+pub fn wilson(share: f64, cases: f64, quantile: f64) -> [f64; 2] {
+    if cases <= 0.0 {
         return [0.0, 1.0];
     }
     let z2 = quantile * quantile;
-    let centre = (share + z2 / (2.0 * of)) / (1.0 + z2 / of);
-    let reach = quantile / (1.0 + z2 / of) * (share * (1.0 - share) / of + z2 / (4.0 * of * of)).sqrt();
+    let centre = (share + z2 / (2.0 * cases)) / (1.0 + z2 / cases);
+    let reach = quantile / (1.0 + z2 / cases) * (share * (1.0 - share) / cases + z2 / (4.0 * cases * cases)).sqrt();
     [(centre - reach).max(0.0), (centre + reach).min(1.0)]
 }
 

@@ -1,4 +1,6 @@
-//! Linear systems that white noise drives: exact steps in time, and sample paths.
+//! Linear stochastic systems driven by white noise: exact discretisation, and sample paths.
+//!
+//! Source: Van Loan (1978), IEEE Transactions on Automatic Control 23:395-404.
 
 use nalgebra::DMatrix;
 
@@ -6,8 +8,8 @@ use crate::kalman::{Filter, MOST, Sensor, Step, System, Whitener};
 use crate::with_states;
 
 impl<const N: usize> Step<N> {
-    /// The step over `h` of x' = G x + w with white w of the given intensity on the last state of G (Van Loan 1978).
-    /// States beyond those of G are zero.
+    /// Exact step over `h` seconds of x' = G x + w with white noise w of the given intensity on the last state of G
+    /// (Van Loan 1978). States beyond those of G are zero.
     pub fn over(generator: &DMatrix<f64>, intensity: f64, h: f64) -> Self {
         let m = generator.nrows();
         let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);
@@ -27,14 +29,14 @@ impl<const N: usize> Step<N> {
         step
     }
 
-    /// The same step with noise of so many times the variance.
+    /// Step whose process-noise covariance is multiplied by `level`.
     pub fn scaled(&self, level: f64) -> Self {
         Self { added: self.added.map(|row| row.map(|x| level * x)), ..*self }
     }
 }
 
 impl<const N: usize> System<N> {
-    /// What its sensors would read without their own noise along a sample path, from standard normal numbers.
+    /// Sample path: the readings without sensor noise, from standard normal numbers.
     pub fn sample(&self, normal: &mut impl FnMut() -> f64) -> Vec<f64> {
         let roots: Vec<[[f64; N]; N]> = self.steps.iter().map(|step| root(&step.added)).collect();
         let mut draw = |root: &[[f64; N]; N]| -> [f64; N] {
@@ -55,8 +57,8 @@ impl<const N: usize> System<N> {
 }
 
 impl System<MOST> {
-    /// The filter of its first `states` states, all others being zero; its gains settle within a share.
-    pub fn whitener(&self, states: usize, share: f64) -> Whitener {
+    /// Whitener of the first `states` states, the others being zero; `tolerance` is that of a stationary gain.
+    pub fn whitener(&self, states: usize, tolerance: f64) -> Whitener {
         with_states!(states, N => {
             let first = |wide: &[[f64; MOST]; MOST]| -> [[f64; N]; N] {
                 std::array::from_fn(|i| std::array::from_fn(|j| wide[i][j]))
@@ -71,12 +73,12 @@ impl System<MOST> {
                 readings: self.readings.clone(),
                 initial: first(&self.initial),
             };
-            Filter::settling(system, share).whitener()
+            Filter::with_tolerance(system, tolerance).whitener()
         })
     }
 }
 
-/// A lower triangle L with L Lᵀ = a covariance that may be singular.
+/// Cholesky factor L, L Lᵀ = P, of a covariance P that may be singular.
 fn root<const N: usize>(covariance: &[[f64; N]; N]) -> [[f64; N]; N] {
     let mut l = [[0.0; N]; N];
     for i in 0..N {

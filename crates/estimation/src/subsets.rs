@@ -1,34 +1,36 @@
-//! The evidence of every subset of some terms at once, from the posterior of the model that has them all.
+//! Evidence of every subset of terms, from the posterior of the full model.
 //!
-//! Where the log-density is quadratic, a model without the terms R has against the full model the evidence
+//! For a quadratic log density, the evidence of the model without the terms R relative to the full model is
 //!
 //! log Z_R − log Z = −½ Δᵀ Σ_ss⁻¹ Δ − log p(R neutral) − ½ log |2π Σ_RR|,
 //!
-//! with the distance Δ of the sizes of R from their neutral values, the posterior covariance Σ of all that was fitted,
-//! and the prior density p. It is the density ratio of Dickey (1971) for sizes; parameters that only shape a term
-//! are free while its size is taken away and pay with their prior range.
+//! with the distance Δ of the amplitudes (sizes) of R from their neutral values, the posterior covariance Σ of all
+//! fitted unknowns, and the prior density p. It is the Savage–Dickey density ratio for the amplitudes; shape parameters
+//! are unconstrained without their amplitude and count with their prior range.
 //!
-//! All 2^m subsets share their factors: one row of a Cholesky factor is added for every term that is left out.
+//! All 2^m subsets share their factors: a removed term adds one row to a Cholesky factor.
+//!
+//! Source: Dickey (1971), Annals of Mathematical Statistics 42:204-223.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A term that may be taken away.
+/// Term that may be removed from the model.
 #[derive(Debug, Clone)]
 pub struct Removable {
-    /// Unknowns of its sizes, and how far they are from neutral.
+    /// Indices of its amplitudes among the unknowns, each with its distance from the neutral value.
     pub sizes: Vec<(usize, f64)>,
-    /// Unknowns that only shape it.
+    /// Indices of its shape parameters among the unknowns.
     pub shapes: Vec<usize>,
-    /// Log prior density with the sizes at their neutral values and the shapes as they are.
+    /// Log prior density at neutral amplitudes and fitted shape parameters.
     pub log_prior: f64,
-    /// Log of the prior odds that it is there.
+    /// Log prior odds of inclusion.
     pub log_odds: f64,
 }
 
-/// Most terms whose subsets are all weighed.
+/// Largest number of terms whose subsets are all weighted.
 pub const MOST_TERMS: usize = 12;
 
-/// A Cholesky factor that grows by a row, with the solution of L z = Δ.
+/// Cholesky factor that grows row by row, with the solution of L z = Δ.
 struct GrowingFactor<'a> {
     covariance: &'a DMatrix<f64>,
     unknowns: Vec<usize>,
@@ -46,13 +48,13 @@ impl<'a> GrowingFactor<'a> {
 
     fn push(&mut self, unknown: usize, distance: f64) {
         let mut row = Vec::with_capacity(self.rows.len() + 1);
-        for (other, known) in self.unknowns.iter().zip(&self.rows) {
-            let own: f64 = known.iter().zip(&row).map(|(x, y): (&f64, &f64)| x * y).sum();
-            row.push((self.covariance[(unknown, *other)] - own) / known[known.len() - 1]);
+        for (previous, factor) in self.unknowns.iter().zip(&self.rows) {
+            let product: f64 = factor.iter().zip(&row).map(|(x, y): (&f64, &f64)| x * y).sum();
+            row.push((self.covariance[(unknown, *previous)] - product) / factor[factor.len() - 1]);
         }
         let variance = self.covariance[(unknown, unknown)];
-        let left = variance - row.iter().map(|x| x * x).sum::<f64>();
-        let pivot = left.max(1e-12 * variance).sqrt();
+        let conditional = variance - row.iter().map(|x| x * x).sum::<f64>();
+        let pivot = conditional.max(1e-12 * variance).sqrt();
         let solved = row.iter().zip(&self.solution).map(|(x, y)| x * y).sum::<f64>();
         let z = (distance - solved) / pivot;
         row.push(pivot);
@@ -72,10 +74,10 @@ impl<'a> GrowingFactor<'a> {
     }
 }
 
-/// Log evidence plus log prior odds of every subset against that of the full model with even odds; bit k of the place
-/// says that term k is in.
+/// Log evidence plus log prior odds of every subset, relative to the full model with even odds. Bit k of the index is
+/// set if term k is included.
 ///
-/// `covariance` is that of the unknowns. At most [`MOST_TERMS`] terms.
+/// `covariance` is the posterior covariance of the unknowns. At most [`MOST_TERMS`] terms.
 pub fn subsets(covariance: &DMatrix<f64>, terms: &[Removable]) -> Vec<f64> {
     let mut weights = vec![0.0; 1 << terms.len()];
     let mut walk = SubsetWalk {
@@ -90,9 +92,9 @@ pub fn subsets(covariance: &DMatrix<f64>, terms: &[Removable]) -> Vec<f64> {
 
 struct SubsetWalk<'a> {
     terms: &'a [Removable],
-    /// Sizes of what is left out.
+    /// Factor over the amplitudes of the removed terms.
     sizes: GrowingFactor<'a>,
-    /// Everything of what is left out.
+    /// Factor over all unknowns of the removed terms.
     all: GrowingFactor<'a>,
     weights: &'a mut [f64],
 }
@@ -122,13 +124,13 @@ impl SubsetWalk<'_> {
     }
 }
 
-/// Where the unknowns go when the sizes of what is not in a subset become neutral, in the quadratic approximation.
+/// Conditional mean of the unknowns when the amplitudes of the removed terms are neutral (quadratic approximation).
 pub fn conditional(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&Removable]) -> DVector<f64> {
-    let sizes: Vec<(usize, f64)> = removed.iter().flat_map(|one| one.sizes.iter().copied()).collect();
-    let own = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| covariance[(sizes[i].0, sizes[j].0)]);
+    let sizes: Vec<(usize, f64)> = removed.iter().flat_map(|term| term.sizes.iter().copied()).collect();
+    let block = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| covariance[(sizes[i].0, sizes[j].0)]);
     let distance = DVector::from_fn(sizes.len(), |i, _| sizes[i].1);
-    let ridge = DMatrix::from_diagonal(&own.diagonal().map(|x| 1e-12 * x));
-    let Some(factor) = (own + ridge).cholesky() else { return at.clone() };
+    let ridge = DMatrix::from_diagonal(&block.diagonal().map(|x| 1e-12 * x));
+    let Some(factor) = (block + ridge).cholesky() else { return at.clone() };
     let shares = factor.solve(&distance);
     DVector::from_fn(at.len(), |k, _| {
         at[k]
@@ -140,7 +142,7 @@ pub fn conditional(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&Rem
     })
 }
 
-/// Takes what the sizes of a term leave open from a covariance.
+/// Conditions a covariance, in place, on neutral amplitudes of a term.
 pub fn condition(covariance: &mut DMatrix<f64>, out: &Removable) {
     for &(unknown, _) in &out.sizes {
         let column: DVector<f64> = covariance.column(unknown).into();
@@ -227,12 +229,15 @@ mod tests {
             let (precision, mean) = problem.posterior(&all);
             let covariance = precision.cholesky().expect("positive").inverse();
             let removable: Vec<Removable> = all.iter().map(|&k| problem.removable(&mean, k)).collect();
-            let found = subsets(&covariance, &removable);
+            let weights = subsets(&covariance, &removable);
             let full = problem.evidence(&all);
-            for (subset, log) in found.iter().enumerate() {
+            for (subset, log) in weights.iter().enumerate() {
                 let kept: Vec<usize> = all.iter().copied().filter(|k| subset >> k & 1 == 1).collect();
-                let own = problem.evidence(&kept) - full;
-                assert!((log - own).abs() < 1e-6 * (1.0 + own.abs()), "{number}, {kept:?}: {log} and {own}");
+                let refitted = problem.evidence(&kept) - full;
+                assert!(
+                    (log - refitted).abs() < 1e-6 * (1.0 + refitted.abs()),
+                    "{number}, {kept:?}: {log} and {refitted}"
+                );
             }
         }
     }
@@ -246,9 +251,9 @@ mod tests {
         let covariance = precision.cholesky().expect("positive").inverse();
         let out = [problem.removable(&mean, 1), problem.removable(&mean, 3)];
         let moved = conditional(&covariance, &mean, &out.iter().collect::<Vec<_>>());
-        let (_, own) = problem.posterior(&[0, 2]);
-        for (found, expected) in [(moved[0], own[0]), (moved[1], own[1]), (moved[3], own[2])] {
-            assert!((found - expected).abs() < 1e-9, "{found} and {expected}");
+        let (_, refitted) = problem.posterior(&[0, 2]);
+        for (value, expected) in [(moved[0], refitted[0]), (moved[1], refitted[1]), (moved[3], refitted[2])] {
+            assert!((value - expected).abs() < 1e-9, "{value} and {expected}");
         }
         assert!(moved[2].abs() < 1e-9 && moved[4].abs() < 1e-9);
     }

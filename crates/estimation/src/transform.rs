@@ -1,16 +1,16 @@
-//! The Fourier transform of a row of numbers, compiled here once: the library behind it is generic, and every crate
-//! that asked it would compile all its algorithms again.
+//! Discrete Fourier transform of real numbers, compiled here once: the library behind it is generic, and every crate
+//! that called it would compile all its algorithms again.
 
 use realfft::RealFftPlanner;
 pub use realfft::num_complex::Complex;
 
-/// Squared magnitudes of the [`transform`] of `x`. Spoils `x`.
+/// Squared magnitudes of the [`transform`] of `x`; overwrites `x`.
 pub fn power(x: &mut [f64]) -> Vec<f64> {
     transform(x).into_iter().map(|z| z.norm_sqr()).collect()
 }
 
-/// The transform of `x`, from the mean to the highest frequency that the spacing can show: bin k is k periods over the
-/// length of `x`. Spoils `x`.
+/// Discrete Fourier transform of `x`, from frequency zero to the Nyquist frequency: bin k has k periods over the length
+/// of `x`. Overwrites `x`; empty for an empty `x`.
 pub fn transform(x: &mut [f64]) -> Vec<Complex<f64>> {
     if x.is_empty() {
         return Vec::new();
@@ -31,14 +31,14 @@ mod tests {
     fn power_is_that_of_the_definition() {
         for rows in [1, 2, 7, 30, 97] {
             let x: Vec<f64> = (0..rows).map(|k| (0.7 * k as f64).sin() + 0.2).collect();
-            let found = power(&mut x.clone());
-            assert_eq!(found.len(), rows / 2 + 1);
-            for (bin, found) in found.into_iter().enumerate() {
+            let bins = power(&mut x.clone());
+            assert_eq!(bins.len(), rows / 2 + 1);
+            for (bin, value) in bins.into_iter().enumerate() {
                 let part = |of: fn(f64) -> f64| {
                     let angle = |k: usize| TAU * (bin * k) as f64 / rows as f64;
                     x.iter().enumerate().map(|(k, x)| x * of(angle(k))).sum::<f64>()
                 };
-                assert_relative_eq!(found, part(f64::cos).powi(2) + part(f64::sin).powi(2), epsilon = 1e-9);
+                assert_relative_eq!(value, part(f64::cos).powi(2) + part(f64::sin).powi(2), epsilon = 1e-9);
             }
         }
         assert!(power(&mut []).is_empty());

@@ -1,4 +1,4 @@
-//! Degrees and knots at the border: the only conversions in the house.
+//! Conversions of degrees and knots to SI, for input and output.
 
 /// Radians in one degree.
 pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -18,9 +18,9 @@ pub fn to_deg(angle: f64) -> f64 {
     angle / DEGREE
 }
 
-/// Removes the jumps of 2π from a heading that wraps, in place; missing values (NaN) are stepped over.
+/// Unwraps a heading (rad) in place: removes its jumps of 2π. Missing values (NaN) are skipped.
 ///
-/// The first finite value is kept, every later one lies within π of the finite value before it.
+/// The first finite value is kept; every later one lies within π of the finite value before it.
 pub fn unwrap_heading(heading: &mut [f64]) {
     let mut last: Option<f64> = None;
     for psi in heading.iter_mut().filter(|psi| psi.is_finite()) {

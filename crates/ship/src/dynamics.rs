@@ -1,11 +1,11 @@
-//! What everything that can be steered has to offer: a state, its rate of change, and the motion seen from it.
+//! Dynamics of a steered ship: a state vector, its rate of change, and the motion that follows from it.
 //!
 //! Response models ([`crate::response::Response`]) and hulls ([`crate::vessel`]) both implement [`Dynamics`], so
 //! simulation and replay are written once.
 
 use estimation::number::Real;
 
-/// Channels a record may hold beside heading and rudder, at one instant; `None` where the record has none.
+/// Measured channels beside heading and rudder at one instant; `None` where the record has none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Measured {
     /// Speed through the water, m/s.
@@ -21,7 +21,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Whether a channel is there.
+    /// `true` if a channel was measured.
     pub fn has(&self, channel: Regressor) -> bool {
         match channel {
             Regressor::Speed => self.speed.is_some(),
@@ -32,7 +32,7 @@ impl Measured {
     }
 }
 
-/// A channel of [`Measured`], by what it is about.
+/// Kind of a channel of [`Measured`], which effects use as a regressor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regressor {
     /// Speed through the water.
@@ -46,7 +46,7 @@ pub enum Regressor {
 }
 
 impl Regressor {
-    /// What is said of records without it.
+    /// Message for records without it.
     pub fn lacking(self) -> &'static str {
         match self {
             Self::Speed => "the records have no speed",
@@ -57,18 +57,18 @@ impl Regressor {
     }
 }
 
-/// What acts on a ship at one instant.
+/// Input of a ship at one instant: rudder, disturbance and measured channels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Input<R = f64> {
-    /// Rudder angle that acts (dead time already applied), rad, positive turns to starboard.
+    /// Acting rudder angle after the dead time, rad; positive turns to starboard.
     pub rudder: R,
-    /// Yaw disturbance as the rudder angle with the same yaw moment at approach speed, rad.
+    /// Yaw disturbance as equivalent rudder angle (same yaw moment at approach speed), rad.
     pub disturbance: f64,
     /// Measured channels that effects may use as regressors.
     pub measured: Measured,
 }
 
-/// The motion of a ship at one instant.
+/// Motion of a ship at one instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Motion {
     /// Heading ψ, rad, clockwise, not wrapped.
@@ -83,11 +83,11 @@ pub struct Motion {
     pub sway: Option<f64>,
 }
 
-/// A system with a rudder and a heading: x' = f(t, x, input).
+/// System with a rudder and a heading: x' = f(t, x, input).
 ///
 /// The first two states are always heading ψ (rad) and yaw rate r (rad/s); what follows belongs to the
-/// implementation. A value of this type is immutable during a run: all memory is in the state vector. A system whose
-/// parameters carry derivatives has states that carry them, too.
+/// implementation. A value of this type is immutable during a run: all memory is in the state vector. Parameters in
+/// dual numbers give states in dual numbers.
 pub trait Dynamics<R: Real = f64>: Send + Sync {
     /// Number of states, at least 2.
     fn dimension(&self) -> usize;
@@ -100,15 +100,15 @@ pub trait Dynamics<R: Real = f64>: Send + Sync {
     /// Writes x' into `rate` (both of length [`dimension`](Self::dimension)).
     fn rates(&self, t: f64, state: &[R], input: &Input<R>, rate: &mut [R]);
 
-    /// Updates memory that is not a differential equation (backlash), once at the end of every step.
+    /// Updates memory that follows no differential equation (backlash), once at the end of every step.
     ///
-    /// Between two calls the rudder is monotone: drivers end a step at every corner of the rudder signal.
+    /// Between two calls the rudder is monotone: a step ends at every corner of the rudder signal.
     fn settle(&self, _t: f64, _state: &mut [R], _input: &Input<R>) {}
 
-    /// The motion seen from outside.
+    /// Motion in a state.
     fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion;
 
-    /// Dead time between the rudder signal and the rudder that acts, s; negative for a late clock in a record.
+    /// Dead time between the rudder signal and the acting rudder, s; negative for a late clock in a record.
     fn dead_time(&self) -> R {
         R::from(0.0)
     }

@@ -1,12 +1,12 @@
 //! The first-order (Nomoto) response T r' + r = K (δ + δ_r) and its closed form under a ramping rudder.
 //!
-//! Inside, the model is r' = −a r + b (δ + δ_r) with a = 1/T and b = K/T. A neutrally stable hull has a = 0 and a
-//! course-unstable one a < 0; both are ordinary points of these parameters, while K and T pass through infinity.
+//! The model is parametrised as r' = −a r + b (δ + δ_r) with a = 1/T and b = K/T. A neutrally stable hull has a = 0 and
+//! a course-unstable one a < 0; both are regular points of these parameters, while K and T pass through infinity.
 //!
-//! Source of the model: Nomoto, Taguchi, Honda and Hirano (1957).
+//! Source of the model: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
-/// A first-order response, parametrised so that T → ∞ and negative T are regular.
+/// First-order response, parametrised so that T → ∞ and negative T are regular.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstOrder {
     /// a = 1/T, 1/s; negative for a course-unstable ship.
@@ -18,7 +18,7 @@ pub struct FirstOrder {
 }
 
 impl FirstOrder {
-    /// From the indices K (1/s), T (s) and the rudder bias δ_r (rad). `T` must not be zero.
+    /// First-order response from the indices K (1/s), T (s) and the rudder bias δ_r (rad). `T` must not be zero.
     pub fn from_indices(K: f64, T: f64, rudder_bias: f64) -> Self {
         Self { inverse_T: 1.0 / T, K_over_T: K / T, rudder_bias }
     }
@@ -33,7 +33,7 @@ impl FirstOrder {
         1.0 / self.inverse_T
     }
 
-    /// Whether a disturbance of a straight course grows: 1/T < 0.
+    /// `true` if a disturbance of a straight course grows: 1/T < 0.
     pub fn is_course_unstable(&self) -> bool {
         self.inverse_T < 0.0
     }
@@ -48,7 +48,7 @@ pub struct State {
     pub yaw_rate: f64,
 }
 
-/// The exact transition of ψ' = r, r' = −a r + u over one interval h, for an input u that is linear in time.
+/// Exact transition of ψ' = r, r' = −a r + u over one interval h, for an input u that is linear in time.
 ///
 /// r(h) = e r₀ + φ₁ u₀ + φ₂ u', ψ(h) = ψ₀ + φ₁ r₀ + φ₂ u₀ + φ₃ u', where e = exp(−a h) and
 /// φₙ(h) = ∫₀ʰ φₙ₋₁, φ₀ = exp(−a t). Regular at a = 0; h may be negative (a step back in time).
@@ -66,7 +66,8 @@ pub struct Transition {
     pub phi3: f64,
 }
 
-/// Scaled functions fₙ(x) = n-th tail of exp(−x) over (∓x)ⁿ, n = 1..4, without cancellation near x = 0.
+/// Decay exp(−x), and the scaled functions fₙ(x) = n-th tail of exp(−x) over (∓x)ⁿ, n = 1..4, without cancellation near
+/// x = 0.
 fn tails(x: f64) -> (f64, [f64; 4]) {
     if x.abs() < 1.0 {
         // f₄(x) = Σ (−x)^k / (k+4)!, then down by fₙ = 1/n! − x fₙ₊₁.
@@ -101,17 +102,18 @@ impl Transition {
     #[inline]
     pub fn advance(&self, state: State, u0: f64, slope: f64) -> State {
         State {
-            // The input is added up first: it does not wait for the state, so that steps follow one another sooner.
+            // The input terms are summed first: they do not depend on the state, which shortens the chain of
+            // operations.
             heading: state.heading + (self.phi1 * state.yaw_rate + (self.phi2 * u0 + self.phi3 * slope)),
             yaw_rate: self.decay * state.yaw_rate + (self.phi1 * u0 + self.phi2 * slope),
         }
     }
 }
 
-/// A [`Transition`] with its derivative by a, for exact sensitivities of the response to 1/T.
+/// [`Transition`] with its derivative by a, for exact sensitivities of the response to 1/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentTransition {
-    /// The transition itself.
+    /// Transition.
     pub value: Transition,
     /// Its derivative by a = 1/T (`h` holds no derivative and is zero).
     pub by_inverse_T: Transition,

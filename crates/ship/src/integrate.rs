@@ -1,12 +1,14 @@
-//! The classical fourth-order Runge–Kutta step, with its work space allocated once.
+//! Classical fourth-order Runge–Kutta step, with its work space allocated once.
+//!
+//! Source: Kutta (1901), Zeitschrift für Mathematik und Physik 46:435-453.
 
 use crate::dynamics::{Dynamics, Input};
 use estimation::number::Real;
 
-/// Classical Runge–Kutta of order four with a fixed step.
+/// Classical Runge–Kutta method of order four with a fixed step.
 ///
-/// The right-hand sides of hulls have kinks (flow straightening by side of the rudder), for which a fixed small
-/// step is more predictable than an adaptive one.
+/// The right-hand sides of hulls have kinks (flow straightening differs by side), for which a fixed small step is more
+/// predictable than an adaptive one.
 #[derive(Debug, Clone)]
 pub struct RungeKutta4<R = f64> {
     stage: [Vec<R>; 4],
@@ -20,9 +22,9 @@ impl<R: Real> RungeKutta4<R> {
         Self { stage: std::array::from_fn(|_| zeros()), probe: zeros() }
     }
 
-    /// Advances `state` from `t` by `h` seconds; `input` gives what acts at a time within the step.
+    /// Advances `state` from `t` by `h` seconds; `input` returns the input at a time within the step.
     ///
-    /// Does not call [`Dynamics::settle`]: a driver that only probes a step must not change memory.
+    /// Does not call [`Dynamics::settle`], so that a trial step changes no memory.
     pub fn step<D, F>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [R], mut input: F)
     where
         D: Dynamics<R> + ?Sized,
@@ -32,7 +34,7 @@ impl<R: Real> RungeKutta4<R> {
         self.step_with(dynamics, t, h, state, &inputs);
     }
 
-    /// The same with what acts at the beginning, in the middle and at the end of the step.
+    /// [`step`](Self::step) with the inputs at the beginning, in the middle and at the end of the step.
     pub fn step_with<D>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [R], inputs: &[Input<R>; 3])
     where
         D: Dynamics<R> + ?Sized,
@@ -53,7 +55,7 @@ impl<R: Real> RungeKutta4<R> {
     }
 }
 
-/// The state from which the next rates are taken: `h` seconds along the last ones.
+/// State of the next stage: `h` seconds along the last rates.
 #[inline]
 fn probe<R: Real>(probe: &mut [R], state: &[R], rate: &[R], h: f64) {
     for ((probe, &x), &k) in probe.iter_mut().zip(state).zip(rate) {

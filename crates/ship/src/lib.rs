@@ -1,23 +1,23 @@
-//! Ships as equations: response models of the Nomoto family, the effects that can be added to them, and
-//! three-degree-of-freedom vessels that serve as a truth no response model matches.
+//! Ship models: response models of the Nomoto family, the effects that can be added to them, and hulls with three
+//! degrees of freedom, which serve as a truth that no response model matches.
 //!
-//! This crate is the bottom of the house. It knows how a ship turns when its rudder moves; it knows nothing of
-//! manoeuvres, sensors, records or identification.
+//! The crate describes how a ship turns when its rudder moves. Manoeuvres, sensors, records and identification are in
+//! other crates.
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | the first-order response and its closed form | [`first_order`] |
-//! | effects a first-order response lacks | [`effects`] |
+//! | effects that a first-order response lacks | [`effects`] |
 //! | a response model: base plus effects | [`response`] |
-//! | what every simulated thing has to offer | [`dynamics`] |
-//! | stepping it through time | [`integrate`] and [`replay`] |
-//! | numbers that carry their derivatives | [`number`] |
+//! | the interface of every simulated ship | [`dynamics`] |
+//! | integration in time | [`integrate`] and [`replay`] |
+//! | dual numbers, which carry derivatives | [`number`] |
 //! | hulls with three degrees of freedom | [`vessel`] |
 //! | linear sway-yaw equations and their indices | [`linear`] |
 //! | parameter sets with their sources | [`ships`] |
 //! | numbers in messages | [`short_number`] |
 //!
-//! Inside, everything is in SI units and radians. Positive rudder gives positive (starboard) yaw rate, heading
+//! All quantities are in SI units and radians. Positive rudder gives positive (starboard) yaw rate, heading
 //! grows clockwise seen from above, `v` is positive to starboard.
 
 pub mod angle;

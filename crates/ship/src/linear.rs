@@ -1,15 +1,17 @@
-//! From the linear sway-yaw equations of a hull to the indices of the second-order response.
+//! Indices K, T1, T2, T3 of the second-order response, from the linear sway-yaw equations of a hull.
 //!
-//! The equations M ν' + N ν = b δ, ν = (v, r), are written in a prime system (length L, speed U, time L/U); the indices
-//! follow by eliminating the sway velocity v. Nothing here is fitted: these are the indices of infinitely small motion
-//! at approach speed, which a zig-zag trial of finite amplitude does not reproduce.
+//! The equations M ν' + N ν = b δ, ν = (v, r), are in a prime system (length L, speed U, time L/U); the indices follow
+//! by elimination of the sway velocity v. They hold for infinitesimal motion at approach speed; a zig-zag trial of
+//! finite amplitude does not reproduce them.
+//!
+//! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships; the elimination is re-derived.
 #![expect(non_snake_case, reason = "M, N, K and T1..T3 are the symbols of the field")]
 
 use thiserror::Error;
 
 use crate::particulars::Particulars;
 
-/// Why linear equations have no indices K, T1, T2, T3.
+/// Error of linear equations that have no indices K, T1, T2, T3.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LinearError {
     /// Straight motion is neutrally stable, by the determinant of the damping matrix: K and T1 are infinite.
@@ -76,17 +78,14 @@ fn det(m: &[[f64; 2]; 2]) -> f64 {
 }
 
 impl PrimeSwayYaw {
-    /// The indices of these equations.
+    /// Indices of these equations.
     ///
     /// T1 T2 = det M / det N, T1 + T2 = (n11 m22 + n22 m11 − n12 m21 − n21 m12) / det N,
     /// K = (n11 b2 − n21 b1) / det N, T3 = (m11 b2 − m21 b1) / (n11 b2 − n21 b1).
     ///
     /// T1 is the larger of two time constants of one sign and the negative one of two signs (det N < 0: the ship is
-    /// course-unstable, K and T1 are negative). Fails for a neutrally stable hull, a mass matrix that is none, an
-    /// oscillating hull and one that a rudder does not turn.
-    ///
-    /// Source: the second-order response is that of Nomoto, Taguchi, Honda and Hirano (1957); the elimination is
-    /// re-derived.
+    /// course-unstable, K and T1 are negative). Fails for a neutrally stable hull, a mass matrix that is not positive
+    /// definite, an oscillating hull and a hull that a steady rudder does not turn.
     pub fn indices(&self) -> Result<PrimeIndices, LinearError> {
         let Self { M, N, b } = self;
         let (det_M, det_N) = (det(M), det(N));
@@ -115,7 +114,7 @@ impl PrimeSwayYaw {
 }
 
 impl PrimeIndices {
-    /// The indices in seconds of a ship of this length at this speed: K = K' U/L, T = T' L/U.
+    /// Indices in seconds of a ship of this length at this speed: K = K' U/L, T = T' L/U.
     pub fn at(&self, particulars: Particulars) -> SecondOrderIndices {
         let unit = particulars.length / particulars.speed;
         SecondOrderIndices { K: self.K / unit, T1: self.T1 * unit, T2: self.T2 * unit, T3: self.T3 * unit }
@@ -127,7 +126,7 @@ impl SecondOrderIndices {
     ///
     /// It is the limit of slow steering only. A first-order response fitted to a 10/10 zig-zag has neither this T nor
     /// this K: for (T1, T2, T3) = (20, 2.5, 6.2) s the best fit is 12 % low in K and 18 % low in T, for
-    /// (25, 4, 12.7) s 18 % and 35 %. What such a trial keeps is roughly K/T.
+    /// (25, 4, 12.7) s 18 % and 35 %. The ratio K/T is roughly preserved.
     pub fn first_order_T(&self) -> f64 {
         self.T1 + self.T2 - self.T3
     }

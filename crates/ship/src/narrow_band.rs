@@ -1,8 +1,9 @@
-//! Narrow-band random heading (first-order waves): a damped oscillator driven by white noise, stepped exactly.
+//! Narrow-band random heading of first-order waves: a damped oscillator driven by white noise, discretised exactly.
+//!
+//! Source: the shaping filter for wave-induced yaw of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion
+//! Control; here with its exact discrete transition.
 
-/// ξ'' + 2ζω₀ ξ' + ω₀² ξ = w, a stationary process with standard deviation σ.
-///
-/// Source: the usual shaping filter for wave-induced yaw (Fossen 2011), here with its exact discrete transition.
+/// Stationary narrow-band process ξ'' + 2ζω₀ ξ' + ω₀² ξ = w with standard deviation σ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NarrowBand {
     /// Standard deviation σ of ξ, rad.
@@ -13,7 +14,7 @@ pub struct NarrowBand {
     pub damping: f64,
 }
 
-/// The exact transition of a [`NarrowBand`] process over one step.
+/// Exact transition of a [`NarrowBand`] process over one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NarrowBandStep {
     transition: [[f64; 2]; 2],

@@ -1,10 +1,9 @@
-//! The numbers that a response is replayed in to see how it changes with its parameters.
+//! Dual numbers for the sensitivities of a replay to the parameters of a response.
 
 use estimation::number::Dual;
 
-/// Directions in which a [`Tangent`] is differentiated at once: those of a first-order response and of an effect with
-/// two parameters.
+/// Number of derivatives of a [`Tangent`]: enough for a first-order response and an effect with two parameters.
 pub const DIRECTIONS: usize = 6;
 
-/// A number that a response is replayed in together with its derivatives.
+/// Dual number in which a response is replayed.
 pub type Tangent = Dual<DIRECTIONS>;

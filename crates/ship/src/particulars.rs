@@ -1,6 +1,8 @@
-//! Length and speed of a ship, and what they make of a quantity that has a dimension.
+//! Length and speed of a ship, and the prime system: quantities made nondimensional with them.
+//!
+//! Source: ITTC Dictionary of Hydrodynamics, prime system.
 
-/// Length and speed, the two numbers every nondimensional index needs.
+/// Length and approach speed of a ship, the units of the prime system.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Particulars {
     /// Length between perpendiculars L, m.
@@ -9,65 +11,65 @@ pub struct Particulars {
     pub speed: f64,
 }
 
-/// K′ = K L/V that ships and models show in zig-zags. KVLCC2 has 0.75 (35/5) to 3.6 (10/10), Esso Osaka 1.2 to 1.5
-/// (records of SIMMAN 2008; Wakita et al. 2022), the Mariner 0.8 to 2.4.
+/// Usual range of K′ = K L/V of ships and models in zig-zags. KVLCC2 has 0.75 (35/5) to 3.6 (10/10), Esso Osaka 1.2 to
+/// 1.5 (records of SIMMAN 2008; Wakita et al. 2022), the Mariner 0.8 to 2.4.
 pub const USUAL_K_PRIME: [f64; 2] = [0.4, 5.0];
 
-/// T′ = T V/L, likewise: KVLCC2 1.3 to 8.3, Esso Osaka 0.4 to 1.4, the Mariner 1.1 to 2.8.
+/// Usual range of T′ = T V/L: KVLCC2 1.3 to 8.3, Esso Osaka 0.4 to 1.4, the Mariner 1.1 to 2.8.
 pub const USUAL_T_PRIME: [f64; 2] = [0.3, 12.0];
 
-/// K′/T′, which changes less with the rudder: KVLCC2 0.42 to 0.67, Esso Osaka 0.85 to 1.9, the Mariner 0.7 to 0.9.
+/// Usual range of K′/T′, which changes less with the rudder: KVLCC2 0.42 to 0.67, Esso Osaka 0.85 to 1.9, the Mariner
+/// 0.7 to 0.9.
 pub const USUAL_K_OVER_T_PRIME: [f64; 2] = [0.25, 2.0];
 
-/// Rates of the rudder of ships, deg/s: SOLAS II-1/29 asks for 65° in 28 s, 2.3.
+/// Usual range of the rudder rate of ships, deg/s; SOLAS II-1/29 requires 65° in 28 s, 2.3 deg/s.
 const SHIP_RUDDER_RATE_DEG_S: [f64; 2] = [2.0, 7.0];
 
-/// A shorter ship is a model of a ship of these lengths, m.
-const SHORTEST_SHIP_M: f64 = 30.0;
-const MODELLED_SHIPS_M: [f64; 2] = [100.0, 400.0];
+/// Smallest length of a full-scale ship, m, and the lengths of the ships behind shorter models.
+const MIN_SHIP_LENGTH_M: f64 = 30.0;
+const MODELLED_LENGTHS_M: [f64; 2] = [100.0, 400.0];
 
-/// Rates of the rudder, deg/s, that are usual at a length, m: 2 to 7 of ships, and √(L_ship/L) times that of models
-/// (Froude).
+/// Usual range of the rudder rate, deg/s, at a length, m: 2 to 7 for ships, and √(L_ship/L) times that for models
+/// (Froude scaling).
 pub fn usual_rudder_rate_deg_s(length: f64) -> [f64; 2] {
-    let quicker = |ship: f64| if length < SHORTEST_SHIP_M { (ship / length).sqrt() } else { 1.0 };
-    [0, 1].map(|end| SHIP_RUDDER_RATE_DEG_S[end] * quicker(MODELLED_SHIPS_M[end]))
+    let froude = |ship: f64| if length < MIN_SHIP_LENGTH_M { (ship / length).sqrt() } else { 1.0 };
+    [0, 1].map(|end| SHIP_RUDDER_RATE_DEG_S[end] * froude(MODELLED_LENGTHS_M[end]))
 }
 
 /// Exponents of second and metre in a dimension; angles have none.
 pub type Dimension = [i32; 2];
 
 impl Particulars {
-    /// The time in which the ship sails its own length, L/V, s.
+    /// Ship-length time L/V, s.
     pub fn time(self) -> f64 {
         self.length / self.speed
     }
 
-    /// What a quantity of a dimension s^a m^b is multiplied with to have none: (V/L)^a L^(−b). So K' = K L/V,
-    /// T' = T V/L, r' = r L/V, u' = u/V.
+    /// Factor (V/L)^a L^(−b) that makes a quantity of dimension s^a m^b nondimensional: K' = K L/V, T' = T V/L,
+    /// r' = r L/V, u' = u/V.
     ///
-    /// Not finite where length or speed are zero. Source: ITTC Dictionary of Hydrodynamics, prime system.
+    /// Not finite where length or speed is zero.
     pub fn prime(self, [seconds, metres]: Dimension) -> f64 {
         self.time().powi(-seconds) * self.length.powi(-metres)
     }
 
-    /// What a quantity of a dimension is multiplied with when a ship of these particulars becomes a similar one of
-    /// others: its prime value stays.
+    /// Factor on a quantity from this ship to a geometrically similar one, at the same prime value.
     pub fn factor_to(self, other: Self, dimension: Dimension) -> f64 {
         self.prime(dimension) / other.prime(dimension)
     }
 }
 
-/// Powers from the second on.
+/// Exponents from two on, as superscripts.
 const POWERS: [char; 8] = ['²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
-/// The dimension of a unit such as "rad s²/m²".
+/// Dimension of a unit such as "rad s²/m²".
 pub fn dimension(unit: &str) -> Dimension {
     let mut exponents = [0; 2];
     let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
     for (part, sign) in [(above, 1), (below, -1)] {
         for symbol in part.split(' ') {
             let base = symbol.trim_end_matches(POWERS);
-            let power = symbol.chars().next_back().and_then(|last| POWERS.iter().position(|own| *own == last));
+            let power = symbol.chars().next_back().and_then(|last| POWERS.iter().position(|power| *power == last));
             let power = power.map_or(1, |place| place as i32 + 2);
             match base {
                 "s" => exponents[0] += sign * power,
@@ -79,7 +81,7 @@ pub fn dimension(unit: &str) -> Dimension {
     exponents
 }
 
-/// The unit of a dimension, angles left out: "s²/m".
+/// Unit of a dimension, without angles: "s²/m".
 pub fn unit(dimension: Dimension) -> String {
     let part = |sign: i32| {
         let symbols = ["s", "m"].into_iter().zip(dimension).filter(|(_, power)| power * sign > 0);
@@ -92,13 +94,13 @@ pub fn unit(dimension: Dimension) -> String {
     fraction(part(1), part(-1))
 }
 
-/// A unit from what stands above its stroke and below.
+/// Unit from its numerator and denominator.
 fn fraction(above: String, below: String) -> String {
     let above = if above.is_empty() { String::from("1") } else { above };
     if below.is_empty() { above } else { format!("{above}/{below}") }
 }
 
-/// The unit of a prime value: what is left of a unit without seconds and metres, "1/rad²" of "s/rad²", "1" of "1/s".
+/// Unit of a prime value, without seconds and metres: "1/rad²" from "s/rad²", "1" from "1/s".
 pub fn prime_unit(unit: &str) -> String {
     let angles = |part: &str| {
         let kept = part.split(' ').filter(|symbol| !matches!(symbol.trim_end_matches(POWERS), "s" | "m" | "1"));

@@ -1,12 +1,12 @@
-//! Replay of a recorded rudder through any [`Dynamics`]: the deterministic half of simulation, which
-//! identification may use because there is no helmsman, no sensor and no chance in it.
+//! Replay of a recorded rudder through any [`Dynamics`]: deterministic simulation without helmsman, sensors or noise,
+//! for use in identification.
 
 use crate::dynamics::{Dynamics, Input, Measured, Motion};
 use crate::integrate::RungeKutta4;
 use crate::signal::Polyline;
 use estimation::number::Real;
 
-/// Recorded signals that drive a replay.
+/// Recorded signals that are the input of a replay.
 #[derive(Debug, Clone, Copy)]
 pub struct Recorded<'a> {
     /// Rudder angle, rad.
@@ -24,12 +24,12 @@ pub struct Recorded<'a> {
 }
 
 impl<'a> Recorded<'a> {
-    /// A record that holds nothing but the rudder.
+    /// Record with a rudder only.
     pub fn rudder(rudder: &'a Polyline) -> Self {
         Self { rudder, speed: None, sway: None, wind_speed: None, wind_from: None, propeller: None }
     }
 
-    /// What acts at time `t` on a ship whose rudder is late by `dead_time`.
+    /// Input at time `t` (s) of a ship with this dead time of the rudder (s).
     pub fn input<R: Real>(&self, t: f64, dead_time: R) -> Input<R> {
         let corner = self.rudder.times().partition_point(|&c| c + dead_time.value() <= t);
         let rudder = Ramp::before(self.rudder, corner).at(t, dead_time);
@@ -52,7 +52,7 @@ impl<'a> Recorded<'a> {
     }
 }
 
-/// One piece of the rudder signal: a straight line.
+/// Linear piece of the rudder signal.
 #[derive(Debug, Clone, Copy)]
 struct Ramp {
     from: f64,
@@ -61,7 +61,7 @@ struct Ramp {
 }
 
 impl Ramp {
-    /// The piece that ends at the given corner; constant before the first one and after the last.
+    /// Piece that ends at a corner; constant before the first corner and after the last.
     fn before(signal: &Polyline, corner: usize) -> Self {
         let (time, value) = (signal.times(), signal.values());
         match corner {
@@ -74,7 +74,7 @@ impl Ramp {
         }
     }
 
-    /// The rudder that acts at time `t` when it is late by `dead_time`, rad.
+    /// Acting rudder at time `t` (s) after `dead_time` (s), rad.
     #[inline]
     fn at<R: Real>(&self, t: f64, dead_time: R) -> R {
         (-dead_time + (t - self.from)) * self.slope + self.value
@@ -85,7 +85,7 @@ impl Ramp {
 ///
 /// `times` (s) must increase. Steps end at every output time and at every corner of the rudder signal (shifted by the
 /// dead time of the ship), and are no longer than `largest_step` seconds. `state` is left at the last time. A state
-/// that overflows is passed on as it is: the caller sees motion that is not finite.
+/// that overflows is passed on: the caller receives motion that is not finite.
 pub fn replay<D, V>(
     dynamics: &D,
     recorded: &Recorded,
@@ -109,8 +109,8 @@ pub fn replay<D, V>(
     );
 }
 
-/// The same for every kind of number, with the state itself: calls `visit(index, state, input)` at every time. Steps
-/// between two times are no longer than `largest_step` of them (s).
+/// [`replay`] for every number type, with the state instead of the motion: calls `visit(index, state, input)` at every
+/// time. Steps between two times are no longer than `largest_step` of these times (s).
 pub fn replay_states<R, D, S, V>(
     dynamics: &D,
     recorded: &Recorded,
@@ -132,7 +132,7 @@ pub fn replay_states<R, D, S, V>(
     let mut solver = RungeKutta4::new(dynamics.dimension());
     let mut corner = corners.partition_point(|&c| c + late <= start);
     let mut ramp = Ramp::before(recorded.rudder, corner);
-    // What acts at the beginning, in the middle and at the end of a step.
+    // Inputs at the beginning, in the middle and at the end of a step.
     let mut inputs = [Input::default(); 3];
     let act = |input: &mut Input<R>, t: f64, ramp: &Ramp, corner: usize| {
         input.rudder = ramp.at(t, dead_time);
@@ -149,7 +149,7 @@ pub fn replay_states<R, D, S, V>(
                     corner += 1;
                 }
                 ramp = Ramp::before(recorded.rudder, corner);
-                // The rudder has no jump here, but its derivative by the dead time has.
+                // The rudder is continuous here; its derivative by the dead time is not.
                 inputs[2].rudder = ramp.at(t, dead_time);
             }
             let end = match corners.get(corner) {

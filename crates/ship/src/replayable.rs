@@ -1,4 +1,4 @@
-//! What a ship has to offer so that its record can be replayed from any of its rows.
+//! Interface of a ship whose record can be replayed from any row.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use estimation::number::Real;
 use crate::dynamics::{Dynamics, Input, Regressor};
 use crate::number::Tangent;
 
-/// Time constants that steps have to resolve: one at all times, others within a span.
+/// Time constants that steps must resolve: one at all times, others within time spans.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pace {
     always: f64,
@@ -15,12 +15,12 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// One time constant, s, at all times.
+    /// Time constant, s, at all times.
     pub fn always(time: f64) -> Self {
         Self { always: time, spans: Vec::new() }
     }
 
-    /// With one more, s, within a span of time, s.
+    /// Adds a time constant, s, within a time span, s.
     pub(crate) fn add(&mut self, span: [f64; 2], time: f64) {
         if span == [f64::NEG_INFINITY, f64::INFINITY] {
             self.always = self.always.min(time);
@@ -36,23 +36,23 @@ impl Pace {
     }
 }
 
-/// A ship whose record can be replayed from any of its rows.
+/// Ship whose record can be replayed from any row.
 pub trait Replayable<R: Real = f64>: Dynamics<R> {
-    /// State of a record that begins with the given heading (rad), yaw rate (rad/s) and input.
+    /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input.
     fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]);
 
-    /// Puts heading (rad) and yaw rate (rad/s) of a state to other values and keeps all else.
+    /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory.
     fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]);
 
-    /// Whether a measured channel acts on it.
+    /// `true` if a measured channel acts on it.
     fn needs(&self, channel: Regressor) -> bool;
 
-    /// The time constants that steps have to resolve.
+    /// Time constants that steps must resolve.
     fn pace(&self) -> Pace;
 }
 
-/// The same with how its replay changes with heading and yaw rate at the start.
+/// [`Replayable`] ship that can also be replayed in dual numbers, for sensitivities to the initial state.
 pub trait ReplayedShip: Replayable + fmt::Debug {
-    /// The ship in numbers with derivatives.
+    /// Ship in dual numbers.
     fn tangent(&self) -> Box<dyn Replayable<Tangent>>;
 }

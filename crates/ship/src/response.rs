@@ -1,11 +1,14 @@
-//! The response-model family: a first-order base and any number of effects, as one system of differential equations.
+//! Response models: a first-order base and any number of effects, as one system of differential equations.
 //!
 //! ψ' = r,  r' = −a s_a r + b s_b (δ_e + δ_r + disturbance) + Σ accelerations of effects,
 //!
 //! where δ_e is the recorded rudder after dead time and every transformation, and s_a, s_b are the products of the
 //! scales of the effects. With [`SwayCoupling`] the right-hand side f becomes the rate of an extra state s and T₂ r' =
 //! s − (1 + T₂ a s_a) r + b s_b T₃ δ_e, which is T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with T₁ = 1/a
-//! (Liénard form: no derivative of the rudder is needed, and a Bech polynomial in r keeps its place).
+//! (Liénard form: no derivative of the rudder is needed, and a Bech polynomial in r stays a term of f).
+//!
+//! Sources: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships; Bech and Wagner Smitt (1969),
+//! Analogue simulation of ship manoeuvres.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -19,14 +22,14 @@ use crate::replayable::{Pace, Replayable, ReplayedShip};
 /// Number of base parameters: a = 1/T, b = K/T, δ_r.
 pub const BASE_PARAMETERS: usize = 3;
 
-/// The base parameters, described like those of effects.
+/// Base parameters.
 pub const BASE: [Parameter; BASE_PARAMETERS] = [
     Parameter::even(["inverse_T", "1/T", "1/s"], [0.05, 0.05], [-10.0, 10.0]),
     Parameter::even(["K_over_T", "K/T", "1/s²"], [5e-3, 5e-3], [0.0, 100.0]),
     Parameter::odd(["rudder_bias", "δ_r", "rad"], [0.0, 0.02], [-0.6, 0.6]),
 ];
 
-/// Where the parameters and states of one effect lie.
+/// Index ranges of the parameters and states of one effect, and the quantities on which it acts.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     parameters: (usize, usize),
@@ -46,20 +49,20 @@ impl Place {
     }
 }
 
-/// Structure of a response model: base plus effects. Parameters travel beside it, base first.
+/// Structure of a response model: base plus effects. Parameter values are separate, base first.
 #[derive(Debug, Clone, Default)]
 pub struct ResponseModel {
     effects: Vec<Arc<dyn Effect>>,
     places: Vec<Place>,
     parameters: usize,
     states: usize,
-    /// Number of effects up to the last that has states: for memory the rudder is needed no further.
+    /// Number of effects up to the last with states; later effects need no rudder for memory.
     with_memory: usize,
-    /// Index of the effect that makes the response second order; its first own state is s.
+    /// Index of the effect that makes the response second order; its first state is s.
     second_order: Option<usize>,
 }
 
-/// What the effects make of one instant.
+/// Combined action of the effects at one instant.
 struct Instant<R> {
     rudder: R,
     scale: Scale<R>,
@@ -67,7 +70,7 @@ struct Instant<R> {
 }
 
 impl ResponseModel {
-    /// The first-order base with the given effects; the rudder passes through them in this order.
+    /// First-order base with effects; the rudder passes through them in this order.
     pub fn new(effects: Vec<Arc<dyn Effect>>) -> Self {
         let (mut parameters, mut states) = (BASE_PARAMETERS, 2);
         let mut places = Vec::with_capacity(effects.len());
@@ -91,17 +94,17 @@ impl ResponseModel {
         Self { effects, places, parameters, states, with_memory, second_order }
     }
 
-    /// The base alone.
+    /// Base alone.
     pub fn first_order() -> Self {
         Self::new(Vec::new())
     }
 
-    /// The effects, in the order in which the rudder passes through them.
+    /// Effects, in the order in which the rudder passes through them.
     pub fn effects(&self) -> &[Arc<dyn Effect>] {
         &self.effects
     }
 
-    /// The same, each with the places of its values among all.
+    /// Effects, each with the index range of its parameters.
     pub fn placed(&self) -> impl Iterator<Item = (&dyn Effect, Range<usize>)> {
         self.effects.iter().zip(&self.places).map(|(effect, place)| (effect.as_ref(), place.parameters()))
     }
@@ -111,15 +114,15 @@ impl ResponseModel {
         self.parameters
     }
 
-    /// Description of every parameter in the order of its value, base first.
+    /// Parameters in the order of their values, base first.
     pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> {
         BASE.iter().chain(self.effects.iter().flat_map(|effect| effect.parameters()))
     }
 
-    /// The model with a value for every parameter.
+    /// Response with these parameter values.
     ///
     /// # Panics
-    /// When `parameters` has not [`parameter_count`](Self::parameter_count) values: a mistake of the caller, not of a
+    /// If the number of values is not [`parameter_count`](Self::parameter_count): a mistake of the caller, not of a
     /// user.
     pub fn with<R: EffectReal>(self, parameters: Vec<R>) -> Response<R> {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
@@ -132,46 +135,46 @@ impl ResponseModel {
     }
 }
 
-/// A response model with its parameters: a ship that can be simulated or replayed.
+/// Response model with its parameter values: a ship that can be simulated or replayed.
 ///
-/// With parameters that carry derivatives, its motion carries them, too.
+/// Parameters in dual numbers give motion in dual numbers.
 #[derive(Debug, Clone)]
 pub struct Response<R = f64> {
     model: ResponseModel,
     parameters: Vec<R>,
-    /// T₂ and T₃ of a second-order response, and the place of its state s.
+    /// T₂ and T₃ of a second-order response, and the index of its state s.
     coupling: Option<(SwayCoupling<R>, usize)>,
 }
 
 impl Response {
-    /// A purely first-order ship.
+    /// First-order ship without effects.
     pub fn first_order_ship(base: FirstOrder) -> Self {
         ResponseModel::first_order().with(vec![base.inverse_T, base.K_over_T, base.rudder_bias])
     }
 
-    /// The base.
+    /// Base parameters.
     pub fn first_order(&self) -> FirstOrder {
         FirstOrder { inverse_T: self.parameters[0], K_over_T: self.parameters[1], rudder_bias: self.parameters[2] }
     }
 
-    /// Sum of the random headings the effects add to the one seen.
+    /// Random headings that the effects add to the observed heading.
     pub fn random_headings(&self) -> impl Iterator<Item = crate::narrow_band::NarrowBand> {
         self.effects().filter_map(|(effect, p, _)| effect.random_heading(p))
     }
 
-    /// The same ship with parameters that carry derivatives, none as yet.
+    /// Ship in another number type, with constant parameters.
     pub fn constant<R: EffectReal>(&self) -> Response<R> {
         self.model.clone().with(self.parameters.iter().map(|&value| R::from(value)).collect())
     }
 }
 
 impl<R: EffectReal> Response<R> {
-    /// The structure.
+    /// Structure.
     pub fn model(&self) -> &ResponseModel {
         &self.model
     }
 
-    /// The values, base first.
+    /// Parameter values, base first.
     pub fn parameters(&self) -> &[R] {
         &self.parameters
     }
@@ -213,9 +216,9 @@ impl<R: EffectReal> Response<R> {
         for (effect, p, place) in self.effects() {
             let z = &state[place.states()];
             if place.acts.scale {
-                let own = R::acts(effect).scale(p, z, &now);
-                scale.damping = scale.damping * own.damping;
-                scale.gain = scale.gain * own.gain;
+                let factor = R::acts(effect).scale(p, z, &now);
+                scale.damping = scale.damping * factor.damping;
+                scale.gain = scale.gain * factor.gain;
             }
             if place.acts.moment {
                 acceleration = acceleration + R::acts(effect).yaw_acceleration(p, z, &now);
@@ -224,7 +227,7 @@ impl<R: EffectReal> Response<R> {
         Instant { rudder, scale, acceleration }
     }
 
-    /// f of the module's equation and, for a second-order response, r' as well.
+    /// f of the module's equation, and r', which differs for a second-order response.
     #[inline]
     fn accelerations(&self, state: &[R], input: &Input<R>, instant: &Instant<R>) -> (R, R) {
         let a = self.parameters[0] * instant.scale.damping;
@@ -243,12 +246,12 @@ impl<R: EffectReal> Response<R> {
 }
 
 impl<R: EffectReal> Replayable<R> for Response<R> {
-    /// Measured channels that effects of this response need.
+    /// `true` if an effect of this response uses a measured channel.
     fn needs(&self, channel: Regressor) -> bool {
         self.model.effects.iter().any(|effect| effect.uses(channel))
     }
 
-    /// The time constants that steps have to resolve.
+    /// Time constants that steps must resolve.
     fn pace(&self) -> Pace {
         let values: Vec<f64> = self.parameters.iter().map(|p| p.value()).collect();
         let mut pace = Pace::always(values[0].abs().recip());
@@ -260,8 +263,8 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
         pace
     }
 
-    /// State of a record that begins with the given heading (rad), yaw rate (rad/s) and input: the memory of effects is
-    /// that of a rudder that has stood there.
+    /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input: the memory of the
+    /// effects is that of a constant rudder.
     fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
         state.fill(R::from(0.0));
         (state[0], state[1]) = (heading, yaw_rate);
@@ -272,14 +275,14 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
             now.rudder = R::acts(effect).rudder(p, z, now.rudder);
         }
         if let Some((coupling, s)) = self.coupling {
-            // Starts with the yaw acceleration of the first-order response, so that T₂ = T₃ is that response.
+            // Initial yaw acceleration of the first-order response, so that T₂ = T₃ reproduces it.
             let lead = coupling.second_time - coupling.rudder_time;
             state[s] = yaw_rate + self.parameters[1] * lead * (now.rudder + self.parameters[2]);
         }
     }
 
-    /// Puts heading (rad) and yaw rate (rad/s) of a state to other values and keeps the memory of all effects; the
-    /// state s of a second-order response follows so that the yaw acceleration stays what it is.
+    /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory of all effects; the state s of a
+    /// second-order response is adjusted so that the yaw acceleration is unchanged.
     fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         let change = yaw_rate - state[1];
         (state[0], state[1]) = (heading, yaw_rate);

@@ -1,25 +1,25 @@
-//! Numbers in messages: as a person writes them, whatever their size.
+//! Numbers in messages, in plain or scientific notation by their size.
 
 use std::fmt;
 
-/// A number for a message: with all its digits, and with a power of ten where zeros would hide them (1e-12, 1e300).
+/// Number for a message: all its digits, and a power of ten where zeros would hide them (1e-12, 1e300).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShortNumber(pub f64);
 
 impl ShortNumber {
-    /// A number rounded to so many significant digits, at least one.
+    /// Number rounded to significant digits, at least one.
     pub fn rounded(value: f64, digits: usize) -> Self {
         let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse();
         Self(rounded.expect("a number that was just written"))
     }
 
-    /// Whether it is written without a power of ten.
+    /// `true` if it is written without a power of ten.
     pub fn is_plain(&self) -> bool {
         self.0 == 0.0 || !self.0.is_finite() || PLAIN.contains(&self.0.abs())
     }
 }
 
-/// Sizes between which a number is written without a power of ten.
+/// Range of magnitudes written without a power of ten.
 const PLAIN: std::ops::Range<f64> = 1e-5..1e16;
 
 impl fmt::Display for ShortNumber {

@@ -1,14 +1,14 @@
-//! A piecewise-linear signal of time: a recorded rudder, a measured wind, the path of a steering gear.
+//! Piecewise-linear signal of time: a recorded rudder, a measured wind, the path of a steering gear.
 
 use thiserror::Error;
 
-/// Why a list of points is not a signal.
+/// Error of a list of points that is not a signal.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SignalError {
-    /// There is nothing to interpolate.
+    /// No points.
     #[error("a signal needs at least one point, found none")]
     Empty,
-    /// Times and values do not pair up.
+    /// Different numbers of times and values.
     #[error("a signal needs as many values as times, found {times} times and {values} values")]
     Lengths {
         /// Number of times.
@@ -16,7 +16,7 @@ pub enum SignalError {
         /// Number of values.
         values: usize,
     },
-    /// A time or value is not a finite number, or time does not grow.
+    /// A time or value that is not finite, or a time that does not increase.
     #[error("a signal needs finite values at increasing times, point {index} is ({time}, {value})")]
     Point {
         /// Index of the offending point.
@@ -30,7 +30,7 @@ pub enum SignalError {
     },
 }
 
-/// A piecewise-linear signal: linear between its points, constant before the first and after the last.
+/// Piecewise-linear signal: linear between its points, constant before the first and after the last.
 ///
 /// Times in seconds, strictly increasing; values in the unit of the quantity.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,7 @@ pub struct Polyline {
 }
 
 impl Polyline {
-    /// Checks the points and makes the signal.
+    /// Signal through these points.
     ///
     /// Fails when there are no points, lengths differ, a number is not finite or time does not increase.
     pub fn new(time: Vec<f64>, value: Vec<f64>) -> Result<Self, SignalError> {
@@ -50,7 +50,7 @@ impl Polyline {
         if time.is_empty() {
             return Err(SignalError::Empty);
         }
-        // Numbers that increase are finite between finite ends.
+        // Increasing numbers between finite ends are finite.
         let increasing = time.windows(2).all(|pair| pair[0] < pair[1]);
         let sound = increasing && time[0].is_finite() && time[time.len() - 1].is_finite();
         if !sound || !value.iter().all(|value| value.is_finite()) {
@@ -64,7 +64,7 @@ impl Polyline {
         Ok(Self { time, value })
     }
 
-    /// The signal that has one value at all times.
+    /// Constant signal.
     pub fn constant(value: f64) -> Self {
         Self { time: vec![0.0], value: vec![value] }
     }
@@ -89,7 +89,7 @@ impl Polyline {
         self.at_from(t, self.piece(t))
     }
 
-    /// Value at time `t`, looked for from the piece `hint` onwards; O(1) when the hint is near.
+    /// Value at time `t`; the search starts at the piece `hint`, and is O(1) when the hint is near.
     pub fn at_from(&self, t: f64, hint: usize) -> f64 {
         let last = self.time.len() - 1;
         let mut piece = hint.min(last);

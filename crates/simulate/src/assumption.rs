@@ -1,25 +1,25 @@
-//! What is taken for granted in a trial where settings are left out.
+//! Assumptions of a trial in which settings are left out.
 
 use trial::Manoeuvre;
 
 use crate::simulation::Simulation;
 
-/// What is taken for granted in a trial because a setting was left out, and can decide what a study finds.
+/// Assumption of a trial because a setting was left out, which can decide the result of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Assumption {
-    /// The rudder is where it is ordered to be at once.
+    /// Instantaneous rudder.
     InstantRudder,
-    /// Every order is given exactly at the heading it waits for.
+    /// Orders exactly at their heading.
     PerfectHelmsman,
-    /// The heading in the record is the true one.
+    /// Recorded heading without error.
     PerfectCompass,
 }
 
 impl Assumption {
-    /// All of them, the one that does most harm first.
+    /// All assumptions, the most harmful first.
     pub const ALL: [Self; 3] = [Self::InstantRudder, Self::PerfectHelmsman, Self::PerfectCompass];
 
-    /// Whether a simulation makes it. A rate that is given as infinite is meant.
+    /// `true` if a simulation makes this assumption. A rate set to infinity is intended and does not count.
     pub fn holds(self, simulation: &Simulation) -> bool {
         let Simulation { manoeuvre, helmsman, gear, sensors, .. } = simulation;
         match self {
@@ -31,14 +31,14 @@ impl Assumption {
                 perfect && matches!(manoeuvre, Manoeuvre::ZigZag { .. })
             }
             Self::PerfectCompass => {
-                let never_off = sensors.heading_wander.is_none_or(|wander| wander.sd == 0.0)
+                let without_faults = sensors.heading_wander.is_none_or(|wander| wander.sd == 0.0)
                     && sensors.heading_spikes.is_none_or(|spikes| spikes.probability == 0.0);
-                sensors.heading_noise == 0.0 && sensors.heading_quantum == 0.0 && never_off
+                sensors.heading_noise == 0.0 && sensors.heading_quantum == 0.0 && without_faults
             }
         }
     }
 
-    /// What it is, why, and what to do.
+    /// Message: the assumption, its reason, and advice.
     pub fn sentence(self) -> &'static str {
         match self {
             Self::InstantRudder => {

@@ -1,6 +1,6 @@
-//! What a run may cost, known before it is made, and the limits of it: so that no specification, drawn by chance or
-//! slipped from a pen, computes for ever or takes all memory. The estimate is refused in [`Simulation::validate`]; what
-//! it misses stops in the run itself, with [`SimulateError::TooLong`](crate::SimulateError::TooLong).
+//! Upper estimate of the cost of a run, so that no specification, random or mistyped, computes for ever or exhausts the
+//! memory. [`Simulation::validate`] refuses a run whose estimate is too large; a run that exceeds its estimate stops
+//! with [`SimulateError::TooLong`](crate::SimulateError::TooLong).
 
 use ship::narrow_band::NarrowBand;
 use trial::manoeuvre::{Manoeuvre, OrderStep, Trigger};
@@ -12,18 +12,18 @@ use crate::simulation::Simulation;
 use crate::vessel::Solver;
 use crate::wave_path;
 
-/// What a run may take at most.
+/// Upper estimate of the cost of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cost {
-    /// Time from the beginning of the run to its end, s. Every heading that is awaited counts with the longest wait.
+    /// Duration of the run, s; every awaited heading counts with the longest wait.
     pub duration: f64,
-    /// Steps: of the solver, of the weather and the sea, to the rows and to the readings of the display.
+    /// Number of steps of solver, weather and sea, rows, and display readings.
     pub steps: f64,
-    /// Key and value of what lasts longest.
+    /// Key and value of the longest part.
     longest: (&'static str, f64),
 }
 
-/// A part of a run: its key, its value, and how long it lasts at most, s.
+/// Part of a run: key, value and longest duration, s.
 #[derive(Debug, Clone, Copy)]
 struct RunPart {
     key: &'static str,
@@ -38,7 +38,7 @@ impl RunPart {
 }
 
 impl Simulation {
-    /// What a run may take at most, for a specification whose values make sense one by one.
+    /// Upper estimate of the cost, for a specification whose single values are valid.
     pub fn cost(&self) -> Cost {
         let (manoeuvre, record) = (self.until_end_of_manoeuvre(), self.until_end_of_record());
         let sum = |parts: &[RunPart]| parts.iter().map(|part| part.duration).sum::<f64>();
@@ -49,7 +49,7 @@ impl Simulation {
         Cost { duration, steps: duration * self.steps_per_second(), longest: (longest.key, longest.value) }
     }
 
-    /// Refuses a run that takes too many steps, with the value that makes it so.
+    /// Checks the number of steps; fails with the key and value of the longest part.
     pub(crate) fn check_cost(&self) -> Check {
         let Cost { steps, longest: (key, value), .. } = self.cost();
         let most = MOST_STEPS as f64;
@@ -59,16 +59,16 @@ impl Simulation {
         Err(SpecificationError { key, value, expected: Expected::Steps { estimate: steps, most } })
     }
 
-    /// The parts of the manoeuvre up to so many steps of it.
+    /// Parts of the manoeuvre, up to `count` of its steps.
     fn steps(&self, count: usize, key_of_waits: Option<&'static str>) -> Vec<RunPart> {
         let mut parts = vec![RunPart::time("approach.lead-in-s", self.approach.lead_in)];
         let wait = self.longest_wait + self.helmsman.reaction_time;
-        let tired = self.helmsman.reaction_time > self.longest_wait;
+        let is_slow = self.helmsman.reaction_time > self.longest_wait;
         for (orders, OrderStep { trigger, key, .. }) in self.manoeuvre.steps().take(count).enumerate() {
             let part = match trigger {
                 Trigger::Time(time) => RunPart::time(key, time),
                 Trigger::Never => RunPart::time(key, f64::INFINITY),
-                Trigger::Deviation { .. } if tired => {
+                Trigger::Deviation { .. } if is_slow => {
                     RunPart { key: "helmsman.reaction-time-s", value: self.helmsman.reaction_time, duration: wait }
                 }
                 // The number of the execute that is awaited.
@@ -104,7 +104,7 @@ impl Simulation {
         parts.extend([
             RunPart::time("recording.offset-s", self.recording.offset.unwrap_or(0.0)),
             RunPart::time("recording.duration-s", self.recording.duration.unwrap_or(f64::INFINITY)),
-            // A heading that is younger than its row is read after the last row.
+            // A heading younger than its row is read after the last row.
             RunPart { key: "sensor.heading-delay-s", value: delay, duration: (-delay).max(0.0) },
         ]);
         parts
@@ -122,7 +122,7 @@ impl Simulation {
         let sea = |waves: &NarrowBand| 1.0 / wave_path::cell_width(waves);
         let declared = self.disturbances.waves.map(|waves| waves.process());
         let seas = declared.iter().chain(self.vessel.random_headings()).map(sea).sum::<f64>();
-        // The rows, and the instants at which instruments are read.
+        // Rows, and readings of the instruments.
         1.0 / step + 2.0 / self.recording.period + display + weather + seas
     }
 }
@@ -135,7 +135,7 @@ mod tests {
     use crate::{SimulateError, Vessel};
     use ship::FirstOrder;
 
-    /// What the estimate is for: the culprit, by name.
+    /// The refusal names the key that causes the cost.
     #[test]
     fn a_run_that_cannot_end_is_refused_with_what_makes_it_so() {
         let refused = |change: &dyn Fn(&mut Simulation)| {
@@ -163,11 +163,11 @@ mod tests {
             s.vessel = Vessel::first_order(FirstOrder { inverse_T: 1e12, K_over_T: 1.0, rudder_bias: 0.0 });
         };
         assert_eq!(refused(&fast), "recording.duration-s");
-        let tired = |s: &mut Simulation| {
+        let slow = |s: &mut Simulation| {
             executes(s, 9);
             s.helmsman.reaction_time = 9e6;
         };
-        assert_eq!(refused(&tired), "helmsman.reaction-time-s");
+        assert_eq!(refused(&slow), "helmsman.reaction-time-s");
     }
 
     #[test]

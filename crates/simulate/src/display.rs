@@ -1,5 +1,5 @@
-//! The heading display in front of the helmsman during one run: the measured heading at its own instants, and a log of
-//! what was read, because a row of the record that falls on a reading holds the very same number.
+//! Heading display of the helmsman during one run: the measured heading at its own instants, and a log of the readings,
+//! because a row of the record at the instant of a reading holds the same number.
 
 use rand::rngs::ChaCha8Rng;
 
@@ -8,29 +8,28 @@ use crate::stream::{Purpose, StreamKey, normal};
 use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
-/// A reading this far (rad) short of the heading asked for has reached it: a multiple of the quantum may lie a rounding
-/// error below.
+/// Tolerance, rad, of the awaited heading: a multiple of the quantum can be a rounding error below it.
 const READING_TOLERANCE: f64 = 1e-9;
 
-/// One reading of the display.
+/// Reading of the display.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DisplayReading {
     /// Time, s.
     pub time: f64,
     /// Heading read, rad.
     pub heading: f64,
-    /// Coloured error in it, rad.
+    /// Coloured error in the reading, rad.
     pub wander: f64,
 }
 
 impl DisplayReading {
-    /// What it tells of the coloured error.
-    pub fn known(&self) -> WanderPoint {
+    /// Coloured error at the time of the reading.
+    pub fn wander_point(&self) -> WanderPoint {
         WanderPoint { time: self.time, error: self.wander }
     }
 }
 
-/// The display in one run.
+/// Display in one run.
 #[derive(Debug)]
 pub(crate) struct Display {
     period: f64,
@@ -44,7 +43,7 @@ pub(crate) struct Display {
 }
 
 impl Display {
-    /// A display that is renewed every `period` s; the base course is what it shows, without noise, at `heading`.
+    /// Display with a reading every `period` s; the base course is the noise-free reading at `heading`.
     pub fn new(period: f64, sensors: Sensors, waves: SeaWaves, key: &StreamKey, heading: f64) -> Self {
         let base = quantise(heading + sensors.heading_bias, sensors.heading_quantum);
         let wander = sensors.heading_wander.map(|process| WanderPath::new(process, CompassReader::Display, key));
@@ -52,9 +51,9 @@ impl Display {
         Self { period, next: 0, base, sensors, waves, wander, rng, log }
     }
 
-    /// Passes over the readings before `t` (s): nobody looked.
+    /// Skips the readings before `t` (s), when nobody looked.
     pub fn skip_to(&mut self, t: f64) {
-        // All but the last at once: after a long lead-in they are millions.
+        // All but the last at once: a long lead-in has millions.
         self.next = self.next.max(((t / self.period) as u64).saturating_sub(1));
         while self.next_time() < t {
             self.next += 1;
@@ -66,8 +65,7 @@ impl Display {
         self.next as f64 * self.period
     }
 
-    /// Reads the display at its next time, when the compass stands at `gyro` (rad): whether `side` · deviation ≥
-    /// `angle`.
+    /// Reads the display at its next time, with the compass at `gyro` (rad); `true` if `side` · deviation ≥ `angle`.
     pub fn read(&mut self, gyro: f64, side: f64, angle: f64) -> bool {
         let time = self.next_time();
         self.next += 1;
@@ -79,7 +77,7 @@ impl Display {
         side * (heading - self.base) >= angle - READING_TOLERANCE
     }
 
-    /// What was read, in the order of time.
+    /// Log of the readings, in the order of time.
     pub fn into_log(self) -> Vec<DisplayReading> {
         self.log
     }

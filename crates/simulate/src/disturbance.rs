@@ -1,6 +1,9 @@
-//! What the sea does to the ship, as a specification. Every moment is given as the rudder angle (rad) that has the same
-//! yaw moment at approach speed; waves are a heading that is seen on top of the response. The paths of one run are
-//! drawn in `weather` and `wave_path`, on grids that depend on nothing but this specification.
+//! Disturbances of wind and sea, as a specification. Moments are equivalent rudder angles (same yaw moment at approach
+//! speed), rad; waves add to the observed heading. The paths of one run are drawn in `weather` and `wave_path`, on
+//! grids that depend on this specification alone.
+//!
+//! Sources: Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control, for waves and Gauss–Markov
+//! moments.
 #![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]
 
 use schemars::JsonSchema;
@@ -10,13 +13,13 @@ use trial::degrees::Degrees;
 
 use crate::error::{self, Check};
 
-/// Wind and sea; a calm in all that is left out.
+/// Wind and sea; a key that is left out means calm.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Disturbances {
     /// Steady wind, whose moment depends on the heading.
     pub wind: Option<Wind>,
-    /// Gusts that act as a moment of their own, whatever the heading.
+    /// Gusts as a yaw moment that does not depend on the heading.
     pub gusts: Option<GaussMarkov>,
     /// Linear trend of the moment from the beginning of the run, as rudder angle.
     #[serde(rename = "drift-deg-per-s", with = "Degrees::<f64>")]
@@ -103,20 +106,20 @@ pub struct WaveSpectrum {
 }
 
 impl WaveSpectrum {
-    /// The process of the heading.
+    /// Narrow-band process of the heading.
     pub fn process(&self) -> NarrowBand {
         NarrowBand { sd: self.sd, frequency: self.frequency, damping: self.damping }
     }
 }
 
 impl Disturbances {
-    /// Whether anything changes with time alone: a moment, or the factor on that of the wind.
+    /// `true` if a moment, or the gust factor of the wind, depends on time alone.
     pub(crate) fn change(&self) -> bool {
         let gusting = self.wind.is_some_and(|wind| wind.gusting.is_some());
         self.gusts.is_some() || self.squall.is_some() || self.drift != 0.0 || self.random_walk != 0.0 || gusting
     }
 
-    /// Checks every value; fails with the first one that makes no sense.
+    /// Checks every value; fails with the first invalid one.
     pub fn validate(&self) -> Check {
         if let Some(wind) = &self.wind {
             error::finite("disturbance.wind.moment-deg", wind.moment)?;
@@ -144,18 +147,18 @@ impl Disturbances {
         if let Some(waves) = &self.waves {
             error::not_negative("disturbance.waves.sd-deg", waves.sd)?;
             error::positive("disturbance.waves.frequency-rad-s", waves.frequency)?;
-            error::at_most("disturbance.waves.frequency-rad-s", waves.frequency, HIGHEST_FREQUENCY)?;
-            error::between("disturbance.waves.damping", waves.damping, 0.0, LARGEST_DAMPING)?;
+            error::at_most("disturbance.waves.frequency-rad-s", waves.frequency, MAX_FREQUENCY_RAD_S)?;
+            error::between("disturbance.waves.damping", waves.damping, 0.0, MAX_DAMPING)?;
         }
         Ok(())
     }
 }
 
-/// Highest encounter frequency of waves, rad/s: those of a model a metre long are below it.
-const HIGHEST_FREQUENCY: f64 = 100.0;
+/// Largest encounter frequency of waves, rad/s; even a model one metre long stays below it.
+const MAX_FREQUENCY_RAD_S: f64 = 100.0;
 
-/// Relative damping up to which [`NarrowBand`] is an oscillator; at 1 its damped frequency is zero.
-const LARGEST_DAMPING: f64 = 0.999;
+/// Largest relative damping at which [`NarrowBand`] oscillates; at 1 its damped frequency is zero.
+const MAX_DAMPING: f64 = 0.999;
 
 impl Squall {
     /// Moment at time `t`, rad: 0 outside, raised cosine over the edges.
@@ -179,13 +182,14 @@ impl Wind {
     }
 
     /// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π), for a true wind of `speed`
-    /// (m/s) on a ship that makes `U` (m/s) ahead; its drift angle is left out.
+    /// (m/s) on a ship with speed `U` (m/s) ahead; the drift angle is neglected.
     pub fn relative(&self, speed: f64, U: f64, heading: f64) -> (f64, f64) {
         trial::relative_wind(speed, self.from, U, heading)
     }
 }
 
-/// Wind speed, m/s, of mean `mean` under the gust factor `gust` = 1 + g of the moment, which goes with its square.
+/// Wind speed, m/s, from its mean and the gust factor `gust` = 1 + g of the moment, which is proportional to the
+/// squared speed.
 pub(crate) fn gusting_speed(mean: f64, gust: f64) -> f64 {
     mean * gust.max(0.0).sqrt()
 }

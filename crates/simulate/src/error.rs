@@ -1,5 +1,5 @@
-//! What can go wrong: a specification that makes no sense, or a run that leads nowhere. Errors carry the numbers, under
-//! the key and in the unit in which a person writes them, and say what to do.
+//! Errors of simulation: an invalid specification, or a run without a record. Errors carry the numbers, with the key
+//! and unit of the scenario file, and advice.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use trial::TrialError;
 
 use crate::limits::{LONGEST_TIME, MOST_ROWS};
 
-/// What a value of a specification has to be.
+/// Requirement on a value of a specification.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Expected {
     /// A finite number.
@@ -23,22 +23,22 @@ pub enum Expected {
     PositiveOrInfinite,
     /// A number within two bounds, both included.
     Between(f64, f64),
-    /// A number that is not larger than this one.
+    /// A number up to a limit.
     AtMost(f64),
     /// A duration, because nothing else ends the run.
     Duration,
-    /// A run of no more steps.
+    /// A run within the limit of steps.
     Steps {
-        /// Steps it may take.
+        /// Upper estimate of the steps.
         estimate: f64,
-        /// Most steps.
+        /// Largest number of steps.
         most: f64,
     },
-    /// The number of an execute that the manoeuvre has; it has this many.
+    /// The number of an execute, up to that of the last one.
     Execute(usize),
-    /// A key that goes with another: what was found, what was expected, what to do.
+    /// A key that depends on another: what was found, what was expected, and advice.
     Other([&'static str; 3]),
-    /// A value that goes with another: the same.
+    /// A value that depends on another: what was found, what was expected, and advice.
     Value([&'static str; 3]),
 }
 
@@ -53,7 +53,7 @@ impl fmt::Display for Expected {
             Self::AtMost(limit) => write!(f, "at most {}", shown(*limit)),
             Self::Duration => write!(f, "a duration, because nothing else ends the run"),
             Self::Steps { estimate, most } => {
-                write!(f, "a run of at most {most:.0e} steps, and this one may take {estimate:.1e}")
+                write!(f, "a run of at most {most:.0e} steps, but this one can take {estimate:.1e}")
             }
             Self::Execute(last) => write!(f, "at most {last}"),
             Self::Other([_, expected, _]) | Self::Value([_, expected, _]) => f.write_str(expected),
@@ -61,7 +61,7 @@ impl fmt::Display for Expected {
     }
 }
 
-/// A value of a specification that makes no sense.
+/// Error of an invalid value of a specification.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("{key} is {}, expected {expected}", shown(*.value))]
 pub struct SpecificationError {
@@ -69,37 +69,37 @@ pub struct SpecificationError {
     pub key: &'static str,
     /// Value found, in the unit of its key; NaN where none was given.
     pub value: f64,
-    /// What was expected, in the unit of its key.
+    /// Requirement, in the unit of its key.
     pub expected: Expected,
 }
 
-/// Parts of a scenario whose every key may be left out.
+/// Tables of a scenario whose keys are all optional.
 const OPTIONAL: [&str; 4] = ["steering-gear.", "helmsman.", "approach.", "sensor."];
 
-/// Parts of them that may be left out only whole.
+/// Tables within them that are optional as a whole.
 const WHOLE: [&str; 2] = ["sensor.heading-wander.", "sensor.heading-spikes."];
 
 impl SpecificationError {
-    /// Whether it is the name of the key that is at fault, because it is there or lacks another; else its value.
+    /// `true` if the presence of the key is the error, `false` if it is its value.
     pub fn is_of_name(&self) -> bool {
         matches!(self.expected, Expected::Other(_)) || self.key == "vessel.dead_time"
     }
 
-    /// In the words and units of a scenario: what was found, what was expected, what to do.
+    /// Message in the units of a scenario: what was found, what was expected, and advice.
     pub fn words(&self) -> [String; 3] {
         let Self { key, value, expected } = *self;
-        let found = match expected {
-            Expected::Other(words) | Expected::Value(words) => return words.map(str::to_owned),
+        let problem = match expected {
+            Expected::Other(message) | Expected::Value(message) => return message.map(str::to_owned),
             Expected::Duration => format!("`{key}` is missing"),
             Expected::Execute(last) => {
-                format!("`{key}` is {}, and the manoeuvre ends after execute {last}", shown(value))
+                format!("`{key}` is {}, but the manoeuvre ends after execute {last}", shown(value))
             }
             _ if key == "vessel.dead_time" => {
                 format!("the dead times of all effects add up to {} s", ShortNumber(value))
             }
             _ => format!("`{key}` is {}", shown(value)),
         };
-        let wanted = match expected {
+        let requirement = match expected {
             Expected::Finite => "expected a finite number".to_owned(),
             Expected::Positive if value.is_finite() => "expected a number above 0".to_owned(),
             Expected::NotNegative if value.is_finite() => "expected a number, 0 or above".to_owned(),
@@ -109,7 +109,7 @@ impl SpecificationError {
             Expected::PositiveOrInfinite => "expected a number above 0, or inf for no limit".to_owned(),
             _ => format!("expected {expected}"),
         };
-        [found, wanted, self.advice()]
+        [problem, requirement, self.advice()]
     }
 
     fn advice(&self) -> String {
@@ -131,8 +131,7 @@ impl SpecificationError {
                 "give less rudder, or set `steering-gear.maximum-deg` if the rudder of this ship goes further"
             }
             ("manoeuvre.zig-zag.executes" | "recording.after-execute", Expected::Steps { .. }) => {
-                "wait for fewer executes, each of which counts with the longest wait for it; or end the zig-zag by \
-                 `duration-s`"
+                "wait for fewer executes (each counts with the longest wait), or end the zig-zag by `duration-s`"
             }
             (_, Expected::Steps { .. }) => "make the run shorter",
             ("recording.sampling-s", _) => "give the time between two rows of the record, in seconds",
@@ -140,7 +139,7 @@ impl SpecificationError {
                 "count the executes from 1, or leave the key out to record from the start"
             }
             ("recording.assumed-rudder-rate-deg-s", _) => "give the rate the analyst assumes, for instance 2.5",
-            ("manoeuvre.replay.file", _) => "give a record that lasts longer than an instant",
+            ("manoeuvre.replay.file", _) => "give a record with rows at more than one time",
             (key, _) if WHOLE.iter().any(|part| key.starts_with(part)) => {
                 "change the value, or leave the whole table out"
             }
@@ -151,13 +150,13 @@ impl SpecificationError {
     }
 }
 
-/// Why a run gave no record.
+/// Error of a run without a record.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SimulateError {
-    /// The specification makes no sense.
+    /// Invalid specification.
     #[error(transparent)]
     Specification(#[from] SpecificationError),
-    /// The state is not finite, or the ship has turned more than a hundred times.
+    /// Divergence: the state is not finite, or the ship has turned more than a hundred times.
     #[error("the motion diverged at {time:.1} s: heading {} rad, yaw rate {} rad/s", ShortNumber(*.heading), ShortNumber(*.yaw_rate))]
     Diverged {
         /// Time, s.
@@ -167,8 +166,8 @@ pub enum SimulateError {
         /// Yaw rate, rad/s.
         yaw_rate: f64,
     },
-    /// The ship never reached the heading at which something was to happen.
-    #[error("after execute {execute} the heading never deviated by {}° within {} s", ShortNumber(.angle.to_degrees()), ShortNumber(*.waited))]
+    /// Awaited heading that was never reached.
+    #[error("the heading did not deviate by {}° within {} s after execute {execute}", ShortNumber(.angle.to_degrees()), ShortNumber(*.waited))]
     NeverReached {
         /// Executes made so far.
         execute: usize,
@@ -177,48 +176,48 @@ pub enum SimulateError {
         /// Time waited, s.
         waited: f64,
     },
-    /// The record was to start at an execute that was never made.
-    #[error("the record starts at execute {execute}, the run ended after {made}")]
+    /// Record that starts at an execute that was never made.
+    #[error("the record starts at execute {execute}, but the run ended after {made} executes")]
     NoSuchExecute {
         /// Execute awaited, from 1.
         execute: usize,
         /// Executes made.
         made: usize,
     },
-    /// The run was given up, because it took more than any manoeuvre does.
-    #[error("the run was given up at {time:.1} s: it took more than {most} {what}")]
+    /// Run that was stopped because it exceeded a limit.
+    #[error("the run was stopped at {time:.1} s, because it took more than {most} {what}")]
     TooLong {
         /// Time reached, s.
         time: f64,
-        /// What there were too many of: steps, executes or rows.
+        /// Exceeded quantity: steps, executes or rows.
         what: &'static str,
-        /// Most of them.
+        /// Limit.
         most: usize,
     },
-    /// The rows do not make a record.
+    /// Rows that are not a valid record.
     #[error(transparent)]
     Record(#[from] TrialError),
 }
 
-/// Shorthand for the checks below.
+/// Result of a check of a value.
 pub(crate) type Check = Result<(), SpecificationError>;
 
-/// A number as it was written: conversion to radians and back must not show.
+/// Number as it was written, without the rounding errors of the conversion to radians and back.
 pub(crate) fn shown(value: f64) -> ShortNumber {
     ShortNumber::rounded(value, 14)
 }
 
-/// Size in SI of the unit that the name of a key says.
+/// Size in SI of the unit in the name of a key.
 fn unit(key: &str) -> f64 {
     if key.split(['-', '.']).any(|word| word == "deg") { DEGREE } else { 1.0 }
 }
 
-/// Refuses what no single value is to blame for.
+/// Error that no single value causes.
 pub(crate) fn refused(key: &'static str, expected: Expected) -> Check {
     Err(SpecificationError { key, value: f64::NAN, expected })
 }
 
-/// Refuses a value (SI, rad) that does not hold.
+/// Checks a value (SI, rad); fails if `holds` is false.
 fn check(holds: bool, key: &'static str, value: f64, expected: Expected) -> Check {
     if holds {
         return Ok(());
@@ -240,7 +239,7 @@ pub(crate) fn positive(key: &'static str, value: f64) -> Check {
     check(value.is_finite() && value > 0.0, key, value, Expected::Positive)
 }
 
-/// A count of at least one.
+/// Checks a count of at least one.
 pub(crate) fn count(key: &'static str, value: usize, most: usize) -> Check {
     between(key, value as f64, 1.0, most as f64)
 }
@@ -261,13 +260,13 @@ pub(crate) fn at_most(key: &'static str, value: f64, limit: f64) -> Check {
     check(value <= limit, key, value, Expected::AtMost(limit))
 }
 
-/// A length of time, s: not negative, and no longer than [`LONGEST_TIME`](crate::limits::LONGEST_TIME).
+/// Checks a duration, s: not negative, and no longer than [`LONGEST_TIME`](crate::limits::LONGEST_TIME).
 pub(crate) fn time(key: &'static str, value: f64) -> Check {
     not_negative(key, value)?;
     at_most(key, value, LONGEST_TIME)
 }
 
-/// A length of time, s, above zero.
+/// Checks a duration, s, above zero.
 pub(crate) fn positive_time(key: &'static str, value: f64) -> Check {
     positive(key, value)?;
     at_most(key, value, LONGEST_TIME)

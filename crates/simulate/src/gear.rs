@@ -1,6 +1,5 @@
-//! The steering gear: how the rudder follows an order. For a constant order the path of the rudder is known in closed
-//! form, so it is kept as a list of segments with exact ends, never integrated. What the gear is ordered to do is
-//! decided in [`crate::helm`].
+//! Steering gear: the rudder angle that follows an order. For a constant order the rudder path has a closed form, so it
+//! is a list of segments with exact ends and is never integrated. Orders are given in [`crate::helm`].
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,7 +9,7 @@ use trial::degrees::Degrees;
 
 use crate::error::{self, Check};
 
-/// What moves the rudder: a steering gear with optional rate limit, lag, dead time, dead band and stops.
+/// Steering gear with optional rate limit, lag, dead time, dead band and stops.
 ///
 /// δ' = ±min(rate, |δ_c − δ| / lag) while |δ_c − δ| > dead band, where δ_c is the order one dead time ago, held within
 /// the stops; the pump stands still as soon as the error is inside the dead band.
@@ -34,17 +33,17 @@ pub struct SteeringGear {
     pub maximum: Option<f64>,
 }
 
-/// How the rudder moves within one [`Segment`].
+/// Motion of the rudder within one [`Segment`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RudderMotion {
-    /// It stands still.
+    /// Constant angle.
     Hold,
-    /// It moves at a constant rate, rad/s.
+    /// Constant rate, rad/s.
     Ramp {
         /// Rate with its sign, rad/s.
         rate: f64,
     },
-    /// It approaches `target` as target + (angle − target) exp(−(t − start)/lag).
+    /// Exponential approach to `target`: target + (angle − target) exp(−(t − start)/lag).
     Exponential {
         /// Angle approached, rad.
         target: f64,
@@ -53,7 +52,7 @@ pub enum RudderMotion {
     },
 }
 
-/// A piece of the path of the rudder.
+/// Piece of a rudder path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
     /// Beginning, s; −∞ for the segment before everything.
@@ -62,7 +61,7 @@ pub struct Segment {
     pub end: f64,
     /// Rudder angle at the beginning, rad.
     pub angle: f64,
-    /// Movement from there.
+    /// Motion from there.
     pub motion: RudderMotion,
 }
 
@@ -81,19 +80,19 @@ impl Segment {
 }
 
 impl SteeringGear {
-    /// No rudder is put further than across the ship.
-    const LARGEST_DEG: f64 = 90.0;
+    /// Largest angle of any rudder, deg.
+    const MAX_DEG: f64 = 90.0;
 
-    /// A gear with a rate limit, rad/s, and nothing else.
+    /// Gear with a rate limit, rad/s, only.
     pub fn with_rate(rate: f64) -> Self {
         Self { rate: Some(rate), ..Self::default() }
     }
 
-    /// The gear of a ship: what is left out is hers, where her source gives it.
+    /// Gear with missing settings taken from a ship, where its source gives them.
     pub fn of(self, ship: &Ship) -> Self {
         Self {
             rate: self.rate.or(ship.rudder_rate),
-            maximum: self.maximum.or(ship.largest_rudder).or(Some(from_deg(Self::LARGEST_DEG))),
+            maximum: self.maximum.or(ship.largest_rudder).or(Some(from_deg(Self::MAX_DEG))),
             ..self
         }
     }
@@ -108,7 +107,7 @@ impl SteeringGear {
         self.maximum.unwrap_or(f64::INFINITY)
     }
 
-    /// Checks every value; fails with the first one that makes no sense.
+    /// Checks every value; fails with the first invalid one.
     pub fn validate(&self) -> Check {
         error::positive_or_infinite("steering-gear.rate-deg-s", self.largest_rate())?;
         error::time("steering-gear.lag-s", self.lag)?;
@@ -117,30 +116,31 @@ impl SteeringGear {
         error::positive_or_infinite("steering-gear.maximum-deg", self.largest_rudder())
     }
 
-    /// Appends the answer to an order that arrives at `start` with the rudder at `from`; the last segment has no end.
+    /// Appends the segments that answer an order arriving at `start` with the rudder at `from`; the last one has no
+    /// end.
     fn respond(&self, start: f64, from: f64, order: f64, path: &mut Vec<Segment>) {
         let (rate, maximum) = (self.largest_rate(), self.largest_rudder());
         let target = order.clamp(-maximum, maximum);
         let side = (target - from).signum();
         let mut t = start;
         let mut angle = from;
-        // Error that is left of the order: first the rate limits, then the lag, then the pump stops.
-        let mut left = (target - from).abs();
-        if left > self.dead_band {
-            // Not the product alone: an infinite rate without lag gives ∞·0.
+        // Remaining error: first the rate limits it, then the lag, then the pump stops.
+        let mut error = (target - from).abs();
+        if error > self.dead_band {
+            // An infinite rate without lag would give ∞·0.
             let knee = if self.lag > 0.0 { rate * self.lag } else { 0.0 };
             let until = knee.max(self.dead_band);
-            if left > until {
+            if error > until {
                 if rate.is_finite() {
-                    let end = t + (left - until) / rate;
+                    let end = t + (error - until) / rate;
                     path.push(Segment { start: t, end, angle, motion: RudderMotion::Ramp { rate: side * rate } });
                     t = end;
                 }
-                (left, angle) = (until, target - side * until);
+                (error, angle) = (until, target - side * until);
             }
-            if self.lag > 0.0 && left > self.dead_band {
+            if self.lag > 0.0 && error > self.dead_band {
                 let end =
-                    if self.dead_band > 0.0 { t + self.lag * (left / self.dead_band).ln() } else { f64::INFINITY };
+                    if self.dead_band > 0.0 { t + self.lag * (error / self.dead_band).ln() } else { f64::INFINITY };
                 path.push(Segment {
                     start: t,
                     end,
@@ -156,22 +156,22 @@ impl SteeringGear {
     }
 }
 
-/// The path of a rudder: segments without gaps from −∞ to +∞.
+/// Rudder path: segments without gaps from −∞ to +∞.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RudderPath {
     segments: Vec<Segment>,
 }
 
 impl RudderPath {
-    /// A rudder that stands at `angle` (rad) until it is ordered to move.
+    /// Rudder that stands at `angle` (rad) until the first order.
     pub fn standing(angle: f64) -> Self {
         let mut segments = Vec::with_capacity(64);
         segments.push(Segment { start: f64::NEG_INFINITY, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
         Self { segments }
     }
 
-    /// A rudder that stands at `angle` (rad) until `start` (s) and then follows `signal`, whose first point is put
-    /// there.
+    /// Rudder that stands at `angle` (rad) until `start` (s) and then follows `signal`, shifted so that its first point
+    /// is at `start`.
     pub fn following(angle: f64, start: f64, signal: &Polyline) -> Self {
         let (times, values) = (signal.times(), signal.values());
         let shift = start - times[0];
@@ -187,9 +187,9 @@ impl RudderPath {
         path
     }
 
-    /// Gives `order` (rad) at time `t` (s): the path changes from one dead time later on.
+    /// Adds an order (rad) at time `t` (s), which changes the path from one dead time later on.
     ///
-    /// Orders have to come in the order of time.
+    /// Orders must come in the order of time.
     pub fn order(&mut self, t: f64, order: f64, gear: &SteeringGear) {
         let arrival = t + gear.dead_time;
         let from = self.at(arrival);

@@ -1,5 +1,5 @@
-//! Who reads the compass and turns the wheel: the specification of the helmsman, and the [`Helm`], which is the state
-//! of one manoeuvre in one run. It decides; it neither moves the rudder ([`crate::gear`]) nor the ship.
+//! Helmsman: the specification, and the [`Helm`], which is the state of one manoeuvre in one run and gives the orders.
+//! The rudder is moved in [`crate::gear`].
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use trial::manoeuvre::{Manoeuvre, Trigger};
 
 use crate::error::{self, Check};
 
-/// Who reads the compass and turns the wheel.
+/// Helmsman, who reads the compass and gives the orders.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Helmsman {
@@ -19,63 +19,62 @@ pub struct Helmsman {
     pub reaction_time: f64,
 }
 
-/// Times between two readings of an instrument, s, that make sense: none is read more often, and a manoeuvre is over in
-/// less.
-pub(crate) const SHORTEST_PERIOD: f64 = 1e-3;
-pub(crate) const LONGEST_PERIOD: f64 = 1e3;
+/// Range of the time between two readings of an instrument, s.
+pub(crate) const MIN_PERIOD_S: f64 = 1e-3;
+pub(crate) const MAX_PERIOD_S: f64 = 1e3;
 
 impl Helmsman {
-    /// Checks every value; fails with the first one that makes no sense.
+    /// Checks every value; fails with the first invalid one.
     pub fn validate(&self) -> Check {
         if let Some(period) = self.reads_display_every {
-            error::between("helmsman.reads-display-every-s", period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
+            error::between("helmsman.reads-display-every-s", period, MIN_PERIOD_S, MAX_PERIOD_S)?;
         }
         error::time("helmsman.reaction-time-s", self.reaction_time)
     }
 }
 
-/// An order of the helm.
+/// Order of the helm (execute).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HelmOrder {
-    /// Time the order is given, s.
+    /// Time of the order, s.
     pub time: f64,
-    /// True heading then, rad.
+    /// True heading at that time, rad.
     pub heading: f64,
-    /// True yaw rate then, rad/s.
+    /// True yaw rate at that time, rad/s.
     pub yaw_rate: f64,
-    /// Rudder ordered, rad.
+    /// Ordered rudder angle, rad.
     pub order: f64,
 }
 
-/// The state of one manoeuvre in one run.
+/// State of one manoeuvre in one run.
 #[derive(Debug, Clone)]
 pub struct Helm<'a> {
     manoeuvre: &'a Manoeuvre,
     reaction_time: f64,
-    /// Orders given so far.
+    /// Number of orders given.
     orders: usize,
-    /// Time of the last order, s; before the first one that at which it is due.
+    /// Time of the last order, s; before the first one, the time at which it is due.
     last: f64,
-    /// Time at which an order already decided is given, s.
+    /// Time of an order that is decided and not yet given, s.
     due: Option<f64>,
     end: f64,
     finished: bool,
 }
 
 impl<'a> Helm<'a> {
-    /// The helm at the beginning of a run whose first execute is at `first_execute` s.
+    /// Helm at the beginning of a run whose first execute is at `first_execute` s.
     pub fn new(manoeuvre: &'a Manoeuvre, helmsman: &Helmsman, first_execute: f64) -> Self {
         let Helmsman { reaction_time, .. } = *helmsman;
         let end = first_execute + manoeuvre.length();
         Self { manoeuvre, reaction_time, orders: 0, last: first_execute, due: None, end, finished: false }
     }
 
-    /// Time at which the manoeuvre is over, s; infinite while it is not known.
+    /// End of the manoeuvre, s; infinite while it is unknown.
     pub fn end(&self) -> f64 {
         self.end
     }
 
-    /// What the helm waits for now; a time is that of the run.
+    /// Trigger of the next order; a time is that of the run.
     pub fn trigger(&self) -> Trigger {
         let step = self.manoeuvre.step(self.orders);
         match (self.due, step.trigger) {
@@ -87,7 +86,7 @@ impl<'a> Helm<'a> {
         }
     }
 
-    /// What the helm does at time `t` (s) when its trigger has come: the rudder order, rad, if one is given now.
+    /// Acts on the trigger at time `t` (s) and returns the rudder order, rad; `None` if no order is given now.
     pub fn act(&mut self, t: f64) -> Option<f64> {
         let sees_heading = matches!(self.trigger(), Trigger::Deviation { .. });
         let Some(order) = self.manoeuvre.step(self.orders).order else {

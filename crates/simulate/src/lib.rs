@@ -1,24 +1,23 @@
-//! Trials at sea in a computer: a vessel in, a record and the truth behind it out.
+//! Simulated sea trials: from a vessel and a manoeuvre, a record and the true motion behind it.
 //!
-//! A [`Simulation`] is a specification: nothing in it changes while it runs. One call of [`Simulation::run`] with a
-//! [`StreamKey`] makes one trial, bit for bit the same every time it is called. The crate knows nothing of
-//! identification, and nothing that identifies can reach this crate.
+//! A [`Simulation`] is an immutable specification. One call of [`Simulation::run`] with a [`StreamKey`] makes one
+//! trial, bit for bit the same every time. The crate is independent of identification.
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | the whole specification, and the result | [`simulation`] |
-//! | what can be steered, and when its closed form is used | [`vessel`] |
+//! | vessels, and the use of closed forms | [`vessel`] |
 //! | speed and drift of a turn, tracks, turning circles | [`motion`] |
 //! | zig-zag, turning circle, pull-out, replay | [`trial::manoeuvre`] |
-//! | who reads the compass and turns the wheel | [`helm`] |
+//! | helmsman | [`helm`] |
 //! | rate limit, lag, dead time and dead band of the rudder | [`gear`] |
 //! | wind, gusts, squalls, drift, waves | [`disturbance`] |
 //! | noise, quantisation, lag, coloured error, spikes, clocks, drop-outs | [`sensor`] |
-//! | which part of the run is recorded | [`recording`] |
-//! | where random numbers come from | [`stream`] |
-//! | what is taken for granted | [`assumption`] |
-//! | what a run may cost | [`cost`], [`limits`] |
-//! | what can go wrong | [`error`] |
+//! | recorded part of a run | [`recording`] |
+//! | random number streams | [`stream`] |
+//! | assumptions of left-out settings | [`assumption`] |
+//! | cost of a run | [`cost`], [`limits`] |
+//! | errors | [`error`] |
 //!
 //! ```
 //! use ship::{FirstOrder, angle::from_deg};
@@ -34,9 +33,8 @@
 //! # Ok::<(), kempf_simulate::SimulateError>(())
 //! ```
 //!
-//! A setting is declared once: the types of a specification are those that a scenario file holds, with degrees and
-//! units in its keys. In the program time is in seconds from the beginning of the run, everything else in SI units and
-//! radians.
+//! The types of a specification are those of a scenario file, which has degrees and units in its keys. In memory, time
+//! is in seconds from the beginning of the run, and all quantities are in SI units and radians.
 
 mod display;
 mod manoeuvre;

@@ -1,11 +1,11 @@
-//! What the values of a manoeuvre may be, and under which keys of a scenario a fault of them is reported.
+//! Validity of the values of a manoeuvre, with the scenario keys for error messages.
 
 use trial::manoeuvre::Manoeuvre;
 
 use crate::error::{self, Check, Expected};
 use crate::limits::MOST_EXECUTES;
 
-/// Checks every value of a manoeuvre; fails with the first one that makes no sense.
+/// Checks every value of a manoeuvre; fails with the first invalid one.
 pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
     let [rudder_key, duration_key] = key_of(manoeuvre);
     if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
@@ -62,7 +62,7 @@ pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
     }
 }
 
-/// Keys of the rudder angle and of the length of a manoeuvre in a scenario.
+/// Scenario keys of the rudder angle and of the duration of a manoeuvre.
 pub(crate) fn key_of(manoeuvre: &Manoeuvre) -> [&'static str; 2] {
     match manoeuvre {
         Manoeuvre::ZigZag { .. } => ["manoeuvre.zig-zag.rudder-deg", "manoeuvre.zig-zag.duration-s"],

@@ -1,5 +1,7 @@
-//! From what happened to what was written down: instruments, clocks and drop-outs. A [`Scene`] is what perfect
-//! instruments would have read; [`write`] adds what chance does to one record of it.
+//! Measurement: from the true motion to a record, with instruments, clocks and drop-outs. A [`Scene`] has the readings
+//! of perfect instruments; [`write`] adds the random errors of one record.
+//!
+//! Source: Gilbert (1960), Bell System Technical Journal 39:1253-1265, for bursts of lost rows.
 #![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]
 
 use std::collections::BTreeMap;
@@ -19,56 +21,56 @@ use crate::stream::{Purpose, StreamKey, normal, uniform};
 use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
-/// Two instants closer together than this, s, are one.
-const SAME_INSTANT: f64 = 1e-9;
+/// Tolerance, s, for equal instants.
+const INSTANT_TOLERANCE_S: f64 = 1e-9;
 
-/// What the instruments are held against.
+/// True run as the instruments see it.
 pub(crate) struct View<'a> {
-    /// What moves, at the instants it is read.
+    /// Motion at the instants of the readings.
     pub samples: &'a [Sample],
     /// Deviation of the sampling instants from their stamps, s; empty for none.
     pub jitter: &'a [f64],
-    /// Rudder, executes and readings of the helmsman.
+    /// Rudder path, executes and readings of the helmsman.
     pub run: &'a RunResult,
-    /// The rudder as somebody rebuilds it from the orders; `None` where it is recorded.
+    /// Rudder path reconstructed from the orders; `None` where the rudder is recorded.
     pub assumed: Option<&'a RudderPath>,
-    /// Rudder order before the first execute, rad; `None` where nobody gave orders.
+    /// Rudder order before the first execute, rad; `None` without orders.
     pub first_order: Option<f64>,
-    /// The wind, where it blows.
+    /// Wind; `None` for none.
     pub wind: Option<Wind>,
-    /// Length and approach speed of the ship, where known.
+    /// Length and approach speed of the ship; `None` where unknown.
     pub particulars: Option<Particulars>,
 }
 
-/// What perfect instruments read, column by column, without waves.
+/// Readings of perfect instruments, column by column, without waves.
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
-    /// Stamps of the rows, s.
+    /// Time stamps of the rows, s.
     stamps: Vec<f64>,
-    /// Instants at which what moves is read, s.
+    /// Instants of the readings of moving quantities, s.
     instants: Vec<f64>,
     /// Heading after the lag of the gyrocompass, rad.
     gyro: Vec<f64>,
     /// Yaw rate, rad/s.
     yaw_rate: Vec<f64>,
-    /// Rudder as it is recorded, rad, and whether an instrument reads it.
+    /// Recorded rudder, rad, and `true` if an instrument reads it.
     rudder: Vec<f64>,
     rudder_is_read: bool,
-    /// Everything that no instrument disturbs.
-    others: Vec<(Channel, Vec<f64>)>,
-    /// What the helmsman read, in the order of time.
+    /// Channels without instrument errors.
+    exact: Vec<(Channel, Vec<f64>)>,
+    /// Readings of the helmsman, in the order of time.
     readings: Vec<DisplayReading>,
 }
 
-/// The record as columns, and which rows are left of it.
+/// Record as columns, with the rows that were kept.
 pub(crate) struct WrittenRows {
     pub columns: Columns,
-    /// `None` when every row is left.
+    /// `true` for every kept row; `None` if all are kept.
     pub kept: Option<Vec<bool>>,
 }
 
 impl Scene {
-    /// Reads every instrument in every row, `stamps` s.
+    /// Readings of all instruments in every row; `stamps` in s.
     pub fn new(stamps: Vec<f64>, view: &View) -> Self {
         let column = |value: fn(&Sample) -> f64| view.samples.iter().map(value).collect::<Vec<f64>>();
         let jitter = |row: usize| view.jitter.get(row).copied().unwrap_or(0.0);
@@ -78,29 +80,29 @@ impl Scene {
             None => path.at_each(rows().map(|(row, &stamp)| stamp + jitter(row))),
             Some(path) => path.at_each(stamps.iter().copied()),
         };
-        let mut others = Vec::new();
+        let mut exact = Vec::new();
         if let Some(first) = view.first_order {
             let order = |(row, &stamp): (usize, &f64)| order_at(&view.run.executes, first, stamp + jitter(row));
-            others.push((Channel::RudderOrder, rows().map(order).collect()));
+            exact.push((Channel::RudderOrder, rows().map(order).collect()));
         }
         let optional = |value: fn(&Sample) -> Option<f64>| view.samples.iter().map(value).collect::<Option<Vec<f64>>>();
-        others.extend(optional(|sample| sample.motion.speed).map(|speed| (Channel::Speed, speed)));
-        others.extend(optional(|sample| sample.motion.sway).map(|sway| (Channel::Sway, sway)));
-        others.extend(wind_channels(view));
+        exact.extend(optional(|sample| sample.motion.speed).map(|speed| (Channel::Speed, speed)));
+        exact.extend(optional(|sample| sample.motion.sway).map(|sway| (Channel::Sway, sway)));
+        exact.extend(wind_channels(view));
         Self {
             instants: column(|sample| sample.time),
             gyro: column(|sample| sample.gyro),
             yaw_rate: column(|sample| sample.motion.yaw_rate),
             rudder,
             rudder_is_read: view.assumed.is_none(),
-            others,
+            exact,
             readings: view.run.readings.clone(),
             stamps,
         }
     }
 }
 
-/// The record that `key` makes of a scene.
+/// Record of a scene with the random errors of `key`.
 pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: SeaWaves, key: &StreamKey) -> WrittenRows {
     let (mut heading, yaw_rate) = compass_and_rate(sensors, scene, waves, key);
     let mut rudder = scene.rudder.clone();
@@ -108,7 +110,7 @@ pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: SeaWaves, key: &Str
         disturb(&mut rudder, sensors.rudder_noise, key.rng(Purpose::Rudder));
         quantise_all(&mut rudder, sensors.rudder_quantum);
     }
-    let mut channels: BTreeMap<Channel, Vec<f64>> = scene.others.iter().cloned().collect();
+    let mut channels: BTreeMap<Channel, Vec<f64>> = scene.exact.iter().cloned().collect();
     channels.insert(Channel::Rudder, rudder);
     if let Some(yaw_rate) = yaw_rate {
         channels.insert(Channel::YawRate, yaw_rate);
@@ -134,13 +136,13 @@ pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: SeaWaves, key: &Str
     WrittenRows { columns, kept }
 }
 
-/// Leaves the rows that are kept.
+/// Retains the kept rows.
 pub(crate) fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
     let mut rows = kept.iter();
     values.retain(|_| *rows.next().unwrap_or(&false));
 }
 
-/// Adds white noise of standard deviation `sd`; nothing is drawn where there is none.
+/// Adds white noise of standard deviation `sd`; draws nothing for zero.
 fn disturb(column: &mut [f64], sd: f64, mut rng: ChaCha8Rng) {
     if sd > 0.0 {
         column.iter_mut().for_each(|x| *x += sd * normal(&mut rng));
@@ -169,11 +171,11 @@ fn compass_and_rate(
     }
     heading.iter_mut().for_each(|psi| *psi += sensors.heading_bias);
     if let Some(process) = sensors.heading_wander {
-        let known: Vec<WanderPoint> = scene.readings.iter().map(DisplayReading::known).collect();
-        let errors = WanderPath::new(process, CompassReader::Record, key).through(&scene.instants, &known);
+        let points: Vec<WanderPoint> = scene.readings.iter().map(DisplayReading::wander_point).collect();
+        let errors = WanderPath::new(process, CompassReader::Record, key).through(&scene.instants, &points);
         heading.iter_mut().zip(errors).for_each(|(psi, error)| *psi += error);
     }
-    // Drawn in every row, whether used or not, so that what the helmsman reads shifts no later draw.
+    // Drawn in every row, used or not, so that the readings of the helmsman shift no later draw.
     disturb(&mut heading, sensors.heading_noise, key.rng(Purpose::Heading));
     quantise_all(&mut heading, sensors.heading_quantum);
     if !scene.readings.is_empty() {
@@ -193,7 +195,7 @@ fn compass_and_rate(
     (heading, yaw_rate)
 }
 
-/// What goes wrong between the compass and the record: spikes, and rows without a heading.
+/// Faults between compass and record: spikes, and rows without a heading.
 fn spoil(heading: &mut [f64], sensors: &Sensors, key: &StreamKey) {
     if let Some(spikes) = sensors.heading_spikes {
         let mut rng = key.rng(Purpose::HeadingSpikes);
@@ -211,10 +213,10 @@ fn spoil(heading: &mut [f64], sensors: &Sensors, key: &StreamKey) {
     }
 }
 
-/// What the helmsman read at time `t`, if he did.
+/// Reading of the helmsman at time `t`; `None` if there is none.
 fn reading_at(readings: &[DisplayReading], t: f64) -> Option<&DisplayReading> {
-    let at = readings.partition_point(|reading| reading.time < t - SAME_INSTANT);
-    readings.get(at).filter(|reading| reading.time <= t + SAME_INSTANT)
+    let at = readings.partition_point(|reading| reading.time < t - INSTANT_TOLERANCE_S);
+    readings.get(at).filter(|reading| reading.time <= t + INSTANT_TOLERANCE_S)
 }
 
 fn order_at(executes: &[HelmOrder], first: f64, t: f64) -> f64 {
@@ -242,7 +244,7 @@ fn wind_channels(view: &View) -> Vec<(Channel, Vec<f64>)> {
     channels
 }
 
-/// Which rows are lost; `None` when none can be.
+/// For every row, `true` if it is lost; `None` where no row can be lost.
 fn lost_rows(drop_out: &DropOut, rows: usize, key: &StreamKey) -> Option<Vec<bool>> {
     if drop_out.probability <= 0.0 && drop_out.burst_probability.is_none() {
         return None;

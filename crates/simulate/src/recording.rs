@@ -1,4 +1,4 @@
-//! Which part of the run becomes the record: where it starts, how long it is, how often it is sampled.
+//! Recorded part of a run: start, duration, sampling and source of the rudder.
 
 use rand::rngs::ChaCha8Rng;
 use schemars::JsonSchema;
@@ -7,7 +7,7 @@ use trial::DeclaredWeather;
 use trial::degrees::Degrees;
 
 use crate::error::{self, Check, Expected};
-use crate::helm::{LONGEST_PERIOD, SHORTEST_PERIOD};
+use crate::helm::{MAX_PERIOD_S, MIN_PERIOD_S};
 use crate::limits::{MOST_EXECUTES, MOST_ROWS};
 use crate::sample::Sample;
 use crate::sensor::Sensors;
@@ -29,7 +29,7 @@ pub struct Recording {
     /// Time from that execute to the first row; 0 when left out.
     #[serde(rename = "offset-s")]
     pub offset: Option<f64>,
-    /// What stands in the rudder column: the feedback, or angles rebuilt from the orders.
+    /// Source of the rudder column: the feedback, or angles rebuilt from the orders.
     #[serde(default)]
     pub rudder: RudderSource,
     /// Rate at which angles are rebuilt from orders; inf for a rudder that jumps.
@@ -40,7 +40,7 @@ pub struct Recording {
     pub weather: Option<DeclaredWeather>,
 }
 
-/// What stands in the rudder column.
+/// Source of the rudder column.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RudderSource {
@@ -59,27 +59,27 @@ impl Default for Recording {
 }
 
 impl Recording {
-    /// The whole run with this time between rows, s.
+    /// Record of the whole run with this time between rows, s.
     pub fn every(period: f64) -> Self {
         let (rudder, weather) = (RudderSource::Feedback, None);
         Self { period, duration: None, after_execute: None, offset: None, rudder, assumed_rudder_rate: None, weather }
     }
 
-    /// Longest record that is taken for meant, s.
-    pub(crate) fn longest(&self) -> f64 {
+    /// Largest duration of a record, s.
+    pub(crate) fn max_duration(&self) -> f64 {
         (MOST_ROWS - 1) as f64 * self.period
     }
 
-    /// Number of rows, where the duration says it.
+    /// Number of rows; `None` without a duration.
     pub fn rows(&self) -> Option<usize> {
-        // A duration of whole periods keeps its last row in spite of rounding.
+        // A duration of whole periods keeps its last row despite rounding.
         self.duration.map(|duration| (duration / self.period + 1e-9).floor() as usize + 1)
     }
 
-    /// Checks every value; fails with the first one that makes no sense, or that lacks another.
+    /// Checks every value; fails with the first invalid one, or one that requires another.
     pub fn validate(&self) -> Check {
         error::positive("recording.sampling-s", self.period)?;
-        error::between("recording.sampling-s", self.period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
+        error::between("recording.sampling-s", self.period, MIN_PERIOD_S, MAX_PERIOD_S)?;
         if let Some(duration) = self.duration {
             error::positive("recording.duration-s", duration)?;
         }
@@ -106,7 +106,7 @@ impl Recording {
             (RudderSource::Orders, None) => error::refused(
                 "recording.rudder",
                 Expected::Other([
-                    "`recording.rudder` is \"orders\", and nothing says how fast the rudder is taken to move",
+                    "`recording.rudder` is \"orders\", and the assumed rudder rate is missing",
                     "expected `assumed-rudder-rate-deg-s` as well",
                     "add `assumed-rudder-rate-deg-s = 2.5`, or inf for a rudder that jumps",
                 ]),
@@ -114,8 +114,8 @@ impl Recording {
             (RudderSource::Feedback, Some(_)) => error::refused(
                 "recording.assumed-rudder-rate-deg-s",
                 Expected::Other([
-                    "`recording` has an assumed rate for a rudder that is recorded",
-                    "a rate is assumed for `rudder = \"orders\"` only",
+                    "`recording` has an assumed rate, but the rudder is recorded",
+                    "expected a rate with `rudder = \"orders\"` only",
                     "add `rudder = \"orders\"`, or leave the rate out",
                 ]),
             ),
@@ -123,21 +123,21 @@ impl Recording {
     }
 }
 
-/// Samples taken at growing instants of one run.
+/// Sampler: samples at increasing instants of one run.
 #[derive(Debug)]
 pub(crate) struct Sampler {
     start: f64,
     period: f64,
-    left: usize,
+    remaining: usize,
     deviation: Option<Jitter>,
     next: f64,
-    /// What was taken so far.
+    /// Samples so far.
     pub samples: Vec<Sample>,
-    /// Deviation of each instant from its stamp, s; empty where none was asked for. One longer than `samples` at most.
+    /// Deviation of each instant from its stamp, s; empty without jitter. At most one longer than `samples`.
     pub jitter: Vec<f64>,
 }
 
-/// What parts the instants of a [`Sampler`] from its stamps.
+/// Deviation of the instants of a [`Sampler`] from its stamps.
 #[derive(Debug)]
 struct Jitter {
     rng: ChaCha8Rng,
@@ -145,19 +145,19 @@ struct Jitter {
     delay: f64,
 }
 
-/// Jitter is cut at this share of the period: below a half, so that instants keep their order.
-const LARGEST_JITTER: f64 = 0.45;
+/// Largest jitter as a share of the period; below a half, so that instants keep their order.
+const MAX_JITTER_SHARE: f64 = 0.45;
 
-/// Most rows reserved at once: a manoeuvre may be over long before its record is full.
-const RESERVED: usize = 4096;
+/// Largest number of rows reserved at once; a manoeuvre can end long before its record is full.
+const MAX_RESERVED_ROWS: usize = 4096;
 
 impl Sampler {
-    /// The stamps of the rows.
+    /// Sampler at the stamps of the rows.
     pub fn rows(start: f64, recording: &Recording) -> Self {
         Self::new(start, recording, None)
     }
 
-    /// The instants at which what moves is read; `None` when they are the stamps.
+    /// Sampler at the instants of the instruments; `None` where these are the stamps.
     pub fn instruments(start: f64, recording: &Recording, sensors: &Sensors, key: &StreamKey) -> Option<Self> {
         let deviates = sensors.jitter > 0.0 || sensors.heading_delay != 0.0;
         deviates.then(|| {
@@ -168,39 +168,39 @@ impl Sampler {
 
     fn new(start: f64, recording: &Recording, deviation: Option<Jitter>) -> Self {
         let rows = recording.rows();
-        // One more than there may be, so that a record without end is noticed.
-        let left = rows.unwrap_or(MOST_ROWS + 1);
-        let samples = Vec::with_capacity(rows.unwrap_or(0).min(RESERVED));
+        // One more than the limit, so that a record without end is noticed.
+        let remaining = rows.unwrap_or(MOST_ROWS + 1);
+        let samples = Vec::with_capacity(rows.unwrap_or(0).min(MAX_RESERVED_ROWS));
         let mut sampler =
-            Self { start, period: recording.period, left, deviation, next: start, samples, jitter: Vec::new() };
+            Self { start, period: recording.period, remaining, deviation, next: start, samples, jitter: Vec::new() };
         sampler.aim();
         sampler
     }
 
-    /// Instant of the next sample, s; infinite when there is none.
+    /// Instant of the next sample, s; infinite after the last one.
     pub fn next(&self) -> f64 {
         self.next
     }
 
-    /// Takes `sample` if its time has come.
+    /// Takes `sample` if its time is due.
     pub fn take(&mut self, sample: &Sample) {
-        // More than one row can fall on the same instant: a delay cannot reach back before the run.
+        // Several rows can fall on one instant, because a delay cannot reach back before the run.
         while self.next <= sample.time {
             self.samples.push(*sample);
-            self.left -= 1;
+            self.remaining -= 1;
             self.aim();
         }
     }
 
     fn aim(&mut self) {
-        if self.left == 0 {
+        if self.remaining == 0 {
             self.next = f64::INFINITY;
             return;
         }
         self.next = self.start + self.samples.len() as f64 * self.period;
         if let Some(deviation) = &mut self.deviation {
             let jitter = if deviation.sd > 0.0 {
-                let limit = LARGEST_JITTER * self.period;
+                let limit = MAX_JITTER_SHARE * self.period;
                 (deviation.sd * normal(&mut deviation.rng)).clamp(-limit, limit)
             } else {
                 0.0

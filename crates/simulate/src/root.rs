@@ -1,4 +1,4 @@
-//! A bracketed root, for events inside a step.
+//! Bracketed root of a function, for events inside a step.
 
 /// Root of `f` between `a` and `b`, whose values `fa` and `fb` have different signs (or one is zero).
 ///
@@ -7,7 +7,7 @@
 ///
 /// Source: Chandrupatla (1997), Advances in Engineering Software 28:145-149.
 pub(crate) fn bracketed(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), tolerance: f64) -> f64 {
-    // `a` is the newest point, `b` the other end of the bracket, `c` the point that was dropped.
+    // `a` is the newest point, `b` the other end of the bracket, `c` the discarded point.
     let ((mut a, mut fa), (mut b, mut fb)) = (a, b);
     let mut share = 0.5_f64;
     // Each pass at least halves the bracket within two; 200 is out of reach for any finite bracket of f64.
@@ -58,8 +58,8 @@ mod tests {
                 evaluations += 1;
                 f(x)
             };
-            let found = bracketed(counted, (low, f(low)), (high, f(high)), 1e-13);
-            assert!((found - root).abs() < 2e-13, "{found} {root}");
+            let located = bracketed(counted, (low, f(low)), (high, f(high)), 1e-13);
+            assert!((located - root).abs() < 2e-13, "{located} {root}");
             assert!(evaluations < 60, "{evaluations}");
         }
     }

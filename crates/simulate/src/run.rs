@@ -1,6 +1,6 @@
-//! One run: the loop in which helm, steering gear and ship meet. It moves from event to event (an execute, a row, a
-//! reading of the display) and never rounds one to a step. What is recorded is asked for from outside, so a run can be
-//! taken to an execute first and recorded from there.
+//! One run: the loop of helm, steering gear and ship. It advances from event to event (an execute, a row, a display
+//! reading), and events are never rounded to a step. Recording is controlled from outside, so a run can advance to an
+//! execute first and be recorded from there.
 
 use crate::display::{Display, DisplayReading};
 use crate::error::SimulateError;
@@ -13,21 +13,21 @@ use crate::propagate::{AwaitedHeading, Limits, Propagator, has_diverged};
 use crate::recording::Sampler;
 use crate::sample::Sample;
 
-/// Time, s, by which the end of a manoeuvre is generous, so that a row at k·period is not lost to rounding.
+/// Tolerance, s, at the end of a manoeuvre, so that a row at k·period is not lost to rounding.
 const END_TOLERANCE: f64 = 1e-9;
 
-/// How far a run has come.
+/// Event at which a run stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Progress {
-    /// The time asked for.
+    /// Requested time.
     Reached,
-    /// An execute, which is the last in the list.
+    /// Execute, the last in the list.
     Executed,
-    /// The end of the manoeuvre.
+    /// End of the manoeuvre.
     Over,
 }
 
-/// The state of one run.
+/// State of one run.
 #[derive(Debug)]
 pub(crate) struct Run<'a, P> {
     propagator: P,
@@ -38,11 +38,11 @@ pub(crate) struct Run<'a, P> {
     base: f64,
     executes: Vec<HelmOrder>,
     longest_wait: f64,
-    /// Steps so far.
+    /// Number of steps so far.
     steps: usize,
 }
 
-/// What is left of a run: the way of the rudder, the executes, and what the helmsman read.
+/// Result of a run: rudder path, executes, and readings of the helmsman.
 #[derive(Debug)]
 pub(crate) struct RunResult {
     pub path: RudderPath,
@@ -51,7 +51,7 @@ pub(crate) struct RunResult {
 }
 
 impl<'a, P: Propagator> Run<'a, P> {
-    /// A run at its beginning; the base course is the heading of the propagator.
+    /// Run at its beginning; the base course is the heading of the propagator.
     pub fn new(
         propagator: P,
         path: RudderPath,
@@ -70,9 +70,9 @@ impl<'a, P: Propagator> Run<'a, P> {
         self.propagator.time()
     }
 
-    /// Goes on to the `number`-th execute (from 1) and returns its time, s.
+    /// Advances to the `number`-th execute (from 1) and returns its time, s.
     ///
-    /// Fails when the run is over before.
+    /// Fails if the run ends before.
     pub fn reach_execute(&mut self, number: usize) -> Result<f64, SimulateError> {
         while self.executes.len() < number {
             if self.advance(f64::INFINITY)? == Progress::Over {
@@ -82,10 +82,10 @@ impl<'a, P: Propagator> Run<'a, P> {
         Ok(self.executes[number - 1].time)
     }
 
-    /// Goes on to `until` (s), to the next execute or to the end of the manoeuvre, whichever is first.
+    /// Advances to `until` (s), to the next execute or to the end of the manoeuvre, whichever is first.
     ///
-    /// At the time of an execute the order has been given. Fails when the motion diverges, a heading is never reached,
-    /// or the run takes more than any manoeuvre does.
+    /// At an execute the order has been given. Fails if the motion diverges, a heading is never reached, or a limit of
+    /// the run is exceeded.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulateError> {
         loop {
             let end = self.helm.end() + END_TOLERANCE;
@@ -144,9 +144,9 @@ impl<'a, P: Propagator> Run<'a, P> {
         }
     }
 
-    /// Records the rows that come before anything can happen.
+    /// Records the rows before the next possible event.
     pub fn coast(&mut self, rows: &mut Sampler) {
-        // A display is read at instants of its own.
+        // A display has its own instants.
         if self.display.is_some() {
             return;
         }
@@ -161,17 +161,17 @@ impl<'a, P: Propagator> Run<'a, P> {
         self.propagator.coast(&self.path, &limits, rows);
     }
 
-    /// Time, s, by which a heading that is waited for has to be reached.
+    /// Latest time, s, at which an awaited heading must be reached.
     fn deadline(&self) -> f64 {
         self.executes.last().map_or(0.0, |execute| execute.time) + self.longest_wait
     }
 
-    /// What can be recorded now.
+    /// Sample at the current time.
     pub fn sample(&mut self) -> Sample {
         self.propagator.sample(&self.path)
     }
 
-    /// Ends the run.
+    /// Ends the run and returns its result.
     pub fn finish(self) -> RunResult {
         let readings = self.display.map(Display::into_log).unwrap_or_default();
         RunResult { path: self.path, executes: self.executes, readings }
@@ -183,11 +183,11 @@ impl<'a, P: Propagator> Run<'a, P> {
         self.executes.push(HelmOrder { time, heading: state.heading, yaw_rate: state.yaw_rate, order });
     }
 
-    /// Moves the ship to `to`, or to the crossing if it is earlier: whether it is.
+    /// Moves the ship to `to`, or to the crossing of an awaited heading if that is earlier; `true` if it is.
     fn travel(&mut self, to: f64, watch: Option<AwaitedHeading>) -> Result<bool, SimulateError> {
         let (ship, path) = (&mut self.propagator, &self.path);
         loop {
-            // A travel of no length counts, too: nothing goes on for ever without moving.
+            // A travel of zero length counts, too, so that the loop always ends.
             self.steps += 1;
             if self.steps > MOST_STEPS {
                 return Err(SimulateError::TooLong { time: ship.time(), what: "steps", most: MOST_STEPS });
@@ -214,7 +214,7 @@ impl<'a, P: Propagator> Run<'a, P> {
                 probed = h;
                 ship.probe(path, h)
             });
-            // A commit goes where the last probe looked.
+            // A commit goes to the last probe.
             let stop = event.unwrap_or(h);
             if probed != stop {
                 ship.probe(path, stop);

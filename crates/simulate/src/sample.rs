@@ -1,8 +1,8 @@
-//! What there is to be seen at one instant of a run: made by a propagator, taken by a record.
+//! Sample of a run at one instant, from a propagator to the record.
 
 use ship::Motion;
 
-/// Everything that can be recorded at one instant, before any instrument.
+/// Recordable quantities at one instant, before the instruments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
     /// Time, s.

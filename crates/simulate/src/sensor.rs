@@ -1,11 +1,10 @@
-//! Instruments as a specification: what the record gets wrong. The default is perfect in everything. How a
-//! specification turns truth into a record is in `measure`; what the helmsman sees is in `display`.
+//! Instruments, as a specification; the default is perfect. The measurement of a run is in `measure`, the display of
+//! the helmsman in `display`.
 //!
-//! Order of events in the heading channel: lag of the gyrocompass, waves, bias, coloured error, white noise,
+//! Order of errors in the heading channel: lag of the gyrocompass, waves, bias, coloured error, white noise,
 //! quantisation; in the record alone, spikes, and rows without a heading. Clocks: row k carries the nominal stamp t_k;
-//! the rudder is read at t_k + j_k with jitter j_k, and the heading (with everything else that moves) at t_k + j_k −
-//! `heading_delay`. Stamps themselves are never disturbed: a jittered stamp on an exact instant differs only in the
-//! sign of j.
+//! the rudder is read at t_k + j_k with jitter j_k, and heading and other motion at t_k + j_k − `heading_delay`. Stamps
+//! have no error: jitter of the stamp would differ only in the sign of j.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,7 +16,7 @@ use crate::disturbance::GaussMarkov;
 use crate::error::{self, Check, Expected};
 use crate::limits::{LONGEST_TIME, MOST_ROWS};
 
-/// Instruments, perfect in all that is left out.
+/// Instruments; a key that is left out means no error.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Sensors {
@@ -67,7 +66,7 @@ pub struct Sensors {
     pub drop_out: DropOut,
 }
 
-/// Rows whose recorded heading is off: faults on the way from the compass to the record, which no helmsman sees.
+/// Spikes in the recorded heading: faults between compass and record, which no helmsman sees.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spikes {
@@ -94,30 +93,30 @@ pub struct DropOut {
     pub whole_row: bool,
 }
 
-/// The multiple of `quantum` that is nearest to `value`; the value itself without a quantum.
+/// Nearest multiple of `quantum`; the value itself for a quantum of zero.
 pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
     if quantum > 0.0 { (value / quantum).round() * quantum } else { value }
 }
 
-/// Lags of a gyrocompass, s, other than none; a shorter one would only shorten the step of the solver.
-const SHORTEST_LAG: f64 = 0.01;
-const LONGEST_LAG: f64 = 100.0;
+/// Range of the lag of a gyrocompass, s; a shorter one would only shorten the step of the solver.
+const MIN_LAG_S: f64 = 0.01;
+const MAX_LAG_S: f64 = 100.0;
 
-/// Largest spike, deg: no heading is further from another one.
-const LARGEST_SPIKE_DEG: f64 = 180.0;
+/// Largest spike, deg, which is the largest difference of two headings.
+const MAX_SPIKE_DEG: f64 = 180.0;
 
 impl Sensors {
-    /// Whether there is a rate-of-turn indicator.
+    /// `true` if there is a rate-of-turn indicator.
     pub fn read_yaw_rate(&self) -> bool {
         [self.yaw_rate_noise, self.yaw_rate_bias, self.yaw_rate_scale_error].iter().any(Option::is_some)
     }
 
-    /// Checks every value; fails with the first one that makes no sense, or that lacks another.
+    /// Checks every value; fails with the first invalid one, or one that requires another.
     pub fn validate(&self) -> Check {
         error::not_negative("sensor.heading-noise-deg", self.heading_noise)?;
         error::not_negative("sensor.heading-quantum-deg", self.heading_quantum)?;
         if self.heading_lag != 0.0 {
-            error::between("sensor.heading-lag-s", self.heading_lag, SHORTEST_LAG, LONGEST_LAG)?;
+            error::between("sensor.heading-lag-s", self.heading_lag, MIN_LAG_S, MAX_LAG_S)?;
         }
         error::finite("sensor.heading-bias-deg", self.heading_bias)?;
         if let Some(wander) = &self.heading_wander {
@@ -127,7 +126,7 @@ impl Sensors {
         if let Some(spikes) = &self.heading_spikes {
             error::between("sensor.heading-spikes.probability", spikes.probability, 0.0, 1.0)?;
             error::positive("sensor.heading-spikes.size-deg", spikes.size)?;
-            error::at_most("sensor.heading-spikes.size-deg", spikes.size, from_deg(LARGEST_SPIKE_DEG))?;
+            error::at_most("sensor.heading-spikes.size-deg", spikes.size, from_deg(MAX_SPIKE_DEG))?;
         }
         error::count("sensor.heading-every-rows", self.heading_every_rows.unwrap_or(1), MOST_ROWS)?;
         error::not_negative("sensor.yaw-rate-noise-deg-s", self.yaw_rate_noise.unwrap_or(0.0))?;
@@ -140,9 +139,9 @@ impl Sensors {
         self.drop_out.validate()
     }
 
-    /// The noise such instruments declare, which is independent from reading to reading: white noise and quantisation
-    /// (q/√12) together; `None` where there is neither. Nobody declares waves, lag, bias, a coloured error or spikes:
-    /// one standard deviation cannot say them.
+    /// Declared noise: the standard deviation of white noise and quantisation (q/√12) together; `None` where there is
+    /// neither. Waves, lag, bias, coloured errors and spikes are not declared, because a standard deviation does not
+    /// describe them.
     pub fn declared_noise(&self) -> Noise {
         let total = |noise: f64, quantum: f64| {
             let sd = noise.hypot(quantum / 12.0_f64.sqrt());

@@ -1,5 +1,5 @@
-//! The whole specification of a simulated trial, and what one run of it gives: the record, as instruments wrote it, and
-//! the truth behind it, which only the judge of an identification may see.
+//! Specification of a simulated trial, and its result: the record of the instruments, and the truth, which
+//! identification must not use.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ use crate::vessel::{Solver, Vessel};
 use crate::wave_path::SeaWaves;
 use crate::weather::{GRID, Weather};
 
-/// How the ship comes to the first execute.
+/// Approach of the ship to the first execute.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BeforeExecute {
@@ -49,7 +49,7 @@ pub struct BeforeExecute {
 }
 
 impl BeforeExecute {
-    /// Checks every value; fails with the first one that makes no sense.
+    /// Checks every value; fails with the first invalid one.
     pub fn validate(&self) -> Check {
         error::finite("approach.heading-deg", self.heading)?;
         error::finite("approach.yaw-rate-deg-s", self.yaw_rate)?;
@@ -58,7 +58,7 @@ impl BeforeExecute {
     }
 }
 
-/// The specification of a simulated trial.
+/// Specification of a simulated trial.
 ///
 /// ```
 /// use kempf_simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
@@ -79,33 +79,33 @@ impl BeforeExecute {
 pub struct Simulation {
     /// Name of the scenario, carried into the origin of the record.
     pub scenario: String,
-    /// What is steered.
+    /// Ship.
     pub vessel: Vessel,
-    /// How it comes to the first execute.
+    /// Approach to the first execute.
     pub approach: BeforeExecute,
-    /// What it is asked to do.
+    /// Manoeuvre.
     pub manoeuvre: Manoeuvre,
-    /// Who asks.
+    /// Helmsman.
     pub helmsman: Helmsman,
-    /// What moves the rudder.
+    /// Steering gear.
     pub gear: SteeringGear,
-    /// What else acts.
+    /// Wind and sea.
     pub disturbances: Disturbances,
-    /// What is seen of it.
+    /// Instruments.
     pub sensors: Sensors,
-    /// Which part is written down.
+    /// Recorded part.
     pub recording: Recording,
-    /// How the motion is computed.
+    /// Method of integration.
     pub solver: Solver,
-    /// Width of the cells in which weather is drawn, s, linear within a cell: short against every correlation time of
-    /// the weather and every time constant of the ship.
+    /// Cell width of the weather, s, which is linear within a cell: short against every correlation time of the weather
+    /// and every time constant of the ship.
     pub weather_grid: f64,
-    /// Longest time to wait for a heading after an execute, s; a ship that does not reach it then is an error.
+    /// Longest wait for a heading after an execute, s; a ship that does not reach it is an error.
     pub longest_wait: f64,
 }
 
-/// What really happened, at the stamps of the rows of the record. Waves are not part of it: they are a heading that
-/// is seen, not a response.
+/// True motion at the stamps of the rows of the record. Waves are not part of it, because they belong to the observed
+/// heading and not to the response.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Truth {
     /// Time, s.
@@ -126,24 +126,24 @@ pub struct Truth {
     pub executes: Vec<HelmOrder>,
 }
 
-/// What one run gives.
+/// Simulated trial: record and truth.
 #[derive(Debug, Clone)]
 pub struct Simulated {
-    /// The record, as instruments wrote it.
+    /// Record of the instruments.
     pub trial: Trial,
-    /// What really happened; shared by the records that differ only in what instruments made of it.
+    /// True motion; shared by records that differ only in instrument errors.
     pub truth: Arc<Truth>,
 }
 
-/// A run as it happened, whatever chance does to the record of it.
+/// True run, without the random errors of the record.
 #[derive(Debug, Clone)]
 struct TrueRun {
     scene: Scene,
     truth: Arc<Truth>,
 }
 
-/// A simulation that is run for many keys. Where nothing random moves ship or helmsman the run is made once, and every
-/// key only draws what the instruments add; the records are those of [`Simulation::run`], bit for bit.
+/// Simulation prepared for many keys. Without random influence on ship and helmsman the run is made once, and every key
+/// draws only the instrument errors; the records are those of [`Simulation::run`], bit for bit.
 #[derive(Debug, Clone)]
 pub struct PreparedSimulation {
     simulation: Simulation,
@@ -151,7 +151,7 @@ pub struct PreparedSimulation {
 }
 
 impl PreparedSimulation {
-    /// Checks a simulation and makes as much of it as all keys share.
+    /// Checks a simulation and computes the part that all keys share.
     ///
     /// Fails as [`Simulation::run`] does.
     pub fn new(simulation: Simulation) -> Result<Self, SimulateError> {
@@ -160,7 +160,7 @@ impl PreparedSimulation {
         Ok(Self { simulation, true_run })
     }
 
-    /// Makes the one trial that belongs to `key`.
+    /// Makes the trial of `key`.
     ///
     /// Fails as [`Simulation::run`] does.
     pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
@@ -171,15 +171,15 @@ impl PreparedSimulation {
     }
 }
 
-/// Default of [`Simulation::longest_wait`], s: no ship of the registry needs ten minutes for one leg of a zig-zag.
-const LONGEST_WAIT: f64 = 3600.0;
+/// Default of [`Simulation::longest_wait`], s; no ship of the registry needs ten minutes for one leg of a zig-zag.
+const MAX_WAIT_S: f64 = 3600.0;
 
-/// Steps of the solver, s, between which it makes sense to ask for one.
-const SHORTEST_STEP: f64 = 1e-5;
-const LONGEST_STEP: f64 = 60.0;
+/// Range of the step of the solver, s.
+const MIN_STEP_S: f64 = 1e-5;
+const MAX_STEP_S: f64 = 60.0;
 
 impl Simulation {
-    /// A trial in a calm, with a perfect helmsman, gear and instruments, recorded whole once a second.
+    /// Trial in a calm, with perfect helmsman, gear and instruments, recorded whole once a second.
     pub fn new(vessel: Vessel, manoeuvre: Manoeuvre) -> Self {
         Self {
             scenario: String::from("simulation"),
@@ -193,12 +193,11 @@ impl Simulation {
             recording: Recording::default(),
             solver: Solver::default(),
             weather_grid: GRID,
-            longest_wait: LONGEST_WAIT,
+            longest_wait: MAX_WAIT_S,
         }
     }
 
-    /// Checks the whole specification; fails with the first value that makes no sense, or that does not go with the
-    /// manoeuvre.
+    /// Checks the whole specification; fails with the first invalid value, or one that does not fit the manoeuvre.
     pub fn validate(&self) -> Check {
         check_manoeuvre(&self.manoeuvre)?;
         self.helmsman.validate()?;
@@ -208,23 +207,23 @@ impl Simulation {
         self.recording.validate()?;
         self.approach.validate()?;
         error::positive_time("longest_wait", self.longest_wait)?;
-        error::between("weather_grid", self.weather_grid, SHORTEST_STEP, LONGEST_STEP)?;
+        error::between("weather_grid", self.weather_grid, MIN_STEP_S, MAX_STEP_S)?;
         if let Solver::RungeKutta(step) = self.solver {
-            error::between("solver.step", step, SHORTEST_STEP, LONGEST_STEP)?;
+            error::between("solver.step", step, MIN_STEP_S, MAX_STEP_S)?;
         }
         error::at_most("approach.rudder-deg", self.approach.rudder.abs(), self.gear.largest_rudder())?;
         let is_replay = matches!(self.manoeuvre, Manoeuvre::Replay { .. });
         if !is_replay {
             error::at_most(key_of(&self.manoeuvre)[0], self.manoeuvre.rudder(), self.gear.largest_rudder())?;
         }
-        // A rudder that acts before it moves belongs to a record with a late clock, not to a ship.
+        // A negative dead time belongs to a record with a late clock, not to a ship.
         error::time("vessel.dead_time", self.vessel.dynamics().dead_time())?;
         let end = self.approach.lead_in + self.manoeuvre.length();
         match (&self.manoeuvre, self.recording.duration) {
             (_, None) if end.is_finite() => {
-                error::at_most(key_of(&self.manoeuvre)[1], end, self.recording.longest())?;
+                error::at_most(key_of(&self.manoeuvre)[1], end, self.recording.max_duration())?;
             }
-            (_, Some(duration)) => error::at_most("recording.duration-s", duration, self.recording.longest())?,
+            (_, Some(duration)) => error::at_most("recording.duration-s", duration, self.recording.max_duration())?,
             (Manoeuvre::ZigZag { executes: None, .. }, None) => {
                 error::refused("recording.duration-s", Expected::Duration)?;
             }
@@ -244,7 +243,7 @@ impl Simulation {
             return error::refused(
                 "recording.rudder",
                 Expected::Value([
-                    "`recording.rudder` is \"orders\", and a replayed rudder follows none",
+                    "`recording.rudder` is \"orders\", but a replayed rudder has no orders",
                     "expected \"feedback\"",
                     "leave the key out",
                 ]),
@@ -253,17 +252,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// Makes the one trial that belongs to `key`.
+    /// Makes the trial of `key`.
     ///
-    /// Fails when the specification makes no sense or costs too much, the motion diverges, a heading is never reached,
-    /// the record would start at an execute that is never made, the run does not end, or its rows are too few for a
-    /// [`Trial`].
+    /// Fails if the specification is invalid or costs too much, the motion diverges, a heading is never reached, the
+    /// record starts at an execute that is never made, the run does not end, or its rows are too few for a [`Trial`].
     pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
         self.validate()?;
         self.record(&self.sail(key)?, key)
     }
 
-    /// Whether chance moves neither the ship nor the helmsman nor the instants of the rows.
+    /// `true` if nothing random acts on ship, helmsman or the instants of the rows.
     fn is_repeatable(&self) -> bool {
         let Disturbances { wind, gusts, random_walk, waves, .. } = &self.disturbances;
         let weather = gusts.is_some() || *random_walk > 0.0 || wind.is_some_and(|wind| wind.gusting.is_some());
@@ -273,7 +271,7 @@ impl Simulation {
         !weather && !display && self.sensors.jitter == 0.0
     }
 
-    /// Moves the ship from the beginning to the end of its record.
+    /// True run from the beginning to the end of the record.
     fn sail(&self, key: &StreamKey) -> Result<TrueRun, SimulateError> {
         let approach = State { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
         let weather = || Weather::new(&self.disturbances, self.weather_grid, key);
@@ -292,7 +290,7 @@ impl Simulation {
         }
     }
 
-    /// The ship, if its whole run has a closed form.
+    /// First-order ship whose whole run has a closed form; `None` if it must be integrated.
     pub(crate) fn closed_form(&self) -> Option<FirstOrder> {
         let rudder_is_linear = self.gear.lag == 0.0 || matches!(self.manoeuvre, Manoeuvre::Replay { .. });
         let moment_is_linear = self.disturbances.wind.is_none_or(|wind| wind.moment == 0.0);
@@ -323,7 +321,7 @@ impl Simulation {
         let mut rows = Sampler::rows(start, &self.recording);
         let mut instruments = Sampler::instruments(start, &self.recording, &self.sensors, key);
         if instruments.as_ref().is_some_and(|sampler| sampler.next() < run.time()) {
-            // The first row holds a heading from before the execute it is tied to: now that its time is known, again.
+            // The first row has a heading from before its execute, whose time is known now: run again.
             run = self.begin(key, propagator());
         }
         loop {
@@ -352,7 +350,7 @@ impl Simulation {
         Ok(self.look_back(rows, instruments, &run.finish()))
     }
 
-    /// The rudder as it is rebuilt from the orders; `None` where it is recorded.
+    /// Rudder path reconstructed from the orders; `None` where the rudder is recorded.
     fn assumed_path(&self, executes: &[HelmOrder]) -> Option<RudderPath> {
         let rate = self.recording.assumed_rudder_rate.filter(|_| self.recording.rudder == RudderSource::Orders)?;
         let gear = SteeringGear::with_rate(rate);
@@ -361,10 +359,10 @@ impl Simulation {
         Some(path)
     }
 
-    /// What was to be seen, once the run is over.
+    /// True run with its samples, after the end of the run.
     fn look_back(&self, mut rows: Sampler, mut instruments: Option<Sampler>, run: &RunResult) -> TrueRun {
         if let Some(sampler) = &mut instruments {
-            // Cut to the shorter one: with a delay, the end of the manoeuvre parts them.
+            // Cut to the shorter: with a delay, both end at different rows.
             let count = rows.samples.len().min(sampler.samples.len());
             rows.samples.truncate(count);
             sampler.samples.truncate(count);
@@ -383,7 +381,7 @@ impl Simulation {
         TrueRun { scene: Scene::new(truth.time.clone(), &view), truth: Arc::new(truth) }
     }
 
-    /// The record that `key` makes of a run.
+    /// Record of a run with the random errors of `key`.
     fn record(&self, true_run: &TrueRun, key: &StreamKey) -> Result<Simulated, SimulateError> {
         let waves = SeaWaves::new(&self.disturbances, &self.vessel, key);
         let written = measure::write(&self.sensors, &true_run.scene, waves, key);
@@ -405,13 +403,14 @@ impl Simulation {
 }
 
 impl Truth {
-    /// The rows that are kept.
+    /// Truth of the kept rows.
     fn keep(&self, kept: &[bool]) -> Self {
-        let mut left = self.clone();
-        let Self { time, heading, yaw_rate, yaw_acceleration, rudder, disturbance, speed, executes: _ } = &mut left;
+        let mut kept_rows = self.clone();
+        let Self { time, heading, yaw_rate, yaw_acceleration, rudder, disturbance, speed, executes: _ } =
+            &mut kept_rows;
         let columns = [time, heading, yaw_rate, yaw_acceleration, rudder, disturbance];
         columns.into_iter().chain(speed).for_each(|column| measure::keep(column, kept));
-        left
+        kept_rows
     }
 }
 

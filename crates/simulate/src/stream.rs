@@ -1,12 +1,14 @@
-//! Where every random number of a trial comes from: one ChaCha8 stream per purpose, keyed by the place of the trial in
-//! a study. No generator is shared, so any trial can be repeated alone, on any thread, with the same bits, and a new
-//! source of noise leaves the draws of all others as they were.
+//! Random number streams of a trial: one ChaCha8 stream per purpose, keyed by the position of the trial in a study. No
+//! generator is shared, so any trial can be repeated alone, on any thread, with the same bits, and a new source of
+//! noise does not change the draws of the others.
+//!
+//! Source: Bernstein (2008), ChaCha, a variant of Salsa20.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 
-/// What random numbers are drawn for. The numbers are part of every published result: never change or reuse one.
+/// Purpose of random numbers. The discriminants are part of every published result: never change or reuse one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u16)]
 pub enum Purpose {
@@ -20,13 +22,13 @@ pub enum Purpose {
     Rudder = 3,
     /// Jitter of the sampling instants.
     Jitter = 4,
-    /// Single rows that are lost.
+    /// Single lost rows.
     DropOut = 5,
-    /// Runs of rows that are lost.
+    /// Bursts of lost rows.
     Burst = 6,
     /// Gusting of the steady wind.
     WindGust = 7,
-    /// Gusts that act as a moment of their own.
+    /// Gusts as a yaw moment.
     Gust = 8,
     /// Random walk of the yaw moment.
     RandomWalk = 9,
@@ -34,9 +36,9 @@ pub enum Purpose {
     Waves = 10,
     /// Waves that belong to the response model of the ship, one index per effect.
     EffectWaves = 11,
-    /// Values of the specification itself, dispersed from trial to trial by a study.
+    /// Values of the specification, dispersed from trial to trial by a study.
     Specification = 12,
-    /// Chance inside an identification method: its seed for this trial.
+    /// Seed of a randomised identification method for this trial.
     Method = 13,
     /// Coloured error of the compass, one index for the record and one for the display.
     HeadingWander = 14,
@@ -45,7 +47,7 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// All purposes, in the order of their numbers.
+    /// All purposes, in the order of their discriminants.
     pub const ALL: [Self; 16] = [
         Self::Heading,
         Self::Display,
@@ -66,7 +68,7 @@ impl Purpose {
     ];
 }
 
-/// The place of one trial in a study: all its randomness follows from these three numbers.
+/// Key of one trial in a study, which determines all its random numbers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct StreamKey {
     /// Seed of the study.
@@ -78,15 +80,15 @@ pub struct StreamKey {
 }
 
 impl StreamKey {
-    /// The generator for one purpose, at its beginning.
+    /// Generator for one purpose, at its beginning.
     pub fn rng(&self, purpose: Purpose) -> ChaCha8Rng {
         self.indexed(purpose, 0)
     }
 
-    /// The generator for one of several things with the same purpose, at its beginning.
+    /// Generator for one of several sources with the same purpose, at its beginning.
     pub fn indexed(&self, purpose: Purpose, index: u32) -> ChaCha8Rng {
-        // The 256-bit key of the cipher holds seed, cell and replicate side by side, and the stream number the purpose,
-        // so no two streams can coincide whatever the numbers are: nothing is hashed or packed.
+        // The 256-bit key of the cipher has seed, cell and replicate side by side, and the stream number the purpose
+        // and index. Nothing is hashed, so no two streams coincide.
         let mut key = [0; 32];
         for (bytes, number) in key.chunks_exact_mut(8).zip([self.seed, self.cell, self.replicate]) {
             bytes.copy_from_slice(&number.to_le_bytes());
@@ -97,13 +99,13 @@ impl StreamKey {
     }
 }
 
-/// One standard normal number.
+/// Standard normal number.
 #[inline]
 pub(crate) fn normal(rng: &mut ChaCha8Rng) -> f64 {
     rng.sample(StandardNormal)
 }
 
-/// One number uniform in [0, 1).
+/// Uniform number in [0, 1).
 #[inline]
 pub(crate) fn uniform(rng: &mut ChaCha8Rng) -> f64 {
     rng.random()
@@ -118,11 +120,11 @@ mod tests {
     #[test]
     fn value_stability() {
         let key = StreamKey { seed: 20, cell: 3, replicate: 7 };
-        let found = Purpose::ALL.map(|purpose| {
+        let draws = Purpose::ALL.map(|purpose| {
             let mut rng = key.rng(purpose);
             [rng.random::<u64>(), rng.random::<u64>()]
         });
-        assert_eq!(found, GOLDEN, "found {found:#018x?}");
+        assert_eq!(draws, GOLDEN, "drawn {draws:#018x?}");
         let mut rng = key.rng(Purpose::Heading);
         assert_eq!([normal(&mut rng), normal(&mut rng)], [0.785_614_548_219_654_8, -0.108_714_680_095_289_06]);
     }

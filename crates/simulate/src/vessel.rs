@@ -1,4 +1,4 @@
-//! What is steered: a ship seen from the simulator, which only asks whether its motion has a closed form.
+//! Vessel: a ship as the simulator uses it, with its equations and its closed form where there is one.
 
 use std::sync::Arc;
 
@@ -6,18 +6,18 @@ use ship::narrow_band::NarrowBand;
 use ship::ships::Model;
 use ship::{Dynamics, FirstOrder, Particulars, Response, Ship};
 
-/// How the motion is computed.
+/// Method of integration.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Solver {
-    /// The closed form where it is exact (a first-order ship whose input is piecewise linear in time), else Runge–Kutta
-    /// with the largest step the ship allows.
+    /// Closed form where it is exact (a first-order ship with an input that is piecewise linear in time), else
+    /// Runge–Kutta with the largest step of the ship.
     #[default]
     Automatic,
-    /// Runge–Kutta of order four whatever the ship, with steps no longer than this, s.
+    /// Runge–Kutta of order four, with steps no longer than this, s.
     RungeKutta(f64),
 }
 
-/// A ship ready to be simulated: its equations, its closed form where it has one, and the waves it sees by itself.
+/// Ship for simulation: equations, closed form where there is one, and random headings of its response.
 #[derive(Clone)]
 pub struct Vessel {
     dynamics: Arc<dyn Dynamics>,
@@ -38,24 +38,24 @@ impl std::fmt::Debug for Vessel {
 }
 
 impl Vessel {
-    /// A response model; without effects it has a closed form.
+    /// Vessel of a response model; without effects it has a closed form.
     pub fn response(response: Response) -> Self {
         let first_order = response.model().effects().is_empty().then(|| response.first_order());
         let random_headings = response.random_headings().collect();
         Self { dynamics: Arc::new(response), first_order, random_headings, particulars: None }
     }
 
-    /// A purely first-order ship.
+    /// Vessel of a first-order response.
     pub fn first_order(ship: FirstOrder) -> Self {
         Self::response(Response::first_order_ship(ship))
     }
 
-    /// Any other system of equations.
+    /// Vessel of any other system of equations.
     pub fn hull(dynamics: Arc<dyn Dynamics>) -> Self {
         Self { dynamics, first_order: None, random_headings: Vec::new(), particulars: None }
     }
 
-    /// A ship of the registry, with its particulars.
+    /// Vessel of a ship of the registry, with its particulars.
     pub fn ship(ship: &Ship) -> Self {
         let vessel = match &ship.model {
             Model::Response(response) => Self::response(response.clone()),
@@ -64,32 +64,32 @@ impl Vessel {
         Self { particulars: ship.particulars, ..vessel }
     }
 
-    /// The same vessel with equations that hold more than its own.
+    /// Vessel with other equations, without a closed form.
     pub fn with_dynamics(self, dynamics: Arc<dyn Dynamics>) -> Self {
         Self { dynamics, first_order: None, ..self }
     }
 
-    /// The same vessel with length and approach speed declared.
+    /// Vessel with declared length and approach speed.
     pub fn with_particulars(self, particulars: Particulars) -> Self {
         Self { particulars: Some(particulars), ..self }
     }
 
-    /// The equations.
+    /// Equations.
     pub fn dynamics(&self) -> &dyn Dynamics {
         self.dynamics.as_ref()
     }
 
-    /// K, T and δ_r, where the ship is exactly first order.
+    /// First-order ship with a closed form; `None` for other equations.
     pub fn closed_form(&self) -> Option<FirstOrder> {
         self.first_order
     }
 
-    /// Spectra of the random headings that belong to the ship's own equations.
+    /// Spectra of the random headings of the response model.
     pub fn random_headings(&self) -> &[NarrowBand] {
         &self.random_headings
     }
 
-    /// Length and approach speed, where they are known.
+    /// Length and approach speed; `None` where unknown.
     pub fn particulars(&self) -> Option<Particulars> {
         self.particulars
     }

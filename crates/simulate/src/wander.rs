@@ -1,12 +1,14 @@
-//! The coloured error of a compass along one run, drawn exactly at whatever instants it is read, evenly spaced or not,
-//! and between readings of the display, where it is known already. What the error is, is in `sensor`.
+//! Coloured compass error of one run: a Gauss–Markov process drawn exactly at any instants, evenly spaced or not, and
+//! conditional on the readings of the display.
+//!
+//! Source: Gillespie (1996), Physical Review E 54:2084-2091, for the exact update of the process.
 
 use rand::rngs::ChaCha8Rng;
 
 use crate::disturbance::GaussMarkov;
 use crate::stream::{Purpose, StreamKey, normal};
 
-/// The error at one instant.
+/// Coloured error at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct WanderPoint {
     /// Time, s.
@@ -15,16 +17,16 @@ pub(crate) struct WanderPoint {
     pub error: f64,
 }
 
-/// Who reads the compass: each draws from a stream of its own.
+/// Reader of the compass; each has its own random stream.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum CompassReader {
-    /// The recorder.
+    /// Recorder.
     Record = 0,
-    /// The display of the helmsman.
+    /// Display of the helmsman.
     Display = 1,
 }
 
-/// One realisation of a stationary first-order Gauss–Markov process w, read at non-decreasing times.
+/// Realisation of a stationary first-order Gauss–Markov process w, at non-decreasing times.
 #[derive(Debug)]
 pub(crate) struct WanderPath {
     process: GaussMarkov,
@@ -33,21 +35,21 @@ pub(crate) struct WanderPath {
 }
 
 impl WanderPath {
-    /// A path at its beginning, as `reader` sees it.
+    /// Path at its beginning, for one reader.
     pub fn new(process: GaussMarkov, reader: CompassReader, key: &StreamKey) -> Self {
         Self { process, rng: key.indexed(Purpose::HeadingWander, reader as u32), last: None }
     }
 
-    /// The error at time `t` (s), rad.
+    /// Error at time `t` (s), rad.
     pub fn at(&mut self, t: f64) -> f64 {
         self.before(t, None)
     }
 
-    /// The errors at `times` (s), rad, of the path that goes through what is `known`.
-    pub fn through(&mut self, times: &[f64], known: &[WanderPoint]) -> Vec<f64> {
-        let mut ahead = known.iter().copied().peekable();
+    /// Errors at `times` (s), rad, of the path through given points.
+    pub fn through(&mut self, times: &[f64], points: &[WanderPoint]) -> Vec<f64> {
+        let mut ahead = points.iter().copied().peekable();
         let mut at = |&t: &f64| {
-            while let Some(passed) = ahead.next_if(|known| known.time <= t) {
+            while let Some(passed) = ahead.next_if(|point| point.time <= t) {
                 self.last = Some(passed);
             }
             self.before(t, ahead.peek().copied())
@@ -55,26 +57,27 @@ impl WanderPath {
         times.iter().map(&mut at).collect()
     }
 
-    /// The error at time `t` (s), which lies between the last one read and `next`, where that is known.
+    /// Error at time `t` (s), between the last instant and the given point `next`.
     ///
     /// With a = exp(−(t − t₀)/τ) and b = exp(−(t₁ − t)/τ), each 0 where there is no neighbour, w is normal about
     /// (a(1 − b²) w₀ + b(1 − a²) w₁)/(1 − a²b²) with variance σ²(1 − a²)(1 − b²)/(1 − a²b²): w is Markov, so nothing
     /// but its neighbours matters.
     fn before(&mut self, t: f64, next: Option<WanderPoint>) -> f64 {
         let GaussMarkov { sd, correlation_time } = self.process;
-        // Decay over a time, and one less its square without the loss of digits over a short one.
+        // Decay over a time, and 1 minus its square without cancellation for short times.
         let over = |time: f64| ((-time / correlation_time).exp(), -(-2.0 * time / correlation_time).exp_m1());
         let since = self.last.map_or(f64::INFINITY, |last| t - last.time);
         let until = next.map_or(f64::INFINITY, |next| next.time - t);
-        let ((a, lost), (b, to_come), (_, both)) = (over(since), over(until), over(since + until));
-        let of = |known: Option<WanderPoint>| known.map_or(0.0, |known| known.error);
-        // Drawn in any case, so that an instant on a reading shifts no later draw.
+        let ((a, variance_since), (b, variance_until), (_, variance_both)) =
+            (over(since), over(until), over(since + until));
+        let error_at = |point: Option<WanderPoint>| point.map_or(0.0, |point| point.error);
+        // Always drawn, so that an instant on a reading shifts no later draw.
         let draw = normal(&mut self.rng);
-        let error = if both > 0.0 {
-            let mean = (a * to_come * of(self.last) + b * lost * of(next)) / both;
-            mean + sd * (lost * to_come / both).sqrt() * draw
+        let error = if variance_both > 0.0 {
+            let mean = (a * variance_until * error_at(self.last) + b * variance_since * error_at(next)) / variance_both;
+            mean + sd * (variance_since * variance_until / variance_both).sqrt() * draw
         } else {
-            of(self.last)
+            error_at(self.last)
         };
         self.last = Some(WanderPoint { time: t, error });
         error
@@ -121,10 +124,10 @@ mod tests {
         let times: Vec<f64> = rows.iter().chain(&readings).copied().collect();
         assert_covariance(&times, 20_000, |replicate| {
             let mut display = path(CompassReader::Display, replicate);
-            let known = readings.map(|time| WanderPoint { time, error: display.at(time) });
-            let errors = path(CompassReader::Record, replicate).through(&rows, &known);
-            assert_relative_eq!(errors[2], known[1].error, max_relative = 1e-12);
-            errors.into_iter().chain(known.map(|known| known.error)).collect()
+            let points = readings.map(|time| WanderPoint { time, error: display.at(time) });
+            let errors = path(CompassReader::Record, replicate).through(&rows, &points);
+            assert_relative_eq!(errors[2], points[1].error, max_relative = 1e-12);
+            errors.into_iter().chain(points.map(|point| point.error)).collect()
         });
     }
 
@@ -132,14 +135,14 @@ mod tests {
     fn short_and_long_correlations_have_their_limits() {
         let key = StreamKey::default();
         let steps: Vec<f64> = (0..4000).map(f64::from).collect();
-        let of = |correlation_time| {
+        let path_with = |correlation_time| {
             let process = GaussMarkov { correlation_time, ..PROCESS };
             WanderPath::new(process, CompassReader::Record, &key).through(&steps, &[])
         };
-        let white = of(1e-300);
+        let white = path_with(1e-300);
         let product = white.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 4000.0;
         assert_relative_eq!(product / PROCESS.sd.powi(2), 0.0, epsilon = 4.0 / 4000.0_f64.sqrt());
-        let constant = of(1e7);
+        let constant = path_with(1e7);
         // σ√(2h/τ) is 1.8 % of σ over the whole record.
         assert!(constant.iter().all(|error| (error - constant[0]).abs() < 0.1 * PROCESS.sd));
     }

@@ -1,5 +1,5 @@
-//! One realisation of a narrow-band heading, read at any non-decreasing times. It is drawn on a grid of its own and
-//! interpolated by the cubic through ξ and ξ', so two readers of the same stream see the same sea, however they sample.
+//! Realisation of a narrow-band wave heading, at any non-decreasing times. It is drawn on its own grid and interpolated
+//! by the cubic Hermite polynomial of ξ and ξ', so two readers of one stream see the same sea, however they sample.
 
 use rand::rngs::ChaCha8Rng;
 use ship::narrow_band::{NarrowBand, NarrowBandStep};
@@ -8,7 +8,7 @@ use crate::disturbance::Disturbances;
 use crate::stream::{Purpose, StreamKey, normal};
 use crate::vessel::Vessel;
 
-/// ω₀ times the width of a cell: at 0.2 the cubic is within 10⁻⁵ σ of the smooth part of the path.
+/// Phase ω₀ h of a cell of width h; at 0.2 the cubic is within 10⁻⁵ σ of the smooth part of the path.
 const PHASE_PER_CELL: f64 = 0.2;
 
 /// Width of a cell, s.
@@ -50,25 +50,25 @@ impl WavePath {
     }
 }
 
-/// The sum of all waves a run has: those declared as a disturbance, and those of the response model.
+/// Sum of all waves of a run: those declared as a disturbance, and those of the response model.
 #[derive(Debug)]
 pub(crate) struct SeaWaves {
     paths: Vec<WavePath>,
 }
 
 impl SeaWaves {
-    /// The waves of one run.
+    /// Waves of one run.
     pub fn new(disturbances: &Disturbances, vessel: &Vessel, key: &StreamKey) -> Self {
         let declared = disturbances.waves.iter().map(|waves| WavePath::new(&waves.process(), key.rng(Purpose::Waves)));
-        let own = vessel
+        let of_response = vessel
             .random_headings()
             .iter()
             .enumerate()
             .map(|(index, waves)| WavePath::new(waves, key.indexed(Purpose::EffectWaves, index as u32)));
-        Self { paths: declared.chain(own).collect() }
+        Self { paths: declared.chain(of_response).collect() }
     }
 
-    /// Whether there are no waves.
+    /// `true` without waves.
     pub fn are_none(&self) -> bool {
         self.paths.is_empty()
     }

@@ -1,17 +1,17 @@
-//! The weather of one run: the moments of [`Disturbances`] that are functions of time, drawn cell by cell on a grid
-//! and linear within a cell. Because the grid depends on nothing but itself, the weather is the same whatever the
-//! step of the solver, the sampling and the helmsman do. Wind as a function of heading is evaluated by the propagator.
+//! Weather of one run: the moments of [`Disturbances`] that depend on time, drawn cell by cell on a grid and linear
+//! within a cell. The grid is independent of solver, sampling and helmsman, and so is the weather. Wind as a function
+//! of heading is evaluated by the propagator.
 
 use rand::rngs::ChaCha8Rng;
 
 use crate::disturbance::{Disturbances, Squall};
 use crate::stream::{Purpose, StreamKey, normal};
 
-/// Width of a cell, s, unless a simulation asks for another: short against every correlation time of weather and every
-/// time constant of a ship.
+/// Default cell width, s: short against every correlation time of weather and every time constant of a
+/// ship.
 pub(crate) const GRID: f64 = 0.1;
 
-/// The weather within one cell, linear in time.
+/// Weather within one cell, linear in time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WeatherCell {
     /// Beginning, s.
@@ -44,7 +44,7 @@ impl WeatherCell {
     }
 }
 
-/// A Gauss–Markov process at the points of the grid.
+/// Gauss–Markov process at the points of the grid.
 #[derive(Debug)]
 struct MarkovChain {
     rng: ChaCha8Rng,
@@ -65,7 +65,7 @@ impl MarkovChain {
     }
 }
 
-/// The weather of one run, entered cell by cell.
+/// Weather of one run, cell by cell.
 #[derive(Debug)]
 pub(crate) struct Weather {
     cell: WeatherCell,
@@ -78,7 +78,7 @@ pub(crate) struct Weather {
 }
 
 impl Weather {
-    /// The weather at the beginning of a run, in cells of `grid` s.
+    /// Weather at the beginning of a run, in cells of `grid` s.
     pub fn new(disturbances: &Disturbances, grid: f64, key: &StreamKey) -> Self {
         let gusting = disturbances.wind.and_then(|wind| wind.gusting);
         let mut weather = Self {
@@ -95,8 +95,7 @@ impl Weather {
             gusts: disturbances
                 .gusts
                 .map(|gusts| MarkovChain::new(gusts.sd, gusts.correlation_time, grid, key.rng(Purpose::Gust))),
-            gusting: gusting
-                .map(|own| MarkovChain::new(own.sd, own.correlation_time, grid, key.rng(Purpose::WindGust))),
+            gusting: gusting.map(|g| MarkovChain::new(g.sd, g.correlation_time, grid, key.rng(Purpose::WindGust))),
         };
         if disturbances.change() {
             weather.cell.end = grid;
@@ -108,13 +107,13 @@ impl Weather {
         weather
     }
 
-    /// The cell that is current.
+    /// Current cell.
     #[inline]
     pub fn cell(&self) -> &WeatherCell {
         &self.cell
     }
 
-    /// Makes the cell that follows the current one.
+    /// Advances to the next cell.
     pub fn enter_next(&mut self) {
         self.index += 1;
         let end = (self.index + 1) as f64 * self.cell.width;

@@ -56,7 +56,7 @@ pub struct ScenarioWire {
     /// Who gives the orders.
     #[serde(default)]
     pub helmsman: Helmsman,
-    /// How the ship comes to the first execute.
+    /// Approach of the ship to the first execute.
     #[serde(default)]
     pub approach: BeforeExecute,
     /// What the logger writes down, and when.

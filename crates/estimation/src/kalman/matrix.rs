@@ -1,27 +1,27 @@
-//! Small square matrices.
+//! Small square matrices of a fixed size.
 
 /// The unit matrix.
 pub fn identity<const N: usize>() -> [[f64; N]; N] {
     std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))))
 }
 
-/// A sum of matrices.
-pub fn sum<const N: usize>(one: &[[f64; N]; N], other: &[[f64; N]; N]) -> [[f64; N]; N] {
-    std::array::from_fn(|i| std::array::from_fn(|j| one[i][j] + other[i][j]))
+/// Sum of two matrices.
+pub fn sum<const N: usize>(left: &[[f64; N]; N], right: &[[f64; N]; N]) -> [[f64; N]; N] {
+    std::array::from_fn(|i| std::array::from_fn(|j| left[i][j] + right[i][j]))
 }
 
-/// A product of matrices of which the first has many zeros: nothing leads back from a ship to what disturbs it.
-pub fn product<const N: usize>(one: &[[f64; N]; N], other: &[[f64; N]; N]) -> [[f64; N]; N] {
+/// Product of two matrices; zeros of the first are skipped, because a disturbance drives the ship and not the reverse.
+pub fn product<const N: usize>(left: &[[f64; N]; N], right: &[[f64; N]; N]) -> [[f64; N]; N] {
     let mut result = [[0.0; N]; N];
-    for (result, one) in result.iter_mut().zip(one) {
-        for (one, other) in one.iter().zip(other).filter(|(one, _)| **one != 0.0) {
-            result.iter_mut().zip(other).for_each(|(result, other)| *result += one * other);
+    for (result, left) in result.iter_mut().zip(left) {
+        for (factor, right) in left.iter().zip(right).filter(|(factor, _)| **factor != 0.0) {
+            result.iter_mut().zip(right).for_each(|(result, right)| *result += factor * right);
         }
     }
     result
 }
 
-/// F P Fᵀ of a symmetric P.
+/// Congruence F P Fᵀ of a symmetric P.
 pub fn sandwich<const N: usize>(f: &[[f64; N]; N], p: &[[f64; N]; N]) -> [[f64; N]; N] {
     let half = product(f, p);
     let mut result = [[0.0; N]; N];

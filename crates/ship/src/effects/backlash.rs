@@ -1,21 +1,23 @@
-//! Play between the recorded and the acting rudder.
+//! Backlash (play) between the recorded and the acting rudder.
+//!
+//! Source: the play operator of Krasnosel'skii and Pokrovskii (1989), Systems with Hysteresis.
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::angle::DEGREE;
 use estimation::number::Real;
 
-/// Backlash of half-width g: the acting rudder follows only when the recorded one has taken up the play, so it stays
-/// within ±g of it. The other form of the effect, a dead band, is a row of the list.
+/// Backlash of half-width g: the acting rudder stays within ±g of the recorded one and moves only when the play is
+/// taken up. The other form of the effect, a dead band, is a row of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Backlash;
 
 impl Backlash {
-    /// The half-width g, rad.
+    /// Half-width g, rad.
     pub(super) const HALF_WIDTH: Parameter = Parameter::even(["g", "g", "rad"], [0.0, 0.012], [0.0, 0.15]);
 
-    /// Mean, standard deviation and largest value of g, rad.
-    pub(super) fn prior(about: &Manoeuvres) -> [f64; 3] {
-        [0.0, 0.12 * about.rudder, 0.5 * about.rudder]
+    /// Prior mean, standard deviation and largest value of g, rad.
+    pub(super) fn prior(records: &Manoeuvres) -> [f64; 3] {
+        [0.0, 0.12 * records.rudder, 0.5 * records.rudder]
     }
 }
 
@@ -29,8 +31,8 @@ impl Effect for Backlash {
         }
     }
 
-    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let ([mean, sd, largest], g) = (Self::prior(about), Self::HALF_WIDTH);
+    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
+        let ([mean, sd, largest], g) = (Self::prior(records), Self::HALF_WIDTH);
         Some(Proposal::new(*self, [Prior::normal(&g, mean, sd).within([0.0, largest.min(g.highest)])]))
     }
 
@@ -48,7 +50,7 @@ impl<R: Real> Acts<R> for Backlash {
         z.fill(now.rudder);
     }
 
-    /// While the rudder is monotone the play operator is a clamp of where it was, which is exact within a step.
+    /// Play operator: for a monotone rudder the previous angle clamped to [δ − g, δ + g], which is exact within a step.
     fn rudder(&self, p: &[R], z: &[R], rudder: R) -> R {
         let g = p[0].at_least(0.0);
         z[0].between(rudder - g, rudder + g)

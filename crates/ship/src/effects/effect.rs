@@ -1,4 +1,4 @@
-//! What every effect is: its parameters, where it acts, what it does, and how it is looked for in records.
+//! Interface of an effect: its description, its equations, and its prior in given records.
 
 use std::fmt;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use crate::dynamics::{Measured, Regressor};
 use crate::number::Tangent;
 use crate::particulars::{self, Dimension};
 
-/// One parameter of an effect or of the base.
+/// Parameter of an effect or of the base model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
     /// Name in files: letters, digits and underscores.
@@ -19,26 +19,26 @@ pub struct Parameter {
     pub symbol: &'static str,
     /// Unit, in SI and radians.
     pub unit: &'static str,
-    /// Value at which the effect is absent (for the others of the same effect: where a search may start).
+    /// Neutral value, at which the effect is absent; of a shape parameter, the start of a search.
     pub neutral: f64,
-    /// A typical size, for scaling and for tests.
+    /// Typical value, for scaling and for tests.
     pub typical: f64,
     /// Smallest physical value.
     pub lowest: f64,
     /// Largest physical value.
     pub highest: f64,
-    /// Whether the parameter changes sign when port and starboard are exchanged.
+    /// `true` if the parameter changes sign when port and starboard are exchanged.
     pub odd: bool,
-    /// How it stands in a scenario file; `None` where none has it.
+    /// Key in a scenario file; `None` for a parameter that no scenario has.
     pub file: Option<FileNumber>,
 }
 
 impl Parameter {
-    /// The unit of a parameter whose dimension is not known: it cannot be brought to another scale.
+    /// Unit of a parameter of unknown dimension, which cannot be scaled to another ship.
     pub const NO_UNIT: &'static str = "SI";
 
-    /// A parameter that stays the same when port and starboard are exchanged: key, symbol and unit; neutral and typical
-    /// value; smallest and largest.
+    /// Parameter that keeps its sign when port and starboard are exchanged, from key, symbol and unit, neutral and
+    /// typical value, smallest and largest value.
     pub const fn even(
         [key, symbol, unit]: [&'static str; 3],
         [neutral, typical]: [f64; 2],
@@ -47,30 +47,29 @@ impl Parameter {
         Self { key, symbol, unit, neutral, typical, lowest, highest, odd: false, file: None }
     }
 
-    /// The same for one that changes its sign then.
-    pub const fn odd(words: [&'static str; 3], sizes: [f64; 2], ends: [f64; 2]) -> Self {
-        Self { odd: true, ..Self::even(words, sizes, ends) }
+    /// Parameter that changes its sign then.
+    pub const fn odd(names: [&'static str; 3], values: [f64; 2], range: [f64; 2]) -> Self {
+        Self { odd: true, ..Self::even(names, values, range) }
     }
 
-    /// The same with what a scenario file has for it: a number that cannot be left out, its key and the size of its
-    /// unit in SI.
+    /// Parameter with its key in a scenario file, where it is required, and the size of its unit in SI.
     pub(super) const fn in_file(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
         Self { file: Some(FileNumber { key, unit, meaning, role: FileRole::Value, default: None }), ..self }
     }
 
-    /// The same in another role.
+    /// Parameter with another role in the scenario file.
     pub(super) const fn in_role(self, role: FileRole) -> Self {
         let Some(number) = self.file else { return self };
         Self { file: Some(FileNumber { role, ..number }), ..self }
     }
 
-    /// The same with a number that holds where the file has none.
+    /// Parameter with a default in the scenario file.
     pub(super) const fn by_default(self, default: f64) -> Self {
         let Some(number) = self.file else { return self };
         Self { file: Some(FileNumber { default: Some(default), ..number }), ..self }
     }
 
-    /// Whether its dimension is not known.
+    /// `true` if its dimension is unknown.
     pub fn has_no_unit(&self) -> bool {
         self.unit == Self::NO_UNIT
     }
@@ -80,13 +79,13 @@ impl Parameter {
         particulars::dimension(self.unit)
     }
 
-    /// Whether a value lies within the physical range.
+    /// `true` if a value lies within the physical range.
     pub fn holds(&self, value: f64) -> bool {
         (self.lowest..=self.highest).contains(&value)
     }
 }
 
-/// The instant at which an effect is evaluated.
+/// Operating point at which an effect is evaluated.
 #[derive(Debug, Clone, Copy)]
 pub struct Now<'a, R = f64> {
     /// Time, s, on the clock of the record.
@@ -95,13 +94,13 @@ pub struct Now<'a, R = f64> {
     pub heading: R,
     /// Yaw rate r, rad/s.
     pub yaw_rate: R,
-    /// Rudder that acts after every transformation, without δ_r, rad.
+    /// Acting rudder after every transformation, without δ_r, rad.
     pub rudder: R,
     /// a = 1/T at approach speed, 1/s.
     pub inverse_time: R,
     /// b = K/T at approach speed, 1/s².
     pub gain: R,
-    /// Channels that were measured.
+    /// Measured channels.
     pub measured: &'a Measured,
 }
 
@@ -115,7 +114,7 @@ pub struct Scale<R = f64> {
 }
 
 impl<R: Real> Scale<R> {
-    /// Leaves damping and gain as they are.
+    /// Factors of one.
     pub fn none() -> Self {
         Self { damping: R::from(1.0), gain: R::from(1.0) }
     }
@@ -130,10 +129,10 @@ pub struct SwayCoupling<R = f64> {
     pub rudder_time: R,
 }
 
-/// Where an effect acts beside its own states; the other places need not be asked.
+/// Quantities on which an effect acts beside its own states; the others are not evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Places {
-    /// It changes the rudder that acts.
+    /// It transforms the acting rudder.
     pub rudder: bool,
     /// It scales damping and gain.
     pub scale: bool,
@@ -142,140 +141,141 @@ pub struct Places {
 }
 
 impl Places {
-    /// In none of these places.
+    /// None of these.
     pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
-    /// In the rudder.
+    /// Acting rudder.
     pub const RUDDER: Self = Self { rudder: true, ..Self::NONE };
-    /// In damping and gain.
+    /// Damping and gain.
     pub const SCALE: Self = Self { scale: true, ..Self::NONE };
-    /// In the yaw acceleration.
+    /// Yaw acceleration.
     pub const MOMENT: Self = Self { moment: true, ..Self::NONE };
 }
 
-/// What an effect is called, and its parameters.
+/// Description of an effect: identifier, form, equation and parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Description {
-    /// Fixed identifier, shared by all forms of the effect.
+    /// Identifier, shared by all forms of the effect; fixed in files.
     pub id: &'static str,
-    /// Which form of the effect this is, in words ("r³", "dead time").
+    /// Form of the effect ("r³", "dead time"); fixed in files.
     pub form: &'static str,
-    /// The equation, for reports.
+    /// Equation for reports.
     pub equation: &'static str,
-    /// The parameters, in the order in which their values travel.
+    /// Parameters, in the order of their values.
     pub parameters: &'static [Parameter],
 }
 
-/// Something a first-order response lacks: what it is. What it does is said by [`Acts`].
+/// Effect that a first-order response lacks. Its equations are in [`Acts`].
 ///
-/// `p` is always the effect's own parameters.
+/// `p` has the values of its parameters.
 pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
-    /// What it is called, and its parameters.
+    /// Description: identifier, form, equation and parameters.
     fn description(&self) -> Description;
 
-    /// Fixed identifier, shared by all forms of the effect.
+    /// Identifier, shared by all forms of the effect; fixed in files.
     fn id(&self) -> &'static str {
         self.description().id
     }
 
-    /// Which form of the effect this is, in words ("r³", "dead time").
+    /// Form of the effect ("r³", "dead time"); fixed in files.
     fn form(&self) -> &'static str {
         self.description().form
     }
 
-    /// The equation, for reports.
+    /// Equation for reports.
     fn equation(&self) -> &'static str {
         self.description().equation
     }
 
-    /// The parameters, in the order in which their values travel.
+    /// Parameters, in the order of their values.
     fn parameters(&self) -> &'static [Parameter] {
         self.description().parameters
     }
 
-    /// How its parameters stand in a scenario file; `None` of a form that needs a measured record.
+    /// Keys of its parameters in a scenario file; `None` for a form that needs a measured record.
     fn in_file(&self) -> Option<Vec<FileNumber>> {
         self.parameters().iter().map(|parameter| parameter.file).collect()
     }
 
-    /// The measured channel it needs; without it the effect is silent.
+    /// Measured channel that it requires; without it the effect is zero.
     fn needs(&self) -> Option<Regressor> {
         None
     }
 
-    /// Whether it takes a measured channel into account where there is one.
+    /// `true` if it uses a measured channel where there is one.
     fn uses(&self, channel: Regressor) -> bool {
         self.needs() == Some(channel)
     }
 
-    /// How it is looked for in records of these manoeuvres; `None` where they cannot hold it, as without its channel.
-    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal>;
+    /// Candidate effect with its priors in records of these manoeuvres; `None` where it is not identifiable from them,
+    /// as without its channel.
+    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal>;
 
-    /// Where it acts.
+    /// Quantities on which it acts.
     fn places(&self) -> Places;
 
-    /// Number of own states.
+    /// Number of its states.
     fn states(&self) -> usize {
         0
     }
 
-    /// Numbers it takes from a record and holds fixed (approach speed, first time), each with its dimension: with its
-    /// form they say which effect it is.
+    /// Fixed constants from a record (approach speed, first time), each with its dimension; together with identifier
+    /// and form they define the effect.
     fn constants(&self) -> Vec<(f64, Dimension)> {
         Vec::new()
     }
 
-    /// The same effect with as many other numbers; `None` of one that takes none.
+    /// Effect with other constants, as many as before; `None` for an effect without constants.
     fn with_constants(&self, _constants: &[f64]) -> Option<Arc<dyn Effect>> {
         None
     }
 
-    /// Whether it is a moment that depends on time alone. It then belongs to one record and says nothing of another.
+    /// `true` for a moment that depends on time alone; it then belongs to one record and does not apply to others.
     fn is_of_time(&self) -> bool {
         false
     }
 
-    /// Whether wind, waves or another moment from outside make it, so that a calm is without it.
+    /// `true` for an effect of wind, waves or another external moment, which is absent in a calm.
     fn is_of_weather(&self) -> bool {
         false
     }
 
-    /// Whether one of its parameters is an instant, which has as many places as a record is long.
+    /// `true` if one of its parameters is an instant of the record.
     fn has_instant(&self) -> bool {
         false
     }
 
-    /// Whether it depends on the heading, so that a turned record is another one.
+    /// `true` if it depends on the absolute heading, so that a rotated record gives another response.
     fn sees_heading(&self) -> bool {
         false
     }
 
-    /// Whether it is random: noise on the heading that is seen, and no part of the response.
+    /// `true` if it is random: noise on the observed heading, and no part of the response.
     fn is_random(&self) -> bool {
         let typical: Vec<f64> = self.parameters().iter().map(|parameter| parameter.typical).collect();
         self.random_heading(&typical).is_some()
     }
 
-    /// Spectrum of a random heading that is added to the one seen; the deterministic part of the response ignores it.
+    /// Spectrum of a random heading that is added to the observed one; the deterministic response ignores it.
     fn random_heading(&self, _p: &[f64]) -> Option<crate::narrow_band::NarrowBand> {
         None
     }
 
-    /// Shortest time constant the effect brings in, s: what a step has to resolve.
+    /// Shortest time constant of the effect, s, which steps must resolve.
     fn shortest_time(&self, _p: &[f64]) -> f64 {
         f64::INFINITY
     }
 
-    /// Span of time, s, in which steps have to resolve that time; outside of it nothing happens so fast.
+    /// Time span, s, in which steps must resolve that time constant.
     fn fast_span(&self, _p: &[f64]) -> [f64; 2] {
         [f64::NEG_INFINITY, f64::INFINITY]
     }
 }
 
-/// What an effect does, written once for every kind of number.
+/// Equations of an effect, for every number type.
 ///
-/// `p` is always the effect's own parameters, `z` its own states.
+/// `p` has the values of its parameters, `z` its states.
 pub trait Acts<R: Real> {
-    /// Own states on a straight approach.
+    /// States on a straight approach.
     fn approach(&self, _p: &[R], _now: &Now<R>, z: &mut [R]) {
         z.fill(R::from(0.0));
     }
@@ -285,15 +285,15 @@ pub trait Acts<R: Real> {
         R::from(0.0)
     }
 
-    /// The rudder that acts, from the one before this effect, rad.
+    /// Acting rudder after this effect, from the rudder before it, rad.
     fn rudder(&self, _p: &[R], _z: &[R], rudder: R) -> R {
         rudder
     }
 
-    /// Rates of own states; `before` is the rudder before this effect, rad.
+    /// Rates of its states; `before` is the rudder before this effect, rad.
     fn rates(&self, _p: &[R], _z: &[R], _now: &Now<R>, _before: R, _rate: &mut [R]) {}
 
-    /// Update of memory that is not a differential equation, once a step.
+    /// Update of memory that follows no differential equation, once a step.
     fn settle(&self, _p: &[R], _z: &mut [R], _before: R) {}
 
     /// Factors on damping and gain.
@@ -306,15 +306,15 @@ pub trait Acts<R: Real> {
         R::from(0.0)
     }
 
-    /// Second time constants, for the one effect that raises the order of the response.
+    /// Time constants of the second order, for the effect that raises the order of the response.
     fn sway_coupling(&self, _p: &[R]) -> Option<SwayCoupling<R>> {
         None
     }
 }
 
-/// A number in which effects can be asked what they do.
+/// Number type in which the equations of effects can be evaluated.
 pub trait EffectReal: Real {
-    /// What an effect does, in this kind of number.
+    /// Equations of an effect in this number type.
     fn acts(effect: &dyn Effect) -> &dyn Acts<Self>;
 }
 
@@ -332,15 +332,14 @@ impl EffectReal for Tangent {
     }
 }
 
-/// The manoeuvres of some records in numbers, from which a proposal follows.
+/// Scales of the manoeuvres in given records, from which priors follow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Manoeuvres {
-    /// The time in which the ship sails its length, L/U, s; where these are not known (K/T)^(−1/2) of the base, about
-    /// that.
+    /// Ship-length time L/U, s; where length or speed is unknown, (K/T)^(−1/2) of the base, which is of that order.
     pub time: f64,
     /// Largest rudder angle, rad.
     pub rudder: f64,
-    /// Longest record, s.
+    /// Duration of the longest record, s.
     pub duration: f64,
     /// Usual time between rows, s.
     pub spacing: f64,
@@ -356,77 +355,77 @@ pub struct Manoeuvres {
     pub span: [f64; 2],
 }
 
-/// What is expected of one parameter of an effect before any record is seen.
+/// Prior of one parameter of an effect: a normal or a uniform distribution on a range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prior {
-    /// Expected value, where a fit starts.
+    /// Prior mean, the start of a fit.
     pub mean: f64,
-    /// Standard deviation; infinite for a parameter that may be anything within its range, zero for one that is not
-    /// fitted.
+    /// Standard deviation; infinite for a uniform distribution on the range, zero for a parameter that is not fitted.
     pub sd: f64,
     /// Smallest value.
     pub lowest: f64,
     /// Largest value.
     pub highest: f64,
-    /// Whether it only shapes the effect and means nothing once the others are neutral.
+    /// `true` for a shape parameter, which has no meaning where the amplitudes are neutral.
     pub is_shape: bool,
-    /// The parameter of the same effect that it is counted from: value and prior are those of the difference.
+    /// Index of the parameter of the same effect from which it is measured: value and prior are those of the
+    /// difference.
     pub beside: Option<usize>,
 }
 
 impl Prior {
-    /// A normal law within the physical range of a parameter.
+    /// Normal distribution truncated to the physical range of a parameter.
     pub fn normal(parameter: &Parameter, mean: f64, sd: f64) -> Self {
         let Parameter { lowest, highest, .. } = *parameter;
         Self { mean: mean.clamp(lowest, highest), sd, lowest, highest, is_shape: false, beside: None }
     }
 
-    /// Any value of a range, equally likely.
+    /// Uniform distribution on a range, for a shape parameter.
     pub fn uniform([lowest, highest]: [f64; 2]) -> Self {
         let mean = 0.5 * (lowest + highest);
         Self { mean, sd: f64::INFINITY, lowest, highest, is_shape: true, beside: None }
     }
 
-    /// A value that is not fitted.
+    /// Fixed value.
     pub fn fixed(value: f64) -> Self {
         Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, beside: None }
     }
 
-    /// The same in another range. A record may set an end beyond the other one: the lowest value holds then.
+    /// Prior truncated to another range. Where a record sets the upper end below the lower one, the lower one holds.
     #[must_use]
     pub fn within(self, [lowest, highest]: [f64; 2]) -> Self {
         let highest = highest.max(lowest);
         Self { lowest, highest, mean: self.mean.clamp(lowest, highest), ..self }
     }
 
-    /// The same for a parameter that only shapes the effect.
+    /// Prior of a shape parameter.
     #[must_use]
     pub fn shape(self) -> Self {
         Self { is_shape: true, ..self }
     }
 
-    /// Whether it is fitted.
+    /// `true` if it is fitted.
     pub fn is_fitted(&self) -> bool {
         self.sd > 0.0
     }
 }
 
-/// An effect that records may lack, with its constants from the records.
+/// Candidate effect with its constants from the records, and its priors.
 #[derive(Debug, Clone)]
 pub struct Proposal {
-    /// The effect.
+    /// Effect.
     pub effect: Arc<dyn Effect>,
-    /// What is expected of every parameter.
+    /// Prior of every parameter.
     pub priors: Vec<Prior>,
 }
 
 impl Proposal {
-    /// An effect with its priors.
+    /// Effect with its priors.
     pub fn new(effect: impl Effect + 'static, priors: impl Into<Vec<Prior>>) -> Self {
         Self { effect: Arc::new(effect), priors: priors.into() }
     }
 
-    /// An effect of one parameter with a normal law about its neutral value.
+    /// Effect of one parameter, with a normal prior about its neutral value.
     pub fn of_one(effect: impl Effect + 'static, sd: f64) -> Self {
         let parameter = &effect.parameters()[0];
         let prior = Prior::normal(parameter, parameter.neutral, sd);

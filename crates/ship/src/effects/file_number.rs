@@ -1,36 +1,36 @@
-//! How a parameter of an effect stands in a scenario file.
+//! Parameters of effects in a scenario file: keys, units and conversion.
 
 use crate::angle::DEGREE;
 
-/// The inverse of a degree.
+/// Inverse of a degree, 1/rad.
 pub(super) const PER_DEGREE: f64 = 1.0 / DEGREE;
 
-/// The inverse of a square degree.
+/// Inverse of a square degree, 1/rad².
 pub(super) const PER_DEGREE_SQUARED: f64 = PER_DEGREE * PER_DEGREE;
 
-/// The number behind a parameter in a scenario file.
+/// Entry of a parameter in a scenario file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FileNumber {
-    /// Its key below the effect, which ends in the unit.
+    /// Key below the effect, which ends in the unit.
     pub key: &'static str,
     /// Size of that unit in SI and radians.
     pub unit: f64,
-    /// What it means.
+    /// Meaning, for the reference of keys.
     pub meaning: &'static str,
-    /// What the parameter is of it.
+    /// Conversion from the entry to the parameter.
     pub role: FileRole,
-    /// What holds when it is left out; `None` of a number that cannot be.
+    /// Default; `None` for a required entry.
     pub default: Option<f64>,
 }
 
-/// What a parameter is of the number in the file.
+/// Conversion from an entry of a scenario file to a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileRole {
-    /// The number.
+    /// The entry itself.
     Value,
-    /// The number over T: files write T r' + r, models r'.
+    /// Entry over T: files write T r' + r, models r'.
     OverT,
-    /// With the parameter before, a strength and the direction ψ_w it comes from: strength sin 2(ψ_w − ψ) by its parts
-    /// along cos 2ψ and sin 2ψ.
+    /// Direction ψ_w of a strength that is the entry before: strength sin 2(ψ_w − ψ), whose components along cos 2ψ and
+    /// sin 2ψ are the two parameters.
     Direction,
 }

@@ -1,12 +1,12 @@
-//! What comes, goes or changes at an instant: ½ [1 + tanh((t − t₀)/w)] with a narrow edge, so that t₀ can be fitted.
+//! Smooth step at an instant: ½ [1 + tanh((t − t₀)/w)] with a narrow edge w, so that t₀ can be fitted.
 
 use super::effect::Parameter;
 
-/// The instant t₀, s.
+/// Instant t₀, s.
 pub const INSTANT: Parameter = Parameter::even(["t_0", "t₀", "s"], [100.0, 100.0], [-1e7, 1e7]);
 
 /// Width w of an edge, in rows.
 pub const EDGE_ROWS: f64 = 2.0;
 
-/// Widths beyond an instant at which tanh is one to 10⁻¹³.
+/// Distance from an instant, in widths, at which tanh is 1 to 10⁻¹³.
 pub const REACH: f64 = 15.0;

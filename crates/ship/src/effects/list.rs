@@ -1,5 +1,5 @@
-//! The list of effects, in the order of reports. What is algebra in the signals is a row; what has memory or states is
-//! written in Rust.
+//! List of effects, in the order of reports. An effect that is algebraic in the signals is a row with a formula; one
+//! with memory or states is written in Rust.
 
 use std::sync::{Arc, LazyLock};
 
@@ -16,20 +16,20 @@ use super::wave_yaw::WaveYaw;
 use crate::angle::DEGREE;
 use ListedEffect::{Row, Rust};
 
-/// An effect of the list in one of its forms.
+/// Entry of the list: one effect in one form.
 pub(super) enum ListedEffect {
-    /// Written as a formula.
+    /// Effect written as a formula.
     Row(ListedFormula),
-    /// Written in Rust.
+    /// Effect written in Rust.
     Rust(fn() -> Arc<dyn Effect>),
 }
 
-/// A row: identifier, form and equation for people; where it acts and the formula; its constants in the order in which
-/// the formula names them, with what a scenario file has for each; mean, standard deviation and largest value of these
-/// in records of some manoeuvres.
+/// Row: identifier, form and equation; the quantity on which it acts, and the formula; its parameters in the order in
+/// which the formula names them, with their keys in scenario files; their prior (mean, standard deviation and largest
+/// value) in given records.
 ///
-/// At [`Places::RUDDER`] the formula is the angle that acts, from `delta` alone, rad; at [`Places::MOMENT`] a yaw
-/// acceleration, rad/s²: `K_over_T` times a moment as an angle of the rudder.
+/// At [`Places::RUDDER`] the formula is the acting rudder, from `delta` alone, rad; at [`Places::MOMENT`] a yaw
+/// acceleration, rad/s²: `K_over_T` times a moment as equivalent rudder angle.
 const fn row(
     [id, form, equation]: [&'static str; 3],
     acts: Places,
@@ -41,7 +41,7 @@ const fn row(
     Row(ListedFormula { description, acts, formula, prior, of_weather: false })
 }
 
-/// The row of a moment that the weather makes.
+/// Row of a moment of the weather.
 const fn weather(
     [id, form, equation]: [&'static str; 3],
     formula: &'static str,
@@ -52,10 +52,10 @@ const fn weather(
     Row(ListedFormula { description, acts: Places::MOMENT, formula, prior, of_weather: true })
 }
 
-/// No largest value but that of the parameter.
-const ANY: f64 = f64::INFINITY;
+/// Largest value of a prior that is limited by the range of the parameter alone.
+const UNBOUNDED: f64 = f64::INFINITY;
 
-/// The list. The order of factors in a formula is that with which numbers were published.
+/// List of effects. The order of factors in a formula is part of the published numbers to the last bit.
 #[rustfmt::skip]
 pub(super) static LIST: [ListedEffect; 22] = [
     Rust(|| Arc::new(SecondOrder)),
@@ -67,22 +67,22 @@ pub(super) static LIST: [ListedEffect; 22] = [
         Places::MOMENT, "-n3_over_T * r * r * r",
         &[Parameter::even(["n3_over_T", "n₃/T", "s/rad²"], [0.0, 40.0], [0.0, 1e7])
             .in_file("n3-s2-per-deg2", PER_DEGREE_SQUARED, "+ n3 r³ on the left (Norrbin, Bech).").in_role(OverT)],
-        |about| Some([0.0, 8.0 * about.time, ANY])),
+        |records| Some([0.0, 8.0 * records.time, UNBOUNDED])),
     row(["nonlinear_damping", "r|r|", "T r' + r + n₂ r|r| = K (δ + δ_r)"],
         Places::MOMENT, "-n2_over_T * r * abs(r)",
         &[Parameter::even(["n2_over_T", "n₂/T", "1/rad"], [0.0, 0.7], [0.0, 1e4])
             .in_file("n2-s-per-deg", PER_DEGREE, "+ n2 r|r| on the left.").in_role(OverT)],
-        |_| Some([0.0, 1.2, ANY])),
+        |_| Some([0.0, 1.2, UNBOUNDED])),
     row(["nonlinear_damping", "r²", "T r' + r + n₁₁ r² = K (δ + δ_r)"],
         Places::MOMENT, "-n11_over_T * r * r",
         &[Parameter::odd(["n11_over_T", "n₁₁/T", "1/rad"], [0.0, 0.2], [-1e3, 1e3])
             .in_file("n11-s-per-deg", PER_DEGREE, "+ n11 r² on the left.").in_role(OverT)],
-        |_| Some([0.0, 0.4, ANY])),
-    // The moment of a moderate wind is that of 0.025 rad of rudder.
+        |_| Some([0.0, 0.4, UNBOUNDED])),
+    // A moderate wind has the moment of 0.025 rad of rudder.
     weather(["wind_moment", "measured wind", "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)"],
         "K_over_T * c_w * wind_speed * wind_speed * sin(wind_angle)",
         &[Parameter::even(["c_w", "c_w", "rad s²/m²"], [0.0, 0.01], [-10.0, 10.0])],
-        |about| Some([0.0, 0.05 / about.wind_square?, ANY])),
+        |records| Some([0.0, 0.05 / records.wind_square?, UNBOUNDED])),
     // w sin 2(ψ_w − ψ): steady wind of unknown strength and direction.
     weather(["wind_moment", "steady wind", "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)"],
         "K_over_T * (w_c * cos(2 * psi) + w_s * sin(2 * psi))",
@@ -90,7 +90,7 @@ pub(super) static LIST: [ListedEffect; 22] = [
             .in_file("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
           Parameter::even(["w_s", "w_s", "rad"], [0.0, 0.02], [-0.6, 0.6])
             .in_file("from-deg", DEGREE, "Direction the wind comes from, clockwise from north.").in_role(Direction)],
-        |_| Some([0.0, 0.025, ANY])),
+        |_| Some([0.0, 0.025, UNBOUNDED])),
     Rust(|| Arc::new(SpeedLoss::Modelled)),
     Rust(|| Arc::new(SpeedLoss::Measured { approach_speed: 1.0 })),
     Rust(|| Arc::new(SpeedLoss::Inflow { approach_speed: 1.0, approach_rate: 1.0 })),
@@ -104,19 +104,19 @@ pub(super) static LIST: [ListedEffect; 22] = [
         Places::RUDDER, "delta - c3 * delta * delta * delta",
         &[Parameter::even(["c3", "c₃", "1/rad²"], [0.0, 0.5], [-2.0, 5.0])
             .in_file("c3-per-deg2", PER_DEGREE_SQUARED, "Coefficient c3.")],
-        |about| Some([0.0, 0.4, (about.rudder * about.rudder * 3.0).recip()])),
+        |records| Some([0.0, 0.4, (records.rudder * records.rudder * 3.0).recip()])),
     Rust(|| Arc::new(Backlash)),
     // Angles below g do not act, larger ones act less g.
     row(["rudder_deadband", "dead band", "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)"],
         Places::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))",
         &[Backlash::HALF_WIDTH.in_file("dead-band-deg", DEGREE, "Width of a dead band.")],
-        |about| Some(Backlash::prior(about))),
+        |records| Some(Backlash::prior(records))),
     // The gain is 1 + a to starboard and 1 − a to port.
     row(["port_starboard_asymmetry", "gain by side", "T r' + r = K (δ + a |δ| + δ_r)"],
         Places::RUDDER, "delta + a * abs(delta)",
         &[Parameter::odd(["a", "a", "1"], [0.0, 0.05], [-0.8, 0.8])
             .in_file("gain-share", 1.0, "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard.")],
-        |_| Some([0.0, 0.12, ANY])),
+        |_| Some([0.0, 0.12, UNBOUNDED])),
     // A moment that is even in the yaw rate, and so in the drift that goes with it. A rudder whose inflow is
     // straightened differently on either side has it (Yasukawa and Yoshimura 2015, γ_R).
     row(["port_starboard_asymmetry", "moment by drift", "T r' + r = K (δ + c_r |r| + δ_r)"],
@@ -124,13 +124,13 @@ pub(super) static LIST: [ListedEffect; 22] = [
         &[Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])
             .in_file("moment-by-drift-s", 1.0,
                      "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn.")],
-        |about| Some([0.0, 0.1 * about.time, ANY])),
+        |records| Some([0.0, 0.1 * records.time, UNBOUNDED])),
     // The start of a record keeps the trend apart from δ_r.
     weather(["moment_drift", "linear trend", "T r' + r = K (δ + δ_r + m (t − t₀))"],
         "K_over_T * m * (t - start)",
         &[Parameter::odd(["m", "m", "rad/s"], [0.0, 7e-5], [-0.01, 0.01])
             .in_file("rudder-deg-per-s", DEGREE, "Change of the moment, as rudder angle.")],
-        |about| Some([0.0, 0.02 / about.duration, ANY])),
+        |records| Some([0.0, 0.02 / records.duration, UNBOUNDED])),
     Rust(|| Arc::new(TransientDisturbance::Passing)),
     Rust(|| Arc::new(TransientDisturbance::Lasting { edge: 1.0 })),
     Rust(|| Arc::new(WaveYaw)),
@@ -139,10 +139,10 @@ pub(super) static LIST: [ListedEffect; 22] = [
     row(["sway_coupling_measured", "measured sway", "T r' + r = K (δ + δ_r + c_v q v), q = U/U₀"],
         Places::MOMENT, "K_over_T * c_v * (q * v)",
         &[Parameter::even(["c_v", "c_v", "rad s/m"], [0.0, 0.1], [-100.0, 100.0])],
-        |about| about.sway.map(|speed| [-3.0 / speed, 1.5 / speed, ANY])),
+        |records| records.sway.map(|speed| [-3.0 / speed, 1.5 / speed, UNBOUNDED])),
 ];
 
-/// What the effects are that a scenario can add.
+/// Meanings of the effects that a scenario can add.
 const MEANINGS: [(&str, &str); 11] = [
     ("second_order", "Sway coupling: T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ'"),
     ("nonlinear_damping", "Damping that grows with the yaw rate"),
@@ -158,8 +158,8 @@ const MEANINGS: [(&str, &str); 11] = [
 ];
 
 static ALL: LazyLock<Vec<Arc<dyn Effect>>> = LazyLock::new(|| {
-    let made = |own: &ListedEffect| -> Arc<dyn Effect> {
-        match own {
+    let made = |listed: &ListedEffect| -> Arc<dyn Effect> {
+        match listed {
             Row(row) => Arc::new(Formula::listed(row)),
             Rust(make) => make(),
         }
@@ -169,24 +169,24 @@ static ALL: LazyLock<Vec<Arc<dyn Effect>>> = LazyLock::new(|| {
 
 /// Every effect in every form, in the order of reports.
 ///
-/// Forms that need a constant of the record have it at a neutral value: approach speed 1 m/s, propeller 1/s, first time
+/// Constants of the record are at their neutral values: approach speed 1 m/s, propeller 1/s, first time
 /// 0, edge of a lasting moment 1 s.
 pub fn all() -> Vec<Arc<dyn Effect>> {
     ALL.clone()
 }
 
-/// What an effect is, without a full stop; empty of one that no scenario can add.
+/// Meaning of an effect, without a full stop; empty for one that no scenario can add.
 pub fn meaning(id: &str) -> &'static str {
     MEANINGS.iter().find(|(other, _)| *other == id).map_or("", |(_, meaning)| meaning)
 }
 
-/// The effect of the list with this identifier and form.
+/// Effect of the list with this identifier and form.
 ///
 /// # Panics
-/// When there is none: a mistake of the caller, not of a user.
+/// If there is none: a mistake of the caller, not of a user.
 pub fn listed(id: &str, form: &str) -> Arc<dyn Effect> {
-    let found = ALL.iter().find(|effect| (effect.id(), effect.form()) == (id, form));
-    Arc::clone(found.unwrap_or_else(|| panic!("no effect of the list is {id} ({form})")))
+    let effect = ALL.iter().find(|effect| (effect.id(), effect.form()) == (id, form));
+    Arc::clone(effect.unwrap_or_else(|| panic!("no effect of the list is {id} ({form})")))
 }
 
 #[cfg(test)]

@@ -1,11 +1,13 @@
-//! Effects a first-order response lacks: rows of formulas in one list, and a file each for those with memory or states.
+//! Effects that a first-order response lacks: formulas in one list, and a file for each effect with memory or states.
 //!
-//! An effect is structure only: its parameters travel beside it as a slice in the order of [`Effect::parameters`]. The
+//! An effect is structure only; its parameter values are a separate slice in the order of [`Effect::parameters`]. The
 //! same effect simulates an undeclared influence and is a candidate when a residual is traced. With all parameters at
-//! their neutral value a model with the effect is the model without it.
+//! their neutral values, a model with the effect equals the model without it.
 //!
-//! An effect may act in five places, all optional: it can transform the rudder that acts (with memory), add states,
-//! scale damping and gain, add a yaw acceleration, and add to the heading that is seen. To add one: a row of `list.rs`.
+//! An effect can transform the acting rudder (with memory), add states, scale damping and gain, add a yaw acceleration,
+//! and add to the observed heading; all are optional. To add an effect, add a row to `list.rs`.
+//!
+//! The sources of an effect stand beside its equation.
 
 mod backlash;
 mod effect;
@@ -37,10 +39,10 @@ use std::sync::Arc;
 
 use crate::particulars::Dimension;
 
-/// The effect of a line `name = formula`, with `; k about 5` or `; k from 1 to 20` behind it for a constant of which
-/// something is known.
+/// Effect of a line `name = formula`, optionally followed by expectations of constants, `; k about 5` or
+/// `; k from 1 to 20`.
 ///
-/// Fails with the place and what was expected there, and for the name of an effect of the list.
+/// Fails with the position and what was expected there, and for the name of an effect of the list.
 pub fn formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
     let formula = Formula::read(line)?;
     if all().iter().any(|effect| effect.id() == formula.id()) {
@@ -50,38 +52,38 @@ pub fn formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
     Ok(formula)
 }
 
-/// The effect with this identifier, form and constants ([`Effect::constants`]); `None` where there is none, or one that
-/// has other constants. An identifier that is not on the list is that of a formula, which its form holds.
+/// Effect with this identifier, form and constants ([`Effect::constants`]); `None` if there is none, or if the number
+/// of constants differs. An identifier that is not on the list belongs to a formula, whose text is the form.
 ///
-/// A constant whose neutral value is positive is positive: an approach speed (m/s), a rate of the propeller (1/s), a
-/// length (m), an edge (s).
+/// A constant with a positive neutral value must be positive: an approach speed (m/s), a propeller rate (1/s), a length
+/// (m), an edge (s).
 pub fn named(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>> {
     let listed: Vec<Arc<dyn Effect>> = all().into_iter().filter(|effect| effect.id() == id).collect();
-    let known = match listed.is_empty() {
+    let effect = match listed.is_empty() {
         true => Formula::named(id, form).ok()?,
         false => listed.into_iter().find(|effect| effect.form() == form)?,
     };
-    let neutral = known.constants();
+    let neutral = effect.constants();
     let can_be =
         |((neutral, _), value): (&(f64, Dimension), &f64)| value.is_finite() && (*value > 0.0 || *neutral == 0.0);
     if neutral.len() != constants.len() || !neutral.iter().zip(constants).all(can_be) {
         return None;
     }
-    if constants.is_empty() { Some(known) } else { known.with_constants(constants) }
+    if constants.is_empty() { Some(effect) } else { effect.with_constants(constants) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// What is written down of an effect is enough to have it again.
+    /// Identifier, form and constants restore an effect.
     #[test]
     fn every_effect_is_found_by_what_is_written_of_it() {
         for effect in all() {
             let constants: Vec<f64> = effect.constants().iter().map(|(constant, _)| constant + 1.5).collect();
             let again = named(effect.id(), effect.form(), &constants).expect("all are known");
-            let found: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
-            assert_eq!((again.id(), again.form(), found), (effect.id(), effect.form(), constants));
+            let read_back: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
+            assert_eq!((again.id(), again.form(), read_back), (effect.id(), effect.form(), constants));
         }
         assert!(
             named("second_order", "", &[1.0]).is_none() && named("speed_loss", "measured speed", &[-1.0]).is_none()

@@ -1,11 +1,13 @@
-//! Sway coupling: the second time constant and the rudder zero that a first-order response lacks.
+//! Sway coupling: the second time constant and the zero of the second-order response.
+//!
+//! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Parameter, Places, Prior, Proposal, SwayCoupling};
 use estimation::number::Real;
 
-/// T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
+/// Second-order response T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
 ///
-/// Absent when T₂ = T₃: zero and pole cancel. Source: Nomoto, Taguchi, Honda and Hirano (1957).
+/// Absent at T₂ = T₃, where zero and pole cancel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SecondOrder;
 
@@ -26,10 +28,10 @@ impl Effect for SecondOrder {
         }
     }
 
-    /// T₂ and T₃ − T₂, which is the effect: hulls have T₂U/L of 0.1 to 0.5 and T₃U/L of 0.3 to 1.
-    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let time = about.time;
-        let shortest = PARAMETERS[0].lowest.max(0.1 * about.spacing).max(0.04 * time);
+    /// Priors of T₂ and of T₃ − T₂, which is the amplitude: hulls have T₂U/L of 0.1 to 0.5 and T₃U/L of 0.3 to 1.
+    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
+        let time = records.time;
+        let shortest = PARAMETERS[0].lowest.max(0.1 * records.spacing).max(0.04 * time);
         let second = Prior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).shape();
         let lead = Prior::normal(&PARAMETERS[1], 0.0, 0.4 * time);
         Some(Proposal::new(*self, [second, Prior { beside: Some(0), ..lead }]))
@@ -39,7 +41,7 @@ impl Effect for SecondOrder {
         Places::NONE
     }
 
-    /// One state, s of [`crate::response`]; the response itself steps it.
+    /// One state, s of [`crate::response`], which the response integrates.
     fn states(&self) -> usize {
         1
     }

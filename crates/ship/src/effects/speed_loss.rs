@@ -1,4 +1,6 @@
-//! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
+//! Speed loss in the turn, with which gain and damping of the yaw response fall.
+//!
+//! Source: K = K' U/L and T = T' L/U of the prime system (Norrbin 1971).
 
 use std::sync::Arc;
 
@@ -8,28 +10,28 @@ use crate::dynamics::Regressor;
 use crate::particulars::Dimension;
 use estimation::number::Real;
 
-/// K ~ U and T ~ 1/U, so a = 1/T ~ U and b = K/T ~ U².
+/// Speed loss: K ~ U and T ~ 1/U, so a = 1/T ~ U and b = K/T ~ U².
 ///
-/// A propeller that keeps its revolutions holds up the flow over the rudder, so the exponent of b may be below two and
-/// is a parameter.
+/// A propeller at constant revolutions sustains the inflow to the rudder, so the exponent of b can be below two and is
+/// a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SpeedLoss {
-    /// q = U/U₀ as a state: q' = (1 − q)/T_u − c r².
+    /// Speed ratio q = U/U₀ as a state: q' = (1 − q)/T_u − c r².
     Modelled,
-    /// q from the measured speed; 1 where the record has none.
+    /// Speed ratio q from the measured speed; 1 where the record has none.
     Measured {
         /// Approach speed U₀, m/s.
         approach_speed: f64,
     },
-    /// Damping and flow over the rudder from the measured speed, and from the measured revolutions n where there are
-    /// some: a ~ 1 + m_a (q − 1), b ~ (1 + e (q − 1) + e_n (n/n₀ − 1))². The propeller holds up e_n of the flow.
+    /// Damping and rudder inflow from the measured speed and, where available, the measured revolutions n:
+    /// a ~ 1 + m_a (q − 1), b ~ (1 + e (q − 1) + e_n (n/n₀ − 1))². The propeller sustains the share e_n of the inflow.
     Inflow {
         /// Approach speed U₀, m/s.
         approach_speed: f64,
         /// Revolutions n₀ of the approach, 1/s.
         approach_rate: f64,
     },
-    /// The flow over the rudder from the measured propeller revolutions n: b ~ (n/n₀)^m; as it is where there are none.
+    /// Rudder inflow from the measured propeller revolutions n: b ~ (n/n₀)^m; unchanged where there are none.
     Propeller {
         /// Revolutions n₀ of the approach, 1/s.
         approach_rate: f64,
@@ -37,7 +39,7 @@ pub enum SpeedLoss {
 }
 
 impl SpeedLoss {
-    /// Exponents (m_a, m_b) of a ship whose rudder stands in the free stream: K ~ U and T ~ 1/U.
+    /// Exponents (m_a, m_b) of a rudder in the free stream: K ~ U and T ~ 1/U.
     pub const FREE_STREAM: [f64; 2] = [1.0, 2.0];
 }
 
@@ -63,8 +65,8 @@ const INFLOW: [Parameter; 3] = [
     Parameter { key: "e_n", symbol: "e_n", typical: 0.5, lowest: -0.5, highest: 1.5, ..MEASURED[0] },
 ];
 
-/// Speed ratio below which the scaling laws mean nothing; keeps a bad trial step of a search finite.
-const SLOWEST: f64 = 0.05;
+/// Smallest speed ratio at which the scaling laws are evaluated, so that a bad trial step of a search stays finite.
+const MIN_SPEED_RATIO: f64 = 0.05;
 
 impl Effect for SpeedLoss {
     fn description(&self) -> Description {
@@ -104,34 +106,34 @@ impl Effect for SpeedLoss {
         }))
     }
 
-    /// Hulls lose c_r r'² of their speed and regain it in T_u U/L of 7 ± 4; where the speed was measured the share of
-    /// the free stream is 0.5 ± 0.25.
-    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let time = about.time;
-        let propeller = |mean| match about.propeller {
+    /// Priors from hulls: loss c_u U/L of 0 ± 1, recovery time T_u U/L of 7 ± 4; with a measured speed, free-stream
+    /// share e of 0.5 ± 0.25.
+    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
+        let time = records.time;
+        let propeller = |mean| match records.propeller {
             Some(_) => Prior::normal(&INFLOW[2], mean, 0.25),
             None => Prior::fixed(0.0),
         };
         match self {
-            // A speed that was measured is not modelled.
-            Self::Modelled if about.speed.is_some() => None,
+            // A measured speed is not modelled.
+            Self::Modelled if records.speed.is_some() => None,
             Self::Modelled => {
-                let recovery =
-                    Prior::normal(&MODELLED[1], 7.0 * time, 4.0 * time).within([time, 2.0 * about.duration.max(time)]);
+                let recovery = Prior::normal(&MODELLED[1], 7.0 * time, 4.0 * time)
+                    .within([time, 2.0 * records.duration.max(time)]);
                 let loss = Prior::normal(&MODELLED[0], 0.0, 1.0 * time);
                 Some(Proposal::new(*self, [loss, recovery.shape(), Prior::fixed(Self::FREE_STREAM[1])]))
             }
             Self::Measured { .. } => None,
             Self::Inflow { .. } => {
                 let inflow =
-                    Self::Inflow { approach_speed: about.speed?, approach_rate: about.propeller.unwrap_or(1.0) };
-                let own = [Prior::normal(&INFLOW[0], 1.0, 0.3), Prior::normal(&INFLOW[1], 0.5, 0.25)];
-                Some(Proposal::new(inflow, [own[0], own[1], propeller(0.5)]))
+                    Self::Inflow { approach_speed: records.speed?, approach_rate: records.propeller.unwrap_or(1.0) };
+                let speed = [Prior::normal(&INFLOW[0], 1.0, 0.3), Prior::normal(&INFLOW[1], 0.5, 0.25)];
+                Some(Proposal::new(inflow, [speed[0], speed[1], propeller(0.5)]))
             }
-            Self::Propeller { .. } if about.speed.is_some() => None,
+            Self::Propeller { .. } if records.speed.is_some() => None,
             Self::Propeller { .. } => {
                 let prior = Prior::normal(&PROPELLER[0], Self::FREE_STREAM[1], 1.0);
-                Some(Proposal::new(Self::Propeller { approach_rate: about.propeller? }, [prior]))
+                Some(Proposal::new(Self::Propeller { approach_rate: records.propeller? }, [prior]))
             }
         }
     }
@@ -182,28 +184,28 @@ impl<R: Real> Acts<R> for SpeedLoss {
     fn scale(&self, p: &[R], z: &[R], now: &Now<R>) -> Scale<R> {
         match self {
             Self::Modelled => {
-                let q = z[0].at_least(SLOWEST);
-                // The free stream, whose exponent is not fitted, needs no power.
+                let q = z[0].at_least(MIN_SPEED_RATIO);
+                // The exponent of the free stream is not fitted and needs no power function.
                 let gain = if p[2] == R::from(Self::FREE_STREAM[1]) { q * q } else { q.powf(p[2]) };
                 Scale { damping: q, gain }
             }
             Self::Measured { approach_speed } => match now.measured.speed {
                 Some(speed) => {
-                    let q = R::from((speed / approach_speed).max(SLOWEST));
+                    let q = R::from((speed / approach_speed).max(MIN_SPEED_RATIO));
                     Scale { damping: q.powf(p[0]), gain: q.powf(p[1]) }
                 }
                 None => Scale::none(),
             },
             Self::Inflow { approach_speed, approach_rate } => {
-                let change = |measured: Option<f64>, of: f64| measured.map_or(0.0, |value| value / of - 1.0);
+                let change = |measured: Option<f64>, base: f64| measured.map_or(0.0, |value| value / base - 1.0);
                 let (q, n) =
                     (change(now.measured.speed, *approach_speed), change(now.measured.propeller, *approach_rate));
-                let flow = (p[1] * q + p[2] * n + 1.0).at_least(SLOWEST);
-                Scale { damping: (p[0] * q + 1.0).at_least(SLOWEST), gain: flow * flow }
+                let flow = (p[1] * q + p[2] * n + 1.0).at_least(MIN_SPEED_RATIO);
+                Scale { damping: (p[0] * q + 1.0).at_least(MIN_SPEED_RATIO), gain: flow * flow }
             }
             Self::Propeller { approach_rate } => match now.measured.propeller {
                 Some(rate) => {
-                    let q = R::from((rate / approach_rate).max(SLOWEST));
+                    let q = R::from((rate / approach_rate).max(MIN_SPEED_RATIO));
                     Scale { damping: R::from(1.0), gain: q.powf(p[0]) }
                 }
                 None => Scale::none(),

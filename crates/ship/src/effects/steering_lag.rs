@@ -1,14 +1,14 @@
-//! A rudder that acts later than the one recorded: dead time, a first-order lag, or two clocks.
+//! Steering lag: a rudder that acts later than the recorded one, by dead time, first-order lag or a clock offset.
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use estimation::number::Real;
 
-/// Lag between the recorded and the acting rudder.
+/// Lag of the acting rudder behind the recorded one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SteeringLag {
-    /// δ_e(t) = δ(t − τ); a negative τ is a clock that runs ahead, never a steering gear.
+    /// Dead time: δ_e(t) = δ(t − τ); a negative τ is a clock offset, never a steering gear.
     DeadTime,
-    /// τ_E δ_e' + δ_e = δ.
+    /// First-order lag: τ_E δ_e' + δ_e = δ.
     FirstOrder,
 }
 
@@ -20,8 +20,8 @@ const FIRST_ORDER: [Parameter; 1] = [Parameter::even(["tau_E", "τ_E", "s"], [0.
     "Time constant of a first-order lag.",
 )];
 
-/// A lag shorter than this, s, is below the resolution of any record and passes the rudder through.
-const SHORTEST_LAG: f64 = 0.02;
+/// Smallest lag, s: a shorter one is below the resolution of any record and is neglected.
+const MIN_LAG_S: f64 = 0.02;
 
 impl Effect for SteeringLag {
     fn description(&self) -> Description {
@@ -32,8 +32,8 @@ impl Effect for SteeringLag {
         Description { id: "steering_lag", form, equation, parameters }
     }
 
-    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let Manoeuvres { time, spacing, .. } = *about;
+    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
+        let Manoeuvres { time, spacing, .. } = *records;
         let sd = 0.1 * time + 0.2 * spacing;
         Some(match self {
             Self::DeadTime => {
@@ -41,8 +41,8 @@ impl Effect for SteeringLag {
                 Proposal::new(*self, [Prior::normal(&DEAD_TIME[0], 0.0, sd).within([-longest, longest])])
             }
             Self::FirstOrder => {
-                // A record with longer steps shows no lag that a ship has.
-                let shortest = Some(SHORTEST_LAG.max(0.25 * spacing)).filter(|lag| *lag < FIRST_ORDER[0].highest)?;
+                // Records sampled more coarsely cannot show the lag of a ship.
+                let shortest = Some(MIN_LAG_S.max(0.25 * spacing)).filter(|lag| *lag < FIRST_ORDER[0].highest)?;
                 Proposal::new(
                     *self,
                     [Prior::normal(&FIRST_ORDER[0], 0.0, sd).within([shortest, FIRST_ORDER[0].highest])],
@@ -68,7 +68,7 @@ impl Effect for SteeringLag {
     fn shortest_time(&self, p: &[f64]) -> f64 {
         match self {
             Self::DeadTime => f64::INFINITY,
-            Self::FirstOrder => p[0].max(SHORTEST_LAG),
+            Self::FirstOrder => p[0].max(MIN_LAG_S),
         }
     }
 }
@@ -87,14 +87,14 @@ impl<R: Real> Acts<R> for SteeringLag {
 
     fn rudder(&self, p: &[R], z: &[R], rudder: R) -> R {
         match self {
-            Self::FirstOrder if p[0].value() >= SHORTEST_LAG => z[0],
+            Self::FirstOrder if p[0].value() >= MIN_LAG_S => z[0],
             _ => rudder,
         }
     }
 
     fn rates(&self, p: &[R], z: &[R], _now: &Now<R>, before: R, rate: &mut [R]) {
         if let Self::FirstOrder = self {
-            rate[0] = (before - z[0]) / p[0].at_least(SHORTEST_LAG);
+            rate[0] = (before - z[0]) / p[0].at_least(MIN_LAG_S);
         }
     }
 }
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn a_record_with_long_steps_shows_no_first_order_lag() {
-        let about = |spacing: f64| Manoeuvres {
+        let records = |spacing: f64| Manoeuvres {
             time: 20.0,
             rudder: 0.35,
             duration: 1e5,
@@ -117,9 +117,9 @@ mod tests {
             span: [0.0, 1e5],
         };
         for effect in [SteeringLag::DeadTime, SteeringLag::FirstOrder] {
-            assert!(effect.proposal(&about(1.0)).is_some());
+            assert!(effect.proposal(&records(1.0)).is_some());
             let is_dead_time = effect == SteeringLag::DeadTime;
-            assert_eq!(effect.proposal(&about(1000.0)).is_some(), is_dead_time);
+            assert_eq!(effect.proposal(&records(1000.0)).is_some(), is_dead_time);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A moment that is present for a part of the record only: a squall, a passing ship.
+//! Transient disturbance: a yaw moment during a part of the record only, such as a squall or a passing ship.
 
 use std::sync::Arc;
 
@@ -8,12 +8,12 @@ use crate::angle::DEGREE;
 use crate::particulars::Dimension;
 use estimation::number::Real;
 
-/// A moment m, as an equivalent rudder angle, in one of two forms.
+/// Transient yaw moment of amplitude m, as equivalent rudder angle, in one of two forms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TransientDisturbance {
-    /// m over a span of time with smooth edges: m/2 [tanh((t − t_c + d/2)/w) − tanh((t − t_c − d/2)/w)], w = d/10.
+    /// Pulse with smooth edges: m/2 [tanh((t − t_c + d/2)/w) − tanh((t − t_c − d/2)/w)], w = d/10.
     Passing,
-    /// m from an instant on: m/2 [1 + tanh((t − t₀)/w)]; another loading, a change of the wind, a pump that starts.
+    /// Step at an instant: m/2 [1 + tanh((t − t₀)/w)], such as a change of loading or wind, or a pump that starts.
     Lasting {
         /// Width w of the edge, s.
         edge: f64,
@@ -30,17 +30,17 @@ const PASSING: [Parameter; 3] = [
 
 const LASTING: [Parameter; 2] = [MOMENT, INSTANT];
 
-/// Width of an edge as a share of the duration.
-const EDGE: f64 = 0.1;
+/// Width of an edge over the duration.
+const EDGE_SHARE: f64 = 0.1;
 
-/// Moment of a strong squall as an angle of the rudder, rad.
-const LARGE: f64 = 0.05;
+/// Prior standard deviation of the moment as equivalent rudder angle, rad: that of a strong squall.
+const MOMENT_SD_RAD: f64 = 0.05;
 
-/// Longest squall that is looked for, as a share of its record.
-const LONGEST: f64 = 0.2;
+/// Largest duration of a pulse over that of its record.
+const MAX_DURATION_SHARE: f64 = 0.2;
 
-/// Share of a record at either end in which no lasting moment is looked for: it would be a matter of a few rows.
-const SOONEST: f64 = 0.05;
+/// Share of a record at either end in which no step is fitted, because only a few rows would determine it.
+const END_MARGIN_SHARE: f64 = 0.05;
 
 impl Effect for TransientDisturbance {
     fn description(&self) -> Description {
@@ -75,17 +75,17 @@ impl Effect for TransientDisturbance {
         true
     }
 
-    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let Manoeuvres { spacing, span: [start, end], .. } = *about;
+    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
+        let Manoeuvres { spacing, span: [start, end], .. } = *records;
         let length = end - start;
-        let moment = Prior::normal(&MOMENT, 0.0, LARGE);
+        let moment = Prior::normal(&MOMENT, 0.0, MOMENT_SD_RAD);
         if let Self::Lasting { .. } = self {
-            let instant = Prior::uniform([start + SOONEST * length, end - SOONEST * length]);
+            let instant = Prior::uniform([start + END_MARGIN_SHARE * length, end - END_MARGIN_SHARE * length]);
             return Some(Proposal::new(Self::Lasting { edge: EDGE_ROWS * spacing }, [moment, instant]));
         }
-        // A squall comes and goes within the record.
-        let margin = LONGEST * 0.25 * length;
-        let duration = [(3.0 * spacing).max(0.5), LONGEST * length];
+        // A squall begins and ends within the record.
+        let margin = MAX_DURATION_SHARE * 0.25 * length;
+        let duration = [(3.0 * spacing).max(0.5), MAX_DURATION_SHARE * length];
         let place = [Prior::uniform([start + margin, end - margin]), Prior::uniform(duration)];
         Some(Proposal::new(*self, [moment, place[0], place[1]]))
     }
@@ -96,14 +96,14 @@ impl Effect for TransientDisturbance {
 
     fn shortest_time(&self, p: &[f64]) -> f64 {
         match self {
-            Self::Passing => EDGE * p[2],
+            Self::Passing => EDGE_SHARE * p[2],
             Self::Lasting { edge } => *edge,
         }
     }
 
     fn fast_span(&self, p: &[f64]) -> [f64; 2] {
         let reach = match self {
-            Self::Passing => (0.5 + REACH * EDGE) * p[2],
+            Self::Passing => (0.5 + REACH * EDGE_SHARE) * p[2],
             Self::Lasting { edge } => REACH * edge,
         };
         [p[1] - reach, p[1] + reach]
@@ -115,7 +115,7 @@ impl<R: Real> Acts<R> for TransientDisturbance {
         let since = R::from(now.t) - p[1];
         let shape = match self {
             Self::Passing => {
-                let (half, width) = (p[2] * 0.5, p[2] * EDGE);
+                let (half, width) = (p[2] * 0.5, p[2] * EDGE_SHARE);
                 ((since + half) / width).tanh() - ((since - half) / width).tanh()
             }
             Self::Lasting { edge } => (since / R::from(*edge)).tanh() + R::from(1.0),

@@ -1,11 +1,13 @@
-//! Yaw from first-order waves: random, narrow-banded, added to the heading that is seen.
+//! Yaw from first-order waves: a random narrow-band heading, added to the observed one.
+//!
+//! Source: the wave model of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control.
 
 use super::effect::{Acts, Description, Effect, Manoeuvres, Parameter, Places, Proposal};
 use crate::angle::DEGREE;
 use crate::narrow_band::NarrowBand;
 use estimation::number::Real;
 
-/// ξ'' + 2ζω₀ ξ' + ω₀² ξ = w added to the heading. The deterministic response knows nothing of it.
+/// Wave yaw ξ'' + 2ζω₀ ξ' + ω₀² ξ = w, added to the observed heading; the deterministic response ignores it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WaveYaw;
 
@@ -29,7 +31,7 @@ impl Effect for WaveYaw {
         }
     }
 
-    /// It is no response: it is looked for among the colours of the noise.
+    /// None: wave yaw is no part of the response and is identified as part of the noise law.
     fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
         None
     }

@@ -1,26 +1,27 @@
-//! Turns that have lasted: the rudder that a yaw rate needs, on stable and unstable branches alike.
+//! Steady turns: the rudder at a given yaw rate, on stable and unstable branches alike.
+//!
+//! Source: Bech (1968), the reversed spiral test.
 
 use super::Response;
 use crate::dynamics::{Dynamics, Input};
 use crate::replayable::Replayable;
 
-/// Largest rudder that is looked at, rad.
-const LARGEST_RUDDER: f64 = 1.0;
+/// Largest rudder of the search, rad.
+const MAX_RUDDER_RAD: f64 = 1.0;
 
-/// Steps to either side in which the rudder nearest to amidships is looked for.
+/// Number of steps of the search to either side of amidships.
 const STEPS: usize = 50;
 
 impl Response {
-    /// Rudder angle (rad) at which the ship turns steadily at `yaw_rate` (rad/s) on heading 0, with the speed and the
-    /// memory of a turn that has lasted; `None` where no rudder within 1 rad does it. Of several rudders (beyond stall)
-    /// that nearest to amidships.
+    /// Rudder angle (rad) of a steady turn at `yaw_rate` (rad/s) on heading 0, with settled speed and memory; `None`
+    /// where no rudder within 1 rad keeps that rate. Of several rudders (beyond stall) the one nearest to amidships.
     ///
-    /// Since the yaw rate is given and the rudder looked for, the branch that a spiral test jumps over is found, too
-    /// (reversed spiral, Bech 1968).
+    /// Because the yaw rate is given and the rudder is the unknown, the unstable branch is found, too (reversed spiral,
+    /// Bech 1968).
     pub fn steady_rudder(&self, yaw_rate: f64) -> Option<f64> {
         let mut memory = Memory { state: vec![0.0; self.dimension()], rate: vec![0.0; self.dimension()] };
         let mut excess = |rudder: f64| self.excess(yaw_rate, rudder, &mut memory);
-        let step = LARGEST_RUDDER / STEPS as f64;
+        let step = MAX_RUDDER_RAD / STEPS as f64;
         let middle = excess(0.0);
         let (mut below, mut above) = (middle, middle);
         for number in 1..=STEPS {
@@ -37,9 +38,9 @@ impl Response {
         None
     }
 
-    /// Yaw acceleration (rad/s²) of the first-order balance in a turn that has lasted.
+    /// Yaw acceleration (rad/s²) of the first-order balance in a steady turn.
     ///
-    /// What effects remember settles linearly while yaw rate and rudder stand, so one Newton step per state is exact.
+    /// At constant yaw rate and rudder the states of effects settle linearly, so one Newton step per state is exact.
     fn excess(&self, yaw_rate: f64, rudder: f64, memory: &mut Memory) -> f64 {
         let Memory { state, rate } = memory;
         let input = Input { rudder, ..Input::default() };
@@ -67,17 +68,17 @@ struct Memory {
     rate: Vec<f64>,
 }
 
-/// Where a function changes its sign between two arguments, of which it has `first` at the first.
-fn root([mut one, mut other]: [f64; 2], first: f64, function: &mut impl FnMut(f64) -> f64) -> f64 {
+/// Root of a function between two arguments, by bisection; `first` is its value at the first one.
+fn root([mut near, mut far]: [f64; 2], first: f64, function: &mut impl FnMut(f64) -> f64) -> f64 {
     for _ in 0..60 {
-        let middle = 0.5 * (one + other);
+        let middle = 0.5 * (near + far);
         if function(middle) * first > 0.0 {
-            one = middle;
+            near = middle;
         } else {
-            other = middle;
+            far = middle;
         }
     }
-    0.5 * (one + other)
+    0.5 * (near + far)
 }
 
 #[cfg(test)]
@@ -88,9 +89,9 @@ mod tests {
     use crate::ResponseModel;
     use crate::effects::{Effect, SecondOrder, SpeedLoss, SteeringLag, listed};
 
-    fn ship(inverse_time: f64, effect: Arc<dyn Effect>, own: &[f64]) -> Response {
+    fn ship(inverse_time: f64, effect: Arc<dyn Effect>, parameters: &[f64]) -> Response {
         let mut values = vec![inverse_time, 6e-3, 0.01];
-        values.extend_from_slice(own);
+        values.extend_from_slice(parameters);
         ResponseModel::new(vec![effect]).with(values)
     }
 
@@ -101,8 +102,8 @@ mod tests {
             let ship = ship(inverse_time, listed("nonlinear_damping", "r³"), &[300.0]);
             for rate in [-0.02, -0.004, 0.0, 0.001, 0.01] {
                 let by_hand = (inverse_time * rate + 300.0 * rate * rate * rate) / 6e-3 - 0.01;
-                let found = ship.steady_rudder(rate).expect("within a radian");
-                assert!((found - by_hand).abs() < 1e-9, "{inverse_time} {rate}: {found} {by_hand}");
+                let steady = ship.steady_rudder(rate).expect("within a radian");
+                assert!((steady - by_hand).abs() < 1e-9, "{inverse_time} {rate}: {steady} {by_hand}");
             }
         }
         assert_eq!(ship(0.06, listed("nonlinear_damping", "r³"), &[300.0]).steady_rudder(1.0), None);
@@ -114,8 +115,8 @@ mod tests {
         for ship in
             [ship(0.06, Arc::new(SteeringLag::FirstOrder), &[4.0]), ship(0.06, Arc::new(SecondOrder), &[5.0, 12.0])]
         {
-            let found = ship.steady_rudder(0.01).expect("within a radian");
-            assert!((found - (0.06 * 0.01 / 6e-3 - 0.01)).abs() < 1e-9, "{found}");
+            let steady = ship.steady_rudder(0.01).expect("within a radian");
+            assert!((steady - (0.06 * 0.01 / 6e-3 - 0.01)).abs() < 1e-9, "{steady}");
         }
     }
 
@@ -125,7 +126,7 @@ mod tests {
         let ship = ship(0.06, Arc::new(SpeedLoss::Modelled), &[20.0, 100.0, 2.0]);
         let (rate, speed) = (0.01, 1.0 - 20.0 * 100.0 * 1e-4);
         let by_hand = 0.06 * speed * rate / (6e-3 * speed * speed) - 0.01;
-        let found = ship.steady_rudder(rate).expect("within a radian");
-        assert!((found - by_hand).abs() < 1e-9, "{found} {by_hand}");
+        let steady = ship.steady_rudder(rate).expect("within a radian");
+        assert!((steady - by_hand).abs() < 1e-9, "{steady} {by_hand}");
     }
 }

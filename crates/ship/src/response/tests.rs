@@ -121,16 +121,16 @@ fn an_effect_acts_where_it_says() {
         let p: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
         let z = vec![0.15; effect.states()];
         let acts = f64::acts(effect.as_ref());
-        let found = Places {
+        let acted_on = Places {
             rudder: acts.rudder(&p, &z, 0.2) != 0.2,
             scale: acts.scale(&p, &z, &now) != Scale::none(),
             moment: acts.yaw_acceleration(&p, &z, &now) != 0.0,
         };
-        assert_eq!(found, effect.places(), "{} ({})", effect.id(), effect.form());
+        assert_eq!(acted_on, effect.places(), "{} ({})", effect.id(), effect.form());
     }
 }
 
-/// One replay with derivatives is the replay itself, and its derivatives are those of small changes.
+/// A replay in dual numbers has the values of the plain replay, and the derivatives of finite differences.
 #[test]
 fn a_replay_carries_its_derivatives() {
     let signal = rudder(1.0);
@@ -153,8 +153,8 @@ fn a_replay_carries_its_derivatives() {
             let name = format!("{} ({}), {k}", effect.id(), effect.form());
             let mut seeded = constant(&values);
             seeded[k] = Tangent::variable(values[k], 1, 1.0);
-            let found = end(&model, &seeded);
-            assert_eq!(found.value, end(&model, &constant(&values)).value, "{name}");
+            let dual = end(&model, &seeded);
+            assert_eq!(dual.value, end(&model, &constant(&values)).value, "{name}");
             let h = 1e-5 * values[k];
             let moved = |by: f64| {
                 let mut moved = values.clone();
@@ -162,13 +162,12 @@ fn a_replay_carries_its_derivatives() {
                 end(&model, &constant(&moved)).value
             };
             let slope = (moved(h) - moved(-h)) / (2.0 * h);
-            assert_relative_eq!(found.by[1], slope, max_relative = 2e-5, epsilon = 1e-7);
+            assert_relative_eq!(dual.by[1], slope, max_relative = 2e-5, epsilon = 1e-7);
         }
     }
 }
 
-/// Away from the edges of a squall the steps of the base do: the heading is as near to that of fine steps as that of
-/// the base is.
+/// Away from the edges of a squall the steps of the base suffice: the error of the heading is that of the base.
 #[test]
 fn small_steps_are_taken_where_motion_is_fast() {
     let signal = rudder(1.0);
@@ -191,8 +190,8 @@ fn small_steps_are_taken_where_motion_is_fast() {
     assert!(squall < 1.5 * base, "{squall:e} rad, {base:e} rad without the squall");
 }
 
-/// What is said of an effect agrees with what it does: only one that sees the heading changes when the record is
-/// turned, only one that depends on time when it begins later, and constants are those its equations hold.
+/// The predicates of an effect agree with its equations: only an effect of the heading changes when the record is
+/// rotated, only an effect of time when it begins later, and the constants are those of its equations.
 #[test]
 fn an_effect_is_what_it_says() {
     for effect in effects::all().into_iter().filter(|effect| !effect.is_random() && effect.needs().is_none()) {
@@ -216,10 +215,10 @@ fn an_effect_is_what_it_says() {
             effect.is_of_time(),
             "{name}"
         );
-        let others: Vec<f64> = effect.constants().iter().map(|(constant, _)| constant + 1.5).collect();
-        let other = effects::named(effect.id(), effect.form(), &others).expect("all are known");
+        let constants: Vec<f64> = effect.constants().iter().map(|(constant, _)| constant + 1.5).collect();
+        let other = effects::named(effect.id(), effect.form(), &constants).expect("all are known");
         let other = turning(&with_effect(other, |p| p.typical, 1.0), 0.0, 0.0);
-        assert_eq!((turning(&response, 0.0, 0.0) - other).abs() > 1e-9, !others.is_empty(), "{name}");
+        assert_eq!((turning(&response, 0.0, 0.0) - other).abs() > 1e-9, !constants.is_empty(), "{name}");
     }
 }
 

@@ -1,11 +1,10 @@
 //! Two Norrbin responses with a cubic term: the recreational craft Zeefakkel and a frigate of 100 m.
 //!
-//! Trap: in the source n₃ belongs to yaw rates in deg/s. At 5 m/s and 30° of rudder that gives the Zeefakkel 3.1 deg/s;
+//! In the source n₃ belongs to yaw rates in deg/s. At 5 m/s and 30° of rudder that gives the Zeefakkel 3.1 deg/s;
 //! read in radians the term would vanish beside r and the craft would turn at 15 deg/s. Here n₃ = 0.4 (180/π)² s²/rad².
 //!
-//! Copies of the set give the length of the Zeefakkel as 45 m and as 13.7 m (45 ft), so she has no particulars here.
-//! The source gives the frigate a lag of 1 s in the steering gear as well, which belongs to the gear and is not part
-//! of the ship.
+//! Copies of the set give the length of the Zeefakkel as 45 m and as 13.7 m (45 ft), so the ship has no particulars
+//! here. The source also gives the frigate a lag of 1 s of the steering gear, which is not part of the ship.
 
 use super::{Model, Ship};
 use crate::effects::listed;
@@ -20,7 +19,7 @@ pub fn zeefakkel() -> Ship {
     norrbin(["zeefakkel", "recreational craft Zeefakkel, 5 m/s"], None, [0.5, 31.0, 0.4])
 }
 
-/// The frigate at 9 m/s: T r' + r + n₃ r³ = K δ with K = 0.18 1/s, T = 27 s; rudder to 30° at 10 deg/s.
+/// Frigate at 9 m/s: T r' + r + n₃ r³ = K δ with K = 0.18 1/s, T = 27 s; rudder to 30° at 10 deg/s.
 ///
 /// Source: that of [`zeefakkel`].
 pub fn frigate() -> Ship {
@@ -28,7 +27,7 @@ pub fn frigate() -> Ship {
     norrbin(["frigate", "frigate, 100 m, 9 m/s"], Some(particulars), [0.18, 27.0, 0.6])
 }
 
-/// With K, 1/s, T, s, and n₃ of yaw rates in deg/s.
+/// Norrbin response from K (1/s), T (s) and n₃ for yaw rates in deg/s.
 fn norrbin([id, name]: [&'static str; 2], particulars: Option<Particulars>, [gain, time, n3]: [f64; 3]) -> Ship {
     let parameters = vec![1.0 / time, gain / time, 0.0, n3 * 1f64.to_degrees().powi(2) / time];
     Ship {

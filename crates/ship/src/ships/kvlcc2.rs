@@ -1,8 +1,8 @@
-//! The tanker KVLCC2 at full scale and as the 7 m model L7: the MMG benchmark hull.
+//! Tanker KVLCC2 at full scale and as the 7 m model L7: the MMG benchmark hull.
 //!
 //! Both share one set of hull, propeller and rudder coefficients; they differ in size and in the wake of the straight
 //! approach (0.35 and 0.40), so the model is not an exact miniature. The hull is neutrally stable to within rounding,
-//! which makes linear indices of it meaningless.
+//! so its linear indices are meaningless.
 //!
 //! Sources: Yasukawa and Yoshimura (2015); coefficients agree between three published implementations of that article
 //! (the open-water coefficient k2 is printed as −0.1359 in one of them; −0.1385 is right). Rudder rates: SIMMAN 2020,
@@ -60,7 +60,7 @@ const RUDDER: Rudder = Rudder {
     gammaR: BySign { positive: 0.640, negative: 0.395 },
 };
 
-/// Full scale.
+/// Parameters at full scale.
 pub const FULL_SCALE: Parameters = Parameters {
     Lpp: 320.0,
     d: 20.8,
@@ -72,8 +72,8 @@ pub const FULL_SCALE: Parameters = Parameters {
     rudder: RUDDER,
 };
 
-/// The 7 m model, with the draught as published; the scale of the ship would give 0.455 m, and with it a second 10/10
-/// overshoot 0.2° larger.
+/// Parameters of the 7 m model, with the draught as published; the scale of the ship would give 0.455 m, and with it a
+/// second 10/10 overshoot 0.2° larger.
 pub const MODEL_L7: Parameters = Parameters {
     Lpp: 7.0,
     d: 0.46,
@@ -98,12 +98,12 @@ fn ship(id: &'static str, name: &'static str, parameters: Parameters, speed: f64
     }
 }
 
-/// The ship at 15.5 kn; its propeller turns at 1.778 1/s.
+/// KVLCC2 at full scale and 15.5 kn, propeller at 1.778 1/s.
 pub fn full_scale() -> Ship {
     ship("kvlcc2", "tanker KVLCC2, full scale, 15.5 kn", FULL_SCALE, 15.5 * KNOT, 2.32)
 }
 
-/// The 7 m model at 1.179 m/s, which is 15.5 kn at full scale.
+/// 7 m model of KVLCC2 at 1.179 m/s, which is 15.5 kn at full scale.
 pub fn model_l7() -> Ship {
     ship("kvlcc2-l7", "tanker KVLCC2, model L7 of 7 m, 1.179 m/s", MODEL_L7, 1.179, 15.68)
 }

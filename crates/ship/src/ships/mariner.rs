@@ -1,4 +1,4 @@
-//! The Mariner-class cargo ship at 15 kn, as a hull and as the second-order response of that hull.
+//! Mariner-class cargo ship at 15 kn, as a hull and as the second-order response of that hull.
 //!
 //! The hull carries a constant sway force and yaw moment (Y0, N0), the asymmetry of its single propeller: with the
 //! rudder amidships it does not keep a straight course. The tabulated x_G' = −0.023 is prime and used as it stands.
@@ -15,7 +15,7 @@ const PARTICULARS: Particulars = Particulars { length: 160.93, speed: 7.7175 };
 /// Unit of the printed table.
 const E5: f64 = 1e-5;
 
-/// The derivatives of Chislett and Strøm-Tejsen (1965), as printed: prime, rudder positive to port.
+/// Derivatives of Chislett and Strøm-Tejsen (1965), as printed: prime, rudder positive to port.
 pub const DERIVATIVES: Derivatives = Derivatives {
     m: 798.0 * E5,
     Iz: 39.2 * E5,
@@ -71,7 +71,7 @@ pub const DERIVATIVES: Derivatives = Derivatives {
     },
 };
 
-/// K = 0.185 1/s, T1 = 118 s, T2 = 7.8 s, T3 = 18.5 s: the rounded indices of [`DERIVATIVES`].
+/// Rounded indices of [`DERIVATIVES`]: K = 0.185 1/s, T1 = 118 s, T2 = 7.8 s, T3 = 18.5 s.
 pub const INDICES: SecondOrderIndices = SecondOrderIndices { K: 0.185, T1: 118.0, T2: 7.8, T3: 18.5 };
 
 fn mariner(id: &'static str, name: &'static str, source: &'static str, model: Model) -> Ship {
@@ -86,12 +86,12 @@ fn mariner(id: &'static str, name: &'static str, source: &'static str, model: Mo
     }
 }
 
-/// The equations of [`hull`].
+/// Equations of [`hull`].
 pub fn equations() -> Abkowitz {
     Abkowitz::new(PARTICULARS, DERIVATIVES)
 }
 
-/// The hull; rudder to 40° at 5 deg/s as in the source of the table.
+/// Mariner hull; rudder to 40° at 5 deg/s as in the source of the table.
 ///
 /// Source: Chislett and Strøm-Tejsen (1965), report Hy-5, as tabulated in the Marine Systems Simulator (Lauvdal 1994,
 /// Fossen 2021).
@@ -104,7 +104,7 @@ pub fn hull() -> Ship {
     )
 }
 
-/// The second-order response of [`INDICES`], without the asymmetry and the nonlinear damping of the hull.
+/// Second-order response of [`INDICES`], without the asymmetry and the nonlinear damping of the hull.
 ///
 /// Source: example of the Nomoto models in the Marine Systems Simulator (Fossen); reproduced by [`DERIVATIVES`].
 pub fn second_order() -> Ship {

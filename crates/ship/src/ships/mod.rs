@@ -1,9 +1,9 @@
-//! The ships of the project, each in a file of its own with the source of every number.
+//! Ships of the project, one file each, with the source of every number.
 //!
-//! A ship is a set of particulars and one model: a response model with its parameters, or a hull with three degrees
-//! of freedom. Only parameter sets whose source was seen are here. [`user`] makes ships from a user's own numbers.
+//! A ship is a set of particulars and one model: a response model with its parameters, or a hull with three degrees of
+//! freedom. Only parameter sets whose source was seen are included. [`user`] makes ships from the numbers of a user.
 //!
-//! To add one: a file here with a function that returns the [`Ship`], and one line in [`all`].
+//! To add a ship, add a file with a function that returns the [`Ship`], and one line in [`all`].
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -23,21 +23,21 @@ pub mod tanker;
 pub mod user;
 pub mod yukun;
 
-/// The equations of a ship.
+/// Equations of a ship.
 #[derive(Clone)]
 pub enum Model {
-    /// A response model with its parameters.
+    /// Response model with its parameters.
     Response(Response),
-    /// A hull with its own equations.
+    /// Hull with three degrees of freedom.
     Hull(Arc<dyn Dynamics>),
 }
 
-/// A ship: what it is called, where its numbers come from, and how it moves.
+/// Ship of the registry: name, source, particulars and equations.
 #[derive(Clone)]
 pub struct Ship {
     /// Identifier used in scenario files.
     pub id: Cow<'static, str>,
-    /// Name and condition, for people.
+    /// Name and condition, for display.
     pub name: Cow<'static, str>,
     /// Author and year of the numbers.
     pub source: Cow<'static, str>,
@@ -47,12 +47,12 @@ pub struct Ship {
     pub rudder_rate: Option<f64>,
     /// Largest rudder angle to either side, rad, where the source gives one.
     pub largest_rudder: Option<f64>,
-    /// The equations.
+    /// Equations.
     pub model: Model,
 }
 
 impl Ship {
-    /// The equations as a system that can be simulated.
+    /// Equations as a system that can be simulated.
     pub fn dynamics(&self) -> Arc<dyn Dynamics> {
         match &self.model {
             Model::Response(response) => Arc::new(response.clone()),
@@ -60,7 +60,7 @@ impl Ship {
         }
     }
 
-    /// The true K, T and δ_r, where the ship is exactly first order.
+    /// True K, T and δ_r; `None` unless the ship is exactly first order.
     pub fn first_order(&self) -> Option<FirstOrder> {
         match &self.model {
             Model::Response(response) if response.model().effects().is_empty() => Some(response.first_order()),
@@ -69,7 +69,7 @@ impl Ship {
     }
 }
 
-/// Every ship of the project, in the order of reports: response models first.
+/// All ships of the project, in the order of reports: response models first.
 pub fn all() -> Vec<Ship> {
     vec![
         yukun::ship(),
@@ -85,7 +85,7 @@ pub fn all() -> Vec<Ship> {
     ]
 }
 
-/// The ship with this identifier.
+/// Ship with this identifier; `None` if there is none.
 pub fn find(id: &str) -> Option<Ship> {
     all().into_iter().find(|ship| ship.id == id)
 }

@@ -1,8 +1,10 @@
-//! The container ship S175 of 175 m as a hull of three degrees of freedom: her published equations without heel.
+//! Container ship S175 of 175 m as a hull with three degrees of freedom: the published equations without heel.
 //!
-//! The source has a fourth degree of freedom, roll. Roll angle and roll rate are zero here, and the terms with them are
-//! left out; a ship of this speed and metacentric height heels when she turns, so she is not S175 to the last digit.
-//! Forces are prime, by ½ρL²U², with the momentary speed U; the rudder is positive to starboard, as everywhere here.
+//! The source has a fourth degree of freedom, roll. Roll angle and roll rate are zero here, and their terms are left
+//! out; the real ship heels in a turn, so this hull is not S175 to the last digit. Forces are prime, by ½ρL²U² with the
+//! instantaneous speed U; the rudder is positive to starboard.
+//!
+//! Source: Son and Nomoto (1982), as tabulated in the Marine Systems Simulator (Lauvdal 1994, Fossen 2022).
 #![expect(non_snake_case, reason = "each name is the symbol of the source")]
 
 use std::f64::consts::PI;
@@ -13,7 +15,7 @@ use crate::dynamics::Input;
 use crate::particulars::Particulars;
 use crate::vessel::{Hull, SLOWEST};
 
-/// Length and speed; the speed is that of the linear equations that the Marine Systems Simulator has of her.
+/// Length and speed; the speed is that of the linear equations in the Marine Systems Simulator.
 const PARTICULARS: Particulars = Particulars { length: 175.0, speed: 7.0 };
 
 /// m' and the added masses m_x', m_y'; I_z' + J_z', and m_y' α_y with the centre α_y' = 0.05 of m_y'.
@@ -49,23 +51,23 @@ const AH: f64 = 0.237;
 const XR: f64 = -0.5;
 const XH: f64 = -0.48;
 
-/// The hull at the propeller revolutions of her steady approach.
+/// S175 hull at the propeller revolutions of its steady approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContainerHull {
-    /// n D, m/s.
+    /// Tip factor n D, m/s.
     tip: f64,
-    /// dN'/dδ on the straight approach.
+    /// Slope dN'/dδ on the straight approach.
     rudder_slope: f64,
 }
 
 impl ContainerHull {
-    /// Thrust balances the resistance: (1 − t) 2 (D/L)² (k0 q² + k1 (1 − w) q) = −X'uu with q = n D/U.
+    /// Hull whose thrust balances the resistance: (1 − t) 2 (D/L)² (k0 q² + k1 (1 − w) q) = −X'uu with q = n D/U.
     fn new() -> Self {
         let Particulars { length: L, speed: U } = PARTICULARS;
         let [k0, k1] = THRUST;
-        let wanted = -X[0] / ((1.0 - DEDUCTION) * 2.0 * (DIAMETER / L).powi(2));
+        let thrust = -X[0] / ((1.0 - DEDUCTION) * 2.0 * (DIAMETER / L).powi(2));
         let half = -0.5 * k1 * (1.0 - WAKE);
-        let tip = U * (half + (half * half + k0 * wanted).sqrt()) / k0;
+        let tip = U * (half + (half * half + k0 * thrust).sqrt()) / k0;
         let (hull, step) = (Self { tip, rudder_slope: 0.0 }, 1e-6);
         let rudder_slope = (XR + AH * XH) * hull.rudder_force([1.0, 0.0, 0.0], step, U) / step;
         Self { rudder_slope, ..hull }
@@ -84,12 +86,12 @@ impl ContainerHull {
     }
 }
 
-/// Inflow to the propeller over U.
+/// Inflow to the propeller, u_P/U.
 fn inflow(u: f64, v: f64, r: f64) -> f64 {
     u * (1.0 - WAKE + TAU * (v + XP * r).powi(2))
 }
 
-/// K_T at the inflow `uP` and q = n D/U; written as K_T with J = u_P/q.
+/// Thrust coefficient K_T at the inflow `uP` and q = n D/U, with J = u_P/q.
 fn thrust_coefficient(uP: f64, q: f64) -> f64 {
     THRUST[0] + THRUST[1] * uP / q
 }
@@ -103,7 +105,8 @@ impl Hull for ContainerHull {
         PARTICULARS
     }
 
-    /// m' a' = F', and a = a' U²/L (r' by U²/L²); the disturbance adds the yaw moment N'δ δ of approach speed.
+    /// Accelerations from m' a' = F', a = a' U²/L (r' by U²/L²); the disturbance adds the yaw moment N'δ δ at approach
+    /// speed.
     fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &Input) -> [f64; 3] {
         let Particulars { length: L, speed: U0 } = PARTICULARS;
         let U = surge.hypot(sway).max(SLOWEST * U0);
@@ -134,7 +137,7 @@ impl Hull for ContainerHull {
     }
 }
 
-/// The ship at 7 m/s; the rudder turns at 5 deg/s, as in the source of the table.
+/// S175 at 7 m/s; rudder rate 5 deg/s, as in the source of the table.
 ///
 /// Source: Son and Nomoto (1982), as tabulated in the Marine Systems Simulator (Lauvdal 1994, Fossen 2022).
 pub fn ship() -> Ship {

@@ -1,13 +1,13 @@
-//! A training ship like SEIUN MARU, 105 m, as an MMG hull: contains estimates.
+//! Training ship similar to SEIUN MARU, 105 m, as an MMG hull; contains estimates.
 //!
-//! No number is one that was measured on SEIUN MARU and seen in its publication. Of the twelve derivatives of sway
+//! No number was verified in a publication of measurements on SEIUN MARU. Of the twelve derivatives of sway
 //! force and yaw moment seven (Yvvr, Yvrr, Yrrr, Nv, Nvvv, Nvvr, Nvrr) equal, to the printed digits, what the
 //! regression of Yoshimura and Masumoto (2012) gives for L/B = 5.86, C_b = 0.508 and d/L: they are regression values,
 //! Nv = −2d/L for one. So are Xvv and Xvr; m_y' is the regression of Zhou (1983), and w_P0 = 0.5 C_b − 0.05. The other
-//! five (Yv, Yr, Yvvv, Nr, Nrrr) are none of that regression; the compiler of the set says that they were published for
-//! SEIUN MARU, which was not verified. Thrust deduction, the linear thrust curve, resistance and several rudder
+//! five (Yv, Yr, Yvvv, Nr, Nrrr) differ from that regression; according to the compiler of the set they were published
+//! for SEIUN MARU, which was not verified. Thrust deduction, the linear thrust curve, resistance and several rudder
 //! coefficients are estimates or regressions of the compiler. The formulas are those of [`crate::vessel::prior`]. The
-//! hull moves plausibly for a ship of its size; it is not SEIUN MARU.
+//! hull moves plausibly for a ship of its size; it does not represent SEIUN MARU.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use super::{KNOT, Model, Ship};
 use crate::vessel::Hull;
 use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, Parameters, Propeller, Rudder, Wake};
 
-/// The set; the volume is 0.3877 m³ of a 1:24.5 model.
+/// Parameters; the volume is 0.3877 m³ of a 1:24.5 model.
 pub const PARAMETERS: Parameters = Parameters {
     Lpp: 105.0,
     d: 5.966,
@@ -60,7 +60,7 @@ pub const PARAMETERS: Parameters = Parameters {
     },
 };
 
-/// The ship at 16.7 kn; its propeller turns at 2.438 1/s.
+/// SEIUN-like ship at 16.7 kn, propeller at 2.438 1/s.
 ///
 /// Source: the regression of Yoshimura and Masumoto (2012) with estimates, as compiled in the open-source package
 /// mmgdynamics.

@@ -1,9 +1,8 @@
-//! A tanker of 304.8 m, course-unstable, in deep water: the equations of van Berlekom and Goddard (1972).
+//! Course-unstable tanker of 304.8 m in deep water: the equations of van Berlekom and Goddard (1972).
 //!
-//! The source divides forces by the mass and lengths by L (the bis system), so accelerations come out in m/s². The
-//! rudder works in the speed c of the stream behind the propeller, c² = c_un u n + c_nn n². The thrust turns the ship a
-//! little (Y_T, N_T). The rudder of the source is positive to port and is turned round here; the terms of shallow water
-//! vanish.
+//! The source uses the bis system (forces over mass, lengths over L), so accelerations are in m/s². The rudder works in
+//! the propeller stream of speed c, c² = c_un u n + c_nn n². The thrust causes a small sway force and yaw moment (Y_T,
+//! N_T). The rudder of the source is positive to port; its sign is changed here. The shallow-water terms are zero.
 #![expect(non_snake_case, reason = "each name is the symbol of the source")]
 
 use std::sync::Arc;
@@ -13,7 +12,7 @@ use crate::dynamics::Input;
 use crate::particulars::Particulars;
 use crate::vessel::Hull;
 
-/// Length and approach speed; the propeller makes 80 rpm then.
+/// Length and approach speed, at which the propeller turns at 80 rpm.
 const PARTICULARS: Particulars = Particulars { length: 304.8, speed: 8.23 };
 
 /// 1 − X_u̇, 1 − Y_v̇ and k_z² − N_ṙ.
@@ -33,22 +32,22 @@ const Y: [f64; 4] = [-1.205, -2.400, 0.208, -2.16];
 /// uv, |v|r, ccδ and ccβ|β||δ| of N.
 const N: [f64; 4] = [-0.451, -0.300, -0.098, 0.688];
 
-/// The hull at the propeller revolutions of her steady approach.
+/// Tanker hull at the propeller revolutions of its steady approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TankerHull {
-    /// n, 1/s.
+    /// Propeller revolutions n, 1/s.
     revolutions: f64,
-    /// T of Y and N: the asymmetry of a single propeller.
+    /// Y_T and N_T: the asymmetry of a single propeller.
     by_thrust: [f64; 2],
 }
 
 impl TankerHull {
-    /// The same ship whose thrust does not turn her.
+    /// Hull without the asymmetry of the thrust.
     pub fn evened(self) -> Self {
         Self { by_thrust: [0.0; 2], ..self }
     }
 
-    /// Thrust over mass, m/s², and c², m²/s².
+    /// Thrust over mass, m/s², and squared speed of the propeller stream c², m²/s².
     fn thrust_and_stream(&self, u: f64) -> [f64; 2] {
         let (L, n) = (PARTICULARS.length, self.revolutions);
         let thrust = THRUST[0] * u * u / L + THRUST[1] * u * n + L * THRUST[2] * n * n;
@@ -61,7 +60,7 @@ impl Hull for TankerHull {
         PARTICULARS
     }
 
-    /// The equations of the source; the disturbance adds the yaw moment N_ccδ c² δ of approach speed.
+    /// Accelerations by the source; the disturbance adds the yaw moment N_ccδ c² δ at approach speed.
     fn acceleration(&self, [u, v, r]: [f64; 3], input: &Input) -> [f64; 3] {
         let L = PARTICULARS.length;
         let [thrust, cc] = self.thrust_and_stream(u);
@@ -94,16 +93,16 @@ impl Hull for TankerHull {
     }
 }
 
-/// The equations of [`ship`]. Thrust balances the resistance: X_uu U²/L + (1 − t) T = 0.
+/// Equations of [`ship`]. Thrust balances the resistance: X_uu U²/L + (1 − t) T = 0.
 pub fn equations() -> TankerHull {
     let Particulars { length: L, speed: U } = PARTICULARS;
     let [uu, un, nn] = THRUST;
-    let rest = (uu + X[0] / (1.0 - DEDUCTION)) * U * U / L;
+    let constant = (uu + X[0] / (1.0 - DEDUCTION)) * U * U / L;
     let half = 0.5 * un * U / (L * nn);
-    TankerHull { revolutions: (half * half - rest / (L * nn)).sqrt() - half, by_thrust: [0.04, -0.02] }
+    TankerHull { revolutions: (half * half - constant / (L * nn)).sqrt() - half, by_thrust: [0.04, -0.02] }
 }
 
-/// The ship at 8.23 m/s; the rudder turns at 2.33 deg/s, as in the source of the table.
+/// Tanker at 8.23 m/s; rudder rate 2.33 deg/s, as in the source of the table.
 ///
 /// Source: van Berlekom and Goddard (1972), as tabulated in the Marine Systems Simulator (Lauvdal 1994, Fossen 2005).
 pub fn ship() -> Ship {

@@ -77,20 +77,20 @@ fn a_straight_approach_stays_finite_and_a_rudder_turns_to_its_own_side() {
     }
 }
 
-/// Standstill, drifting and going astern included: a search may lead anywhere.
+/// Rates stay finite at standstill, in drift and astern, because a search may visit any state.
 #[test]
 fn rates_are_finite_wherever_the_state_is() {
     for ship in all() {
         let dynamics = ship.dynamics();
-        let mut rest = vec![0.0; dynamics.dimension()];
-        dynamics.approach(1.0, 0.0, &mut rest);
-        let mut rate = rest.clone();
+        let mut straight = vec![0.0; dynamics.dimension()];
+        dynamics.approach(1.0, 0.0, &mut straight);
+        let mut rate = straight.clone();
         for delta_deg in [-35.0_f64, 0.0, 35.0] {
             let input = Input { rudder: delta_deg.to_radians(), disturbance: 0.02, ..Input::default() };
             for yaw_rate in [-0.05, 0.0, 0.05] {
                 for share in [-0.5, 0.0, 1e-9, 0.05, 0.5, 1.0, 1.5] {
                     for sway in [-1.0, 0.0, 1.0] {
-                        let mut state = rest.clone();
+                        let mut state = straight.clone();
                         state[state::YAW_RATE] = yaw_rate;
                         if matches!(ship.model, Model::Hull(_)) {
                             state[state::SURGE] *= share;

@@ -1,4 +1,4 @@
-//! Ships from a user's own numbers.
+//! Ships from the numbers of a user: indices K and T, or particulars.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use std::sync::Arc;
@@ -15,22 +15,22 @@ use crate::short_number::ShortNumber;
 use crate::vessel::mmg::{Mmg, MmgError};
 use crate::vessel::prior::{self, HullParticulars, ParticularsError};
 
-/// Why numbers do not make a ship.
+/// Error of numbers that are not valid for a ship.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ShipError {
-    /// A number has no physical meaning in its place.
-    #[error("{symbol} = {} does not make a ship: {reason}", ShortNumber(*.value))]
+    /// Number without physical meaning.
+    #[error("{symbol} = {} is not valid: {reason}", ShortNumber(*.value))]
     Value {
         /// Symbol of the number.
         symbol: &'static str,
         /// The number.
         value: f64,
-        /// What is wrong with it.
+        /// Reason, a sentence.
         reason: &'static str,
     },
-    /// A number that puts a parameter of the response beyond any ship.
+    /// Number that gives a parameter of the response outside the range of ships.
     #[error(
-        "{symbol} makes {} = {}, and ships have {} to {} {}",
+        "{symbol} gives {} = {}, outside the range {} to {} {}",
         .parameter.symbol, ShortNumber(*.value), ShortNumber(.parameter.lowest), ShortNumber(.parameter.highest), .parameter.unit
     )]
     Range {
@@ -49,18 +49,18 @@ fn check(symbol: &'static str, value: f64, holds: bool, reason: &'static str) ->
 
 fn check_particulars(particulars: Option<Particulars>) -> Result<(), ShipError> {
     let Some(Particulars { length, speed }) = particulars else { return Ok(()) };
-    check("length", length, length > 0.0, "it has to be positive")?;
-    check("speed", speed, speed > 0.0, "it has to be positive")
+    check("length", length, length > 0.0, "it must be positive")?;
+    check("speed", speed, speed > 0.0, "it must be positive")
 }
 
 fn check_indices(K: f64, T: f64, symbol: &'static str) -> Result<(), ShipError> {
-    check("K", K, K != 0.0, "it has to be a finite number other than zero")?;
-    check(symbol, T, T != 0.0, "it has to be a finite number other than zero")?;
-    check("K", K, K / T > 0.0, "its sign has to be that of T, or the ship turns away from its rudder")
+    check("K", K, K != 0.0, "it must be finite and not zero")?;
+    check(symbol, T, T != 0.0, "it must be finite and not zero")?;
+    check("K", K, K / T > 0.0, "K and T must have the same sign, or the ship turns away from its rudder")
 }
 
-/// Refuses a response with a parameter outside the range it declares; `symbols` are the numbers it was made of, in the
-/// order of its parameters. A time constant of a nanosecond is no ship, and no simulation of one would end.
+/// Checks the parameters of a response against their ranges; `symbols` are the numbers it was made from, in the order
+/// of its parameters. A time constant of a nanosecond is not a ship, and its simulation would not end.
 fn check_range(response: &Response, symbols: &[&'static str]) -> Result<(), ShipError> {
     let values = response.model().parameters().zip(response.parameters()).zip(symbols);
     for ((parameter, &value), symbol) in values {
@@ -76,14 +76,14 @@ fn ship(name: String, source: &'static str, particulars: Option<Particulars>, mo
     Ship { id, name: name.into(), source, particulars, rudder_rate: None, largest_rudder: None, model }
 }
 
-/// A first-order ship T r' + r = K (δ + δ_r), with the identifier `user`.
+/// First-order ship T r' + r = K (δ + δ_r), with the identifier `user`.
 ///
 /// `K` (1/s) and `T` (s) both negative make a course-unstable ship. `rudder_bias` δ_r in rad. Fails for numbers that
 /// are not finite, K or T of zero, K and T of different sign, particulars that are not positive, and where 1/T, K/T or
 /// δ_r lies outside the range that [`crate::response::BASE`] declares.
 pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particulars>) -> Result<Ship, ShipError> {
     check_indices(K, T, "T")?;
-    check("rudder bias", rudder_bias, true, "it has to be finite")?;
+    check("rudder bias", rudder_bias, true, "it must be finite")?;
     check_particulars(particulars)?;
     let response = Response::first_order_ship(FirstOrder::from_indices(K, T, rudder_bias));
     check_range(&response, &["T", "K", "rudder bias"])?;
@@ -91,7 +91,7 @@ pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particu
     Ok(ship(name, "user", particulars, Model::Response(response)))
 }
 
-/// A second-order ship T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ', with the identifier `user`.
+/// Second-order ship T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ', with the identifier `user`.
 ///
 /// Fails as [`first_order`] does for K and T1, for T2 that is not positive and T3 that is not finite, and where they
 /// lie outside the range that [`SecondOrder`] declares.
@@ -102,9 +102,9 @@ pub fn second_order(
 ) -> Result<Ship, ShipError> {
     let SecondOrderIndices { K, T1, T2, T3 } = indices;
     check_indices(K, T1, "T1")?;
-    check("T2", T2, T2 > 0.0, "it has to be positive; of a course-unstable ship T1 is the negative one")?;
-    check("T3", T3, true, "it has to be finite")?;
-    check("rudder bias", rudder_bias, true, "it has to be finite")?;
+    check("T2", T2, T2 > 0.0, "it must be positive; for a course-unstable ship T1 is negative")?;
+    check("T3", T3, true, "it must be finite")?;
+    check("rudder bias", rudder_bias, true, "it must be finite")?;
     check_particulars(particulars)?;
     let name = format!("second order, K = {K} 1/s, T1 = {T1} s, T2 = {T2} s, T3 = {T3} s");
     let response = second_order_response(indices, rudder_bias, Vec::new(), &[]);
@@ -112,20 +112,20 @@ pub fn second_order(
     Ok(ship(name, "user", particulars, Model::Response(response)))
 }
 
-/// Why particulars do not make a ship that sails.
+/// Error of particulars from which no hull can be made.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum HullError {
-    /// No ship has such particulars.
+    /// Particulars outside the range of ships.
     #[error(transparent)]
     Particulars(#[from] ParticularsError),
-    /// The hull with the mean of every coefficient does not sail.
+    /// Mean hull without a steady approach.
     #[error(transparent)]
     Mmg(#[from] MmgError),
 }
 
-/// An MMG hull by its particulars, with the identifier `user`: every coefficient is the mean of its prior.
+/// MMG hull from particulars, with the identifier `user`: every coefficient is the mean of its prior.
 ///
-/// Fails for particulars that no ship has.
+/// Fails for particulars outside the range of ships.
 pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {
     let hull = Mmg::at_speed(prior::priors(particulars)?.parameters, particulars.speed)?;
     let HullParticulars { length, speed, .. } = *particulars;
@@ -134,16 +134,16 @@ pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {
     Ok(ship(name, "regressions on the particulars", scale, Model::Hull(Arc::new(hull))))
 }
 
-/// A second-order response, and after it `more` effects with their `values`.
+/// Second-order response with further effects and their parameter values.
 pub(super) fn second_order_response(
     indices: SecondOrderIndices,
     rudder_bias: f64,
-    more: Vec<Arc<dyn Effect>>,
+    further: Vec<Arc<dyn Effect>>,
     values: &[f64],
 ) -> Response {
     let SecondOrderIndices { K, T1, T2, T3 } = indices;
     let mut effects: Vec<Arc<dyn Effect>> = vec![Arc::new(SecondOrder)];
-    effects.extend(more);
+    effects.extend(further);
     let mut parameters = vec![1.0 / T1, K / T1, rudder_bias, T2, T3];
     parameters.extend_from_slice(values);
     ResponseModel::new(effects).with(parameters)
@@ -171,9 +171,9 @@ mod tests {
     #[test]
     fn refuses_ships_that_no_simulation_could_follow() {
         for (K, T, expected) in [
-            (0.125, 0.0625, "T makes 1/T = 16, and ships have -10 to 10 1/s"),
-            (-0.1, -0.03125, "T makes 1/T = -32, and ships have -10 to 10 1/s"),
-            (1e300, 1.0, "K makes K/T = 1e300, and ships have 0 to 100 1/s²"),
+            (0.125, 0.0625, "T gives 1/T = 16, outside the range -10 to 10 1/s"),
+            (-0.1, -0.03125, "T gives 1/T = -32, outside the range -10 to 10 1/s"),
+            (1e300, 1.0, "K gives K/T = 1e300, outside the range 0 to 100 1/s²"),
         ] {
             let error = first_order(K, T, 0.0, None).err().expect("beyond any ship");
             assert_eq!(error.to_string(), expected);
@@ -188,10 +188,10 @@ mod tests {
         for (K, T, symbol) in
             [(0.1, 0.0, "T"), (0.0, 16.3, "K"), (0.1, -16.3, "K"), (f64::NAN, 16.3, "K"), (0.1, f64::INFINITY, "T")]
         {
-            let Err(ShipError::Value { symbol: found, .. }) = first_order(K, T, 0.0, None) else {
+            let Err(ShipError::Value { symbol: refused, .. }) = first_order(K, T, 0.0, None) else {
                 panic!("K = {K}, T = {T} was taken for a ship")
             };
-            assert_eq!(found, symbol);
+            assert_eq!(refused, symbol);
         }
         assert!(first_order(0.1, 16.3, 0.0, Some(Particulars { length: 0.0, speed: 8.0 })).is_err());
         let unstable_twice = SecondOrderIndices { K: -0.1, T1: -20.0, T2: -2.5, T3: 6.2 };

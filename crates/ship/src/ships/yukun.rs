@@ -1,9 +1,8 @@
 //! Training ship YUKUN, the first-order ship of the paper that identifies K and T by a Fourier fit of the heading.
 //!
-//! K and T are printed there without units; 1/s and s are the only reading that gives a ship of this size. Length and
+//! K and T are printed there without units; 1/s and s are the only plausible units for a ship of this size. Length and
 //! speed are not in the paper and were not found in a source that could be checked: 105 m and 16.7 kn (8.59 m/s) are
-//! nominal values, good for nondimensional figures (K' = 1.22, T' = 1.33) and for nothing else. Neither rudder rate nor
-//! rudder bias is given.
+//! nominal values, for nondimensional figures only (K' = 1.22, T' = 1.33). Rudder rate and rudder bias are not given.
 
 use super::{KNOT, Model, Ship};
 use crate::first_order::FirstOrder;

@@ -1,11 +1,13 @@
-//! The Mariner-type polynomial model: one Taylor series for the forces on hull, propeller and rudder together.
+//! Abkowitz model: one Taylor series for the forces on hull, propeller and rudder together.
 //!
-//! Prime system ½ρL²U² with the momentary speed U: surge perturbation u' = (u − U₀)/U, sway v' = v/U, yaw r' = r L/U.
-//! The series is that of Chislett and Strøm-Tejsen (1965); its centrifugal terms are inside the derivatives (Yr holds
-//! −m', Xrv holds m'), so mass appears on the left only.
+//! Prime system ½ρL²U² with the instantaneous speed U: surge perturbation u' = (u − U₀)/U, sway v' = v/U, yaw r' = r
+//! L/U. The series is that of Chislett and Strøm-Tejsen (1965); its centrifugal terms are inside the derivatives (Yr
+//! holds −m', Xrv holds m'), so mass appears on the left only.
 //!
-//! The rudder of the source is positive to port. It is turned round here, at the border ([`Abkowitz::new`] takes the
-//! coefficients as printed), and nowhere else.
+//! The rudder of the source is positive to port. Its sign is changed here and nowhere else; [`Abkowitz::new`] takes the
+//! coefficients as printed.
+//!
+//! Sources: Abkowitz (1964); Chislett and Strøm-Tejsen (1965).
 #![expect(non_snake_case, reason = "Xvv is a derivative of the force X; names are those of the source")]
 
 use super::{Hull, SLOWEST};
@@ -13,7 +15,7 @@ use crate::dynamics::Input;
 use crate::linear::PrimeSwayYaw;
 use crate::particulars::Particulars;
 
-/// Derivatives as printed by the source: prime, rudder positive to port, radians.
+/// Derivatives as printed in the source: prime, rudder positive to port, radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "each name is the symbol of a derivative: Yvvr multiplies v'² r' in Y")]
 pub struct Derivatives {
@@ -42,7 +44,7 @@ pub struct Derivatives {
     pub N: Lateral,
 }
 
-/// Derivatives of the sway force or the yaw moment; the two have the same terms.
+/// Derivatives of the sway force or of the yaw moment, which have the same terms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "each name is the index of a derivative: vvr multiplies v'² r'")]
 pub struct Lateral {
@@ -58,7 +60,7 @@ pub struct Lateral {
     pub uud: f64,
     pub vdd: f64,
     pub vvd: f64,
-    /// Constant force of a single propeller; with `zero_u` and `zero_uu` the built-in asymmetry of the ship.
+    /// Constant force of a single propeller; with `zero_u` and `zero_uu` the asymmetry of the ship.
     pub zero: f64,
     pub zero_u: f64,
     pub zero_uu: f64,
@@ -79,7 +81,7 @@ impl Lateral {
     }
 }
 
-/// A hull described by one polynomial in u', v', r' and δ.
+/// Hull described by one polynomial in u', v', r' and δ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Abkowitz {
     particulars: Particulars,
@@ -87,12 +89,12 @@ pub struct Abkowitz {
 }
 
 impl Abkowitz {
-    /// A ship of this length whose derivatives were measured at this approach speed.
+    /// Hull of this length whose derivatives were measured at this approach speed.
     pub fn new(particulars: Particulars, derivatives: Derivatives) -> Self {
         Self { particulars, derivatives }
     }
 
-    /// The linear part of sway and yaw, rudder positive to starboard.
+    /// Linear equations of sway and yaw, rudder positive to starboard.
     pub fn linearised(&self) -> PrimeSwayYaw {
         let p = &self.derivatives;
         PrimeSwayYaw { M: self.mass(), N: [[-p.Y.v, -p.Y.r], [-p.N.v, -p.N.r]], b: [-p.Y.d, -p.N.d] }
@@ -109,9 +111,9 @@ impl Hull for Abkowitz {
         self.particulars
     }
 
-    /// m' a' = F'(u', v', r', δ), and a = a' U²/L (r' by U²/L²).
+    /// Accelerations from m' a' = F'(u', v', r', δ), a = a' U²/L (r' by U²/L²).
     ///
-    /// The disturbance adds the yaw moment N_δ δ of approach speed. The polynomial was fitted near that speed.
+    /// The disturbance adds the yaw moment N_δ δ at approach speed. The polynomial was fitted near that speed.
     fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &Input) -> [f64; 3] {
         let p = &self.derivatives;
         let Particulars { length: L, speed: U0 } = self.particulars;

@@ -1,4 +1,4 @@
-//! The MMG standard model: hull, propeller and rudder as separate parts (Yasukawa and Yoshimura 2015).
+//! MMG standard model: hull, propeller and rudder as separate parts (Yasukawa and Yoshimura 2015).
 //!
 //! Every equation is divided by ½ρLd, so forces read as X' U² (m²/s²), the moment as N' U² after a further L, and the
 //! density of the water drops out. In the velocities (u, v, rL):
@@ -26,21 +26,21 @@ use crate::dynamics::Input;
 use crate::linear::PrimeSwayYaw;
 use crate::particulars::Particulars;
 
-/// Why parameters do not make a hull.
+/// Error of parameters from which no hull can be made.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum MmgError {
-    /// A quantity that has to be a positive number is none.
-    #[error("{symbol} has to be positive, found {value}")]
+    /// Quantity that must be positive and finite.
+    #[error("{symbol} must be positive, found {value}")]
     NotPositive {
-        /// Its symbol.
+        /// Symbol.
         symbol: &'static str,
-        /// Its value.
+        /// Value.
         value: f64,
     },
-    /// The inertia in sway and yaw is not positive, by the determinant of the prime mass matrix.
+    /// Inertia in sway and yaw that is not positive, by the determinant of the prime mass matrix.
     #[error("mass and added mass leave no positive inertia in sway and yaw (determinant {0})")]
     Inertia(f64),
-    /// Thrust and resistance balance at no advance ratio.
+    /// Thrust that balances the resistance at no advance ratio.
     #[error("thrust balances the resistance at no advance ratio: k0 = {k0}, R0' = {R0}")]
     NoBalance {
         /// Thrust coefficient at J = 0.
@@ -50,30 +50,30 @@ pub enum MmgError {
     },
 }
 
-/// An MMG hull at constant propeller revolutions, with its steady straight approach.
+/// MMG hull at constant propeller revolutions, with its steady straight approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mmg<R = f64> {
     parameters: Parameters<R>,
-    /// m' = ∇/(½L²d).
+    /// Prime mass m' = ∇/(½L²d).
     mass: R,
-    /// x_G' m'.
+    /// Moment of mass x_G' m'.
     moment_of_mass: R,
     /// Prime mass matrix of sway and yaw: m11, m12 = m21, m22.
     inertia: [R; 3],
-    /// A_R/(Ld).
+    /// Rudder area ratio A_R/(Ld).
     rudder_area: R,
-    /// 2 D_P⁴/(Ld), m²: thrust over ½ρLd is this times n² K_T.
+    /// Thrust factor 2 D_P⁴/(Ld), m²: thrust over ½ρLd is this times n² K_T.
     thrust: R,
     revolutions: R,
     approach_speed: f64,
-    /// dN/dδ amidships at approach speed over ½ρL²d, m²/s².
+    /// Rudder moment slope dN/dδ amidships at approach speed over ½ρL²d, m²/s².
     rudder_moment: R,
 }
 
 impl<R: Real> Mmg<R> {
-    /// The hull whose straight approach at `speed` (m/s) is steady; the revolutions follow from that.
+    /// Hull whose straight approach at `speed` (m/s) is steady; the revolutions follow from the balance of thrust.
     ///
-    /// Fails for parameters that are not positive where they have to be, or whose thrust cannot balance the resistance.
+    /// Fails for parameters that are not positive where required, or whose thrust cannot balance the resistance.
     pub fn at_speed(parameters: Parameters<R>, speed: f64) -> Result<Self, MmgError> {
         positive("approach speed", speed)?;
         let speed_per_revolution = speed_per_revolution(&parameters)?;
@@ -110,7 +110,7 @@ impl<R: Real> Mmg<R> {
         Ok(hull)
     }
 
-    /// The parameters.
+    /// Parameters.
     pub fn parameters(&self) -> &Parameters<R> {
         &self.parameters
     }
@@ -126,14 +126,14 @@ impl<R: Real> Mmg<R> {
         self.rudder_inflow(uP, self.revolutions) / self.approach_speed
     }
 
-    /// dY'/dδ and dN'/dδ at δ = 0 on the straight approach.
+    /// Rudder slopes dY'/dδ and dN'/dδ at δ = 0 on the straight approach.
     fn rudder_slopes(&self) -> [R; 2] {
         let rudder = &self.parameters.rudder;
         let slope = self.rudder_area * self.approach_inflow().powi(2) * rudder.f_alpha;
         [-(rudder.aH + 1.0) * slope, -(rudder.xR + rudder.aH * rudder.xH) * slope]
     }
 
-    /// K_T at the advance speed `uP` (m/s) and `revolutions` (1/s).
+    /// Thrust coefficient K_T at the advance speed `uP` (m/s) and `revolutions` (1/s).
     fn thrust_coefficient(&self, uP: R, revolutions: R) -> R {
         let propeller = &self.parameters.propeller;
         let J = uP / (revolutions * propeller.DP);
@@ -141,7 +141,8 @@ impl<R: Real> Mmg<R> {
         k0 + J * (k1 + J * k2)
     }
 
-    /// u_R, m/s: ε u_P √(η {1 + κ [√(1 + 8 K_T/(π J²)) − 1]}² + 1 − η), written so that J = 0 is regular.
+    /// Longitudinal rudder inflow u_R = ε u_P √(η {1 + κ [√(1 + 8 K_T/(π J²)) − 1]}² + 1 − η), m/s, written so that J
+    /// = 0 is regular.
     fn rudder_inflow(&self, uP: R, revolutions: R) -> R {
         let rudder = &self.parameters.rudder;
         let nD = revolutions * self.parameters.propeller.DP;
@@ -165,9 +166,9 @@ impl<R: Real> Mmg<R> {
         }
     }
 
-    /// (u', v', r') in m/s² and rad/s² at surge u and sway v (m/s), yaw rate (rad/s) and rudder (rad); `turning` is the
-    /// rate of the propeller over that of the approach, and the disturbance (rad) adds the yaw moment (dN/dδ) δ of the
-    /// straight approach.
+    /// Accelerations (u', v', r') in m/s² and rad/s² at surge u and sway v (m/s), yaw rate (rad/s) and rudder (rad);
+    /// `turning` is the propeller rate over that of the approach, and the disturbance (rad) adds the yaw moment (dN/dδ)
+    /// δ of the straight approach.
     pub fn accelerations(&self, [u, v, r]: [R; 3], rudder_angle: R, turning: f64, disturbance: f64) -> [R; 3] {
         let Parameters { Lpp: L, hull, propeller, rudder, .. } = self.parameters;
         let revolutions = self.revolutions * turning;
@@ -208,9 +209,10 @@ impl<R: Real> Mmg<R> {
 }
 
 impl Mmg {
-    /// The linear part of sway and yaw about the straight approach.
+    /// Linear equations of sway and yaw about the straight approach.
     ///
-    /// Flow straightening has two slopes at zero angle; the mean of both is taken. The result describes neither side.
+    /// Flow straightening has two slopes at zero angle; their mean is used, so the result describes neither side
+    /// exactly.
     pub fn linearised(&self) -> PrimeSwayYaw {
         let (hull, rudder) = (&self.parameters.hull, &self.parameters.rudder);
         let b = self.rudder_slopes();
@@ -234,7 +236,7 @@ fn positive(symbol: &'static str, value: f64) -> Result<(), MmgError> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(MmgError::NotPositive { symbol, value }) }
 }
 
-/// Steady speed over revolutions, m: the advance ratio at which thrust balances resistance does not depend on n.
+/// Steady speed over revolutions, m; the advance ratio at which thrust balances resistance does not depend on n.
 ///
 /// R0' (J D/(1 − w))² = (1 − t_P) 2 D⁴/(Ld) (k0 + k1 J + k2 J²), a quadratic in J whose left side grows from zero, so
 /// for falling thrust there is one positive root.
@@ -266,7 +268,8 @@ impl Hull for Mmg {
         Particulars { length: self.parameters.Lpp, speed: self.approach_speed }
     }
 
-    /// The equations of the module; the disturbance adds the yaw moment (dN/dδ) δ of the straight approach.
+    /// Accelerations by the equations of the module; the disturbance adds the yaw moment (dN/dδ) δ of the straight
+    /// approach.
     fn acceleration(&self, velocity: [f64; 3], input: &Input) -> [f64; 3] {
         self.accelerations(velocity, input.rudder, 1.0, input.disturbance)
     }

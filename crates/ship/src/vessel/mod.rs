@@ -1,11 +1,11 @@
 //! Hulls with three degrees of freedom (surge, sway, yaw): a truth that no response model matches exactly.
 //!
-//! A hull gives its accelerations ([`Hull`]); heading, position and the link to [`Dynamics`] are written once here.
-//! [`mmg`] holds hull, propeller and rudder as separate parts, [`abkowitz`] one polynomial for the whole ship.
+//! A hull defines its accelerations ([`Hull`]); heading, position and the implementation of [`Dynamics`] are here.
+//! [`mmg`] models hull, propeller and rudder separately, [`abkowitz`] uses one polynomial for the whole ship.
 //! Parameter sets with their sources are in [`crate::ships`].
 //!
-//! Water is deep and at rest, propeller revolutions are constant, heel is absent. The equations hold for a ship that
-//! moves ahead; near standstill and astern they stay finite and mean nothing (see [`SLOWEST`]).
+//! Water is deep and at rest, propeller revolutions are constant, heel is absent. The equations are valid for a ship
+//! that moves ahead; near standstill and astern they stay finite without physical meaning (see [`SLOWEST`]).
 
 pub mod abkowitz;
 pub mod mmg;
@@ -16,7 +16,7 @@ pub mod scaled;
 use crate::dynamics::{Dynamics, Input, Motion};
 use crate::particulars::Particulars;
 
-/// Places in the state vector of every hull.
+/// Indices in the state vector of every hull.
 pub mod state {
     /// Heading ψ, rad.
     pub const HEADING: usize = 0;
@@ -34,22 +34,22 @@ pub mod state {
     pub const DIMENSION: usize = 6;
 }
 
-/// Share of the approach speed below which prime quantities are formed with that share instead of the speed.
+/// Lower bound of the speed in prime quantities, as a share of the approach speed.
 ///
-/// Prime velocities v/U and r L/U lose their meaning at U → 0, and their powers would overflow. Ships in zig-zag trials
-/// and turning circles keep more than a quarter of their speed, so trials never see this bound.
+/// Prime velocities v/U and r L/U are undefined at U → 0, and their powers would overflow. Ships in zig-zag trials and
+/// turning circles keep more than a quarter of their speed, so trials never reach this bound.
 pub const SLOWEST: f64 = 0.1;
 
-/// A hull with three degrees of freedom at constant propeller revolutions.
+/// Hull with three degrees of freedom at constant propeller revolutions.
 ///
-/// Implementing it makes a [`Dynamics`] with the states of [`state`]: ψ' = r, x' = u cos ψ − v sin ψ, y' = u sin ψ + v
+/// A hull implements [`Dynamics`] with the states of [`state`]: ψ' = r, x' = u cos ψ − v sin ψ, y' = u sin ψ + v
 /// cos ψ.
 pub trait Hull: Send + Sync {
     /// Length, and speed of the steady straight approach.
     fn particulars(&self) -> Particulars;
 
-    /// (u', v', r'), m/s² and rad/s², in the frame of the ship, which turns, at surge u, sway v to starboard (m/s) and
-    /// yaw rate r (rad/s) of midship under this input; finite for finite arguments.
+    /// Accelerations (u', v', r'), m/s² and rad/s², in the rotating frame of the ship, at surge u, sway v to starboard
+    /// (m/s) and yaw rate r (rad/s) at midship; finite for finite arguments.
     fn acceleration(&self, velocity: [f64; 3], input: &Input) -> [f64; 3];
 }
 
@@ -62,7 +62,7 @@ impl<H: Hull> Dynamics for H {
         state::DIMENSION
     }
 
-    /// Straight ahead at approach speed from the origin. A hull with a built-in asymmetry leaves this state by itself.
+    /// Straight ahead at approach speed from the origin. An asymmetric hull does not stay in this state.
     fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
         state.fill(0.0);
         state[state::HEADING] = heading;
@@ -86,10 +86,10 @@ impl<H: Hull> Dynamics for H {
         Motion { heading, yaw_rate, yaw_acceleration, speed: Some(surge.hypot(sway)), sway: Some(sway) }
     }
 
-    /// A hundredth of the time the ship needs for its own length, so that a model is stepped as finely as its ship.
+    /// Hundredth of the ship-length time L/U, so that a model has as many steps as its ship.
     ///
-    /// After five reversals of a 20° rudder the heading is then within 0.0001° of that of a far smaller step; what is
-    /// left comes from the kinks of an MMG hull.
+    /// After five reversals of a 20° rudder the heading is then within 0.0001° of that of a far smaller step; the error
+    /// comes from the kinks of an MMG hull.
     fn largest_step(&self) -> f64 {
         self.particulars().time() / 100.0
     }

@@ -1,9 +1,10 @@
-//! What the particulars of a ship say about the coefficients of her MMG hull before she is steered: a mean and a
-//! standard deviation of each, from published formulas and typical values.
+//! Priors of the coefficients of an MMG hull from the particulars of a ship: mean and standard deviation of each, from
+//! published formulas and typical values.
 //!
-//! A particular that is missing is filled in by the ratio that is typical of ships, and the spread of that ratio widens
-//! the prior: every formula is evaluated at the ratio a standard deviation higher and lower, half of the difference is
-//! added in quadrature.
+//! A missing particular is replaced by a typical ratio of ships, whose spread widens the prior: every formula is
+//! evaluated at the ratio one standard deviation higher and lower, and half of the difference is added in quadrature.
+//!
+//! The sources of the formulas stand in their table.
 
 mod formulas;
 mod likeness;
@@ -16,10 +17,10 @@ use self::formulas::{FORMULAS, Spread};
 use self::particulars::{HullDimensions, RATIOS};
 use super::mmg::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
 
-/// The prior of one coefficient.
+/// Prior of one coefficient.
 #[derive(Debug, Clone, Copy)]
 pub struct Coefficient {
-    /// What it is called, and where it comes from.
+    /// Formula of the mean, with name and source.
     pub formula: &'static Formula,
     /// Mean.
     pub mean: f64,
@@ -27,39 +28,39 @@ pub struct Coefficient {
     pub sd: f64,
 }
 
-/// Source of every ratio that fills in a particular.
+/// Source of the typical ratios.
 pub const SOURCE_OF_RATIOS: &str = "typical: KVLCC2, KCS, ONRT, Esso Osaka, SEIUN MARU";
 
-/// A particular that was not given.
+/// Assumed value of a particular that was not given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
-    /// Which one.
+    /// Key of the particular.
     pub key: &'static str,
-    /// What stands for it, in the unit of the key.
+    /// Assumed value, in the unit of the key.
     pub value: f64,
-    /// Standard deviation of that.
+    /// Standard deviation of the value.
     pub sd: f64,
-    /// The ratio it follows from.
+    /// Ratio from which it follows.
     pub formula: String,
 }
 
-/// The prior of a hull.
+/// Prior of a hull.
 #[derive(Debug, Clone)]
 pub struct HullPrior {
-    /// The hull with the mean of every coefficient; [`super::mmg::Mmg::at_speed`] makes it sail.
+    /// Mean hull, for [`super::mmg::Mmg::at_speed`].
     pub parameters: Parameters,
-    /// The prior of every coefficient.
+    /// Priors of the coefficients.
     pub coefficients: Vec<Coefficient>,
-    /// What was filled in.
+    /// Assumed particulars.
     pub assumed: Vec<Assumed>,
-    /// Hulls a standard deviation above and below the mean: in every ratio that may be filled in, and in every
-    /// coefficient by the error of its formula.
+    /// Hulls one standard deviation above and below the mean, in every assumed ratio and in every coefficient by the
+    /// error of its formula.
     pub deviations: Vec<[Parameters; 2]>,
 }
 
-/// The prior of the hull with these particulars.
+/// Prior of the hull with these particulars.
 ///
-/// Fails for particulars that no ship has, or that contradict each other.
+/// Fails for particulars outside the range of ships, or that contradict each other.
 pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
     given.check()?;
     let typical = RATIOS.map(|ratio| ratio.mean);
@@ -75,26 +76,26 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
             })
         })
         .collect();
-    let spread = |of: &dyn Fn(&HullDimensions) -> f64| -> f64 {
-        shifted.iter().map(|[above, below]| (0.5 * (of(above) - of(below))).powi(2)).sum()
+    let variance = |value: &dyn Fn(&HullDimensions) -> f64| -> f64 {
+        shifted.iter().map(|[above, below]| (0.5 * (value(above) - value(below))).powi(2)).sum()
     };
     let parameters = hull(&form);
     let mut deviations: Vec<[Parameters; 2]> = shifted.iter().map(|pair| pair.each_ref().map(hull)).collect();
     let coefficient = |formula: &'static Formula| {
         let mean = (formula.of)(&form);
-        let own = match formula.spread {
+        let sd = match formula.spread {
             Spread::Share(share) => share * mean,
-            Spread::Absolute(sd) => sd,
+            Spread::Absolute(value) => value,
         };
-        deviations.push([own, -own].map(|shift| with(parameters, formula, mean + shift)));
-        Coefficient { formula, mean, sd: (own * own + spread(&formula.of)).sqrt() }
+        deviations.push([sd, -sd].map(|shift| with(parameters, formula, mean + shift)));
+        Coefficient { formula, mean, sd: (sd * sd + variance(&formula.of)).sqrt() }
     };
     let coefficients = FORMULAS.iter().map(coefficient).collect();
     let assumed = PARTICULARS.iter().filter_map(|particular| {
-        let of = |form: &HullDimensions| particular.of_form.map_or(f64::NAN, |of| of(form));
+        let dimension = |form: &HullDimensions| particular.of_form.map_or(f64::NAN, |of_form| of_form(form));
         let formula = RATIOS.iter().find(|ratio| ratio.fills == particular.key)?.text();
-        let missing = particular.get(given).is_none() && particular.of_form.is_some();
-        missing.then(|| Assumed { key: particular.key, value: of(&form), sd: spread(&of).sqrt(), formula })
+        let (value, missing) = (dimension(&form), particular.get(given).is_none() && particular.of_form.is_some());
+        missing.then(|| Assumed { key: particular.key, value, sd: variance(&dimension).sqrt(), formula })
     });
     Ok(HullPrior { parameters, assumed: assumed.collect(), coefficients, deviations })
 }
@@ -105,12 +106,12 @@ fn with(mut parameters: Parameters, formula: &Formula, value: f64) -> Parameters
     parameters
 }
 
-/// The hull of these dimensions, by the formulas.
+/// Hull of these dimensions, by the formulas.
 fn hull(form: &HullDimensions) -> Parameters {
     FORMULAS.iter().fold(blank(form), |hull, formula| with(hull, formula, (formula.of)(form)))
 }
 
-/// The dimensions of a hull; its coefficients are still to be set.
+/// Hull of these dimensions whose coefficients are not set.
 fn blank(form: &HullDimensions) -> Parameters {
     Parameters {
         Lpp: form.L,
@@ -127,7 +128,7 @@ fn blank(form: &HullDimensions) -> Parameters {
             xP: 0.0,
             k: [0.0; 3],
         },
-        // A propeller that is higher than the rudder covers all of it.
+        // A propeller higher than the rudder covers it fully.
         rudder: Rudder { AR: form.AR, eta: (form.DP / form.HR).min(1.0), ..Rudder::default() },
     }
 }

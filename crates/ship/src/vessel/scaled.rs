@@ -1,4 +1,4 @@
-//! A hull without dimension, at the size and speed of a ship: what is steered and replayed.
+//! Nondimensional hull at the size and speed of a ship, for simulation and replay.
 
 use estimation::number::{Dual, Real};
 use nalgebra::{Matrix3, Vector3};
@@ -8,22 +8,22 @@ use crate::dynamics::{Dynamics, Input, Motion, Regressor};
 use crate::number::Tangent;
 use crate::replayable::{Pace, Replayable, ReplayedShip};
 
-/// Steps in the time L/U₀.
+/// Number of steps in the ship-length time L/U₀.
 const STEPS: f64 = 25.0;
 
-/// A hull of three degrees of freedom: states ψ (rad), r (rad/s), u and v (m/s).
+/// Hull with three degrees of freedom: states ψ (rad), r (rad/s), u and v (m/s).
 ///
-/// ψ' = r; (u', v', r') are those of the [`PrimeHull`], which sees the propeller and the relative wind where
-/// they were recorded.
+/// ψ' = r; (u', v', r') are those of the [`PrimeHull`], with the propeller and the relative wind where they were
+/// recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScaledHull<R = f64> {
-    /// The hull.
+    /// Nondimensional hull.
     pub hull: PrimeHull<R>,
     /// Length L, m.
     pub length: f64,
     /// Approach speed U₀, m/s.
     pub speed: f64,
-    /// Rate of the propeller at that speed, 1/s, where it is known.
+    /// Propeller rate at that speed, 1/s; `None` where it is unknown.
     pub propeller: Option<f64>,
 }
 
@@ -65,7 +65,7 @@ impl<R: Real> Dynamics<R> for ScaledHull<R> {
 }
 
 impl<R: Real> Replayable<R> for ScaledHull<R> {
-    /// Surge and sway are those measured, or those of the approach.
+    /// Initial state with measured surge and sway, or those of the approach.
     fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
         let sway = input.measured.sway.unwrap_or(0.0);
         let surge = input.measured.speed.map_or(self.speed, |speed| (speed * speed - sway * sway).max(0.0).sqrt());
@@ -85,40 +85,40 @@ impl<R: Real> Replayable<R> for ScaledHull<R> {
     }
 }
 
-/// Steps in which speed, drift and rudder of a turn settle, the first of them in L/U₀, how much longer each is than the
-/// one before, and the accelerations that are none.
-const SETTLING: usize = 60;
+/// Search of a steady turn: largest number of steps, first step in L/U₀, growth factor of the step, and tolerance of
+/// the accelerations.
+const MAX_STEPS: usize = 60;
 const FIRST_STEP: f64 = 0.5;
-const LONGER: f64 = 1.5;
-const SETTLED: f64 = 1e-10;
+const STEP_GROWTH: f64 = 1.5;
+const ACCELERATION_TOLERANCE: f64 = 1e-10;
 
-/// Largest rudder that is looked at in a turn, rad.
-const LARGEST_RUDDER: f64 = 1.2;
+/// Largest rudder of a steady turn, rad.
+const MAX_RUDDER_RAD: f64 = 1.2;
 
 impl ScaledHull {
-    /// Rudder (rad) at which the hull turns steadily at a yaw rate (rad/s): speed and drift settle while the rudder
-    /// keeps the rate (reversed spiral, Bech 1968), so the branch that a spiral test jumps over is found, too. `None`
-    /// where no rudder within 1.2 rad does it.
+    /// Rudder (rad) of a steady turn at a yaw rate (rad/s): speed and drift settle while the rudder keeps the rate
+    /// (reversed spiral, Bech 1968), so the unstable branch is found, too. `None` where no rudder within 1.2 rad keeps
+    /// it.
     ///
-    /// Implicit Euler steps of growing length, which end as those of Newton.
+    /// Implicit Euler steps of growing length, which become Newton steps (pseudo-transient continuation).
     pub fn steady_rudder(&self, yaw_rate: f64) -> Option<f64> {
         let hull = self.hull.constant::<Dual<3>>();
         let rate = yaw_rate * self.length / self.speed;
         let mut at = Vector3::new(1.0, 0.0, 0.0);
         let mut step = FIRST_STEP;
-        for _ in 0..SETTLING {
+        for _ in 0..MAX_STEPS {
             let [u, v, rudder] = [0, 1, 2].map(|place| Dual::variable(at[place], place, 1.0));
-            let left = hull.accelerations([u, v, Dual::from(rate)], rudder, 1.0, 0.0, [0.0; 3]);
-            let mut matrix = Matrix3::from_fn(|row, column| -left[row].by[column]);
+            let accelerations = hull.accelerations([u, v, Dual::from(rate)], rudder, 1.0, 0.0, [0.0; 3]);
+            let mut matrix = Matrix3::from_fn(|row, column| -accelerations[row].by[column]);
             matrix[(0, 0)] += step.recip();
             matrix[(1, 1)] += step.recip();
-            let left = Vector3::from(left.map(|one| one.value));
-            if left.amax() < SETTLED {
-                return (at[2].abs() < LARGEST_RUDDER).then_some(at[2]);
+            let residual = Vector3::from(accelerations.map(|dual| dual.value));
+            if residual.amax() < ACCELERATION_TOLERANCE {
+                return (at[2].abs() < MAX_RUDDER_RAD).then_some(at[2]);
             }
-            at += matrix.lu().solve(&left)?;
-            at[2] = at[2].clamp(-LARGEST_RUDDER, LARGEST_RUDDER);
-            step *= LONGER;
+            at += matrix.lu().solve(&residual)?;
+            at[2] = at[2].clamp(-MAX_RUDDER_RAD, MAX_RUDDER_RAD);
+            step *= STEP_GROWTH;
         }
         None
     }
@@ -147,7 +147,7 @@ mod tests {
     /// The hull as expected, and KVLCC2.
     fn hulls() -> [ScaledHull; 2] {
         let form = &HullForm::of_ship(None)[0];
-        let means: Vec<f64> = form.coefficients().iter().map(|own| own.mean).collect();
+        let means: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
         let quadratic = form.with(&means).expect("a ship");
         let mmg = Mmg::at_speed(kvlcc2::FULL_SCALE.of_length_one(), 1.0).expect("a ship");
         let mmg = PrimeHull { in_calm: CalmHull::Mmg(Box::new(mmg), 0.0), windage: 0.0 };

@@ -1,11 +1,12 @@
-//! The path over ground of a ship with known velocities, and the figures of a turning circle.
+//! Track over ground from velocities, and the figures of a turning circle.
+//!
+//! Sources: IMO MSC.137(76) (2002); ITTC 7.5-04-02-01.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Positions (north, east; m) from heading (rad) and surge and sway (m/s) at increasing times (s), beginning at the
-/// origin.
+/// Track: positions (north, east; m) from heading (rad), surge and sway (m/s) at increasing times (s), from the origin.
 ///
-/// x' = u cos ψ − v sin ψ, y' = u sin ψ + v cos ψ, by the trapezoidal rule. As many rows as the shortest column has.
+/// x' = u cos ψ − v sin ψ, y' = u sin ψ + v cos ψ, by the trapezoidal rule. Cut to the shortest column.
 pub fn track(time: &[f64], heading: &[f64], velocity: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let over_ground = |(heading, [surge, sway]): (&f64, &[f64; 2])| {
         let (sin, cos) = heading.sin_cos();
@@ -23,45 +24,43 @@ pub fn track(time: &[f64], heading: &[f64], velocity: &[[f64; 2]]) -> Vec<[f64; 
     (0..ways.len().min(time.len())).map(step).collect()
 }
 
-/// Where a series first reaches a level after its row `first`: the row before, and the share of the way to the next.
+/// First crossing of a level after row `first`: the row before, and the share of the interval to the next row.
 pub(crate) fn reached(value: impl Fn(usize) -> f64, first: usize, rows: usize, level: f64) -> Option<(usize, f64)> {
     let row = (first + 1..rows).find(|&row| value(row) >= level)?;
     Some((row - 1, (level - value(row - 1)) / (value(row) - value(row - 1))))
 }
 
-/// Figures of a turning circle; `None` for what was not reached.
-///
-/// Sources: IMO MSC.137(76) (2002); ITTC 7.5-04-02-01.
+/// Figures of a turning circle; `None` for a figure that was not reached.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TurningCircleFigures {
-    /// Way in the direction of the approach from the execute to a heading change of 90°, m.
+    /// Advance: distance in the direction of the approach from the execute to a heading change of 90°, m.
     pub advance: Option<f64>,
-    /// Way across, to the side of the turn, from the execute to a heading change of 90°, m.
+    /// Transfer: distance across, to the side of the turn, from the execute to a heading change of 90°, m.
     pub transfer: Option<f64>,
-    /// The same to a heading change of 180°, m.
+    /// Tactical diameter: distance across from the execute to a heading change of 180°, m.
     pub tactical_diameter: Option<f64>,
     /// Speed in the steady turn over that at the execute.
     pub speed_ratio: Option<f64>,
-    /// Drift angle β = atan2(−v, u) in the steady turn at the point whose sway is given, rad.
+    /// Drift angle β = atan2(−v, u) in the steady turn at the reference point of the sway, rad.
     pub drift_angle: Option<f64>,
-    /// Distance x_P = −v/r of the pivot point ahead of that point in the steady turn, m.
+    /// Distance x_P = −v/r of the pivot point ahead of the reference point in the steady turn, m.
     pub pivot_ahead: Option<f64>,
 }
 
 /// Heading change from which a turn counts as steady, rad.
 const STEADY: f64 = TAU;
 
-/// Heading change that the steady part has to have, rad: over half a circle a current and waves nearly cancel.
-const ENOUGH: f64 = PI;
+/// Smallest heading change of the steady part, rad; over half a circle a current and waves nearly cancel.
+const MIN_STEADY_CHANGE: f64 = PI;
 
-/// The figures of a turn that was begun at the time `execute`, s: times (s, increasing), headings (rad, not wrapped),
-/// positions (m, north and east: measured, or those of [`track`]; none where they are not known), surge and sway at the
-/// point whose positions these are (m/s), and yaw rates (rad/s).
+/// Figures of a turn with the execute at `execute` s, from times (s, increasing), headings (rad, not wrapped),
+/// positions (m, north and east: measured, or of [`track`]; empty if unknown), surge and sway at the same point (m/s),
+/// and yaw rates (rad/s).
 ///
-/// The course of the approach is the heading at the execute, the side of the turn that of the last heading. Between two
-/// rows the heading runs straight. The steady turn is what follows a heading change of 360° when that is at least half
-/// a circle more; the series should end with the turn. All figures are `None` when columns differ in length, a number
-/// in time, heading or track is not finite, or the execute lies outside.
+/// The course of the approach is the heading at the execute; the last heading gives the side of the turn. The heading
+/// is interpolated linearly between rows. The steady turn is the part after a heading change of 360°, if it turns by at
+/// least half a circle more; the series should end with the turn. All figures are `None` if columns differ in length, a
+/// number in time, heading or track is not finite, or the execute is outside the series.
 pub fn turning_circle(
     [time, heading, yaw_rate]: [&[f64]; 3],
     [track, velocity]: [&[[f64; 2]]; 2],
@@ -94,13 +93,14 @@ pub fn turning_circle(
         Some([way[0] * cos + way[1] * sin, side * (way[1] * cos - way[0] * sin)])
     };
     let quarter = way(FRAC_PI_2);
-    let steady = (begin..rows).find(|&row| change(row) >= STEADY).filter(|_| change(rows - 1) >= STEADY + ENOUGH);
+    let steady =
+        (begin..rows).find(|&row| change(row) >= STEADY).filter(|_| change(rows - 1) >= STEADY + MIN_STEADY_CHANGE);
     let mean = |values: &mut dyn Iterator<Item = f64>| {
         let (sum, count) = values.filter(|value| value.is_finite()).fold((0.0, 0), |(s, n), v| (s + v, n + 1));
         (count > 0).then(|| sum / f64::from(count))
     };
     let means = steady.and_then(|row| {
-        let [surge, sway] = [0, 1].map(|axis| mean(&mut velocity[row..].iter().map(|own| own[axis])));
+        let [surge, sway] = [0, 1].map(|axis| mean(&mut velocity[row..].iter().map(|v| v[axis])));
         Some([surge?, sway?, mean(&mut yaw_rate[row..].iter().copied())?])
     });
     let [surge, sway] = at(velocity, begin, share);

@@ -1,4 +1,6 @@
-//! The equations of surge and sway, their coefficients and what signs these may have.
+//! Equations of surge and sway, their coefficients and the bounds of these.
+//!
+//! Sources: Abkowitz (1964); Norrbin (1971); Yasukawa and Yoshimura (2015) for the rudder behind a propeller.
 #![expect(non_snake_case, reason = "X_vr and Y_v are written as in the literature")]
 
 use serde::{Deserialize, Serialize};
@@ -9,8 +11,8 @@ pub const COEFFICIENTS: usize = 8;
 /// Symbols of the coefficients, in the order of [`PlanarCoefficients::to_array`].
 pub const SYMBOLS: [&str; COEFFICIENTS] = ["X_0", "X_vr", "X_dd", "X_dv", "Y_v", "Y_vv", "Y_r", "Y_d"];
 
-/// Least and largest value of every coefficient. The signs make the rudder and the hull slow the ship down in a turn,
-/// and damp its sway; the other ends are far beyond any ship and keep a search finite.
+/// Bounds of every coefficient. Their signs make rudder and hull slow the ship down in a turn and damp its sway; the
+/// other bounds are far beyond any ship and keep a search finite.
 pub(crate) const BOUNDS: [[f64; 2]; COEFFICIENTS] =
     [[1e-3, 2.0], [0.0, 5.0], [0.0, 5.0], [0.0, 5.0], [1e-3, 20.0], [0.0, 100.0], [-3.0, 3.0], [-3.0, 3.0]];
 
@@ -22,21 +24,18 @@ pub(crate) const BOUNDS: [[f64; 2]; COEFFICIENTS] =
 ///
 /// with surge u and sway v (m/s, body axes, at the point the records report), yaw rate r (rad/s), rudder δ (rad,
 /// positive turns to starboard), length L (m) and the speed U₀ of the straight approach (m/s). Time in L/U₀ and speeds
-/// in U₀ take both out of the equations, so the same coefficients hold for ships that are alike at the same Froude
-/// number.
+/// in U₀ make the equations nondimensional, so the same coefficients hold for similar ships at the same Froude number.
 ///
-/// The flow over the rudder comes from a propeller of constant revolutions; forces of the rudder therefore grow with U₀
-/// u and not with u². Its drag depends on the flow it meets: in a turn drift takes from the angle of attack, when the
-/// rudder is put over against the turn drift adds to it. The drag is never a thrust. In a turn v r < 0, so all terms
-/// but the first slow the ship down and the speed stays below U₀; where no rudder acts a sway velocity dies out.
+/// The rudder is in the stream of a propeller at constant revolutions, so its forces grow with U₀ u and not with u².
+/// Its drag depends on the angle of attack: drift reduces it in a turn and increases it when the rudder is put over
+/// against the turn. The drag is never negative. In a turn v r < 0, so all terms but the first slow the ship down and
+/// the speed stays below U₀; without rudder a sway velocity decays.
 ///
-/// The terms follow the usual expansions; which of them stay was decided by how well zig-zags of a tanker model
-/// (KVLCC2, HSVA) are told by a fit to the others. Root mean square of surge and sway that were left out, in % of U₀:
+/// The terms were selected from the usual expansions by cross-validation on zig-zags of a tanker model (KVLCC2, HSVA).
+/// Root mean square error of surge and sway on the left-out zig-zags, in % of U₀:
 /// 1.0 and 1.0 with rudder forces that grow with u² and sway damping |u| v alone, 1.1 and 0.65 with v |v| as well, 0.62
 /// and 0.45 with rudder forces that grow with U₀ u, 0.48 and 0.45 with X_dv as well, 0.46 and 0.34 with sway damping U₀
 /// v. v² and u U₀ in surge, |r| v and r|r| in sway gained 0.02 or nothing.
-///
-/// Sources: Abkowitz (1964); Norrbin (1971); Yasukawa & Yoshimura (2015) for the rudder behind a propeller.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlanarCoefficients {
@@ -59,27 +58,26 @@ pub struct PlanarCoefficients {
 }
 
 impl PlanarCoefficients {
-    /// The coefficients in the order of [`SYMBOLS`].
+    /// Coefficients in the order of [`SYMBOLS`].
     pub fn to_array(self) -> [f64; COEFFICIENTS] {
         let Self { X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d } = self;
         [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d]
     }
 
-    /// Coefficients in the order of [`SYMBOLS`]; a value of the wrong sign is put to the nearest of the right
-    /// one.
+    /// Coefficients from values in the order of [`SYMBOLS`], clamped to their bounds.
     pub fn from_array(values: [f64; COEFFICIENTS]) -> Self {
         let [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d] = within(values, BOUNDS);
         Self { X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d }
     }
 
-    /// The first coefficient outside its range: symbol, value, ends.
+    /// First coefficient outside its bounds: symbol, value and bounds; `None` if all are within.
     pub fn beyond(self) -> Option<(&'static str, f64, [f64; 2])> {
         let all = SYMBOLS.into_iter().zip(self.to_array()).zip(BOUNDS);
         all.map(|((symbol, value), ends)| (symbol, value, ends))
             .find(|(_, value, [low, high])| !(*low..=*high).contains(value))
     }
 
-    /// (u', v') in units of U₀²/L, of speeds in U₀, the yaw rate in U₀/L and the rudder in rad.
+    /// Rates (u', v') in U₀²/L, at speeds in U₀, yaw rate in U₀/L and rudder in rad.
     #[inline]
     pub(crate) fn rates(&self, u: f64, v: f64, r: f64, rudder: f64) -> [f64; 2] {
         let sin = rudder.sin();
@@ -91,7 +89,7 @@ impl PlanarCoefficients {
     }
 }
 
-/// Values put to the nearest end of what each may be.
+/// Values clamped to their bounds.
 pub(crate) fn within<const N: usize>(values: [f64; N], bounds: [[f64; 2]; N]) -> [f64; N] {
     std::array::from_fn(|i| values[i].clamp(bounds[i][0], bounds[i][1]))
 }

@@ -1,4 +1,6 @@
-//! A uniform current, from a turn that goes on for two rounds.
+//! Uniform current from a turning circle of two rounds.
+//!
+//! Sources: IMO MSC/Circ.1053 (2002); ITTC 7.5-04-02-01.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,40 +9,40 @@ use ship::angle::to_deg;
 
 use super::circle::reached;
 
-/// Heading change from which a turn is steady enough, rad.
+/// Heading change from which a turn counts as steady, rad.
 const STEADY: f64 = PI;
 
-/// Heading change that a turn has to have, rad: 180° of pairs that are a round apart.
-const ENOUGH: f64 = 2.0 * TAU;
+/// Smallest heading change of a turn, rad: it gives 180° of pairs one round apart.
+const MIN_CHANGE: f64 = 2.0 * TAU;
 
-/// Heading between two pairs, rad (10°).
-const BETWEEN: f64 = PI / 18.0;
+/// Heading between successive pairs, rad (10°).
+const PAIR_SPACING: f64 = PI / 18.0;
 
-/// Water that moves over ground, and wind that moves the ship through it: a turn cannot tell one from the other.
+/// Current over ground, including the drift of the ship by wind, from which a turn cannot distinguish it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Current {
-    /// Its speed.
+    /// Speed.
     pub speed_m_s: f64,
-    /// Direction it sets to, clockwise from north, 0 to 360.
+    /// Direction towards which it sets, clockwise from north, 0 to 360.
     pub set_deg: f64,
     /// Towards north.
     pub north_m_s: f64,
     /// Towards east.
     pub east_m_s: f64,
-    /// Standard deviation of that towards north: by how much the pairs differ.
+    /// Standard deviation of the component towards north, from the scatter of the pairs.
     pub north_sd_m_s: f64,
-    /// Standard deviation of that towards east.
+    /// Standard deviation of the component towards east.
     pub east_sd_m_s: f64,
 }
 
-/// The current of a turn: the mean way over ground between two instants at which the heading is the same, a round
-/// apart, over the time between them,
+/// Current from a turn: the mean displacement over ground between instants with the same heading, one round apart, over
+/// the time between them,
 ///
 /// V = [x(ψ + 2π) − x(ψ)] / [t(ψ + 2π) − t(ψ)], ψ from 180° of heading change on.
 ///
 /// Heading in rad, not wrapped; track north and east in m; time in s, all of one length, from the execute on. `None`
 /// for a turn of less than 720°. The pairs overlap, so their scatter is not divided by their number. A current that
-/// changes within a round, or wind, is part of it. Sources: IMO MSC/Circ.1053 (2002); ITTC 7.5-04-02-01.
+/// changes within a round, and wind, are included in the result.
 pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Current> {
     let rows = time.len();
     if rows < 2 || heading.len() != rows || track.len() != rows {
@@ -49,24 +51,24 @@ pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Curr
     let side = (heading[rows - 1] - heading[0]).signum();
     let change = |row: usize| side * (heading[row] - heading[0]);
     let whole = change(rows - 1);
-    // The first time at which the heading has changed that much: time, north and east.
+    // First instant with that heading change: time, north and east.
     let instant = |angle: f64| {
         let (row, share) = reached(change, 0, rows, angle)?;
         let at = |row: usize| [time[row], track[row][0], track[row][1]];
         let (before, after) = (at(row), at(row + 1));
-        let found: [f64; 3] = std::array::from_fn(|k| before[k] + share * (after[k] - before[k]));
-        found.iter().all(|value| value.is_finite()).then_some(found)
+        let crossing: [f64; 3] = std::array::from_fn(|k| before[k] + share * (after[k] - before[k]));
+        crossing.iter().all(|value| value.is_finite()).then_some(crossing)
     };
-    if whole.is_nan() || whole < ENOUGH {
+    if whole.is_nan() || whole < MIN_CHANGE {
         return None;
     }
-    let pairs = ((whole - TAU - STEADY) / BETWEEN) as usize;
+    let pairs = ((whole - TAU - STEADY) / PAIR_SPACING) as usize;
     let drifts: Vec<[f64; 2]> = (0..=pairs)
         .filter_map(|pair| {
-            let angle = STEADY + pair as f64 * BETWEEN;
-            let (one, next) = (instant(angle)?, instant(angle + TAU)?);
-            let elapsed = next[0] - one[0];
-            (elapsed > 0.0).then(|| [(next[1] - one[1]) / elapsed, (next[2] - one[2]) / elapsed])
+            let angle = STEADY + pair as f64 * PAIR_SPACING;
+            let (first, next) = (instant(angle)?, instant(angle + TAU)?);
+            let elapsed = next[0] - first[0];
+            (elapsed > 0.0).then(|| [(next[1] - first[1]) / elapsed, (next[2] - first[2]) / elapsed])
         })
         .collect();
     let count = drifts.len() as f64;
@@ -75,8 +77,8 @@ pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Curr
     let spread = |axis: usize| drifts.iter().map(|drift| (drift[axis] - mean[axis]).powi(2)).sum::<f64>();
     let [north_sd_m_s, east_sd_m_s] = [0, 1].map(|axis| (spread(axis) / (count - 1.0)).sqrt());
     let (speed_m_s, set_deg) = (north_m_s.hypot(east_m_s), to_deg(east_m_s.atan2(north_m_s).rem_euclid(TAU)));
-    let found = Current { speed_m_s, set_deg, north_m_s, east_m_s, north_sd_m_s, east_sd_m_s };
-    (drifts.len() > 2).then_some(found)
+    let mean_current = Current { speed_m_s, set_deg, north_m_s, east_m_s, north_sd_m_s, east_sd_m_s };
+    (drifts.len() > 2).then_some(mean_current)
 }
 
 #[cfg(test)]
@@ -103,10 +105,10 @@ mod tests {
     fn a_uniform_current_is_found() {
         for side in [-1.0, 1.0] {
             let (time, heading, track) = turn(2.2, side, [0.4, -0.3]);
-            let found = current(&time, &heading, &track).expect("two rounds");
-            assert!((found.north_m_s - 0.4).abs() < 1e-3 && (found.east_m_s + 0.3).abs() < 1e-3, "{found:?}");
-            assert!((found.speed_m_s - 0.5).abs() < 1e-3 && found.north_sd_m_s.max(found.east_sd_m_s) < 1e-3);
-            assert!((found.set_deg - 323.13).abs() < 0.2, "{found:?}");
+            let estimate = current(&time, &heading, &track).expect("two rounds");
+            assert!((estimate.north_m_s - 0.4).abs() < 1e-3 && (estimate.east_m_s + 0.3).abs() < 1e-3, "{estimate:?}");
+            assert!((estimate.speed_m_s - 0.5).abs() < 1e-3 && estimate.north_sd_m_s.max(estimate.east_sd_m_s) < 1e-3);
+            assert!((estimate.set_deg - 323.13).abs() < 0.2, "{estimate:?}");
         }
     }
 

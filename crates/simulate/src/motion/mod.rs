@@ -1,20 +1,20 @@
-//! The way of a turning ship over ground.
+//! Motion of a turning ship over ground.
 //!
-//! A response model says how a ship turns. Where it goes depends on how much speed it loses and how far it slips
-//! sideways. This module joins two equations in surge and sway with a yaw response to a ship that a scenario can steer,
-//! draws tracks, and reads the figures of a turning circle off them. What records tell of speed and drift is a hull.
+//! A response model describes the yaw of a ship; the track also depends on speed loss and drift. This module joins
+//! equations of surge and sway with a yaw response to a ship for scenarios, integrates tracks, and computes the figures
+//! of a turning circle. Speed and drift of records are identified with a hull ([`ship::vessel`]).
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | the equations and their coefficients | [`PlanarCoefficients`] |
 //! | coefficients with length and speed | [`Planar`] |
 //! | a yaw response with speed and drift | [`PlanarShip`] |
-//! | the path over ground | [`track`] |
+//! | the track over ground | [`track`] |
 //! | advance, transfer, tactical diameter | [`turning_circle`] |
-//! | a current that two rounds show | [`current`](current()) |
+//! | current from two rounds | [`current`](current()) |
 //!
-//! Propeller revolutions are constant, as they are in trials that keep to the rules; a ship that is slowed down by its
-//! engine is not described. Water is deep and at rest apart from a uniform current that only moves positions.
+//! Propeller revolutions are constant, as trial procedures require; engine manoeuvres are not described. Water is deep
+//! and at rest apart from a uniform current, which only shifts positions.
 
 mod circle;
 mod coefficients;

@@ -1,29 +1,29 @@
-//! A yaw response with speed and drift beside it: a ship that can be steered and leaves a track.
+//! Yaw response with speed and drift: a ship that can be simulated and has a track.
 
 use ship::{Dynamics, Input, Measured, Motion, Replayable, Response};
 
 use super::planar::Planar;
 
-/// A yaw response completed by speed and drift.
+/// Yaw response completed by surge and sway.
 ///
-/// Its states are those of the response, then surge u and sway v (m/s). Effects of the response that ask for measured
-/// speed or sway get √(u² + v²) and v of this ship. The planar equations see the rudder after the dead time; what
-/// effects make of it besides (lag, saturation) is part of the yaw response alone.
+/// The states are those of the response, then surge u and sway v (m/s). Effects of the response that use measured speed
+/// or sway receive √(u² + v²) and v of this ship. The planar equations use the rudder after the dead time; other
+/// effects on the rudder (lag, saturation) belong to the yaw response alone.
 #[derive(Debug, Clone)]
 pub struct PlanarShip {
-    /// How the ship turns.
+    /// Yaw response.
     pub response: Response,
-    /// How it loses speed and drifts.
+    /// Equations of surge and sway.
     pub planar: Planar,
 }
 
 impl PlanarShip {
-    /// What the yaw response sees, and the number of its states.
-    fn seen(&self, state: &[f64], input: &Input) -> (usize, Input) {
-        let own = self.response.dimension();
-        let [u, v] = [state[own], state[own + 1]];
+    /// Number of states of the yaw response, and its input.
+    fn yaw_input(&self, state: &[f64], input: &Input) -> (usize, Input) {
+        let yaw_states = self.response.dimension();
+        let [u, v] = [state[yaw_states], state[yaw_states + 1]];
         let measured = Measured { speed: Some(u.hypot(v)), sway: Some(v), ..input.measured };
-        (own, Input { measured, ..*input })
+        (yaw_states, Input { measured, ..*input })
     }
 }
 
@@ -34,28 +34,28 @@ impl Dynamics for PlanarShip {
 
     /// Straight ahead at approach speed, without drift.
     fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
-        let own = self.response.dimension();
-        let (yaw, planar) = state.split_at_mut(own);
+        let yaw_states = self.response.dimension();
+        let (yaw, planar) = state.split_at_mut(yaw_states);
         planar.copy_from_slice(&[self.planar.approach_speed, 0.0]);
         let measured = Measured { speed: Some(planar[0]), sway: Some(0.0), ..Measured::default() };
         self.response.enter(heading, yaw_rate, &Input { measured, ..Input::default() }, yaw);
     }
 
     fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
-        let (own, seen) = self.seen(state, input);
-        self.response.rates(t, &state[..own], &seen, &mut rate[..own]);
-        let [u, v] = [state[own], state[own + 1]];
-        rate[own..].copy_from_slice(&self.planar.rates(u, v, state[1], input.rudder));
+        let (yaw_states, seen) = self.yaw_input(state, input);
+        self.response.rates(t, &state[..yaw_states], &seen, &mut rate[..yaw_states]);
+        let [u, v] = [state[yaw_states], state[yaw_states + 1]];
+        rate[yaw_states..].copy_from_slice(&self.planar.rates(u, v, state[1], input.rudder));
     }
 
     fn settle(&self, t: f64, state: &mut [f64], input: &Input) {
-        let (own, seen) = self.seen(state, input);
-        self.response.settle(t, &mut state[..own], &seen);
+        let (yaw_states, seen) = self.yaw_input(state, input);
+        self.response.settle(t, &mut state[..yaw_states], &seen);
     }
 
     fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
-        let (own, seen) = self.seen(state, input);
-        let motion = self.response.motion(t, &state[..own], &seen);
+        let (yaw_states, seen) = self.yaw_input(state, input);
+        let motion = self.response.motion(t, &state[..yaw_states], &seen);
         Motion { speed: seen.measured.speed, sway: seen.measured.sway, ..motion }
     }
 
@@ -63,7 +63,7 @@ impl Dynamics for PlanarShip {
         self.response.dead_time()
     }
 
-    /// The smaller of the step of the response and a hundredth of the time the ship needs for its own length.
+    /// Minimum of the step of the response and a hundredth of the ship-length time L/U.
     fn largest_step(&self) -> f64 {
         self.response.largest_step().min(self.planar.length / self.planar.approach_speed / 100.0)
     }

@@ -1,2 +1,2 @@
 mod figures;
-mod made_up;
+mod planar_ship;

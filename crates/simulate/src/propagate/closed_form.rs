@@ -1,4 +1,4 @@
-//! A first-order ship under a rudder and a moment that are linear in time: every step is exact, however long.
+//! Closed-form motion of a first-order ship: with rudder and moment linear in time, every step is exact.
 
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Motion};
@@ -9,13 +9,13 @@ use crate::recording::Sampler;
 use crate::sample::Sample;
 use crate::weather::Weather;
 
-/// Longest step, s, and longest step in units of |T|: a course-unstable ship must be caught before it overflows.
-const LONGEST_STEP: f64 = 60.0;
-const LONGEST_SHARE_OF_T: f64 = 30.0;
+/// Largest step, s, and largest step in units of |T|, so that a course-unstable ship is stopped before it overflows.
+const MAX_STEP_S: f64 = 60.0;
+const MAX_STEP_OVER_T: f64 = 30.0;
 
-/// Steps closer together than this, s, are the same step: rows at k·period differ by rounding only, and a heading that
-/// is wrong by 1e-12 s of yaw rate is right to the last bit but a few.
-const SAME_STEP: f64 = 1e-12;
+/// Tolerance, s, for equal steps: rows at k·period differ by rounding only, and 1e-12 s of yaw rate changes only the
+/// last bits of a heading.
+const STEP_TOLERANCE_S: f64 = 1e-12;
 
 /// Closed-form motion of a first-order ship.
 #[derive(Debug)]
@@ -27,37 +27,37 @@ pub(crate) struct ClosedForm {
     candidate: State,
     cursor: usize,
     longest: f64,
-    /// Transitions over the two steps that come again and again: a row and a cell of the weather.
+    /// Transitions over the two most frequent steps: a row and a cell of the weather.
     usual: [Transition; 2],
 }
 
 impl ClosedForm {
-    /// The ship at time 0; `period` is the step most often asked for, s.
+    /// Ship at time 0; `period` is the most frequent step, s.
     pub fn new(ship: FirstOrder, weather: Weather, state: State, period: f64) -> Self {
         let longest = Self::longest_step(&ship);
         let usual = [period, weather.cell().width].map(|h| Transition::new(ship.inverse_T, h));
         Self { ship, weather, time: 0.0, state, candidate: state, cursor: 0, longest, usual }
     }
 
-    /// Longest step, s.
+    /// Largest step, s.
     pub fn longest_step(ship: &FirstOrder) -> f64 {
-        LONGEST_STEP.min(LONGEST_SHARE_OF_T / ship.inverse_T.abs())
+        MAX_STEP_S.min(MAX_STEP_OVER_T / ship.inverse_T.abs())
     }
 
     fn transition(&self, h: f64) -> Transition {
         for usual in self.usual {
-            if (usual.h - h).abs() < SAME_STEP {
+            if (usual.h - h).abs() < STEP_TOLERANCE_S {
                 return usual;
             }
         }
         Transition::new(self.ship.inverse_T, h)
     }
 
-    /// Steering term b (δ + δ_r + disturbance) now (rad/s²) and its slope (rad/s³).
+    /// Steering term b (δ + δ_r + disturbance) at the current time (rad/s²), and its slope (rad/s³).
     fn steering(&self, segment: &Segment) -> (f64, f64) {
         let slope = match segment.motion {
             RudderMotion::Ramp { rate } => rate,
-            // An exponential never gets here: a gear with a lag is integrated.
+            // Exponentials do not occur: a gear with a lag is integrated.
             RudderMotion::Hold | RudderMotion::Exponential { .. } => 0.0,
         };
         let cell = self.weather.cell();
@@ -65,7 +65,7 @@ impl ClosedForm {
         (self.ship.K_over_T * rudder, self.ship.K_over_T * (slope + cell.moment_slope()))
     }
 
-    /// What can be recorded now, under the steering term `u0`, rad/s².
+    /// Sample at the current time, under the steering term `u0`, rad/s².
     fn sample_under(&self, u0: f64) -> Sample {
         let State { heading, yaw_rate } = self.state;
         let yaw_acceleration = u0 - self.ship.inverse_T * yaw_rate;
@@ -103,7 +103,7 @@ impl Propagator for ClosedForm {
         let a = self.ship.inverse_T;
         let ratio = -(u0 - a * self.state.yaw_rate) / slope;
         let turn = if (a * ratio).abs() < 1e-8 { ratio } else { (a * ratio).ln_1p() / a };
-        // A step that has just ended there sees its own rounding.
+        // A step that has just ended there leaves a rounding error.
         if turn > 1e-9 && self.time + turn < to { self.time + turn } else { to }
     }
 
@@ -135,13 +135,13 @@ impl Propagator for ClosedForm {
         let before = limits.before.min(segment.end);
         loop {
             let next = rows.next();
-            let usual = (next - self.time - step.h).abs() < SAME_STEP && next <= self.time + self.longest;
+            let usual = (next - self.time - step.h).abs() < STEP_TOLERANCE_S && next <= self.time + self.longest;
             if !usual || next >= before {
                 return;
             }
             let from = self.state;
             let to = step.advance(from, u0, 0.0);
-            // The yaw rate is monotone: a heading that is crossed and left again within the step has an extremum there.
+            // The yaw rate is monotone: a heading crossed twice within the step has an extremum there.
             let crossed = limits.watch.is_some_and(|watch| {
                 let turns = watch.side * from.yaw_rate > 0.0 && watch.side * to.yaw_rate < 0.0;
                 turns || watch.excess(from.heading) >= 0.0 || watch.excess(to.heading) >= 0.0

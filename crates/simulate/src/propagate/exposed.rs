@@ -1,25 +1,25 @@
-//! A ship exposed to the wind and fitted with a gyrocompass: what depends on heading is added to the right-hand side.
+//! Ship in the weather with a lagging gyrocompass: the terms that depend on heading are part of the right-hand side.
 
 use ship::{Dynamics, Input, Measured, Motion};
 
 use crate::disturbance::{Wind, gusting_speed};
 use crate::weather::{Weather, WeatherCell};
 
-/// A ship with the weather of one run acting on it and the lag of its gyrocompass as the last state.
+/// Ship in the weather of one run, with the lag of its gyrocompass as the last state.
 #[derive(Debug)]
 pub(crate) struct ShipInWeather<'a, D: ?Sized> {
     ship: &'a D,
     wind: Option<Wind>,
-    /// Approach speed of the ship, m/s, where its own equations have none.
+    /// Approach speed of the ship, m/s, for equations without a speed.
     approach_speed: Option<f64>,
     /// Time constant of the gyrocompass, s; 0 for none.
     gyro_lag: f64,
-    /// The weather; its cell changes between steps only.
+    /// Weather; its cell changes between steps only.
     pub weather: Weather,
 }
 
 impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
-    /// `ship` in the weather of one run, at its beginning.
+    /// Ship in the weather at the beginning of a run.
     pub fn new(ship: &'a D, wind: Option<Wind>, approach_speed: Option<f64>, gyro_lag: f64, weather: Weather) -> Self {
         Self { ship, wind, approach_speed, gyro_lag, weather }
     }
@@ -30,7 +30,7 @@ impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
         cell.moment(t) + self.wind.map_or(0.0, |wind| wind.yaw_moment(heading, cell.gust(t)))
     }
 
-    /// Heading the gyrocompass shows, rad.
+    /// Heading of the gyrocompass, rad.
     pub fn gyro(&self, state: &[f64]) -> f64 {
         if self.gyro_lag > 0.0 { state[self.ship.dimension()] } else { state[0] }
     }
@@ -43,12 +43,12 @@ impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
         }
     }
 
-    /// The relative wind, for ships whose own equations use it.
+    /// Input with the relative wind, for equations that use it.
     fn in_measured_wind(&self, t: f64, state: &[f64], input: Input, mean: f64) -> Input {
-        let own = self.ship.motion(t, &state[..self.ship.dimension()], &input).speed;
-        let (Some(wind), Some(own)) = (self.wind, own.or(self.approach_speed)) else { return input };
+        let ship_speed = self.ship.motion(t, &state[..self.ship.dimension()], &input).speed;
+        let (Some(wind), Some(ship_speed)) = (self.wind, ship_speed.or(self.approach_speed)) else { return input };
         let speed = gusting_speed(mean, self.weather.cell().gust(t));
-        let (speed, from) = wind.relative(speed, own, state[0]);
+        let (speed, from) = wind.relative(speed, ship_speed, state[0]);
         let measured = Measured { wind_speed: Some(speed), wind_from: Some(from), ..input.measured };
         Input { measured, ..input }
     }
@@ -62,7 +62,7 @@ impl<D: Dynamics + ?Sized> Dynamics for ShipInWeather<'_, D> {
     fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
         let (ship, gyro) = state.split_at_mut(self.ship.dimension());
         self.ship.approach(heading, yaw_rate, ship);
-        // A lagging compass trails a steady turn by τ r.
+        // In a steady turn a lagging compass is behind by τ r.
         gyro.fill(heading - self.gyro_lag * yaw_rate);
     }
 
@@ -92,8 +92,8 @@ impl<D: Dynamics + ?Sized> Dynamics for ShipInWeather<'_, D> {
     }
 }
 
-/// Largest step, s, of a ship that may take `of_ship` s, behind a compass with the time constant `gyro_lag`, s.
-pub(crate) fn largest_step(of_ship: f64, gyro_lag: f64) -> f64 {
-    // Stability of the compass state is no accuracy: a quarter of its time constant keeps both.
-    if gyro_lag > 0.0 { of_ship.min(0.25 * gyro_lag) } else { of_ship }
+/// Largest step, s, of a ship with largest step `ship_step` s and a compass with time constant `gyro_lag` s.
+pub(crate) fn largest_step(ship_step: f64, gyro_lag: f64) -> f64 {
+    // A quarter of the time constant keeps the compass state stable and accurate.
+    if gyro_lag > 0.0 { ship_step.min(0.25 * gyro_lag) } else { ship_step }
 }

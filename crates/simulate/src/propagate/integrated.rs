@@ -1,4 +1,5 @@
-//! Any ship, by Runge–Kutta steps that end at every corner of the acting rudder and of the weather.
+//! Integrated motion of any ship, by Runge–Kutta steps that end at every corner of the acting rudder and of the
+//! weather.
 
 use ship::first_order::State;
 use ship::integrate::RungeKutta4;
@@ -20,13 +21,13 @@ pub(crate) struct Integrated<'a, D: ?Sized> {
     step: f64,
 }
 
-/// What acts at `t` within `segment`, taken as its smooth continuation at both ends.
+/// Input at `t` within `segment`, with its smooth continuation at both ends.
 fn input(segment: &Segment, dead_time: f64, t: f64) -> Input {
     Input { rudder: segment.at(t - dead_time), ..Input::default() }
 }
 
 impl<'a, D: Dynamics + ?Sized> Integrated<'a, D> {
-    /// The ship at time 0 on its approach; `step` is the largest step, s, where it is not left to the ship.
+    /// Ship at time 0 on its approach; `step` is the largest step, s, or `None` for that of the ship.
     pub fn new(ship: ShipInWeather<'a, D>, approach: State, step: Option<f64>) -> Self {
         let dimension = ship.dimension();
         let mut state = vec![0.0; dimension];

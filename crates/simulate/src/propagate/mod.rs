@@ -1,7 +1,8 @@
-//! Moving the ship through time: the interface that both ways share, and the search for a heading inside a step.
+//! Propagation of the ship in time: closed form and integration with one interface, and the location of events in a
+//! step.
 //!
-//! A propagator offers steps that are smooth: none crosses a corner of the rudder or of the weather, so an event is
-//! located by shortening the one step in which it lies. It knows nothing of helms and records.
+//! The steps of a propagator are smooth: none crosses a corner of the rudder or of the weather, so an event is located
+//! by shortening the step that contains it. A propagator is independent of helm and record.
 
 mod closed_form;
 pub(crate) mod exposed;

@@ -1,4 +1,4 @@
-//! The interface of everything that moves a ship, and the search for a heading inside a step.
+//! Interface of a propagator, and the location of an awaited heading in a step.
 
 use ship::first_order::State;
 
@@ -7,62 +7,62 @@ use crate::recording::Sampler;
 use crate::root;
 use crate::sample::Sample;
 
-/// A ship on its way through one run.
+/// Motion of a ship through one run.
 pub(crate) trait Propagator {
     /// Time, s.
     fn time(&self) -> f64;
 
-    /// Heading and yaw rate now.
+    /// Heading and yaw rate at the current time.
     fn state(&self) -> State;
 
-    /// End of the next smooth step, at most `until`; later than now.
+    /// End of the next smooth step, at most `until` and after the current time, s.
     fn stride(&mut self, path: &RudderPath, until: f64) -> f64;
 
-    /// Heading and yaw rate `h` seconds from now, without going there; within the last stride.
+    /// Trial state: heading and yaw rate `h` seconds ahead, within the last stride.
     fn probe(&mut self, path: &RudderPath, h: f64) -> State;
 
-    /// Goes where the last probe looked; that time is called `to`.
+    /// Advances to the state of the last probe, at time `to`.
     fn commit(&mut self, path: &RudderPath, to: f64);
 
-    /// What can be recorded now.
+    /// Sample at the current time.
     fn sample(&mut self, path: &RudderPath) -> Sample;
 
-    /// Records row after row as long as nothing happens on the way, as going there step by step would, bit for bit;
-    /// stops before the first row that needs a closer look, which may be the next one.
+    /// Records rows up to the first event, bit for bit as step by step; stops before the first row that needs the
+    /// stepwise search, which can be the next one.
     fn coast(&mut self, _path: &RudderPath, _limits: &Limits, _rows: &mut Sampler) {}
 }
 
-/// What ends a stretch in which nothing happens.
+/// Events that end a stretch of rows.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
-    /// Time before which it has to end, s.
+    /// Latest end, s.
     pub before: f64,
-    /// Heading whose crossing ends it.
+    /// Awaited heading whose crossing ends it.
     pub watch: Option<AwaitedHeading>,
-    /// Base course, rad, from which a diverging ship goes away.
+    /// Base course, rad, for the check of divergence.
     pub base: f64,
 }
 
-/// Heading, rad, beyond which a run has diverged: a hundred turns.
-const TOO_FAR: f64 = 100.0 * std::f64::consts::TAU;
+/// Largest deviation from the base course, rad, before a run has diverged: a hundred turns.
+const MAX_DEVIATION_RAD: f64 = 100.0 * std::f64::consts::TAU;
 
-/// Whether a ship with this base course (rad) has left what can be a manoeuvre.
+/// `true` if the motion has diverged from the base course (rad).
 pub(crate) fn has_diverged(state: State, base: f64) -> bool {
-    let sane = state.yaw_rate.is_finite() && (state.heading - base).abs() < TOO_FAR;
-    !sane
+    let is_valid = state.yaw_rate.is_finite() && (state.heading - base).abs() < MAX_DEVIATION_RAD;
+    !is_valid
 }
 
-/// The segment that acts at time `t` behind a dead time, found by moving `cursor` forward.
+/// Acting segment at time `t` after the dead time, found by moving `cursor` forward.
 pub(crate) fn acting<'a>(path: &'a RudderPath, cursor: &mut usize, t: f64, dead_time: f64) -> &'a Segment {
     let segments = path.segments();
-    // The same sum as the end of a stride, so that a stride can never have no length.
+    // The same sum as the end of a stride, so that a stride never has zero length.
     while segments[*cursor].end + dead_time <= t {
         *cursor += 1;
     }
     &segments[*cursor]
 }
 
-/// A heading that is waited for: `side` · (ψ − base) ≥ `angle`.
+/// Awaited heading: `side` · (ψ − base) ≥ `angle`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AwaitedHeading {
     /// Base course, rad.
@@ -77,15 +77,15 @@ pub(crate) struct AwaitedHeading {
 const EVENT_TOLERANCE: f64 = 1e-13;
 
 impl AwaitedHeading {
-    /// How far the heading is beyond the deviation waited for, rad.
+    /// Excess of the deviation over the awaited one, rad.
     pub fn excess(&self, heading: f64) -> f64 {
         self.side * (heading - self.base) - self.angle
     }
 
-    /// Time from the beginning of a step to the first crossing in it, s.
+    /// Time from the beginning of a step to the first crossing in it, s; `None` without a crossing.
     ///
     /// The step leads from `from`, which has not crossed, to `end` in `h` seconds, and the yaw rate is monotone in it:
-    /// so the heading has at most one extremum, which is looked for when the yaw rate changes sign.
+    /// so the heading has at most one extremum, which is located when the yaw rate changes sign.
     pub fn locate(&self, from: State, end: State, h: f64, mut probe: impl FnMut(f64) -> State) -> Option<f64> {
         let before = (0.0, self.excess(from.heading));
         let mut after = (h, self.excess(end.heading));

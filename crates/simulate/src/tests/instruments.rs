@@ -22,11 +22,11 @@ fn run(simulation: &Simulation) -> Simulated {
 }
 
 /// Mean and standard deviation of the differences.
-fn statistics(found: &[f64], truth: &[f64]) -> (f64, f64) {
-    assert_eq!(found.len(), truth.len());
-    let count = found.len() as f64;
-    let mean = found.iter().zip(truth).map(|(x, y)| x - y).sum::<f64>() / count;
-    let square = found.iter().zip(truth).map(|(x, y)| (x - y - mean).powi(2)).sum::<f64>();
+fn statistics(measured: &[f64], truth: &[f64]) -> (f64, f64) {
+    assert_eq!(measured.len(), truth.len());
+    let count = measured.len() as f64;
+    let mean = measured.iter().zip(truth).map(|(x, y)| x - y).sum::<f64>() / count;
+    let square = measured.iter().zip(truth).map(|(x, y)| (x - y - mean).powi(2)).sum::<f64>();
     (mean, (square / (count - 1.0)).sqrt())
 }
 
@@ -194,14 +194,13 @@ fn the_coloured_error_has_its_sd_and_its_correlation() {
     }
     wandering.sensors.heading_wander = Some(wander);
     let (wandering, calm) = (run(&wandering), run(&calm));
-    let errors: Vec<f64> =
-        wandering.trial.heading().iter().zip(calm.trial.heading()).map(|(one, other)| one - other).collect();
+    let errors: Vec<f64> = wandering.trial.heading().iter().zip(calm.trial.heading()).map(|(x, y)| x - y).collect();
     // ΣΣ exp(−|i − j|/τ)/n² is 2τ/n, and for the squares τ/n.
     let mean_square = errors.iter().map(|w| w * w).sum::<f64>() / ROWS;
     let tolerance = 3.0 * (2.0 * 5.0 / ROWS).sqrt();
     assert_relative_eq!(mean_square, wander.sd.powi(2), max_relative = tolerance);
     for lag in [1, 3, 10] {
-        let product = errors.iter().zip(&errors[lag..]).map(|(one, other)| one * other).sum::<f64>() / ROWS;
+        let product = errors.iter().zip(&errors[lag..]).map(|(x, y)| x * y).sum::<f64>() / ROWS;
         assert_relative_eq!(product / mean_square, (-(lag as f64) / 5.0).exp(), epsilon = tolerance);
     }
     assert_eq!(wandering.trial.yaw_rate(), calm.trial.yaw_rate());
@@ -222,7 +221,7 @@ fn a_display_shows_the_coloured_error() {
     simulation.sensors.heading_wander = Some(wander);
     let Simulated { trial, truth } = run(&simulation);
     assert_ne!(truth.executes, calm.executes);
-    let errors: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(psi, own)| psi - own).collect();
+    let errors: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(psi, truth)| psi - truth).collect();
     let steps: Vec<f64> = errors.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let (_, sd) = statistics(&steps, &vec![0.0; steps.len()]);
     assert_relative_eq!(sd, wander.sd * (2.0 * (1.0 - (-0.5_f64 / 20.0).exp())).sqrt(), max_relative = sd_tolerance());
@@ -237,10 +236,10 @@ fn spikes_are_as_many_and_as_large_as_asked_for() {
     simulation.sensors.heading_spikes = Some(Spikes { probability: 0.05, size });
     let spiked = run(&simulation);
     let (mut to_port, mut to_starboard) = (0, 0);
-    for (psi, own) in spiked.trial.heading().iter().zip(calm.trial.heading()) {
-        if psi != own {
-            assert_abs_diff_eq!((psi - own).abs(), size, epsilon = 1e-12);
-            *(if psi < own { &mut to_port } else { &mut to_starboard }) += 1;
+    for (psi, unspiked) in spiked.trial.heading().iter().zip(calm.trial.heading()) {
+        if psi != unspiked {
+            assert_abs_diff_eq!((psi - unspiked).abs(), size, epsilon = 1e-12);
+            *(if psi < unspiked { &mut to_port } else { &mut to_starboard }) += 1;
         }
     }
     for count in [to_port, to_starboard] {

@@ -99,7 +99,7 @@ fn port_first_is_the_exact_mirror() {
         // What instruments add knows no side.
         let errors = |simulated: &Simulated| {
             let headings = simulated.trial.heading().iter().zip(&simulated.truth.heading);
-            headings.map(|(psi, own)| psi - own).collect::<Vec<f64>>()
+            headings.map(|(psi, truth)| psi - truth).collect::<Vec<f64>>()
         };
         let (mut headings, mut spikes) = (0, 0);
         for (right, left) in errors(&starboard).into_iter().zip(errors(&port)) {
@@ -313,16 +313,16 @@ fn a_prepared_simulation_gives_the_same_bits() {
         let prepared = PreparedSimulation::new(simulation.clone()).expect("a zig-zag");
         for replicate in 0..3 {
             let key = StreamKey { replicate, ..KEY };
-            let (one, other) = (simulation.run(&key).expect("a zig-zag"), prepared.run(&key).expect("a zig-zag"));
+            let (direct, prepared) = (simulation.run(&key).expect("a zig-zag"), prepared.run(&key).expect("a zig-zag"));
             let columns = |simulated: &Simulated| {
                 let trial = &simulated.trial;
                 let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
                 let channels = trial.channels().map(|(channel, values)| (channel, bits(values)));
                 (bits(trial.time()), bits(trial.rudder()), channels.collect::<Vec<_>>())
             };
-            assert_eq!(columns(&one), columns(&other), "case {case}");
-            assert_eq!(one.truth, other.truth, "case {case}");
-            assert_eq!(one.trial.name(), other.trial.name());
+            assert_eq!(columns(&direct), columns(&prepared), "case {case}");
+            assert_eq!(direct.truth, prepared.truth, "case {case}");
+            assert_eq!(direct.trial.name(), prepared.trial.name());
         }
     }
 }

@@ -24,14 +24,14 @@ fn a_line_of_text_is_simulated_named_and_predicted_with() {
     let effects = desk.json("t/trace.json")["effects"].clone();
     assert_eq!((&effects[0]["id"], &effects[0]["form"]), (&"bank".into(), &"c * tanh(k * psi)".into()), "{effects}");
     let page = desk.text("t/report.md");
-    assert!(page.contains("`bank = c * tanh(k * psi)` acts to port as to starboard."), "{page}");
+    assert!(page.contains("`bank = c * tanh(k * psi)` acts equally to port and to starboard."), "{page}");
     desk.run(&["predict", "t/trace.json", "--manoeuvre", "zig-zag:20/20"]).is_done();
     desk.file("own.toml", format!("effects = [\"{BANK}\"]\n"));
     desk.run(&["trace", &record, "--effects", "own.toml", "--out", "file"]).is_done();
     assert_eq!(desk.json("file/trace.json")["effects"], effects);
     let run = desk.run(&["trace", &record, "--effect", BANK, "--only", "bank", "--out", "only"]);
     run.is_done();
-    assert!(run.out.contains("\nbank = c * tanh(k * psi) acts to port as to starboard\n"), "{}", run.out);
+    assert!(run.out.contains("\nbank = c * tanh(k * psi) acts equally to port and to starboard\n"), "{}", run.out);
     let only = desk.json("only/trace.json")["effects"].clone();
     assert_eq!((only.as_array().map(Vec::len), &only[0]["asked"]), (Some(1), &true.into()), "{only}");
     desk.run(&["trace", &record, "--effect", BANK, "--with", "banc"]).is_refused(2, &["--with", "did you mean `bank`"]);
@@ -47,7 +47,7 @@ fn a_line_that_is_no_formula_is_marked() {
     desk.run(&["trace", "run.csv", "--effects", "own.toml"]).is_refused(2, &["unknown field `effect`"]);
     desk.file("own.toml", "effects = [\n  \"cross = c * r\",\n  \"bank = c * dleta\",\n]\n");
     desk.run(&["trace", "run.csv", "--effects", "own.toml"])
-        .is_refused(2, &["own.toml", "line 3: `dleta` is no signal", "bank = c * dleta\n             ^"]);
+        .is_refused(2, &["own.toml", "line 3: `dleta` is not a signal", "bank = c * dleta\n             ^"]);
     desk.run(&["trace", "run.csv", "--effect", BANK, "--effect", BANK]).is_refused(2, &["bank", "names of their own"]);
 }
 
@@ -57,7 +57,7 @@ fn a_formula_of_a_scenario_is_marked_in_the_file() {
     let desk = Desk::new();
     let line = GOOD.lines().count() + 3;
     for (text, said, column) in [
-        ("formula = \"bank = c * foo(r)\"\nc = 1.0", "`foo` is no function", 23),
+        ("formula = \"bank = c * foo(r)\"\nc = 1.0", "`foo` is not a function", 23),
         ("c = 1.0\nformula = 'bank = c * dleta'", "did you mean `delta`", 23),
         ("formula = \"bank = c * tanh(k * psi)\"\nc = 1.0", "lacks the key `k`", 0),
         ("formula = \"bank = c * r\"\nc = 1.0\nd = 1.0", "no key `d`", 0),
@@ -87,7 +87,7 @@ fn a_formula_of_a_scenario_is_marked_in_the_file() {
     let swept = "\n[[sweep]]\nname = \"x\"\npoints = [{ label = \"x\", set = { effect = [{ formula = \"b = c * foo(r)\" }] } }]\n";
     desk.file("bad.toml", format!("{GOOD}{swept}"));
     let place = format!("--> bad.toml:{}:65", line + 1);
-    desk.run(&["check", "bad.toml"]).is_refused(2, &[&place, "`foo` is no function"]);
+    desk.run(&["check", "bad.toml"]).is_refused(2, &[&place, "`foo` is not a function"]);
 }
 
 /// Speed and sway of a response model are in its records, and formulas over them act.

@@ -1,24 +1,24 @@
-//! A formula over the columns of a table: the same language as that of an effect, with columns as its names.
+//! Formula over the columns of a table, in the language of effects with column names instead of signals.
 
 use super::parse::{FormulaError, parse_columns};
 use super::program::FormulaProgram;
 
-/// A formula over named numbers, such as `(port - starboard) / 2`.
+/// Formula over named columns, such as `(port - starboard) / 2`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnFormula(FormulaProgram);
 
 impl ColumnFormula {
-    /// Reads a formula. Fails where the text is none, is too deep, or has more than four names.
+    /// Parses a formula. Fails for a syntax error, nesting that is too deep, or more than four names.
     pub fn read(text: &str) -> Result<Self, FormulaError> {
         parse_columns(text).map(Self)
     }
 
-    /// The names in the order of their first use.
+    /// Column names in the order of their first use.
     pub fn names(&self) -> &[String] {
         &self.0.constants
     }
 
-    /// Its value where the names have these values, in the same order.
+    /// Value of the formula; `values` are those of the names, in the same order.
     pub fn value(&self, values: &[f64]) -> f64 {
         self.0.value(values, |_| f64::NAN)
     }

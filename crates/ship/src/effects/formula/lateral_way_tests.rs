@@ -1,6 +1,6 @@
 //! The lateral way `y` of a formula, in replays of a ship with a bank.
 
-use super::tests::about;
+use super::tests::manoeuvres;
 use super::*;
 use crate::dynamics::{Dynamics, Input};
 use crate::number::Tangent;
@@ -113,7 +113,7 @@ fn a_way_is_in_one_unit_in_all_records() {
     for (speed, way) in [(None, [1.0, 1.0]), (Some(7.0), [7.0, 0.0])] {
         let formula = Formula::read("bank = c * y").expect("a formula");
         let Proposal { effect, priors } =
-            formula.proposal(&Manoeuvres { speed, ..about() }).expect("any record will do");
+            formula.proposal(&Manoeuvres { speed, ..manoeuvres() }).expect("any record will do");
         let constants: Vec<f64> = effect.constants().into_iter().map(|(constant, _)| constant).collect();
         assert_eq!(constants, way);
         assert!((priors[0].sd * way[0] / 6e-3 - 1.0).abs() < 0.2, "{priors:?}");

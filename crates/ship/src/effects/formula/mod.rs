@@ -1,15 +1,15 @@
-//! An effect that is written as a line of text: a formula over the signals of a trial, with constants that are fitted.
+//! Effect written as a line of text: a formula over the signals of a trial, with constants that are fitted.
 //!
-//! The formula of a user is the yaw moment as the rudder angle with that moment, rad: T r' + r = K (δ + δ_r + formula).
-//! What there is to say of its constants is found by evaluating it. A formula of the list is described, and is a yaw
-//! acceleration or the rudder that acts.
+//! The formula of a user is a yaw moment as equivalent rudder angle, rad: T r' + r = K (δ + δ_r + formula). The
+//! properties of its constants are found by evaluation. A formula of the list has a description, and is a yaw
+//! acceleration or the acting rudder.
 
 mod columns;
 mod expectation;
-mod found;
 mod parse;
 mod points;
 mod program;
+mod properties;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
@@ -22,75 +22,76 @@ use crate::particulars::Dimension;
 pub use columns::ColumnFormula;
 use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
-use parse::LONGEST;
+use parse::MAX_CHARS;
 use points::{SignalSizes, way_speed};
 use program::{FormulaProgram, FormulaSignal, OF_RECORD, OfRecord};
 
-/// Longest name of an effect, characters.
-const LONGEST_NAME: usize = 40;
+/// Largest number of characters in the name of an effect.
+const MAX_NAME_CHARS: usize = 40;
 
-/// Formulas by name and text.
-type KnownFormulas = BTreeMap<(String, String), Arc<Formula>>;
+/// Cache of formulas by name and text.
+type FormulaCache = BTreeMap<(String, String), Arc<Formula>>;
 
-/// What becomes of a moment where port and starboard are exchanged.
+/// Symmetry of a moment when port and starboard are exchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sides {
-    /// It changes its sign, as that of a ship with two equal sides does.
+    /// Odd: it changes its sign, as for a symmetric ship.
     Alike,
-    /// It stays as it is.
+    /// Even: it keeps its sign.
     Same,
-    /// Neither.
+    /// Neither odd nor even.
     Differ,
 }
 
 impl Sides {
-    /// What such a moment does, in words.
+    /// Verb phrase for messages.
     pub fn as_str(self) -> &'static str {
         match self {
-            Self::Alike => "acts to port as to starboard",
-            Self::Same => "acts to the same side in turns to port and to starboard",
+            Self::Alike => "acts equally to port and to starboard",
+            Self::Same => "acts to the same side in turns to port and in turns to starboard",
             Self::Differ => "acts differently to port and to starboard",
         }
     }
 }
 
-/// A formula of the list.
+/// Formula of the list of effects.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ListedFormula {
-    /// What it is called, its equation for people, and its constants in the order in which the formula names them.
+    /// Description, with the constants in the order in which the formula names them.
     pub(super) description: Description,
-    /// [`Places::RUDDER`] of the angle that acts, from `delta` alone, rad; [`Places::MOMENT`] of a yaw acceleration,
-    /// rad/s², which is `K_over_T` times the moment as an angle of the rudder.
+    /// [`Places::RUDDER`] for the acting rudder, from `delta` alone, rad; [`Places::MOMENT`] for a yaw acceleration,
+    /// rad/s², which is `K_over_T` times the moment as equivalent rudder angle.
     pub(super) acts: Places,
-    /// The formula; [`parse`] has the language.
+    /// Formula; [`parse`] has the language.
     pub(super) formula: &'static str,
-    /// What is expected of every constant.
+    /// Prior of every constant.
     pub(super) prior: ListedPrior,
-    /// Whether it is a moment of the weather.
+    /// `true` for a moment of the weather.
     pub(super) of_weather: bool,
 }
 
-/// Mean, standard deviation and largest value of every constant in records of some manoeuvres.
+/// Prior of the constants in given records: mean, standard deviation and largest value.
 pub(super) type ListedPrior = fn(&Manoeuvres) -> Option<[f64; 3]>;
 
-/// An effect as a formula.
+/// Effect defined by a formula.
 #[derive(Debug, Clone)]
 pub struct Formula {
     program: FormulaProgram,
     description: Description,
     acts: Places,
-    /// The measured channels that it needs.
+    /// Measured channels that it requires.
     channels: Vec<Regressor>,
     of_record: OfRecord,
-    /// Its row, of a formula of the list.
+    /// Row of the list; `None` for the formula of a user.
     listed: Option<ListedFormula>,
-    /// What is said of every constant behind the formula of a user.
+    /// Expectations of the constants of a user's formula.
     expected: Vec<Expectation>,
-    /// Whether its moment is proportional to a constant: it is absent where all these are zero. The others are shapes.
+    /// For every constant, `true` for a size: the moment is proportional to it and absent where all sizes are zero. The
+    /// others are shapes.
     is_size: Vec<bool>,
 }
 
-/// A formula is its name, its text and the numbers it takes from a record.
+/// Equality of name, text and record constants.
 impl PartialEq for Formula {
     fn eq(&self, other: &Self) -> bool {
         (self.description, self.of_record) == (other.description, other.of_record)
@@ -98,48 +99,47 @@ impl PartialEq for Formula {
 }
 
 impl Formula {
-    /// Reads `name = formula`, with `; k about 5` or `; k from 1 to 20` behind it for a constant of which something is
-    /// known.
+    /// Parses `name = formula`, optionally followed by expectations of constants, `; k about 5` or `; k from 1 to 20`.
     ///
-    /// Fails with the place and what was expected there.
+    /// Fails with the position and what was expected there.
     pub fn read(line: &str) -> Result<Arc<Self>, FormulaError> {
         let error = |at: usize, problem: &str| FormulaError { text: line.to_owned(), at, problem: problem.to_owned() };
         let Some((name, formula)) = line.split_once('=') else {
             return Err(error(line.chars().count(), "expected `name = formula`, as in `bank = c * r * abs(v)`"));
         };
         let before = name.chars().count() + 1;
-        Self::named(name.trim(), formula.trim()).map_err(|own| {
+        Self::named(name.trim(), formula.trim()).map_err(|inner| {
             let blanks = formula.chars().take_while(|letter| letter.is_whitespace()).count();
-            FormulaError { text: line.to_owned(), at: before + blanks + own.at, ..own }
+            FormulaError { text: line.to_owned(), at: before + blanks + inner.at, ..inner }
         })
     }
 
-    /// The effect of a name with a formula and what is known of its constants.
+    /// Effect of a name with a formula and the expectations of its constants.
     ///
     /// Fails as [`read`](Self::read) does.
     pub fn named(name: &str, text: &str) -> Result<Arc<Self>, FormulaError> {
         // Descriptions last as long as the program, so each text is described once.
-        static KNOWN: LazyLock<Mutex<KnownFormulas>> = LazyLock::new(Mutex::default);
+        static CACHE: LazyLock<Mutex<FormulaCache>> = LazyLock::new(Mutex::default);
         let key = (name.to_owned(), text.to_owned());
-        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(found) = known.get(&key) {
-            return Ok(Arc::clone(found));
+        let mut cache = CACHE.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(cached) = cache.get(&key) {
+            return Ok(Arc::clone(cached));
         }
         let made = Arc::new(Self::made(name, text)?);
-        known.insert(key, Arc::clone(&made));
+        cache.insert(key, Arc::clone(&made));
         Ok(made)
     }
 
-    /// The effect of a row of the list.
+    /// Effect of a row of the list.
     ///
     /// # Panics
-    /// When the row is no formula: a mistake of the list.
+    /// If the row cannot be parsed: a mistake of the list.
     pub(super) fn listed(row: &ListedFormula) -> Self {
         let program = parse::parse(row.formula, false).unwrap_or_else(|error| panic!("{error}"));
-        Self { acts: row.acts, listed: Some(*row), ..Self::of(program, row.description) }
+        Self { acts: row.acts, listed: Some(*row), ..Self::from_program(program, row.description) }
     }
 
-    fn of(program: FormulaProgram, description: Description) -> Self {
+    fn from_program(program: FormulaProgram, description: Description) -> Self {
         Self {
             channels: program.channels(),
             program,
@@ -156,44 +156,45 @@ impl Formula {
         let error = |at: usize, problem: String| FormulaError { text: text.to_owned(), at, problem };
         let is_name = name.starts_with(|letter: char| letter.is_ascii_alphabetic())
             && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-        if !is_name || name.len() > LONGEST_NAME {
-            let name: String = name.chars().take(LONGEST_NAME).collect();
+        if !is_name || name.len() > MAX_NAME_CHARS {
+            let name: String = name.chars().take(MAX_NAME_CHARS).collect();
             let expected = format!(
-                "`{name}` cannot be the name of an effect: expected letters, digits and _, at most {LONGEST_NAME}"
+                "`{name}` cannot be the name of an effect: expected letters, digits and _, at most {MAX_NAME_CHARS}"
             );
             return Err(error(0, expected));
         }
-        let found = text.chars().count();
-        if found > LONGEST {
-            return Err(error(LONGEST, format!("{found} characters, expected at most {LONGEST}")));
+        let length = text.chars().count();
+        if length > MAX_CHARS {
+            return Err(error(MAX_CHARS, format!("{length} characters, expected at most {MAX_CHARS}")));
         }
-        let (formula, said) = text.split_once(';').unwrap_or((text, ""));
+        let (formula, expectation) = text.split_once(';').unwrap_or((text, ""));
         let program = parse::parse(formula.trim_end(), true)?;
         if program.constants.is_empty() {
-            return Err(error(0, String::from("no constant to be fitted: expected one, as in `c * r * abs(v)`")));
+            return Err(error(0, String::from("no constant to fit: expected at least one, as in `c * r * abs(v)`")));
         }
-        let expected =
-            expectations(said, &program.constants).map_err(|problem| error(formula.chars().count() + 1, problem))?;
-        let kept = |words: String| -> &'static str { words.leak() };
-        let equation = kept(format!("T r' + r = K (δ + δ_r + {})", formula.trim()));
-        let none = Description { id: "", form: "", equation, parameters: &[] };
-        let mut own = Self { expected, ..Self::of(program, none) };
-        own.is_size = own.sizes();
-        if !own.can_be_absent() {
-            let problem = "no value of the constants takes the effect away: multiply every term with a constant, as in `c * tanh(k * psi)`";
+        let expected = expectations(expectation, &program.constants)
+            .map_err(|problem| error(formula.chars().count() + 1, problem))?;
+        let leaked = |text: String| -> &'static str { text.leak() };
+        let equation = leaked(format!("T r' + r = K (δ + δ_r + {})", formula.trim()));
+        let untitled = Description { id: "", form: "", equation, parameters: &[] };
+        let mut effect = Self { expected, ..Self::from_program(program, untitled) };
+        effect.is_size = effect.sizes();
+        if !effect.can_be_absent() {
+            let problem = "no value of the constants removes the effect: multiply every term by a constant, as in `c * tanh(k * psi)`";
             return Err(error(0, problem.to_owned()));
         }
-        let (id, form) = (kept(name.to_owned()), kept(text.to_owned()));
-        own.description = Description { id, form, parameters: own.found_parameters().leak(), ..own.description };
-        Ok(own)
+        let (id, form) = (leaked(name.to_owned()), leaked(text.to_owned()));
+        effect.description =
+            Description { id, form, parameters: effect.derived_parameters().leak(), ..effect.description };
+        Ok(effect)
     }
 
-    /// Numbers of [`OF_RECORD`] that it takes, by their places.
+    /// Indices of the record constants ([`OF_RECORD`]) that it uses.
     fn taken(&self) -> impl Iterator<Item = usize> {
         (0..OF_RECORD.len()).filter(|place| self.program.signals.contains(&OF_RECORD[*place].0))
     }
 
-    /// The same for a ship of this length, m.
+    /// Formula for a ship of this length, m.
     #[must_use]
     pub fn with_length(&self, length: f64) -> Self {
         let mut formula = self.clone();
@@ -201,7 +202,7 @@ impl Formula {
         formula
     }
 
-    /// Whether it says nothing, or nothing of its own, of ships that lack a channel.
+    /// `true` if it is zero or constant in a signal for ships without a measured channel.
     pub fn is_idle_without(&self, channel: Regressor) -> bool {
         self.channels.contains(&channel) || channel == Regressor::Speed && self.has(FormulaSignal::SpeedRatio)
     }
@@ -210,7 +211,7 @@ impl Formula {
         self.program.signals.contains(&signal)
     }
 
-    /// Speed by which the lateral way grows, m/s.
+    /// Speed that drives the lateral way, m/s.
     fn way_speed(&self, measured: &Measured) -> f64 {
         let [.., speed, is_always] = self.of_record;
         measured.speed.filter(|_| is_always == 0.0).unwrap_or(speed)
@@ -222,31 +223,29 @@ impl Effect for Formula {
         self.description
     }
 
-    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
         let has = |channel| match channel {
-            Regressor::Speed => about.speed.is_some(),
-            Regressor::Sway => about.sway.is_some(),
-            Regressor::Wind => about.wind_square.is_some(),
-            Regressor::Propeller => about.propeller.is_some(),
+            Regressor::Speed => records.speed.is_some(),
+            Regressor::Sway => records.sway.is_some(),
+            Regressor::Wind => records.wind_square.is_some(),
+            Regressor::Propeller => records.propeller.is_some(),
         };
         if !self.channels.iter().copied().all(has) {
             return None;
         }
-        let SignalSizes { speed, length, .. } = SignalSizes::of(about);
-        let is_always = f64::from(u8::from(about.speed.is_none()));
-        let of_record = [speed, about.span[0], length, way_speed(about), is_always];
-        let own = Self { of_record, ..self.clone() };
-        let priors = match own.listed {
-            None => own.found_priors(about)?,
+        let SignalSizes { speed, length, .. } = SignalSizes::of(records);
+        let is_always = f64::from(u8::from(records.speed.is_none()));
+        let of_record = [speed, records.span[0], length, way_speed(records), is_always];
+        let effect = Self { of_record, ..self.clone() };
+        let priors = match effect.listed {
+            None => effect.derived_priors(records)?,
             Some(row) => {
-                let [mean, sd, largest] = (row.prior)(about)?;
-                let parameters = own.description.parameters.iter();
-                parameters
-                    .map(|own| Prior::normal(own, mean, sd).within([own.lowest, own.highest.min(largest)]))
-                    .collect()
+                let [mean, sd, largest] = (row.prior)(records)?;
+                let parameters = effect.description.parameters.iter();
+                parameters.map(|p| Prior::normal(p, mean, sd).within([p.lowest, p.highest.min(largest)])).collect()
             }
         };
-        Some(Proposal::new(own, priors))
+        Some(Proposal::new(effect, priors))
     }
 
     fn places(&self) -> Places {
@@ -261,7 +260,7 @@ impl Effect for Formula {
         self.is_idle_without(channel) || channel == Regressor::Speed && self.has(FormulaSignal::LateralWay)
     }
 
-    /// The lateral way, and the course ψ₀ from which it goes.
+    /// Two states for the lateral way: the way, and the initial course ψ₀.
     fn states(&self) -> usize {
         if self.has(FormulaSignal::LateralWay) { 2 } else { 0 }
     }
@@ -271,9 +270,9 @@ impl Effect for Formula {
     }
 
     fn with_constants(&self, constants: &[f64]) -> Option<Arc<dyn Effect>> {
-        let mut own = self.clone();
-        self.taken().zip(constants).for_each(|(place, value)| own.of_record[place] = *value);
-        Some(Arc::new(own))
+        let mut effect = self.clone();
+        self.taken().zip(constants).for_each(|(place, value)| effect.of_record[place] = *value);
+        Some(Arc::new(effect))
     }
 
     fn is_of_time(&self) -> bool {
@@ -284,7 +283,7 @@ impl Effect for Formula {
         self.listed.is_some_and(|row| row.of_weather)
     }
 
-    /// A lateral way turns with the record.
+    /// A lateral way is relative to the initial course, so it does not depend on the absolute heading.
     fn sees_heading(&self) -> bool {
         self.has(FormulaSignal::Heading)
     }

@@ -1,41 +1,43 @@
-//! From the text of a formula to a program: recursive descent over sums, products, signs, powers and atoms.
+//! Parser of formulas: recursive descent over sums, products, signs, powers and atoms.
+//!
+//! Source: Aho, Lam, Sethi and Ullman (2006), Compilers, second edition, section 4.4.
 
 use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK};
 
-/// Longest text, characters.
-pub(super) const LONGEST: usize = 400;
-/// Deepest nesting of brackets, signs and powers.
-const DEEPEST: usize = 24;
-/// Most constants that are fitted.
-const MOST_CONSTANTS: usize = 4;
+/// Largest number of characters in a formula.
+pub(super) const MAX_CHARS: usize = 400;
+/// Largest nesting depth of brackets, signs and powers.
+const MAX_DEPTH: usize = 24;
+/// Largest number of fitted constants.
+const MAX_CONSTANTS: usize = 4;
 
-/// Why a text is no formula, and where.
+/// Syntax error of a formula, with its position.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{problem}\n{}", marked(text, *at))]
 pub struct FormulaError {
-    /// The text.
+    /// Text of the formula.
     pub text: String,
-    /// Characters before the place.
+    /// Position: number of characters before it.
     pub at: usize,
-    /// What is there, and what was expected.
+    /// What was found there, and what was expected.
     pub problem: String,
 }
 
-/// The text, or what is near, with a mark under the place.
+/// Text around a position, with a mark under it.
 fn marked(text: &str, at: usize) -> String {
-    let left_out = at.saturating_sub(LONGEST);
-    let near: String = text.chars().skip(left_out).take(2 * LONGEST).collect();
+    let left_out = at.saturating_sub(MAX_CHARS);
+    let near: String = text.chars().skip(left_out).take(2 * MAX_CHARS).collect();
     format!("  {near}\n  {}^", " ".repeat(at - left_out))
 }
 
-/// Reads a formula; of a moment as an angle of the rudder the program is the yaw acceleration, K/T times that.
+/// Parses a formula. For a moment (equivalent rudder angle) the program is the yaw acceleration, K/T times the moment.
 ///
-/// Fails where the text is no formula, is too deep, or has too many constants.
+/// Fails for a syntax error, nesting that is too deep, or too many constants.
 pub fn parse(text: &str, is_moment: bool) -> Result<FormulaProgram, FormulaError> {
     FormulaParser::new(text, false).program(is_moment)
 }
 
-/// Reads a formula whose names are those of columns; they are its constants. Fails as [`parse`] does.
+/// Parses a formula whose names are columns, which become its constants. Fails as [`parse`] does.
 pub(super) fn parse_columns(text: &str) -> Result<FormulaProgram, FormulaError> {
     FormulaParser::new(text, true).program(false)
 }
@@ -44,9 +46,9 @@ struct FormulaParser {
     letters: Vec<char>,
     at: usize,
     depth: usize,
-    /// Values that wait for an operator.
+    /// Number of intermediate values on the stack.
     waiting: usize,
-    /// Whether every name is that of a column.
+    /// `true` if every name is a column.
     of_columns: bool,
     program: FormulaProgram,
 }
@@ -59,7 +61,7 @@ impl FormulaParser {
 
     fn program(mut self, is_moment: bool) -> Result<FormulaProgram, FormulaError> {
         if let Some(at) = self.letters.iter().position(|letter| letter.is_control()) {
-            return Err(self.error(at, "a character that cannot be printed"));
+            return Err(self.error(at, "a control character"));
         }
         if is_moment {
             self.signal(FormulaSignal::Gain)?;
@@ -72,7 +74,7 @@ impl FormulaParser {
                 }
                 Ok(self.program)
             }
-            Some(')') => Err(self.error(self.at, "a bracket that was not opened")),
+            Some(')') => Err(self.error(self.at, "a closing bracket without an opening one")),
             Some(letter) => Err(self.error(self.at, format!("`{letter}`, expected an operator or the end"))),
         }
     }
@@ -81,7 +83,7 @@ impl FormulaParser {
         FormulaError { text: self.letters.iter().collect(), at, problem: problem.into() }
     }
 
-    /// The next letter that is no blank.
+    /// Next character that is not white space.
     fn peek(&mut self) -> Option<char> {
         while self.letters.get(self.at).is_some_and(|letter| letter.is_whitespace()) {
             self.at += 1;
@@ -89,11 +91,11 @@ impl FormulaParser {
         self.letters.get(self.at).copied()
     }
 
-    /// Takes the next letter if it is one of these.
+    /// Consumes the next character if it is one of these.
     fn take(&mut self, any: &[char]) -> Option<char> {
-        let found = self.peek().filter(|letter| any.contains(letter));
-        self.at += usize::from(found.is_some());
-        found
+        let taken = self.peek().filter(|letter| any.contains(letter));
+        self.at += usize::from(taken.is_some());
+        taken
     }
 
     fn push(&mut self, step: Instruction) -> Result<(), FormulaError> {
@@ -112,25 +114,25 @@ impl FormulaParser {
             _ => {}
         }
         if self.waiting > STACK {
-            let problem = format!("more than {STACK} values wait here for an operator; use fewer brackets");
+            let problem = format!("more than {STACK} intermediate values; use fewer brackets");
             return Err(self.error(self.at, problem));
         }
         self.program.instructions.push(step);
         Ok(())
     }
 
-    /// Runs one level deeper.
+    /// Parses a part one nesting level deeper.
     fn deeper(&mut self, part: fn(&mut Self) -> Result<(), FormulaError>) -> Result<(), FormulaError> {
         self.depth += 1;
-        if self.depth > DEEPEST {
-            return Err(self.error(self.at, format!("more than {DEEPEST} levels of brackets, signs and powers")));
+        if self.depth > MAX_DEPTH {
+            return Err(self.error(self.at, format!("more than {MAX_DEPTH} levels of brackets, signs and powers")));
         }
         part(self)?;
         self.depth -= 1;
         Ok(())
     }
 
-    /// Parts with operators of one rank between them, from left to right.
+    /// Parts joined by operators of equal precedence, from left to right.
     fn chain(
         &mut self,
         operators: &[(char, FormulaOperator)],
@@ -138,7 +140,7 @@ impl FormulaParser {
     ) -> Result<(), FormulaError> {
         part(self)?;
         while let Some(sign) = self.peek()
-            && let Some((_, operator)) = operators.iter().find(|(own, _)| *own == sign)
+            && let Some((_, operator)) = operators.iter().find(|(symbol, _)| *symbol == sign)
         {
             self.at += 1;
             part(self)?;
@@ -157,7 +159,7 @@ impl FormulaParser {
         self.chain(&[('*', Multiply), ('·', Multiply), ('/', Divide)], |parser| parser.deeper(Self::signed))
     }
 
-    /// A sign before a power: −x² is −(x²).
+    /// Sign before a power: −x² is −(x²).
     fn signed(&mut self) -> Result<(), FormulaError> {
         match self.take(&['+', '-', '−']) {
             None => self.power(),
@@ -179,7 +181,7 @@ impl FormulaParser {
         Ok(())
     }
 
-    /// A power whose exponent was read from instruction `from` on; a whole number takes negative bases, too.
+    /// Power whose exponent starts at instruction `from`; an integer exponent allows negative bases.
     fn raise(&mut self, from: usize) -> Result<(), FormulaError> {
         let exponent = match self.program.instructions[from..] {
             [Instruction::Take(Operand::Number(number))] => Some(number),
@@ -214,7 +216,7 @@ impl FormulaParser {
     fn close(&mut self, open: usize) -> Result<(), FormulaError> {
         match self.take(&[')']) {
             Some(_) => Ok(()),
-            None if self.peek().is_none() => Err(self.error(open, "a bracket that is not closed")),
+            None if self.peek().is_none() => Err(self.error(open, "an opening bracket without a closing one")),
             None => Err(self.error(self.at, "expected `)` or an operator")),
         }
     }
@@ -230,7 +232,7 @@ impl FormulaParser {
         }
         let text: String = self.letters[from..end].iter().collect();
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-        let number = number.ok_or_else(|| self.error(from, format!("`{text}` is no number")))?;
+        let number = number.ok_or_else(|| self.error(from, format!("`{text}` is not a number")))?;
         self.at = end;
         self.push(Instruction::Take(Operand::Number(number)))
     }
@@ -246,19 +248,19 @@ impl FormulaParser {
         if self.of_columns {
             return self.constant(name, from);
         }
-        if let Some((_, signal)) = FormulaSignal::NAMES.iter().find(|(known, _)| *known == name) {
+        if let Some((_, signal)) = FormulaSignal::NAMES.iter().find(|(symbol, _)| *symbol == name) {
             return self.signal(*signal);
         }
         if name == "pi" {
             return self.push(Instruction::Take(Operand::Number(std::f64::consts::PI)));
         }
-        if let Some(known) = misspelt(&name) {
-            return Err(self.error(from, format!("`{name}` is no signal; did you mean `{known}`?")));
+        if let Some(signal) = misspelt(&name) {
+            return Err(self.error(from, format!("`{name}` is not a signal; did you mean `{signal}`?")));
         }
         if !name.is_ascii() {
             return Err(self.error(from, format!("`{name}`: expected letters without accents, digits and _")));
         }
-        if FormulaFunction::NAMES.iter().any(|(known, _)| *known == name) {
+        if FormulaFunction::NAMES.iter().any(|(symbol, _)| *symbol == name) {
             return Err(self.error(self.at, format!("expected `(` after the function `{name}`")));
         }
         self.constant(name, from)
@@ -266,11 +268,10 @@ impl FormulaParser {
 
     fn constant(&mut self, name: String, from: usize) -> Result<(), FormulaError> {
         let constants = &mut self.program.constants;
-        let place = constants.iter().position(|known| *known == name).unwrap_or(constants.len());
-        if place == MOST_CONSTANTS {
-            let which =
-                if self.of_columns { "columns that a formula may name" } else { "constants that can be fitted" };
-            return Err(self.error(from, format!("`{name}` is one more than the {MOST_CONSTANTS} {which}")));
+        let place = constants.iter().position(|constant| *constant == name).unwrap_or(constants.len());
+        if place == MAX_CONSTANTS {
+            let what = if self.of_columns { "columns" } else { "constants" };
+            return Err(self.error(from, format!("`{name}` is too many: at most {MAX_CONSTANTS} {what} are possible")));
         }
         if place == constants.len() {
             constants.push(name);
@@ -280,7 +281,7 @@ impl FormulaParser {
 
     fn signal(&mut self, signal: FormulaSignal) -> Result<(), FormulaError> {
         let signals = &mut self.program.signals;
-        let place = signals.iter().position(|known| *known == signal).unwrap_or(signals.len());
+        let place = signals.iter().position(|used| *used == signal).unwrap_or(signals.len());
         if place == signals.len() {
             signals.push(signal);
         }
@@ -288,18 +289,18 @@ impl FormulaParser {
     }
 
     fn call(&mut self, name: &str, from: usize) -> Result<(), FormulaError> {
-        let one = FormulaFunction::NAMES.iter().find(|(known, _)| *known == name);
-        let two = FormulaOperator::NAMES.iter().find(|(known, _)| *known == name);
-        if one.is_none() && two.is_none() {
-            let known: Vec<&str> =
-                FormulaFunction::NAMES.iter().map(|own| own.0).chain(["min", "max", "pow"]).collect();
-            return Err(self.error(from, format!("`{name}` is no function; use one of {}", known.join(", "))));
+        let unary = FormulaFunction::NAMES.iter().find(|(symbol, _)| *symbol == name);
+        let binary = FormulaOperator::NAMES.iter().find(|(symbol, _)| *symbol == name);
+        if unary.is_none() && binary.is_none() {
+            let names: Vec<&str> =
+                FormulaFunction::NAMES.iter().map(|(name, _)| *name).chain(["min", "max", "pow"]).collect();
+            return Err(self.error(from, format!("`{name}` is not a function; use one of {}", names.join(", "))));
         }
         let open = self.at;
         self.at += 1;
         self.deeper(Self::sum)?;
-        let between = self.take(&[',', ';']);
-        match (one, two, between) {
+        let separator = self.take(&[',', ';']);
+        match (unary, binary, separator) {
             (_, Some((_, operator)), Some(_)) => {
                 let second = self.program.instructions.len();
                 self.deeper(Self::sum)?;
@@ -320,7 +321,7 @@ impl FormulaParser {
     }
 }
 
-/// A signal that a name is meant for: another spelling of it.
+/// Signal of which a name is a misspelling.
 fn misspelt(name: &str) -> Option<&'static str> {
     const SPELLINGS: [(&str, &[&str]); 9] = [
         ("delta", &["δ", "rudder", "rudder_angle"]),
@@ -333,9 +334,9 @@ fn misspelt(name: &str) -> Option<&'static str> {
         ("wind_speed", &["windspeed", "Vw", "U_wind"]),
         ("wind_angle", &["winddir", "wind_direction", "wind_from", "windangle"]),
     ];
-    let is_near = |known: &str| known.len() > 2 && strsim::damerau_levenshtein(known, name) == 1;
-    let spelt = SPELLINGS.iter().find(|(known, others)| others.contains(&name) || is_near(known));
-    spelt.map(|(known, _)| *known)
+    let is_near = |signal: &str| signal.len() > 2 && strsim::damerau_levenshtein(signal, name) == 1;
+    let spelt = SPELLINGS.iter().find(|(signal, spellings)| spellings.contains(&name) || is_near(signal));
+    spelt.map(|(signal, _)| *signal)
 }
 
 #[cfg(test)]
@@ -381,26 +382,26 @@ mod tests {
 
     #[test]
     fn what_is_no_formula_is_marked() {
-        for (text, at, said) in [
+        for (text, at, message) in [
             ("", 0, "ends here"),
             ("c * ", 4, "ends here"),
             ("c * r r", 6, "`r`, expected an operator"),
-            ("c * (r + 1", 4, "not closed"),
-            ("c * r)", 5, "not opened"),
+            ("c * (r + 1", 4, "without a closing one"),
+            ("c * r)", 5, "without an opening one"),
             ("c * dleta", 4, "did you mean `delta`"),
             ("c * rudder", 4, "did you mean `delta`"),
             ("c * windspeed", 4, "did you mean `wind_speed`"),
-            ("c * foo(r)", 4, "`foo` is no function; use one of abs"),
+            ("c * foo(r)", 4, "`foo` is not a function; use one of abs"),
             ("c * max(r)", 9, "takes two values"),
             ("c * abs(r, 1)", 9, "takes one value"),
             ("c * abs", 7, "expected `(`"),
             ("c $ r", 2, "`$`, expected an operator"),
-            ("1.2.3 * c", 0, "is no number"),
-            ("a*b*c*d*e*r", 8, "one more than the 4 constants"),
+            ("1.2.3 * c", 0, "is not a number"),
+            ("a*b*c*d*e*r", 8, "at most 4 constants"),
             ("c*é", 2, "without accents"),
         ] {
             let error = parse(text, false).expect_err(text);
-            assert!(error.at == at && error.problem.contains(said), "{text}: {error:?}");
+            assert!(error.at == at && error.problem.contains(message), "{text}: {error:?}");
         }
         let marked = parse("c * dleta", false).expect_err("misspelt").to_string();
         assert!(marked.ends_with("\n  c * dleta\n      ^"), "{marked}");

@@ -1,9 +1,9 @@
-//! Points at which a formula is looked at: signals of the sizes of some records.
+//! Sample points at which a formula is evaluated: signals with the scales of given records.
 
 use super::program::FormulaSignal;
 use crate::effects::effect::Manoeuvres;
 
-/// Sizes of the signals in some records.
+/// Scales of the signals in given records.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SignalSizes {
     yaw_rate: f64,
@@ -32,53 +32,54 @@ impl SignalSizes {
         }
     }
 
-    /// r L/U of a zig-zag is about 0.3, K′/T′ about 1, y/L about three times the rudder.
-    pub(super) fn of(about: &Manoeuvres) -> Self {
-        let speed = about.speed.or(about.sway).unwrap_or(1.0);
+    /// Scales in records: r L/U of a zig-zag is about 0.3, K′/T′ about 1, y/L about three times the rudder.
+    pub(super) fn of(records: &Manoeuvres) -> Self {
+        let speed = records.speed.or(records.sway).unwrap_or(1.0);
         Self {
-            yaw_rate: 0.3 / about.time,
-            rudder: about.rudder,
+            yaw_rate: 0.3 / records.time,
+            rudder: records.rudder,
             speed,
-            propeller: about.propeller.unwrap_or(1.0),
-            duration: about.duration,
-            wind: about.wind_square.unwrap_or(1.0).sqrt(),
-            gain: about.time.powi(-2),
-            length: about.time * speed,
-            lateral_way: 3.0 * about.rudder * about.time * way_speed(about),
+            propeller: records.propeller.unwrap_or(1.0),
+            duration: records.duration,
+            wind: records.wind_square.unwrap_or(1.0).sqrt(),
+            gain: records.time.powi(-2),
+            length: records.time * speed,
+            lateral_way: 3.0 * records.rudder * records.time * way_speed(records),
         }
     }
 }
 
-/// Speed by which a lateral way grows in these records, m/s: 1 where one of them has none.
-pub(super) fn way_speed(about: &Manoeuvres) -> f64 {
-    about.speed.unwrap_or(1.0)
+/// Speed that drives a lateral way in given records, m/s; 1 where a record has no speed.
+pub(super) fn way_speed(records: &Manoeuvres) -> f64 {
+    records.speed.unwrap_or(1.0)
 }
 
-/// The signals at a point.
+/// Sample point: a value of every signal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SignalPoint {
     pub(super) scales: SignalSizes,
-    /// From −1 to 1: yaw rate, rudder, heading, sway, direction of the wind, lateral way.
+    /// Values from −1 to 1 of yaw rate, rudder, heading, sway, direction of the wind, lateral way.
     pub(super) signed: [f64; 6],
-    /// From 0.5 to 1: speed, propeller, time, speed of the wind.
+    /// Values from 0.5 to 1 of speed, propeller, time, speed of the wind.
     pub(super) positive: [f64; 4],
-    /// Numbers of units that go into a second and into a metre.
+    /// Number of time units in a second, and of length units in a metre.
     pub(super) second: f64,
     pub(super) metre: f64,
 }
 
 impl SignalPoint {
-    /// Points at which a formula is looked at.
+    /// Number of sample points.
     pub(super) const COUNT: usize = 64;
 
-    /// Points all over the range of the signals, always the same.
+    /// Sample points over the range of the signals, always the same.
     pub(super) fn all(scales: &SignalSizes) -> impl Iterator<Item = Self> + use<> {
         let scales = *scales;
-        (1..=Self::COUNT).map(move |number| Self::of_number(number, &scales))
+        (1..=Self::COUNT).map(move |number| Self::weyl(number, &scales))
     }
 
-    /// The point of a number: parts of multiples of roots, which fill a box evenly (Weyl).
-    fn of_number(number: usize, scales: &SignalSizes) -> Self {
+    /// Sample point of a Weyl sequence: fractional parts of multiples of square roots (Weyl 1916), equidistributed in a
+    /// box.
+    fn weyl(number: usize, scales: &SignalSizes) -> Self {
         const ROOTS: [f64; 10] = [2.0, 3.0, 5.0, 7.0, 11.0, 29.0, 13.0, 17.0, 19.0, 23.0];
         let part = |root: f64| (number as f64 * root.sqrt()).fract();
         Self {

@@ -1,5 +1,5 @@
-//! A formula as a program: names, numbers, operators and functions in the order in which they are worked out. Made from
-//! text by the parser, evaluated in plain numbers and in numbers that carry derivatives.
+//! Formula as a stack program: operands, operators and functions in the order of evaluation. Compiled from text by the
+//! parser, evaluated in plain numbers and in dual numbers.
 
 use estimation::number::Real;
 
@@ -7,21 +7,21 @@ use crate::dynamics::{Measured, Regressor};
 use crate::effects::effect::Now;
 use crate::particulars::Dimension;
 
-/// Most values that wait for an operator at once, and as many as most formulas have, of signals too.
+/// Largest number of values on the stack, and the number that suffices for most formulas (also of signals).
 pub(super) const STACK: usize = 16;
-const FEW: usize = 3;
+const SMALL_STACK: usize = 3;
 
-/// A signal that a formula may name. Units and signs are those of NOTATION.md.
+/// Signal that a formula can name. Units and signs are those of NOTATION.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FormulaSignal {
     /// `r`, yaw rate, rad/s.
     YawRate,
-    /// `delta`, rudder that acts, rad.
+    /// `delta`, acting rudder, rad.
     Rudder,
     /// `psi`, heading, rad.
     Heading,
-    /// `y`, way to starboard of the course at which the record begins, m: y' = U sin(ψ − ψ₀). The speed is the measured
-    /// one; 1 m/s where records have none, so that y is in metres for every m/s.
+    /// `y`, lateral way to starboard of the initial course, m: y' = U sin(ψ − ψ₀). U is the measured speed; 1 m/s where
+    /// records have none, so that y is in metres per m/s.
     LateralWay,
     /// `v`, sway velocity to starboard, m/s.
     Sway,
@@ -37,19 +37,19 @@ pub enum FormulaSignal {
     WindSpeed,
     /// `wind_angle`, direction the relative wind comes from, clockwise from the bow, rad.
     WindAngle,
-    /// `rp`, yaw rate without dimension, r L/U.
+    /// `rp`, prime yaw rate r L/U.
     PrimeYawRate,
-    /// `vp`, sway velocity without dimension, v/U.
+    /// `vp`, prime sway velocity v/U.
     PrimeSway,
-    /// `q`, speed over that of the approach, U/U₀; 1 where the record has no speed.
+    /// `q`, speed ratio U/U₀ to the approach; 1 where the record has no speed.
     SpeedRatio,
     /// `start`, time of the first row, s.
     Start,
-    /// `K_over_T`, K/T of the ship, 1/s²: a moment divided by it is a yaw acceleration.
+    /// `K_over_T`, K/T of the ship, 1/s²: times an equivalent rudder angle it is a yaw acceleration.
     Gain,
 }
 
-/// Numbers that a formula takes from a record: the signal that needs it, its neutral value and its dimension.
+/// Record constants of a formula: the signal that uses it, its neutral value and its dimension.
 pub(super) const OF_RECORD: [(FormulaSignal, f64, Dimension); 5] = [
     (FormulaSignal::SpeedRatio, 1.0, [-1, 1]),
     (FormulaSignal::Start, 0.0, [1, 0]),
@@ -58,12 +58,12 @@ pub(super) const OF_RECORD: [(FormulaSignal, f64, Dimension); 5] = [
     (FormulaSignal::LateralWay, 0.0, [0, 0]),
 ];
 
-/// Their values: approach speed, m/s, first time, s, and length of the ship, m; the speed by which a lateral way grows
-/// where none is measured, m/s, and 1 where it always does, else 0.
+/// Values of the record constants: approach speed, m/s; first time, s; ship length, m; the speed that drives a lateral
+/// way where none is measured, m/s; and 1 if that speed applies always, else 0.
 pub(super) type OfRecord = [f64; OF_RECORD.len()];
 
 impl FormulaSignal {
-    /// Every signal with its name.
+    /// Names of all signals.
     pub const NAMES: [(&'static str, Self); 16] = [
         ("r", Self::YawRate),
         ("delta", Self::Rudder),
@@ -83,7 +83,7 @@ impl FormulaSignal {
         ("K_over_T", Self::Gain),
     ];
 
-    /// The measured channels it needs.
+    /// Measured channels that it requires.
     pub(super) fn channels(self) -> &'static [Regressor] {
         match self {
             Self::Sway => &[Regressor::Sway],
@@ -95,26 +95,26 @@ impl FormulaSignal {
         }
     }
 
-    /// Its value at an instant of a record that has its channels; `z` are the states of the formula.
+    /// Value at an operating point with its channels; `z` are the states of the formula.
     #[inline(always)]
     pub(super) fn at<R: Real>(self, now: &Now<R>, z: &[R], &[approach_speed, start, length, ..]: &OfRecord) -> R {
         let Measured { speed, sway, wind_speed, wind_from, propeller } = *now.measured;
-        let there = |channel: Option<f64>| channel.unwrap_or(f64::NAN);
-        let of = |channel: Option<f64>| R::from(there(channel));
+        let value = |channel: Option<f64>| channel.unwrap_or(f64::NAN);
+        let constant = |channel: Option<f64>| R::from(value(channel));
         match self {
             Self::YawRate => now.yaw_rate,
             Self::Rudder => now.rudder,
             Self::Heading => now.heading,
             Self::LateralWay => z[0],
-            Self::Sway => of(sway),
-            Self::Surge => R::from((there(speed).powi(2) - there(sway).powi(2)).max(0.0).sqrt()),
-            Self::Speed => of(speed),
-            Self::Propeller => of(propeller),
+            Self::Sway => constant(sway),
+            Self::Surge => R::from((value(speed).powi(2) - value(sway).powi(2)).max(0.0).sqrt()),
+            Self::Speed => constant(speed),
+            Self::Propeller => constant(propeller),
             Self::Time => R::from(now.t),
-            Self::WindSpeed => of(wind_speed),
-            Self::WindAngle => of(wind_from),
-            Self::PrimeYawRate => now.yaw_rate * (length / there(speed)),
-            Self::PrimeSway => R::from(there(sway) / there(speed)),
+            Self::WindSpeed => constant(wind_speed),
+            Self::WindAngle => constant(wind_from),
+            Self::PrimeYawRate => now.yaw_rate * (length / value(speed)),
+            Self::PrimeSway => R::from(value(sway) / value(speed)),
             Self::SpeedRatio => R::from(speed.map_or(1.0, |speed| speed / approach_speed)),
             Self::Start => R::from(start),
             Self::Gain => now.gain,
@@ -122,12 +122,12 @@ impl FormulaSignal {
     }
 }
 
-/// A function of one value.
+/// Function of one argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FormulaFunction {
     /// Magnitude.
     Abs,
-    /// −1, 0 or 1.
+    /// Sign: −1, 0 or 1.
     Sign,
     /// Square root.
     Sqrt,
@@ -143,12 +143,12 @@ pub enum FormulaFunction {
     Tan,
     /// Hyperbolic tangent.
     Tanh,
-    /// 1 above zero, else 0.
+    /// Step: 1 above zero, else 0.
     Step,
 }
 
 impl FormulaFunction {
-    /// Every function of one value with its name.
+    /// Names of all functions of one argument.
     pub const NAMES: [(&'static str, Self); 10] = [
         ("abs", Self::Abs),
         ("sign", Self::Sign),
@@ -163,7 +163,7 @@ impl FormulaFunction {
     ];
 
     #[inline(always)]
-    fn of<R: Real>(self, x: R) -> R {
+    fn apply<R: Real>(self, x: R) -> R {
         match self {
             Self::Abs => x.abs(),
             Self::Sign if x.value() == 0.0 => R::from(0.0),
@@ -183,7 +183,7 @@ impl FormulaFunction {
     }
 }
 
-/// An operator or a function of two values.
+/// Operator or function of two arguments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FormulaOperator {
     /// Sum.
@@ -196,21 +196,21 @@ pub enum FormulaOperator {
     Divide,
     /// Power of a positive number.
     Power,
-    /// The smaller one.
+    /// Minimum.
     Min,
-    /// The larger one.
+    /// Maximum.
     Max,
     /// `step(x, width)`, a step of this width: (1 + tanh(x/width))/2.
     SmoothStep,
 }
 
 impl FormulaOperator {
-    /// Functions of two values with their names.
+    /// Names of the functions of two arguments.
     pub const NAMES: [(&'static str, Self); 4] =
         [("min", Self::Min), ("max", Self::Max), ("pow", Self::Power), ("step", Self::SmoothStep)];
 
     #[inline(always)]
-    fn of<R: Real>(self, x: R, y: R) -> R {
+    fn apply<R: Real>(self, x: R, y: R) -> R {
         match self {
             Self::Add => x + y,
             Self::Subtract => x - y,
@@ -236,59 +236,59 @@ impl FormulaOperator {
     }
 }
 
-/// What needs no working out.
+/// Operand: a value that needs no evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Operand {
-    /// A number.
+    /// Number.
     Number(f64),
-    /// A constant that is fitted, by its place.
+    /// Fitted constant, by its index.
     Constant(usize),
-    /// A signal, by its place.
+    /// Signal, by its index.
     Signal(usize),
 }
 
-/// One step of a program.
+/// Instruction of a program; the last value is kept beside the stack.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Instruction {
-    /// The last value waits; this is the last one now.
+    /// Pushes the last value on the stack and takes an operand as the last value.
     Take(Operand),
-    /// Minus.
+    /// Negates the last value.
     Negate,
-    /// A whole power.
+    /// Raises the last value to an integer power.
     WholePower(i32),
-    /// A function of the last value.
+    /// Applies a function to the last value.
     Call(FormulaFunction),
-    /// An operator between the value that has waited least and the last one.
+    /// Applies an operator to the top of the stack and the last value.
     Operate(FormulaOperator),
-    /// An operator between the last value and this: what would be a `Take` and an `Operate`.
+    /// Applies an operator to the last value and an operand: a `Take` and an `Operate` in one.
     With(FormulaOperator, Operand),
 }
 
-/// A formula ready to be evaluated.
+/// Compiled formula.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FormulaProgram {
     pub(super) instructions: Vec<Instruction>,
-    /// The constants in the order of their first use, in which their values travel.
+    /// Constants in the order of their first use, which is the order of their values.
     pub(super) constants: Vec<String>,
-    /// The signals in the order of their first use.
+    /// Signals in the order of their first use.
     pub(super) signals: Vec<FormulaSignal>,
-    /// Most values that wait at once beside the last one.
+    /// Largest number of values on the stack.
     pub(super) waiting: usize,
 }
 
 impl FormulaProgram {
-    /// The measured channels that these need, the sway first.
+    /// Measured channels that its signals require, the sway first.
     pub(super) fn channels(&self) -> Vec<Regressor> {
         let all = [Regressor::Sway, Regressor::Speed, Regressor::Wind, Regressor::Propeller];
-        all.into_iter().filter(|own| self.signals.iter().any(|signal| signal.channels().contains(own))).collect()
+        all.into_iter().filter(|c| self.signals.iter().any(|signal| signal.channels().contains(c))).collect()
     }
 
-    /// Its value with these constants; `signal` gives the signals.
+    /// Value at these constants; `signal` returns the value of a signal.
     #[inline]
     pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> R) -> R {
         match (self.signals.len(), self.waiting) {
             (0..=2, 0..=1) => self.run::<R, 2, 1>(constants, signal),
-            (0..=FEW, 0..=FEW) => self.run::<R, FEW, FEW>(constants, signal),
+            (0..=SMALL_STACK, 0..=SMALL_STACK) => self.run::<R, SMALL_STACK, SMALL_STACK>(constants, signal),
             _ => self.run::<R, STACK, STACK>(constants, signal),
         }
     }
@@ -300,20 +300,20 @@ impl FormulaProgram {
         signal: impl Fn(FormulaSignal) -> R,
     ) -> R {
         let mut signals = [R::from(0.0); SIGNALS];
-        for (value, own) in signals.iter_mut().zip(&self.signals) {
-            *value = signal(*own);
+        for (value, kind) in signals.iter_mut().zip(&self.signals) {
+            *value = signal(*kind);
         }
         let value = |operand: Operand| match operand {
             Operand::Number(number) => R::from(number),
             Operand::Constant(place) => constants[place],
             Operand::Signal(place) => signals[place],
         };
-        let Some((&Instruction::Take(first), rest)) = self.instructions.split_first() else { return R::from(0.0) };
+        let Some((&Instruction::Take(first), tail)) = self.instructions.split_first() else { return R::from(0.0) };
         let mut last = value(first);
         let (mut waiting, mut count) = ([R::from(0.0); WAITING], 0);
-        for step in rest {
+        for step in tail {
             match *step {
-                // Products are most of what formulas do.
+                // Products are the most frequent instructions.
                 Instruction::With(FormulaOperator::Multiply, Operand::Signal(place)) => last = last * signals[place],
                 Instruction::With(FormulaOperator::Multiply, operand) => last = last * value(operand),
                 Instruction::Take(operand) => {
@@ -323,12 +323,12 @@ impl FormulaProgram {
                 }
                 Instruction::Negate => last = -last,
                 Instruction::WholePower(power) => last = last.powi(power),
-                Instruction::Call(function) => last = function.of(last),
+                Instruction::Call(function) => last = function.apply(last),
                 Instruction::Operate(operator) => {
                     count -= 1;
-                    last = operator.of(waiting[count], last);
+                    last = operator.apply(waiting[count], last);
                 }
-                Instruction::With(operator, operand) => last = operator.of(last, value(operand)),
+                Instruction::With(operator, operand) => last = operator.apply(last, value(operand)),
             }
         }
         last

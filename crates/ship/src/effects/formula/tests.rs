@@ -4,7 +4,7 @@ use crate::dynamics::Measured;
 use crate::effects::effect::Parameter;
 use crate::effects::list::{LIST, ListedEffect};
 
-pub(super) fn about() -> Manoeuvres {
+pub(super) fn manoeuvres() -> Manoeuvres {
     Manoeuvres {
         time: 20.0,
         rudder: 0.35,
@@ -18,29 +18,28 @@ pub(super) fn about() -> Manoeuvres {
     }
 }
 
-/// The value of a formula at a point, of one of the list with its typical constants, brought to other units, and the
-/// mirror image of both.
+/// Formulas of the list at typical constants: their values in other units and in the mirror image.
 #[test]
 fn what_the_list_says_of_constants_is_what_their_formula_does() {
-    let rows = LIST.iter().filter_map(|own| if let ListedEffect::Row(row) = own { Some(row) } else { None });
+    let rows = LIST.iter().filter_map(|effect| if let ListedEffect::Row(row) = effect { Some(row) } else { None });
     for formula in rows.map(Formula::listed) {
         let name = format!("{} ({})", formula.id(), formula.form());
         let parameters = formula.parameters();
-        let keys: Vec<&str> = parameters.iter().map(|own| own.key).collect();
+        let keys: Vec<&str> = parameters.iter().map(|p| p.key).collect();
         assert_eq!(formula.program.constants, keys, "{name}");
         assert!(!formula.acts.rudder || formula.program.signals == [FormulaSignal::Rudder], "{name}");
         let (second, metre): (f64, f64) = (2.0, 3.0);
         for point in SignalPoint::all(&SignalSizes::ones()) {
             let value = |point: SignalPoint, factor: &dyn Fn(&Parameter) -> f64| {
-                let constants: Vec<f64> = parameters.iter().map(|own| own.typical * factor(own)).collect();
+                let constants: Vec<f64> = parameters.iter().map(|p| p.typical * factor(p)).collect();
                 formula.value_at(&constants, &point)
             };
-            let is_near = |one: f64, other: f64| (one - other).abs() <= 1e-12 * one.abs();
+            let is_near = |x: f64, y: f64| (x - y).abs() <= 1e-12 * x.abs();
             let plain = value(point, &|_| 1.0);
-            let mirrored = value(point.mirrored(), &|own| if own.odd { -1.0 } else { 1.0 });
+            let mirrored = value(point.mirrored(), &|p| if p.odd { -1.0 } else { 1.0 });
             assert!(is_near(plain, -mirrored), "{name} of the other side: {plain} {mirrored}");
-            let in_units = value(SignalPoint { second, metre, ..point }, &|own| {
-                let [seconds, metres] = own.dimension();
+            let in_units = value(SignalPoint { second, metre, ..point }, &|p| {
+                let [seconds, metres] = p.dimension();
                 second.powi(seconds) * metre.powi(metres)
             });
             let of_units = if formula.acts.rudder { 1.0 } else { second * second };
@@ -53,9 +52,9 @@ fn what_the_list_says_of_constants_is_what_their_formula_does() {
 fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
     let bank = Formula::read("bank = c * tanh(k * psi)").expect("a formula");
     assert_eq!(bank.is_size, [true, false]);
-    assert!(bank.parameters().iter().all(|own| !own.odd) && bank.sees_heading());
+    assert!(bank.parameters().iter().all(|p| !p.odd) && bank.sees_heading());
     let even = Formula::read("drift = c * abs(r) + d * v").expect("a formula");
-    assert_eq!(even.parameters().iter().map(|own| own.odd).collect::<Vec<_>>(), [true, false]);
+    assert_eq!(even.parameters().iter().map(|p| p.odd).collect::<Vec<_>>(), [true, false]);
     for (line, sides) in [
         ("bank = c * tanh(k * psi)", Sides::Alike),
         ("trend = c * t", Sides::Same),
@@ -86,13 +85,13 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
         ("fading = c * delta * U^1.6", vec![Parameter::NO_UNIT]),
     ] {
         let formula = Formula::read(line).expect("a formula");
-        assert_eq!(formula.parameters().iter().map(|own| own.unit).collect::<Vec<_>>(), units, "{line}");
+        assert_eq!(formula.parameters().iter().map(|p| p.unit).collect::<Vec<_>>(), units, "{line}");
     }
 }
 
 #[test]
 fn priors_follow_from_the_records_or_from_what_is_said() {
-    let proposal = |line: &str| Formula::read(line).expect("a formula").proposal(&about());
+    let proposal = |line: &str| Formula::read(line).expect("a formula").proposal(&manoeuvres());
     let priors = proposal("cross = c * r * abs(v)").expect("speed and sway are there").priors;
     // A moment of 0.07 rad where r is 0.015 rad/s and v 1 m/s.
     assert!((5.0..50.0).contains(&priors[0].sd) && priors[0].mean == 0.0 && !priors[0].is_shape, "{priors:?}");
@@ -102,8 +101,12 @@ fn priors_follow_from_the_records_or_from_what_is_said() {
     // About a length to either side, of 140 m.
     let way = proposal("bank = c * y").expect("no channel is needed").priors;
     assert!((2.5e-4..1e-3).contains(&way[0].sd), "{way:?}");
-    let said = proposal("bank = c * tanh(k * psi); k about 5; c about 0.02; k from 1 to 20").expect("said").priors;
-    assert_eq!([said[0].sd, said[1].mean, said[1].sd, said[1].lowest, said[1].highest], [0.02, 5.0, 2.5, 1.0, 20.0]);
+    let declared =
+        proposal("bank = c * tanh(k * psi); k about 5; c about 0.02; k from 1 to 20").expect("priors").priors;
+    assert_eq!(
+        [declared[0].sd, declared[1].mean, declared[1].sd, declared[1].lowest, declared[1].highest],
+        [0.02, 5.0, 2.5, 1.0, 20.0]
+    );
     assert!(proposal("wind = c * wind_speed^2 * sin(wind_angle)").is_none(), "no record has wind");
 }
 
@@ -115,19 +118,19 @@ fn what_is_no_effect_is_refused_where_it_stands() {
         assert!(message.len() < 2000, "{} bytes", message.len());
     }
     assert!(crate::effects::formula("second_order = c * r").is_err_and(|error| error.problem.contains("on the list")));
-    for (line, at, said) in [
+    for (line, at, message) in [
         ("bank", 4, "expected `name = formula`"),
         ("bank = c * dleta", 11, "did you mean `delta`"),
         ("bank = c * Y", 11, "did you mean `y`"),
         ("bank = r", 7, "no constant"),
-        ("bank = c + r", 7, "takes the effect away"),
-        ("bank = tanh(c * r) + 1", 7, "takes the effect away"),
+        ("bank = c + r", 7, "removes the effect"),
+        ("bank = tanh(c * r) + 1", 7, "removes the effect"),
         ("b nk = c * r", 7, "cannot be the name"),
         ("bank = c * r; k about 5", 13, "expected one of the constants c"),
         ("bank = c * r; c near 5", 13, "expected `c about 5`"),
     ] {
         let error = Formula::read(line).expect_err(line);
-        assert!(error.at == at && error.problem.contains(said), "{line}: {error:?}");
+        assert!(error.at == at && error.problem.contains(message), "{line}: {error:?}");
     }
 }
 
@@ -142,8 +145,8 @@ fn a_formula_is_had_again_from_what_is_written_of_it() {
     ] {
         let formula = Formula::read(line).expect("a formula");
         let again = crate::effects::named(formula.id(), formula.form(), &constants).expect("it is known");
-        let found: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
-        assert_eq!((again.id(), again.form(), found), (formula.id(), formula.form(), constants));
+        let read_back: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
+        assert_eq!((again.id(), again.form(), read_back), (formula.id(), formula.form(), constants));
     }
     for (form, constants) in [("c * rp", vec![]), ("c * rp", vec![-1.0]), ("c * r", vec![1.0]), ("c * dleta", vec![])] {
         assert!(crate::effects::named("own", form, &constants).is_none(), "{form}");

@@ -4,7 +4,7 @@ use crate::effects::effect::{EffectReal, Now};
 use crate::number::Tangent;
 use estimation::number::Real;
 
-/// The rows in equations written by hand: the rudder that acts, or the yaw acceleration.
+/// Equations of the rows, written by hand: the acting rudder, or the yaw acceleration.
 fn by_hand<R: Real>(id: &str, form: &str, p: &[R], now: &Now<R>) -> R {
     let Now { rudder, gain, yaw_rate: r, measured, .. } = *now;
     match (id, form) {
@@ -33,7 +33,7 @@ fn by_hand<R: Real>(id: &str, form: &str, p: &[R], now: &Now<R>) -> R {
 }
 
 fn rows() -> impl Iterator<Item = &'static ListedFormula> {
-    LIST.iter().filter_map(|own| if let Row(row) = own { Some(row) } else { None })
+    LIST.iter().filter_map(|effect| if let Row(row) = effect { Some(row) } else { None })
 }
 
 /// A number from −1 to 1, one for every place and round; zero in some rounds.
@@ -51,7 +51,7 @@ fn rows_are_their_equations_to_the_last_bit() {
         let Description { id, form, parameters, .. } = row.description;
         let formula = Formula::listed(row);
         let constants: Vec<f64> =
-            formula.constants().iter().map(|(own, _)| if *own > 0.0 { 7.3 } else { 3.25 }).collect();
+            formula.constants().iter().map(|(neutral, _)| if *neutral > 0.0 { 7.3 } else { 3.25 }).collect();
         let formula = formula.with_constants(&constants).expect("as many");
         let acts = Tangent::acts(formula.as_ref());
         for round in 0..500 {
@@ -82,19 +82,19 @@ fn rows_are_their_equations_to_the_last_bit() {
                 _ => now.rudder.value,
             };
             let p = &p[..parameters.len()];
-            let (found, expected) = match row.acts.rudder {
+            let (value, expected) = match row.acts.rudder {
                 true => (acts.rudder(p, &[], now.rudder), by_hand(id, form, p, &now)),
                 false => (acts.yaw_acceleration(p, &[], &now), by_hand(id, form, p, &now)),
             };
             // The sign of a zero may differ.
-            assert!(found == expected, "{id} ({form}), {round}: {found:?} is not {expected:?}\n{now:?} {p:?}");
+            assert!(value == expected, "{id} ({form}), {round}: {value:?} is not {expected:?}\n{now:?} {p:?}");
         }
     }
 }
 
 #[test]
 fn a_calm_is_without_wind_waves_and_moments_from_outside() {
-    let mut ids: Vec<&str> = ALL.iter().filter(|own| own.is_of_weather()).map(|own| own.id()).collect();
+    let mut ids: Vec<&str> = ALL.iter().filter(|effect| effect.is_of_weather()).map(|effect| effect.id()).collect();
     ids.dedup();
     assert_eq!(ids, ["wind_moment", "moment_drift", "transient_disturbance", "wave_yaw"]);
     assert!(!Formula::read("trend = c * t").expect("a formula").is_of_weather(), "nobody knows what a formula is of");

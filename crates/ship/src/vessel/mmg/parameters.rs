@@ -1,10 +1,11 @@
-//! Parameters of an MMG hull, under the names of the literature; structure and units only, values are in
-//! [`crate::ships`].
+//! Parameters of an MMG hull, with the symbols of the literature; values are in [`crate::ships`].
+//!
+//! Source: Yasukawa and Yoshimura (2015), Journal of Marine Science and Technology 20:37-52.
 #![expect(non_snake_case, reason = "Yv is a derivative of the force Y, AR an area; names are those of the literature")]
 
 use estimation::number::Real;
 
-/// A quantity that takes one of two values by the sign of an angle.
+/// Quantity with one value for positive and one for negative angles.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BySign<R = f64> {
     /// Value for a positive angle.
@@ -14,12 +15,12 @@ pub struct BySign<R = f64> {
 }
 
 impl<R: Real> BySign<R> {
-    /// The value that holds at this angle.
+    /// Value at an angle.
     pub fn at(&self, angle: R) -> R {
         if angle.value() < 0.0 { self.negative } else { self.positive }
     }
 
-    /// Mean of the two.
+    /// Mean of both values.
     pub fn mean(&self) -> R {
         (self.positive + self.negative) * 0.5
     }
@@ -57,17 +58,18 @@ pub struct HullDerivatives<R = f64> {
     pub Nrrr: R,
 }
 
-/// How the wake at the propeller fades with the inflow angle β_P = β − x_P' r'.
+/// Dependence of the wake at the propeller on the inflow angle β_P = β − x_P' r'.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wake<R = f64> {
-    /// 1 − w_P = (1 − w_P0) {1 + [1 − exp(−C1 |β_P|)] (C2 − 1)}, C2 by the sign of β_P (Yasukawa and Yoshimura 2015).
+    /// Exponential law 1 − w_P = (1 − w_P0) {1 + [1 − exp(−C1 |β_P|)] (C2 − 1)}, C2 by the sign of β_P (Yasukawa and
+    /// Yoshimura 2015).
     Exponential {
-        /// C1.
+        /// Decay coefficient C1.
         C1: R,
-        /// C2.
+        /// Asymptotic coefficient C2.
         C2: BySign<R>,
     },
-    /// w_P = w_P0 exp(−4 β_P²).
+    /// Gaussian law w_P = w_P0 exp(−4 β_P²).
     Gaussian,
 }
 
@@ -78,7 +80,7 @@ pub struct Propeller<R = f64> {
     pub DP: R,
     /// Wake fraction in straight motion w_P0.
     pub wP0: R,
-    /// Its change in manoeuvring.
+    /// Wake in manoeuvring.
     pub wake: Wake<R>,
     /// Thrust deduction t_P.
     pub tP: R,
@@ -115,10 +117,10 @@ pub struct Rudder<R = f64> {
     pub gammaR: BySign<R>,
 }
 
-/// Everything an MMG hull is made of.
+/// Parameters of an MMG hull.
 ///
-/// The density of the water is not among it: mass is given by the displaced volume, and every force is proportional to
-/// the density.
+/// The density of the water drops out: mass is given by the displaced volume, and every force is proportional to the
+/// density.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameters<R = f64> {
     /// Length between perpendiculars, m.
@@ -139,11 +141,11 @@ pub struct Parameters<R = f64> {
     pub rudder: Rudder<R>,
 }
 
-/// The same numbers without derivatives, in another kind of number.
+/// Conversion of parameters to another number type, as constants.
 macro_rules! constants {
     ($name:ident: $($field:ident)* $(, $part:ident = $made:expr)*) => {
         impl $name {
-            /// The same without derivatives, as yet.
+            /// Parameters in another number type, without derivatives.
             pub fn constant<R: Real>(&self) -> $name<R> {
                 $name { $($field: R::from(self.$field),)* $($part: $made(&self.$part)),* }
             }
@@ -151,7 +153,7 @@ macro_rules! constants {
     };
 }
 
-/// The same of numbers that all have names in files: those of their fields.
+/// [`constants`], with access to the fields by their names in files.
 macro_rules! named_constants {
     ($name:ident: $($field:ident)*) => {
         constants!($name: $($field)*);
@@ -184,7 +186,7 @@ impl Wake {
 }
 
 impl Parameters {
-    /// The same hull of length 1: what has a dimension is measured with its length.
+    /// Hull scaled to length 1.
     #[must_use]
     pub fn of_length_one(&self) -> Self {
         let L = self.Lpp;
@@ -201,7 +203,7 @@ impl Parameters {
 }
 
 impl<R> Parameters<R> {
-    /// The coefficient of this name in files; `None` where there is none, as of another law of the wake.
+    /// Coefficient with this name in files; `None` if there is none, as for another law of the wake.
     pub fn named(&mut self, name: &str) -> Option<&mut R> {
         let Self { hull, propeller, rudder, kzz, .. } = self;
         Some(match name {

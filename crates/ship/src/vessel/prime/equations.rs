@@ -1,19 +1,19 @@
-//! The equations of a hull without dimension, and the coefficients that its polynomials have.
+//! Equations of the nondimensional hulls, and the coefficients of the polynomials.
 
 use estimation::number::Real;
 
 use crate::vessel::mmg::Mmg;
 
-/// Least surge, in U₀, at which the equations are evaluated: below, the ship has all but stopped.
-const LEAST_SURGE: f64 = 0.15;
+/// Smallest surge, in U₀, at which the equations are evaluated.
+const MIN_SURGE: f64 = 0.15;
 
-/// Largest speed or yaw rate, in U₀ and U₀/L: no ship is as fast, and what runs away stays finite.
+/// Largest speed or yaw rate, in U₀ and U₀/L, at which the equations are evaluated: a diverging state stays finite.
 pub const FASTEST: f64 = 2.0;
 
-/// Least inflow to the rudder, in U₀.
-const LEAST_INFLOW: f64 = 0.05;
+/// Smallest inflow to the rudder, in U₀.
+const MIN_INFLOW: f64 = 0.05;
 
-/// A coefficient of a polynomial: name in files, symbol, smallest and largest value.
+/// Coefficient of a polynomial: name in files, symbol and bounds.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PolynomialTerm {
     pub key: &'static str,
@@ -29,10 +29,10 @@ pub(super) const fn within(key: &'static str, symbol: &'static str, ends: [f64; 
     PolynomialTerm { key, symbol, ends }
 }
 
-/// δ_r, which every form has.
+/// Rudder bias δ_r, a coefficient of every form.
 pub(super) const BIAS: PolynomialTerm = free("delta_r", "δ_r");
 
-/// Coefficients that both polynomials have.
+/// Coefficients of both polynomials.
 pub(super) const COMMON: [PolynomialTerm; 14] = [
     free("Nv", "N_v"),
     free("Nr", "N_r"),
@@ -50,7 +50,7 @@ pub(super) const COMMON: [PolynomialTerm; 14] = [
     free("Xdd", "X_δδ"),
 ];
 
-/// Those of second order.
+/// Further coefficients of the quadratic polynomial.
 pub(super) const QUADRATIC: [PolynomialTerm; 4] = [
     within("Nrr", "N_rr", [-20.0, 0.5]),
     free("Nvv", "N_vv"),
@@ -58,7 +58,7 @@ pub(super) const QUADRATIC: [PolynomialTerm; 4] = [
     free("Yrr", "Y_rr"),
 ];
 
-/// Those of third order.
+/// Further coefficients of the cubic polynomial.
 pub(super) const CUBIC: [PolynomialTerm; 7] = [
     free("Nvvv", "N_vvv"),
     free("Nvvr", "N_vvr"),
@@ -69,29 +69,29 @@ pub(super) const CUBIC: [PolynomialTerm; 7] = [
     free("Yvrr", "Y_vrr"),
 ];
 
-/// A hull ready to be asked for its accelerations.
+/// Nondimensional hull with its coefficient values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrimeHull<R = f64> {
-    /// The hull in a calm.
+    /// Hull in a calm.
     pub in_calm: CalmHull<R>,
-    /// Y_w.
+    /// Wind coefficient Y_w.
     pub windage: R,
 }
 
-/// A hull to which no wind blows.
+/// Nondimensional hull in a calm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CalmHull<R = f64> {
-    /// Of second order.
+    /// Quadratic polynomial.
     Quadratic([R; COMMON.len() + QUADRATIC.len()]),
-    /// Of third order.
+    /// Cubic polynomial.
     Cubic([R; COMMON.len() + CUBIC.len()]),
-    /// MMG, and δ_r.
+    /// MMG model, and δ_r.
     Mmg(Box<Mmg<R>>, R),
 }
 
 impl<R: Real> PrimeHull<R> {
-    /// (u', v', r') at surge, sway and yaw rate, rudder (rad), rate of the propeller over that of the approach, a yaw
-    /// moment as rudder angle at approach speed (rad), and what the wind does
+    /// Accelerations (u', v', r') at surge, sway and yaw rate, rudder (rad), propeller rate over that of the approach,
+    /// yaw disturbance as equivalent rudder angle at approach speed (rad), and wind per unit of Y_w
     /// ([`wind_accelerations`](super::wind_accelerations)).
     #[inline]
     pub fn accelerations(&self, state: [R; 3], rudder: R, turning: f64, disturbance: f64, wind: [f64; 3]) -> [R; 3] {
@@ -101,10 +101,10 @@ impl<R: Real> PrimeHull<R> {
 }
 
 impl<R: Real> CalmHull<R> {
-    /// The same without wind.
+    /// Accelerations without wind.
     #[inline]
     pub fn accelerations(&self, [u, v, r]: [R; 3], rudder: R, turning: f64, disturbance: f64) -> [R; 3] {
-        let [u, v, r] = [of_ship(u, LEAST_SURGE), of_ship(v, -FASTEST), of_ship(r, -FASTEST)];
+        let [u, v, r] = [limited(u, MIN_SURGE), limited(v, -FASTEST), limited(r, -FASTEST)];
         match self {
             Self::Mmg(hull, bias) => hull.accelerations([u, v, r], rudder + *bias, turning, disturbance),
             Self::Quadratic(p) => {
@@ -125,16 +125,16 @@ impl<R: Real> CalmHull<R> {
     }
 }
 
-/// A speed or yaw rate of a ship.
+/// Speed or yaw rate limited to the range of the equations.
 #[inline]
-fn of_ship<R: Real>(value: R, least: f64) -> R {
+fn limited<R: Real>(value: R, least: f64) -> R {
     value.between(R::from(least), R::from(FASTEST))
 }
 
-/// What both polynomials have, with their coefficients in the order of [`COMMON`].
+/// Terms of both polynomials, with coefficients in the order of [`COMMON`].
 #[inline]
 fn common<R: Real>(p: &[R], [u, v, r]: [R; 3], rudder: R, n: f64, disturbance: f64) -> [R; 3] {
-    let w = (p[6] * (u - n) + n).at_least(LEAST_INFLOW);
+    let w = (p[6] * (u - n) + n).at_least(MIN_INFLOW);
     let angle = p[8] + rudder - p[7] * r.abs() / w;
     let force = w * w * angle;
     let thrust = -(p[10] * n) * u + n * n;
@@ -146,13 +146,13 @@ fn common<R: Real>(p: &[R], [u, v, r]: [R; 3], rudder: R, n: f64, disturbance: f
 }
 
 impl PrimeHull {
-    /// The same without derivatives, as yet.
+    /// Hull in another number type, with constant coefficients.
     pub fn constant<R: Real>(&self) -> PrimeHull<R> {
         let in_calm = match &self.in_calm {
             CalmHull::Quadratic(p) => CalmHull::Quadratic(p.map(R::from)),
             CalmHull::Cubic(p) => CalmHull::Cubic(p.map(R::from)),
             CalmHull::Mmg(hull, bias) => {
-                let again = Mmg::at_speed(hull.parameters().constant(), 1.0).expect("it made a ship");
+                let again = Mmg::at_speed(hull.parameters().constant(), 1.0).expect("valid coefficients");
                 CalmHull::Mmg(Box::new(again), R::from(*bias))
             }
         };

@@ -1,48 +1,50 @@
-//! What wind does to a hull: one coefficient, Y_w, by which its forces and its moment go.
+//! Wind on a hull: one coefficient Y_w scales the forces and the moment.
 //!
-//! With the relative wind W (in U₀) from γ, clockwise from the bow, it adds
+//! A relative wind W (in U₀) from γ, clockwise from the bow, adds
 //!
 //! (u', v', r') = Y_w W² (−0.4 cos γ, −sin γ, −18 · 0.18 (π/2 − |γ|) sin γ).
 //!
-//! The centre of the side force is ahead of midship by 0.18 (π/2 − |γ|) L (Blendermann 1994), for an above-water ship
-//! that is as high ahead as aft. 18 is (m' + m_y')/(I_z' + J_z') with a radius of gyration of L/4, and 0.4 the frontal
-//! over the lateral area, 0.3, times 1.35 for a mass that is smaller ahead; both differ little among ships. Y_w is
+//! The centre of the side force is 0.18 (π/2 − |γ|) L ahead of midship (Blendermann 1994), for an above-water profile
+//! of equal height fore and aft. 18 is (m' + m_y')/(I_z' + J_z') with a radius of gyration of L/4; 0.4 is the ratio of
+//! frontal to lateral area, 0.3, times 1.35 for the smaller effective mass in surge. Both differ little among ships.
 //!
 //! Y_w = (ρ_air/ρ) C_Y A_L/(L d)/(m' + m_y')
 //!
-//! with C_Y = 0.8 and a lateral area A_L of 0.8 ± 0.4 L d: 0.5 for a loaded tanker, 1.3 for one in ballast, up to 2 for
-//! a container ship.
+//! with C_Y = 0.8 and a lateral area A_L = (0.8 ± 0.4) L d: 0.5 for a loaded tanker, 1.3 for one in ballast, up to 2
+//! for a container ship.
+//!
+//! Source: Blendermann (1994), Journal of Wind Engineering and Industrial Aerodynamics 51:339-351.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::equations::{PolynomialTerm, within};
 use crate::vessel::mmg::Parameters;
 
-/// Y_w, which every form has.
+/// Wind coefficient Y_w, a coefficient of every form.
 pub(super) const WINDAGE: PolynomialTerm = within("Yw", "Y_w", [0.0, 0.1]);
 
-/// ρ_air/ρ.
+/// Density ratio ρ_air/ρ.
 const DENSITY: f64 = 1.2e-3;
 
-/// C_Y.
+/// Side-force coefficient C_Y.
 const SIDE_FORCE: f64 = 0.8;
 
-/// A_L/(L d) and its standard deviation.
+/// Lateral area ratio A_L/(L d), mean and standard deviation.
 const LATERAL_AREA: [f64; 2] = [0.8, 0.4];
 
-/// Surge over sway.
+/// Surge acceleration over sway acceleration.
 const AHEAD: f64 = 0.4;
 
-/// Yaw over sway, per radian from abeam.
+/// Yaw acceleration over sway acceleration, per radian from abeam.
 const YAW: f64 = 18.0 * 0.18;
 
-/// What is expected of Y_w for a hull, and its standard deviation.
+/// Prior mean and standard deviation of Y_w for a hull.
 pub(super) fn windage(hull: &Parameters) -> [f64; 2] {
     let mass = 2.0 * hull.volume / (hull.Lpp * hull.Lpp * hull.d);
     LATERAL_AREA.map(|area| DENSITY * SIDE_FORCE * area / (mass + hull.hull.my))
 }
 
-/// (u', v', r') over Y_w in a relative wind, in U₀, from an angle off the bow, rad.
+/// Accelerations (u', v', r') per unit of Y_w in a relative wind (in U₀) from an angle off the bow (rad).
 #[inline]
 pub fn wind_accelerations(speed: f64, from: f64) -> [f64; 3] {
     let off_bow = (from + PI).rem_euclid(TAU) - PI;
@@ -55,14 +57,15 @@ mod tests {
     use super::*;
     use crate::ships::kvlcc2;
 
-    /// A wind from the starboard bow drives a ship astern and to port and her bow to port; one from the starboard
-    /// quarter ahead and to port, with her bow to starboard. In the mirror it is the same with the other sign.
+    /// A wind from the starboard bow pushes a ship astern and to port and turns the bow to port; a wind from the
+    /// starboard quarter pushes it ahead and to port and turns the bow to starboard. The mirror image has the opposite
+    /// signs.
     #[test]
     fn wind_pushes_and_turns() {
         for (from, ahead, turning) in [(0.8, -1.0, -1.0), (2.4, 1.0, 1.0)] {
             let [u, v, r] = wind_accelerations(2.0, from);
             assert!(u * ahead > 0.0 && v < 0.0 && r * turning > 0.0, "{from}: {u} {v} {r}");
-            let near = |other: [f64; 3]| other.iter().zip([u, v, r]).all(|(one, other)| (one - other).abs() < 1e-12);
+            let near = |other: [f64; 3]| other.iter().zip([u, v, r]).all(|(x, y)| (x - y).abs() < 1e-12);
             let [ahead, side, yaw] = wind_accelerations(2.0, -from);
             assert!(near([ahead, -side, -yaw]) && near(wind_accelerations(2.0, from + TAU)));
         }

@@ -1,40 +1,40 @@
-//! Mean and spread of every coefficient of an MMG hull from the particulars of a ship, in the prime system ½ρLdU².
+//! Formulas for mean and standard deviation of every coefficient of an MMG hull, in the prime system ½ρLdU².
 //!
-//! Formulas were held against the published derivatives of KVLCC2 and of the 3 m model of Esso Osaka; the spread of a
-//! coefficient is about the error found there. Three that circulate with slips are given as they fit those hulls:
-//! Yvvv' = −(0.185 L/B + 0.48), not −0.185 L/B + 0.48; N_r' is not −k (0.54 + k); the Y_r' of Lee (1998) already
-//! contains −(m' + m_x') and is not used.
+//! The formulas were checked against the published derivatives of KVLCC2 and of the 3 m model of Esso Osaka; the
+//! standard deviation of a coefficient is about the error there. Three formulas circulate with errors:
+//! Yvvv' = −(0.185 L/B + 0.48), not −0.185 L/B + 0.48; N_r' is not −k (0.54 + k); the Y_r' of Lee (1998)
+//! already contains −(m' + m_x') and is not used.
 
 use std::f64::consts::PI;
 
 use super::particulars::HullDimensions;
 
-/// Standard deviation of a coefficient whose particulars are all known.
+/// Standard deviation of a coefficient when all particulars are given.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Spread {
-    /// As a share of the mean.
+    /// Relative to the mean.
     Share(f64),
-    /// As it is.
+    /// Absolute.
     Absolute(f64),
 }
 use Spread::{Absolute, Share};
 
-/// How a coefficient follows from the particulars.
+/// Formula of a coefficient from the particulars, with spread and source.
 #[derive(Debug)]
 pub struct Formula {
     /// Name of the coefficient in files: "Nvvr", "gammaR-port".
     pub key: &'static str,
-    /// Its symbol, for people.
+    /// Symbol.
     pub symbol: &'static str,
     pub(super) of: fn(&HullDimensions) -> f64,
     pub(super) spread: Spread,
-    /// The formula in words: an equation in L, B, d, C_b and what else is known, or a number.
+    /// Formula as text: an equation in L, B, d, C_b and other particulars, or a number.
     pub text: &'static str,
-    /// Author and year of it.
+    /// Author and year.
     pub source: &'static str,
 }
 
-/// A row of the table: key, symbol, formula, spread, the formula in words, source.
+/// Row of the table: key, symbol, formula, spread, formula as text, source.
 const fn row(
     key: &'static str,
     symbol: &'static str,
@@ -52,27 +52,27 @@ impl HullDimensions {
         2.0 * self.d / self.L
     }
 
-    /// C_b B/L.
+    /// Fullness C_b B/L.
     fn fullness(&self) -> f64 {
         self.Cb * self.B / self.L
     }
 
-    /// m' = ∇/(½ L² d).
+    /// Prime mass m' = ∇/(½ L² d).
     fn mass(&self) -> f64 {
         2.0 * self.fullness()
     }
 
-    /// m_x'.
+    /// Added mass in surge m_x'.
     fn added_surge(&self) -> f64 {
         let (lb, db) = (self.L / self.B, self.d / self.B);
         let share = 0.398 + 11.97 * self.Cb * (1.0 + 3.73 * db) - 2.89 * self.Cb * lb * (1.0 + 1.13 * db)
             + 0.175 * self.Cb * lb * lb * (1.0 + 0.541 * db)
             - 1.107 * lb * db;
-        // Very slender hulls are beyond the charts, and the regression falls below zero.
+        // For very slender hulls, outside the charts, the regression is negative.
         0.01 * share.max(2.0) * self.mass()
     }
 
-    /// m_y'.
+    /// Added mass in sway m_y'.
     fn added_sway(&self) -> f64 {
         let (lb, db) = (self.L / self.B, self.d / self.B);
         let share = 0.882 - 0.54 * self.Cb * (1.0 - 1.6 * db) - 0.156 * lb * (1.0 - 0.673 * self.Cb)
@@ -86,7 +86,7 @@ impl HullDimensions {
         0.5 * self.Cb - 0.05
     }
 
-    /// Thrust over resistance at an advance ratio of one: R0' J² at K_T = [`SERVICE_THRUST`].
+    /// Ratio of thrust to resistance at an advance ratio of one: R0' J² at K_T = [`SERVICE_THRUST`].
     ///
     /// From R0' = (1 − t_P) 2 D_P⁴ n² K_T/(L d U²) with n D_P = U (1 − w_P0)/J.
     fn thrust_at_one(&self) -> f64 {
@@ -94,30 +94,31 @@ impl HullDimensions {
         2.0 * (1.0 - DEDUCTION) * stream * stream * SERVICE_THRUST / (self.L * self.d)
     }
 
-    /// Advance ratio of the straight approach: by the revolutions, else so that thrust balances [`RESISTANCE`].
+    /// Advance ratio of the straight approach, from the revolutions, else from the balance of thrust and
+    /// [`RESISTANCE`].
     pub(super) fn advance(&self) -> f64 {
         let by_revolutions = |n: f64| self.U * (1.0 - self.wake()) / (n * self.DP);
         self.n.map_or_else(|| (self.thrust_at_one() / RESISTANCE).sqrt(), by_revolutions)
     }
 
-    /// R0': by the revolutions, else [`RESISTANCE`].
+    /// Resistance coefficient R0', from the revolutions, else [`RESISTANCE`].
     fn resistance(&self) -> f64 {
         self.n.map_or(RESISTANCE, |_| self.thrust_at_one() / self.advance().powi(2))
     }
 
-    /// Aspect ratio of the rudder Λ.
+    /// Aspect ratio of the rudder, Λ = H_R²/A_R.
     fn aspect(&self) -> f64 {
         self.HR * self.HR / self.AR
     }
 }
 
-/// R0' between those of KVLCC2, 0.022, and of the SEIUN-like ship, 0.016.
+/// Typical R0', between 0.022 of KVLCC2 and 0.016 of the SEIUN-like ship.
 const RESISTANCE: f64 = 0.018;
-/// K_T on the straight approach, of KVLCC2 0.20 and of the SEIUN-like ship 0.16.
+/// Typical K_T on the straight approach, between 0.20 of KVLCC2 and 0.16 of the SEIUN-like ship.
 const SERVICE_THRUST: f64 = 0.18;
-/// Slope of K_T over J there, −0.36 and −0.4.
+/// Typical slope of K_T over J there, between −0.36 and −0.4.
 const THRUST_SLOPE: f64 = -0.38;
-/// Thrust deduction of both, and of Esso Osaka.
+/// Typical thrust deduction, that of both ships and of Esso Osaka.
 const DEDUCTION: f64 = 0.22;
 
 const LEE: &str = "Lee (1998)";
@@ -129,7 +130,7 @@ const MANSIM: &str = "Sukas, Kinaci and Bal (2019)";
 const PUBLISHED: &str = "typical: KVLCC2, Esso Osaka, SEIUN-like";
 const KVLCC2: &str = "as KVLCC2, Yasukawa and Yoshimura (2015)";
 
-/// Symbols: k = 2 d/L, m' = 2 C_b B/L, Λ = H_R²/A_R, J the advance ratio of the straight approach.
+/// Table of formulas. Symbols: k = 2 d/L, m' = 2 C_b B/L, Λ = H_R²/A_R, J the advance ratio of the straight approach.
 pub(super) const FORMULAS: &[Formula] = &[
     row("mx", "m_x'", HullDimensions::added_surge, Absolute(0.008), "m' f(C_b, L/B, d/B)", ZHOU),
     row("my", "m_y'", HullDimensions::added_sway, Share(0.15), "m' f(C_b, L/B, d/B)", ZHOU),

@@ -1,15 +1,15 @@
-//! Particulars of two ships beside each other: whether one is the other, at another scale or in another condition, and
-//! what one says of the other.
+//! Comparison of the particulars of two ships: same ship at another scale or loading, and transfer of missing
+//! particulars.
 
 use super::particulars::{HullParticulars, PARTICULARS};
 
-/// Share by which numbers of one ship differ for the rounding of their sources.
-const ROUNDING: f64 = 0.02;
+/// Relative tolerance for rounding in the sources.
+const ROUNDING_TOLERANCE: f64 = 0.02;
 
-/// Difference of x_G that is one of loading, in L.
-const SHIFTED: f64 = 0.005;
+/// Difference of x_G, in L, that counts as another loading.
+const LOADING_SHIFT: f64 = 0.005;
 
-/// Powers of the length that a particular grows with at the same Froude number.
+/// Exponent of the length by which a particular scales at the same Froude number.
 fn power_of_length(key: &str) -> f64 {
     match key {
         "block-coefficient" => 0.0,
@@ -21,15 +21,15 @@ fn power_of_length(key: &str) -> f64 {
     }
 }
 
-/// Whether a particular says something of the hull, and not of its size or of one trial.
+/// `true` if a particular describes the form of the hull, not its size or one trial.
 fn is_of_hull(key: &str) -> bool {
     !matches!(key, "length-m" | "speed-m-s" | "propeller-rps" | "displacement-t")
 }
 
 impl HullParticulars {
-    /// Whether two lengths are one, but for rounding.
+    /// `true` if both lengths are equal except for rounding.
     pub fn has_length_of(&self, other: &Self) -> bool {
-        (self.length / other.length - 1.0).abs() <= ROUNDING
+        (self.length / other.length - 1.0).abs() <= ROUNDING_TOLERANCE
     }
 
     /// Froude number U/√(g L).
@@ -37,32 +37,32 @@ impl HullParticulars {
         self.speed / (super::particulars::GRAVITY * self.length).sqrt()
     }
 
-    /// Keys of what is given of both and differs once both have one length: by more than 2 %, of x_G by more than
-    /// 0.005 L.
+    /// Keys of the particulars that are given for both ships and differ at equal length: by more than 2 %, x_G by more
+    /// than 0.005 L.
     pub fn differing(&self, other: &Self) -> Vec<&'static str> {
         let ratio = self.length / other.length;
-        let differs = |own: &&super::Particular| {
-            let values = own.get(self).zip(own.get(other));
-            values.is_some_and(|(one, other)| {
-                let other = other * ratio.powf(power_of_length(own.key));
-                match own.key {
-                    "x-g-m" => (one - other).abs() > SHIFTED * self.length,
-                    _ => (one / other - 1.0).abs() > ROUNDING,
+        let differs = |particular: &&super::Particular| {
+            let values = particular.get(self).zip(particular.get(other));
+            values.is_some_and(|(value, other)| {
+                let scaled = other * ratio.powf(power_of_length(particular.key));
+                match particular.key {
+                    "x-g-m" => (value - scaled).abs() > LOADING_SHIFT * self.length,
+                    _ => (value / scaled - 1.0).abs() > ROUNDING_TOLERANCE,
                 }
             })
         };
-        PARTICULARS.iter().filter(|own| is_of_hull(own.key)).filter(differs).map(|own| own.key).collect()
+        PARTICULARS.iter().filter(|p| is_of_hull(p.key)).filter(differs).map(|p| p.key).collect()
     }
 
-    /// The same ship with what is missing from another, at her own length. Nothing that stands already changes. Mass
-    /// and revolutions are of the water and of the trial; they are not taken over.
+    /// Particulars with missing values taken from another ship, scaled to the length of this one; given values stay.
+    /// Mass and revolutions depend on the water and the trial and are not transferred.
     #[must_use]
     pub fn filled_from(&self, other: &Self) -> Self {
         let ratio = self.length / other.length;
         let mut filled = *self;
-        for own in PARTICULARS.iter().filter(|own| is_of_hull(own.key)) {
-            if let (None, Some(value)) = (own.get(self), own.get(other)) {
-                own.set(&mut filled, value * ratio.powf(power_of_length(own.key)));
+        for particular in PARTICULARS.iter().filter(|p| is_of_hull(p.key)) {
+            if let (None, Some(value)) = (particular.get(self), particular.get(other)) {
+                particular.set(&mut filled, value * ratio.powf(power_of_length(particular.key)));
             }
         }
         filled
@@ -79,7 +79,7 @@ mod tests {
     fn a_model_has_the_particulars_of_her_ship() {
         let bare = HullParticulars { length: 7.0, speed: 1.18, ..HullParticulars::default() };
         let model = bare.filled_from(&KVLCC2);
-        let near = |one: Option<f64>, other: f64| (one.expect("filled") / other - 1.0).abs() < 0.005;
+        let near = |value: Option<f64>, expected: f64| (value.expect("filled") / expected - 1.0).abs() < 0.005;
         assert!(near(model.beam, 1.27) && near(model.draught, 0.455) && near(model.rudder_area, 0.0539), "{model:?}");
         assert_eq!((model.block_coefficient, model.propeller_rate, model.length), (Some(0.81), None, 7.0));
         assert!(model.differing(&KVLCC2).is_empty() && bare.differing(&KVLCC2).is_empty());

@@ -1,11 +1,11 @@
-//! Particulars of a ship: what they are called, which are possible, and what stands for those that are missing.
+//! Particulars of a ship: keys and units, valid ranges, and typical ratios that replace missing ones.
 #![expect(non_snake_case, reason = "L, B, AR and the like are the symbols of naval architecture")]
 
 use thiserror::Error;
 
 use crate::short_number::ShortNumber;
 
-/// Particulars of a ship, SI; only length and speed are needed.
+/// Particulars of a ship in SI units; only length and speed are required.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct HullParticulars {
     /// Length between perpendiculars L, m.
@@ -35,56 +35,56 @@ pub struct HullParticulars {
 /// Kilograms in a tonne.
 const TONNE: f64 = 1000.0;
 
-/// A particular, declared once for options, sidecars and scenarios.
+/// Declaration of a particular, for options, sidecars and scenarios.
 #[derive(Debug, Clone, Copy)]
 pub struct Particular {
-    /// Its name with its unit.
+    /// Key, which ends in the unit.
     pub key: &'static str,
-    /// Its symbol.
+    /// Symbol.
     pub symbol: &'static str,
-    /// Its unit, "1" where it has none.
+    /// Unit, "1" for a nondimensional one.
     pub unit: &'static str,
-    /// What it is.
+    /// Meaning.
     pub meaning: &'static str,
-    /// Smallest and largest value that is understood, in its unit.
+    /// Smallest and largest valid value, in its unit.
     pub range: [f64; 2],
     get: fn(&HullParticulars) -> Option<f64>,
     set: fn(&mut HullParticulars, f64),
-    /// The same of a hull with nothing missing.
+    /// Value of a complete hull; `None` for a particular that is not a dimension of it.
     pub(super) of_form: Option<fn(&HullDimensions) -> f64>,
 }
 
 impl Particular {
-    /// The one that is called so.
+    /// Particular with this key; `None` if there is none.
     pub fn named(key: &str) -> Option<&'static Self> {
         PARTICULARS.iter().find(|particular| particular.key == key)
     }
 
-    /// Its value in its unit, where it is given.
-    pub fn get(&self, of: &HullParticulars) -> Option<f64> {
-        (self.get)(of)
+    /// Value in its unit; `None` where it is not given.
+    pub fn get(&self, particulars: &HullParticulars) -> Option<f64> {
+        (self.get)(particulars)
     }
 
-    /// Puts a value in its unit.
-    pub fn set(&self, of: &mut HullParticulars, value: f64) {
-        (self.set)(of, value);
+    /// Sets a value, in its unit.
+    pub fn set(&self, particulars: &mut HullParticulars, value: f64) {
+        (self.set)(particulars, value);
     }
 }
 
-/// How a particular is read, and how it is put.
+/// Getter and setter of a particular.
 type ParticularAccess = (fn(&HullParticulars) -> Option<f64>, fn(&mut HullParticulars, f64));
 
-/// ParticularAccess to a field that may be missing, or to one that is zero where it is.
+/// Getter and setter of an optional field, or of a required field that is zero where it is missing.
 macro_rules! access {
     (optional $field:ident) => {
-        (|own| own.$field, |own, value| own.$field = Some(value))
+        (|p| p.$field, |p, value| p.$field = Some(value))
     };
     (needed $field:ident) => {
-        (|own| (own.$field != 0.0).then_some(own.$field), |own, value| own.$field = value)
+        (|p| (p.$field != 0.0).then_some(p.$field), |p, value| p.$field = value)
     };
 }
 
-/// A particular from key, symbol, unit and meaning, its range, its access and what it is in a form.
+/// Particular from key, symbol, unit and meaning, range, getter and setter, and value of a complete hull.
 const fn particular(
     [key, symbol, unit, meaning]: [&'static str; 4],
     range: [f64; 2],
@@ -94,7 +94,7 @@ const fn particular(
     Particular { key, symbol, unit, meaning, range, get, set, of_form }
 }
 
-/// Every particular.
+/// All particulars.
 pub const PARTICULARS: [Particular; 11] = [
     particular(["length-m", "L", "m", "Length between perpendiculars"], [0.1, 1000.0], access!(needed length), None),
     particular(["beam-m", "B", "m", "Beam"], [0.01, 200.0], access!(optional beam), Some(|form| form.B)),
@@ -133,7 +133,7 @@ pub const PARTICULARS: [Particular; 11] = [
     particular(
         ["displacement-t", "Δ", "t", "Displacement"],
         [1e-4, 1e6],
-        (|own| own.displacement.map(|mass| mass / TONNE), |own, value| own.displacement = Some(value * TONNE)),
+        (|p| p.displacement.map(|mass| mass / TONNE), |p, value| p.displacement = Some(value * TONNE)),
         None,
     ),
     particular(
@@ -144,14 +144,14 @@ pub const PARTICULARS: [Particular; 11] = [
     ),
 ];
 
-/// A ratio that ships have, with the particular that it stands in for.
+/// Typical ratio of ships, with the particular that it replaces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ratio {
     pub name: &'static str,
     pub fills: &'static str,
     pub mean: f64,
     pub sd: f64,
-    /// What no ship goes beyond.
+    /// Range of ships.
     range: [f64; 2],
     of: fn(&HullDimensions) -> f64,
 }
@@ -166,15 +166,15 @@ impl Ratio {
         Self { name, fills, mean, sd, range, of }
     }
 
-    /// What ships have, in words.
+    /// Mean and standard deviation as text.
     pub fn text(&self) -> String {
         format!("{} = {} ± {}", self.name, self.mean, self.sd)
     }
 }
 
-/// Mean and standard deviation over KVLCC2, KCS, ONRT, Esso Osaka and SEIUN MARU, those of rudder and propeller
-/// without ONRT, which has two of either. Sources: particulars of SIMMAN 2014, of the 3 m model of Esso Osaka (Osaka
-/// University, mmg-1p1r-simulator) and of SEIUN MARU (mmgdynamics).
+/// Typical ratios: mean and standard deviation over KVLCC2, KCS, ONRT, Esso Osaka and SEIUN MARU, those of rudder and
+/// propeller without ONRT, which has two of either. Sources: particulars of SIMMAN 2014, of the 3 m model of Esso Osaka
+/// (Osaka University, mmg-1p1r-simulator) and of SEIUN MARU (mmgdynamics).
 pub(super) const RATIOS: [Ratio; 7] = [
     Ratio::new(["L/B", "beam-m"], [6.6, 1.1], [2.0, 12.0], |form| form.L / form.B),
     Ratio::new(["B/d", "draught-m"], [2.9, 0.35], [1.2, 8.0], |form| form.B / form.d),
@@ -185,21 +185,21 @@ pub(super) const RATIOS: [Ratio; 7] = [
     Ratio::new(["x_G/L", "x-g-m"], [0.0, 0.02], [-0.1, 0.1], |form| form.xG / form.L),
 ];
 
-/// Froude numbers of displacement ships that are steered. A model that is declared with the length of her ship, or a
-/// ship with that of her model, has another.
+/// Usual range of the Froude number of displacement ships in manoeuvring trials. A model with the length of its ship,
+/// or a ship with the length of its model, is outside.
 pub const USUAL_FROUDE_NUMBER: [f64; 2] = [0.025, 0.6];
-/// Advance ratios of propellers that drive a ship ahead.
-const ADVANCE: [f64; 2] = [0.1, 1.3];
-/// How far displacement and C_b L B d may differ, as a share.
+/// Range of the advance ratio of propellers that drive a ship ahead.
+const ADVANCE_RANGE: [f64; 2] = [0.1, 1.3];
+/// Relative tolerance between displacement and C_b L B d.
 const DISPLACEMENT_TOLERANCE: f64 = 0.05;
 
 pub(super) const GRAVITY: f64 = 9.81;
 const SEA_WATER: f64 = 1025.0;
 const FRESH_WATER: f64 = 1000.0;
-/// What is shorter is a model and floats in fresh water, m.
-const SHORTEST_SHIP: f64 = 30.0;
+/// Smallest length of a ship in sea water, m; a shorter one is a model in fresh water.
+const MIN_SHIP_LENGTH_M: f64 = 30.0;
 
-/// A hull with no particular missing but the revolutions of the propeller.
+/// Complete dimensions of a hull; the propeller revolutions are optional.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HullDimensions {
     pub L: f64,
@@ -214,22 +214,22 @@ pub(super) struct HullDimensions {
     pub n: Option<f64>,
 }
 
-/// Why particulars describe no ship.
+/// Error of a particular outside the range of ships.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{what} is {}{}, expected {} to {}{}; {cure}", ShortNumber::rounded(*.value, 4), in_unit(.unit),
     ShortNumber::rounded(.range[0], 4), ShortNumber::rounded(.range[1], 4), in_unit(.unit))]
 pub struct ParticularsError {
-    /// The key at fault, or the last of those that contradict each other.
+    /// Key of the particular, or the last of those that contradict each other.
     pub key: &'static str,
-    /// What is wrong, with the keys it is made of.
+    /// Quantity, with the keys from which it follows.
     pub what: String,
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// What ships have.
+    /// Range of ships.
     pub range: [f64; 2],
-    /// Unit of both.
+    /// Unit of value and range.
     pub unit: &'static str,
-    /// What to do.
+    /// Advice.
     pub cure: &'static str,
 }
 
@@ -240,11 +240,12 @@ fn in_unit(unit: &str) -> String {
 impl HullParticulars {
     /// Volume of the displaced water, m³.
     fn volume(&self) -> Option<f64> {
-        let density = if self.length < SHORTEST_SHIP { FRESH_WATER } else { SEA_WATER };
+        let density = if self.length < MIN_SHIP_LENGTH_M { FRESH_WATER } else { SEA_WATER };
         self.displacement.map(|mass| mass / density)
     }
 
-    /// The hull, with these values of [`RATIOS`] where something is missing; the displacement goes before a ratio.
+    /// Complete dimensions, with these values of [`RATIOS`] for missing particulars; a given displacement has
+    /// precedence over a ratio.
     pub(super) fn form(&self, ratios: &[f64; 7]) -> HullDimensions {
         let [length_beam, beam_draught, fullness, area, height, diameter, gravity] = *ratios;
         let (L, volume) = (self.length, self.volume());
@@ -267,12 +268,12 @@ impl HullParticulars {
         }
     }
 
-    /// Whether anything is given but length and speed.
+    /// `true` if any particular beside length and speed is given.
     pub fn has_form(&self) -> bool {
         *self != Self { length: self.length, speed: self.speed, ..Self::default() }
     }
 
-    /// Refuses what no ship has: each number by itself, then their ratios.
+    /// Checks every particular and then their ratios against the ranges of ships.
     pub fn check(&self) -> Result<(), ParticularsError> {
         for Particular { key, unit, range, get, .. } in PARTICULARS {
             let needed = matches!(key, "length-m" | "speed-m-s").then_some(0.0);
@@ -281,7 +282,7 @@ impl HullParticulars {
             }
         }
         let form = &self.form(&RATIOS.map(|ratio| ratio.mean));
-        let cure = "length and speed have to be of one scale: both of the ship, or both of the model";
+        let cure = "give length and speed at one scale: both of the ship, or both of the model";
         within(
             "speed-m-s",
             "the Froude number of length-m and speed-m-s".into(),
@@ -291,8 +292,8 @@ impl HullParticulars {
             cure,
         )?;
         for Ratio { name, fills, range, of, .. } in RATIOS {
-            let cure = "all lengths have to be of one ship and one scale, in metres; what is not given is estimated from her \
-                        length (`study list priors`)";
+            let cure = "give all lengths of one ship at one scale, in metres; a missing particular is estimated from the length \
+                        (`study list priors`)";
             within(fills, format!("{name} ({fills})"), of(form), range, "1", cure)?;
         }
         if let Some(volume) = self.volume() {
@@ -304,7 +305,7 @@ impl HullParticulars {
         }
         let cure = "give revolutions per second, and the diameter and the speed of the same scale";
         let what = "the advance ratio of propeller-rps, propeller-diameter-m and speed-m-s";
-        within("propeller-rps", what.into(), form.advance(), ADVANCE, "1", cure)
+        within("propeller-rps", what.into(), form.advance(), ADVANCE_RANGE, "1", cure)
     }
 }
 
@@ -317,7 +318,7 @@ fn within(
     cure: &'static str,
 ) -> Result<(), ParticularsError> {
     let [lowest, highest] = range;
-    // NaN is within nothing.
+    // NaN is outside every range.
     if (lowest..=highest).contains(&value) {
         return Ok(());
     }

@@ -51,26 +51,26 @@ fn bare(length: f64, speed: f64) -> HullParticulars {
     HullParticulars { length, speed, ..HullParticulars::default() }
 }
 
-fn found<'a>(prior: &'a HullPrior, key: &str) -> &'a Coefficient {
+fn coefficient<'a>(prior: &'a HullPrior, key: &str) -> &'a Coefficient {
     prior.coefficients.iter().find(|coefficient| coefficient.formula.key == key).expect(key)
 }
 
 /// Error of the mean, per cent of the published value.
 fn error(prior: &HullPrior, key: &str, published: f64) -> f64 {
-    100.0 * (found(prior, key).mean / published - 1.0)
+    100.0 * (coefficient(prior, key).mean / published - 1.0)
 }
 
 #[track_caller]
 fn errors_are(prior: &HullPrior, expected: &[(&str, f64, f64)]) {
     for (key, published, percent) in expected {
-        let found = error(prior, key, *published);
-        assert!((found - percent).abs() < 0.51, "{key}: {found:.1} %, expected {percent} %");
+        let error = error(prior, key, *published);
+        assert!((error - percent).abs() < 0.51, "{key}: {error:.1} %, expected {percent} %");
     }
 }
 
 /// The value of a coefficient in some parameters; NaN where they have none.
-fn of(coefficient: &Coefficient, mut parameters: Parameters) -> f64 {
-    parameters.named(coefficient.formula.key).map_or(f64::NAN, |own| *own)
+fn value_in(coefficient: &Coefficient, mut parameters: Parameters) -> f64 {
+    parameters.named(coefficient.formula.key).map_or(f64::NAN, |value| *value)
 }
 
 /// Yasukawa and Yoshimura (2015). Yr needs m_x', which is a formula as well and 5 % high.
@@ -101,8 +101,8 @@ fn formulas_miss_the_published_derivatives_of_esso_osaka_by_so_much() {
     let prior = priors(&ESSO_OSAKA).expect("a ship");
     errors_are(&prior, &[("my", 0.2579, -11.8), ("Yv", -0.3728, 7.3), ("Nv", -0.1458, -8.0), ("Nr", -0.04849, -8.3)]);
     // With the published m_x' the formula of Yr misses by 2 %.
-    let known = found(&prior, "Yr").mean - found(&prior, "mx").mean + 0.0467;
-    assert!((100.0 * (known / 0.116 - 1.0) + 1.4).abs() < 0.1, "{known}");
+    let derivative = coefficient(&prior, "Yr").mean - coefficient(&prior, "mx").mean + 0.0467;
+    assert!((100.0 * (derivative / 0.116 - 1.0) + 1.4).abs() < 0.1, "{derivative}");
 }
 
 /// Seven derivatives of the set and two added masses are these regressions to the printed digits, four of them ones
@@ -112,8 +112,8 @@ fn the_seiun_like_ship_is_made_of_regressions() {
     let prior = priors(&SEIUN_LIKE).expect("a ship");
     let set = seiun_like::PARAMETERS;
     for key in ["Nv", "Nvvv", "Nvvr", "Yvrr", "Yrrr", "my", "wP0", "Xvv", "Xvr"] {
-        let coefficient = found(&prior, key);
-        let (formula, printed) = (coefficient.mean, of(coefficient, set));
+        let derivative = coefficient(&prior, key);
+        let (formula, printed) = (derivative.mean, value_in(derivative, set));
         assert!((formula - printed).abs() < 6e-4, "{key}: {formula} against {printed}");
     }
     // The one regression that is not used because of its sign.
@@ -126,8 +126,8 @@ fn the_seiun_like_ship_is_made_of_regressions() {
 fn published_hulls_are_plausible_under_their_prior() {
     for (given, published) in [(KVLCC2, kvlcc2::FULL_SCALE), (SEIUN_LIKE, seiun_like::PARAMETERS)] {
         let prior = priors(&given).expect("a ship");
-        let off = |one: &&Coefficient| (of(one, published) - one.mean).abs() > 2.0 * one.sd;
-        let beyond: Vec<&str> = prior.coefficients.iter().filter(off).map(|one| one.formula.key).collect();
+        let off = |c: &&Coefficient| (value_in(c, published) - c.mean).abs() > 2.0 * c.sd;
+        let beyond: Vec<&str> = prior.coefficients.iter().filter(off).map(|c| c.formula.key).collect();
         assert!(10 * beyond.len() <= prior.coefficients.len(), "{beyond:?}");
     }
 }
@@ -141,7 +141,7 @@ fn the_mean_hull_sails_and_turns_her_propeller_as_declared() {
         assert!((hull.revolutions() / rate - 1.0).abs() < 1e-9, "{} against {rate}", hull.revolutions());
         assert!(prior.assumed.is_empty(), "{:?}", prior.assumed);
         for coefficient in &prior.coefficients {
-            assert_eq!(of(coefficient, prior.parameters), coefficient.mean, "{}", coefficient.formula.key);
+            assert_eq!(value_in(coefficient, prior.parameters), coefficient.mean, "{}", coefficient.formula.key);
             assert!(coefficient.sd > 0.0 && coefficient.sd.is_finite(), "{}", coefficient.formula.key);
         }
     }
@@ -152,16 +152,16 @@ fn the_mean_hull_sails_and_turns_her_propeller_as_declared() {
 
 #[test]
 fn what_is_missing_widens_the_prior() {
-    let known = priors(&KVLCC2).expect("a ship");
+    let complete = priors(&KVLCC2).expect("a ship");
     let bare = priors(&bare(320.0, 7.97)).expect("a ship");
     for key in ["Yv", "Yr", "Nv", "Yvrr", "my", "f_alpha", "wP0"] {
         let share = |prior| {
-            let coefficient: &Coefficient = found(prior, key);
-            coefficient.sd / coefficient.mean.abs()
+            let prior: &Coefficient = coefficient(prior, key);
+            prior.sd / prior.mean.abs()
         };
-        assert!(share(&bare) > 1.05 * share(&known), "{key}: {} against {}", share(&bare), share(&known));
+        assert!(share(&bare) > 1.05 * share(&complete), "{key}: {} against {}", share(&bare), share(&complete));
     }
-    let assumed: Vec<&str> = bare.assumed.iter().map(|one| one.key).collect();
+    let assumed: Vec<&str> = bare.assumed.iter().map(|assumed| assumed.key).collect();
     let missing = ["beam-m", "draught-m", "block-coefficient", "rudder-area-m2", "rudder-height-m"];
     assert_eq!(assumed[..5], missing);
     let draught = &bare.assumed[1];
@@ -194,24 +194,24 @@ fn what_is_no_ship_is_refused() {
         priors(&given).expect_err("no ship").to_string()
     };
     let cases: [(Change, &str); 14] = [
-        (|own| own.rudder_area = Some(-112.5), "rudder-area-m2 is -112.5 m², expected 0.00001 to 500 m²"),
-        (|own| own.block_coefficient = Some(1.2), "block-coefficient is 1.2, expected 0.3 to 1"),
-        (|own| own.beam = Some(1.27), "L/B (beam-m) is 252, expected 2 to 12"),
-        (|own| own.beam = Some(f64::NAN), "beam-m is NaN m"),
-        (|own| own.draught = Some(0.46), "B/d (draught-m) is 126.1, expected 1.2 to 8"),
-        (|own| own.length = 0.0, "length-m is 0 m, expected 0.1 to 1000 m"),
-        (|own| own.speed = 0.0, "speed-m-s is 0 m/s"),
-        (|own| own.speed = 40.0, "the Froude number of length-m and speed-m-s is 0.7139, expected 0.025 to 0.6"),
-        (|own| own.speed = 1.179, "the Froude number of length-m and speed-m-s is 0.02104"),
-        (|own| own.rudder_height = Some(40.0), "H_R/d (rudder-height-m) is 1.923"),
-        (|own| own.propeller_diameter = Some(0.216), "D_P/d (propeller-diameter-m) is 0.01038"),
-        (|own| own.propeller_rate = Some(90.0), "the advance ratio of propeller-rps"),
-        (|own| own.x_g = Some(60.0), "x_G/L (x-g-m) is 0.1875, expected -0.1 to 0.1"),
-        (|own| own.displacement = Some(2e8), "the displaced volume of displacement-t over C_b L B d is 0.624"),
+        (|p| p.rudder_area = Some(-112.5), "rudder-area-m2 is -112.5 m², expected 0.00001 to 500 m²"),
+        (|p| p.block_coefficient = Some(1.2), "block-coefficient is 1.2, expected 0.3 to 1"),
+        (|p| p.beam = Some(1.27), "L/B (beam-m) is 252, expected 2 to 12"),
+        (|p| p.beam = Some(f64::NAN), "beam-m is NaN m"),
+        (|p| p.draught = Some(0.46), "B/d (draught-m) is 126.1, expected 1.2 to 8"),
+        (|p| p.length = 0.0, "length-m is 0 m, expected 0.1 to 1000 m"),
+        (|p| p.speed = 0.0, "speed-m-s is 0 m/s"),
+        (|p| p.speed = 40.0, "the Froude number of length-m and speed-m-s is 0.7139, expected 0.025 to 0.6"),
+        (|p| p.speed = 1.179, "the Froude number of length-m and speed-m-s is 0.02104"),
+        (|p| p.rudder_height = Some(40.0), "H_R/d (rudder-height-m) is 1.923"),
+        (|p| p.propeller_diameter = Some(0.216), "D_P/d (propeller-diameter-m) is 0.01038"),
+        (|p| p.propeller_rate = Some(90.0), "the advance ratio of propeller-rps"),
+        (|p| p.x_g = Some(60.0), "x_G/L (x-g-m) is 0.1875, expected -0.1 to 0.1"),
+        (|p| p.displacement = Some(2e8), "the displaced volume of displacement-t over C_b L B d is 0.624"),
     ];
     for (change, message) in cases {
-        let found = refused(change);
-        assert!(found.starts_with(message) && found.contains("; "), "{found}\nexpected {message}");
+        let refusal = refused(change);
+        assert!(refusal.starts_with(message) && refusal.contains("; "), "{refusal}\nexpected {message}");
     }
     // A model with the length of her ship: lengths of both scales contradict each other before anything sails.
     let mixed = HullParticulars { length: 320.0, speed: 7.97, beam: Some(1.27), ..HullParticulars::default() };
@@ -221,10 +221,10 @@ fn what_is_no_ship_is_refused() {
 #[test]
 fn every_particular_is_found_by_its_key() {
     for particular in PARTICULARS {
-        let mut own = HullParticulars::default();
-        assert_eq!(particular.get(&own), None, "{}", particular.key);
-        Particular::named(particular.key).expect("its own key").set(&mut own, 0.75);
-        assert_eq!(particular.get(&own), Some(0.75), "{}", particular.key);
+        let mut particulars = HullParticulars::default();
+        assert_eq!(particular.get(&particulars), None, "{}", particular.key);
+        Particular::named(particular.key).expect("its own key").set(&mut particulars, 0.75);
+        assert_eq!(particular.get(&particulars), Some(0.75), "{}", particular.key);
     }
 }
 
@@ -241,7 +241,7 @@ fn the_mean_hull_turns_as_ships_do() {
         let mut rate = state.clone();
         for _ in 0..1500 {
             ship.rates(0.0, &state, &input, &mut rate);
-            state.iter_mut().zip(&rate).for_each(|(own, rate)| *own += 0.01 * time * rate);
+            state.iter_mut().zip(&rate).for_each(|(x, rate)| *x += 0.01 * time * rate);
         }
         let turning = state[super::super::state::YAW_RATE] * time;
         assert!((0.1..0.8).contains(&turning), "{given:?}: r' = {turning}");

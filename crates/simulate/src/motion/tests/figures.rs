@@ -23,17 +23,17 @@ fn circle(side: f64, course: f64, turned: f64) -> TurningCircleFigures {
 #[test]
 fn a_steady_circle_has_its_closed_figures_to_both_sides() {
     for (side, course) in [(1.0, 0.0), (-1.0, 0.0), (1.0, 2.5), (-1.0, -4.0)] {
-        let found = circle(side, course, 4.0 * PI);
-        let is = |found: Option<f64>, expected: f64| {
-            assert_relative_eq!(found.expect("reached"), expected, max_relative = 1e-5);
+        let figures = circle(side, course, 4.0 * PI);
+        let is = |figure: Option<f64>, expected: f64| {
+            assert_relative_eq!(figure.expect("reached"), expected, max_relative = 1e-5);
         };
-        is(found.advance, (SURGE - SWAY) / RATE);
-        is(found.transfer, (SURGE + SWAY) / RATE);
-        is(found.tactical_diameter, 2.0 * SURGE / RATE);
-        is(found.speed_ratio, 1.0);
+        is(figures.advance, (SURGE - SWAY) / RATE);
+        is(figures.transfer, (SURGE + SWAY) / RATE);
+        is(figures.tactical_diameter, 2.0 * SURGE / RATE);
+        is(figures.speed_ratio, 1.0);
         // Positive drift to starboard: the bow points into the turn.
-        is(found.drift_angle, side * (-SWAY).atan2(SURGE));
-        is(found.pivot_ahead, -SWAY / RATE);
+        is(figures.drift_angle, side * (-SWAY).atan2(SURGE));
+        is(figures.pivot_ahead, -SWAY / RATE);
     }
 }
 

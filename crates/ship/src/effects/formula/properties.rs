@@ -1,5 +1,5 @@
-//! What a formula says of itself when it is evaluated: which of its constants are sizes, their symmetry and units, and
-//! what to expect of them.
+//! Properties of a formula, found by evaluation at sample points: amplitudes (sizes) and shape constants, their
+//! symmetry and units, and their priors.
 
 use super::points::{SignalPoint, SignalSizes};
 use super::program::FormulaSignal;
@@ -7,30 +7,30 @@ use super::{Formula, Sides};
 use crate::effects::effect::{Manoeuvres, Parameter, Prior};
 use crate::particulars::{self, Dimension};
 
-/// Ends of a constant that was given none.
-const ANY: f64 = 1e9;
+/// Range of a constant without one.
+const UNBOUNDED: f64 = 1e9;
 
-/// Expected moment over the largest angle of the rudder, where nothing is said of the size of a constant.
-const MODERATE: f64 = 0.2;
+/// Standard deviation of the moment over the largest rudder angle, where the formula has no expected value.
+const MOMENT_SHARE: f64 = 0.2;
 
 impl Formula {
-    /// Its value at a point: a yaw acceleration or a rudder angle.
+    /// Value at a point: a yaw acceleration or a rudder angle.
     pub(super) fn value_at(&self, constants: &[f64], point: &SignalPoint) -> f64 {
         self.program.value(constants, |signal| point.of(signal))
     }
 
-    /// The moment as an angle of the rudder, rad.
+    /// Moment as equivalent rudder angle, rad.
     fn moment(&self, constants: &[f64], point: &SignalPoint) -> f64 {
         self.value_at(constants, point) / point.of(FormulaSignal::Gain)
     }
 
-    /// Which constants the moment is proportional to.
+    /// For every constant, `true` if the moment is proportional to it: it is a size.
     pub(super) fn sizes(&self) -> Vec<bool> {
         let count = self.program.constants.len();
-        let is_size = |own: usize| {
+        let is_size = |index: usize| {
             let value = |size: f64, point: &SignalPoint| {
                 let mut constants: Vec<f64> = (0..count).map(|place| 0.7 + 0.3 * place as f64).collect();
-                constants[own] = size;
+                constants[index] = size;
                 self.moment(&constants, point)
             };
             SignalPoint::all(&SignalSizes::ones()).all(|point| {
@@ -42,34 +42,34 @@ impl Formula {
         (0..count).map(is_size).collect()
     }
 
-    /// Whether there is no moment where all sizes are zero.
+    /// `true` if the moment vanishes where all sizes are zero.
     pub(super) fn can_be_absent(&self) -> bool {
         let ones = SignalSizes::ones();
         let absent = self.with_size(None, &self.shapes(&ones));
         self.is_size.contains(&true) && SignalPoint::all(&ones).all(|point| self.moment(&absent, &point) == 0.0)
     }
 
-    /// Constants that are these shapes, and of the sizes one or none.
+    /// Constants with these shapes, and with one size or none equal to 1, the other sizes zero.
     fn with_size(&self, place: Option<usize>, shapes: &[f64]) -> Vec<f64> {
-        let of = |(own, shape): (usize, &f64)| match (self.is_size[own], place == Some(own)) {
+        let constant = |(index, shape): (usize, &f64)| match (self.is_size[index], place == Some(index)) {
             (false, _) => *shape,
-            (true, is_it) => f64::from(u8::from(is_it)),
+            (true, is_selected) => f64::from(u8::from(is_selected)),
         };
-        shapes.iter().enumerate().map(of).collect()
+        shapes.iter().enumerate().map(constant).collect()
     }
 
-    /// The constants described.
-    pub(super) fn found_parameters(&self) -> Vec<Parameter> {
-        let kept = |words: String| -> &'static str { words.leak() };
+    /// Constants as parameters.
+    pub(super) fn derived_parameters(&self) -> Vec<Parameter> {
+        let leaked = |text: String| -> &'static str { text.leak() };
         let shapes = self.shapes(&SignalSizes::ones());
         let units = self.units(&shapes);
         let parameter = |place: usize| {
-            let key = kept(self.program.constants[place].clone());
-            let unit = units[place].map_or(Parameter::NO_UNIT, |dimension| kept(particulars::unit(dimension)));
+            let key = leaked(self.program.constants[place].clone());
+            let unit = units[place].map_or(Parameter::NO_UNIT, |dimension| leaked(particulars::unit(dimension)));
             let size = if self.is_size[place] { 0.01 } else { shapes[place] };
             let typical = self.expected[place].about.unwrap_or(size);
             let neutral = if self.is_size[place] { 0.0 } else { typical };
-            let ends = self.expected[place].ends.unwrap_or([-ANY, ANY]);
+            let ends = self.expected[place].ends.unwrap_or([-UNBOUNDED, UNBOUNDED]);
             Parameter {
                 odd: self.is_size[place] && self.sides_of(place, &shapes) == Sides::Same,
                 ..Parameter::even([key, key, unit], [neutral, typical], ends)
@@ -78,13 +78,13 @@ impl Formula {
         (0..shapes.len()).map(parameter).collect()
     }
 
-    /// What becomes of the part of a size where port and starboard are exchanged.
+    /// Symmetry of the contribution of one size when port and starboard are exchanged.
     fn sides_of(&self, place: usize, shapes: &[f64]) -> Sides {
         let constants = self.with_size(Some(place), shapes);
         let agrees = |sign: f64| {
             SignalPoint::all(&SignalSizes::ones()).all(|point| {
-                let [one, other] = [&point, &point.mirrored()].map(|point| self.moment(&constants, point));
-                (other - sign * one).abs() <= 1e-9 * (one.abs() + other.abs() + 1e-12)
+                let [moment, mirrored] = [&point, &point.mirrored()].map(|point| self.moment(&constants, point));
+                (mirrored - sign * moment).abs() <= 1e-9 * (moment.abs() + mirrored.abs() + 1e-12)
             })
         };
         match (agrees(-1.0), agrees(1.0)) {
@@ -94,36 +94,36 @@ impl Formula {
         }
     }
 
-    /// What becomes of it where port and starboard are exchanged and its constants stay.
+    /// Symmetry of the moment when port and starboard are exchanged at the same constants.
     pub fn sides(&self) -> Sides {
         let shapes = self.shapes(&SignalSizes::ones());
         let sizes = (0..shapes.len()).filter(|place| self.is_size[*place]);
         let all = sizes.map(|place| self.sides_of(place, &shapes));
-        all.reduce(|one, other| if one == other { one } else { Sides::Differ }).unwrap_or(Sides::Differ)
+        all.reduce(|first, next| if first == next { first } else { Sides::Differ }).unwrap_or(Sides::Differ)
     }
 
-    /// Dimensions of the constants, where they follow from the signals: an angle has to come out. Of several shapes
-    /// nothing is known.
+    /// Dimensions of the constants, where they follow from the signals, because the result is an angle. Unknown for
+    /// several shapes.
     fn units(&self, shapes: &[f64]) -> Vec<Option<Dimension>> {
         const POWERS: std::ops::RangeInclusive<i32> = -3..=3;
-        let mut tried: Vec<Dimension> =
+        let mut candidates: Vec<Dimension> =
             POWERS.flat_map(|seconds| POWERS.map(move |metres| [seconds, metres])).collect();
         match self.is_size.iter().filter(|is_size| !**is_size).count() {
-            0 => tried.truncate(1),
+            0 => candidates.truncate(1),
             1 => {}
-            _ => tried.clear(),
+            _ => candidates.clear(),
         }
-        let all = |own: Dimension| -> Option<Vec<Dimension>> {
+        let all = |shape: Dimension| -> Option<Vec<Dimension>> {
             let dimension =
-                |place| if self.is_size[place] { self.dimension_beside(place, shapes, own) } else { Some(own) };
+                |place| if self.is_size[place] { self.size_dimension(place, shapes, shape) } else { Some(shape) };
             (0..shapes.len()).map(dimension).collect()
         };
-        let found = tried.into_iter().find_map(all);
-        (0..shapes.len()).map(|place| found.as_ref().map(|all| all[place])).collect()
+        let consistent = candidates.into_iter().find_map(all);
+        (0..shapes.len()).map(|place| consistent.as_ref().map(|all| all[place])).collect()
     }
 
-    /// The dimension of a size, where shapes have this one; `None` where no power of second and metre is its factor.
-    fn dimension_beside(&self, place: usize, shapes: &[f64], of_shapes: Dimension) -> Option<Dimension> {
+    /// Dimension of a size, given the dimension of the shapes; `None` where it is no power of second and metre.
+    fn size_dimension(&self, place: usize, shapes: &[f64], of_shapes: Dimension) -> Option<Dimension> {
         let power = |second: f64, metre: f64| {
             let mut ratios = SignalPoint::all(&SignalSizes::ones()).filter_map(|point| {
                 let value = |point: &SignalPoint, grown: f64| {
@@ -135,16 +135,16 @@ impl Formula {
                 ratio.is_finite().then(|| ratio.ln() / (second * metre).ln())
             });
             let first = ratios.next()?;
-            let is_one = ratios.all(|other| (other - first).abs() < 1e-9) && (first - first.round()).abs() < 1e-9;
-            is_one.then_some(-first.round() as i32)
+            let is_power = ratios.all(|other| (other - first).abs() < 1e-9) && (first - first.round()).abs() < 1e-9;
+            is_power.then_some(-first.round() as i32)
         };
         Some([power(2.0, 1.0)?, power(1.0, 2.0)?])
     }
 
-    /// Values of the constants where a fit starts: of a shape the expected one, else the one at which the moment begins
-    /// to bend.
+    /// Start values of the constants: of a shape the expected value, else the value at which the moment becomes
+    /// nonlinear in it.
     fn shapes(&self, scales: &SignalSizes) -> Vec<f64> {
-        let mut values: Vec<f64> = self.expected.iter().map(|own| own.about.unwrap_or(1.0)).collect();
+        let mut values: Vec<f64> = self.expected.iter().map(|constant| constant.about.unwrap_or(1.0)).collect();
         for place in 0..values.len() {
             if self.is_size[place] || self.expected[place].about.is_some() {
                 continue;
@@ -155,7 +155,7 @@ impl Formula {
                 let moments = SignalPoint::all(scales).map(|point| self.moment(&constants, &point));
                 moments.map(|moment| moment * moment).sum::<f64>().sqrt()
             };
-            // How the moment grows with the constant: as a power at first, less where it bends.
+            // Exponent by which the moment grows with the constant: constant at first, another where the moment bends.
             let slope = |value: f64| (spread(1.1 * value) / spread(value)).ln() / 1.1_f64.ln();
             let first = slope(1e-6);
             let mut ladder = (-24..=24).map(|step| 10f64.powf(f64::from(step) / 4.0));
@@ -168,10 +168,11 @@ impl Formula {
         values
     }
 
-    /// A size is a normal law about zero: the expected one, or that of a moment of a fifth of the largest rudder angle.
-    /// A shape is a normal law about its expected value, half as wide. `None` where one is not finite.
-    pub(super) fn found_priors(&self, about: &Manoeuvres) -> Option<Vec<Prior>> {
-        let scales = SignalSizes::of(about);
+    /// Priors of the constants. A size is normal about zero, with the expected value as its standard deviation, else
+    /// with that of a moment of a fifth of the largest rudder angle. A shape is normal about its expected value, with
+    /// half of it as standard deviation. `None` where a prior is not finite.
+    pub(super) fn derived_priors(&self, records: &Manoeuvres) -> Option<Vec<Prior>> {
+        let scales = SignalSizes::of(records);
         let shapes = self.shapes(&scales);
         let prior = |(place, parameter): (usize, &Parameter)| {
             if !self.is_size[place] {
@@ -179,7 +180,7 @@ impl Formula {
             }
             let alone = self.with_size(Some(place), &shapes);
             let square = SignalPoint::all(&scales).map(|point| self.moment(&alone, &point).powi(2)).sum::<f64>();
-            let usual = MODERATE * about.rudder / (square / SignalPoint::COUNT as f64).sqrt();
+            let usual = MOMENT_SHARE * records.rudder / (square / SignalPoint::COUNT as f64).sqrt();
             Prior::normal(parameter, 0.0, self.expected[place].about.map_or(usual, f64::abs))
         };
         let priors: Vec<Prior> = self.description.parameters.iter().enumerate().map(prior).collect();
